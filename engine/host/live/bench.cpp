@@ -3,14 +3,12 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <deque>
@@ -19,6 +17,7 @@
 #include <new>
 #include <optional>
 
+#include "host/live/shared_column.h"
 #include "host/process/child.h"
 #include "host/process/confine.h"
 #include "host/process/watched.h"
@@ -29,45 +28,6 @@ using storage::Json;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Numbers that a child writes and others read: one a reading of a part.
-class Shared {
- public:
-  explicit Shared(std::size_t size) : size_(size) {
-    void* const at =
-        ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (at == MAP_FAILED) throw std::bad_alloc();
-    data_ = static_cast<double*>(at);
-  }
-  Shared(const Shared&) = delete;
-  Shared& operator=(const Shared&) = delete;
-  ~Shared() { ::munmap(data_, bytes()); }
-  std::span<double> values() { return {data_, size_}; }
-
- private:
-  std::size_t bytes() const { return std::max<std::size_t>(size_, 1) * sizeof(double); }
-  std::size_t size_;
-  double* data_ = nullptr;
-};
-
-/// What was fitted last of a part: the newest, by their trials.
-class Fitted {
- public:
-  std::shared_ptr<Shared> find(const std::string& key) const {
-    for (const auto& [known, residual] : all_)
-      if (known == key) return residual;
-    return nullptr;
-  }
-  void put(const std::string& key, std::shared_ptr<Shared> residual) {
-    std::erase_if(all_, [&](const auto& one) { return one.first == key; });
-    all_.emplace_back(key, std::move(residual));
-    if (all_.size() > most) all_.pop_front();
-  }
-
- private:
-  static constexpr std::size_t most = 8;  // steps to and fro; 8 MB each of 1,000,000 readings
-  std::deque<std::pair<std::string, std::shared_ptr<Shared>>> all_;
-};
 
 struct Job {
   std::uint64_t number = 0;
@@ -80,8 +40,9 @@ struct Running {
   pid_t child = -1;
   process::Handle pipe{};
   std::string received{};
-  std::shared_ptr<Shared> residual{};
-  bool fills = false;  ///< `residual`
+  std::shared_ptr<SharedColumn> residual{};
+  bool fills = false;     ///< `residual`
+  bool is_begun = false;  ///< what is there first was told
   Clock::time_point begun = Clock::now();
   int told = 0;  ///< seconds that were reported
 };
@@ -199,9 +160,17 @@ class Loop {
     if (!process::write_text(channel_.get(), parcel.bytes())) gone_ = true;
   }
 
+  /// What is slow begins when the picture that somebody waits for is there, or takes long itself.
+  bool is_awaited(const Running& one) const {
+    constexpr auto long_time = std::chrono::seconds(1);
+    return one.job.kind == "fit" && !one.is_begun && niceness(one.job, bench_) == 0 &&
+           Clock::now() - one.begun < long_time;
+  }
+
   void start_what_may() {
     std::size_t slow = 0;
-    for (const auto& [number, one] : running_) slow += is_slow(one.job) ? 1 : 0;
+    for (const auto& [number, one] : running_)
+      slow += is_awaited(one) ? most_slow : is_slow(one.job) ? 1 : 0;
     for (const bool is_quick : {true, false})
       for (auto it = waiting_.begin(); it != waiting_.end();) {
         const bool may = is_slow(*it) != is_quick && running_.size() < most_running &&
@@ -210,8 +179,12 @@ class Loop {
           ++it;
           continue;
         }
-        slow += is_quick ? 0 : 1;
         start(*it);
+        const auto started = running_.find(it->number);
+        if (started != running_.end() && is_awaited(started->second))
+          slow += most_slow;
+        else
+          slow += is_quick ? 0 : 1;
         it = waiting_.erase(it);
       }
   }
@@ -221,10 +194,10 @@ class Loop {
     const auto known = job.kind == "fit" ? nullptr : fitted_[job.part].find(job.key);
     const bool fitted = known != nullptr;
     const modelling::PartModel* const part = bench_.part(job.part);
-    std::shared_ptr<Shared> residual;
+    std::shared_ptr<SharedColumn> residual;
     try {
       residual = fitted ? known
-                        : std::make_shared<Shared>(
+                        : std::make_shared<SharedColumn>(
                               fills && part != nullptr ? part->part.table.size() : 0);
     } catch (const std::bad_alloc&) {
       return tell(job.number, job_state::failed, "out of memory");
@@ -242,8 +215,9 @@ class Loop {
       do_job(bench_, job, to.get(), residual->values(), fitted);
     }
     if (job.number != 0) tell(job.number, job_state::running, "0");
-    running_[job.number] = {job,   child,         std::move(from), "", std::move(residual),
-                            fills, Clock::now(), 0};
+    Running& one = running_[job.number];
+    one.job = job, one.child = child, one.pipe = std::move(from);
+    one.residual = std::move(residual), one.fills = fills;
   }
 
   /// What this process does itself, since all requests want it: while nobody waits for anything.
@@ -269,6 +243,7 @@ class Loop {
       if (k < all.size() && all[k].fd == one.pipe.get() && all[k].revents != 0) {
         if (!read_from(one)) ended.push_back(number);
         if (const auto first = take_first(one.received)) {
+          one.is_begun = true;
           keep_residual(one);
           tell(number, job_state::begun, *first);
         }
@@ -369,7 +344,7 @@ class Loop {
   double seconds_;
   std::deque<Job> waiting_;
   std::map<std::uint64_t, Running> running_;
-  std::map<std::string, Fitted> fitted_;
+  std::map<std::string, FittedBefore> fitted_;
   bool gone_ = false;
 };
 

@@ -274,8 +274,7 @@ Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> r
     first(parcel.bytes());
     is_begun = true;
   };
-  const auto compared =
-      modelling::compare_part(one->part(), groundwork_of(bench, *one), begin);
+  const auto compared = modelling::compare_part(one->part(), groundwork_of(bench, *one), begin);
   if (!compared) return fail(compared.error());
   auto page = is_begun ? Expected<std::string>("") : page_of(*compared);
   if (!page) return page;
@@ -329,8 +328,8 @@ Expected<std::string> explain(Bench& bench, const Json& request, const First& fi
   if (!explained) return fail(explained.error());
   const modelling::Explained both{one->part(), std::move(*explained)};
   first("{\"explain\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) + "}");
-  return "{\"fingerprints\":" +
-         storage::dump_line(fingerprints_of(one->part(), both.explanation)) + "}";
+  return "{\"fingerprints\":" + storage::dump_line(fingerprints_of(one->part(), both.explanation)) +
+         "}";
 }
 
 Expected<std::string> without(Bench& bench, const Json& request) {
@@ -437,7 +436,8 @@ const PartModel* without_groundwork(const Bench& bench) {
   // Of fewer readings it takes milliseconds; of more it would keep others waiting.
   constexpr std::size_t fewest = 5000, most = 200000;
   for (const PartModel& part : bench.parts)
-    if (part.part.table.size() >= fewest && part.part.table.size() <= most && !bench.groundwork.contains(part.part.name) &&
+    if (part.part.table.size() >= fewest && part.part.table.size() <= most &&
+        !bench.groundwork.contains(part.part.name) &&
         std::none_of(part.terms.begin(), part.terms.end(),
                      [](const model::Term& t) { return t.effect->is_nuisance; }))
       return &part;

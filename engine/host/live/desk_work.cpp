@@ -230,8 +230,8 @@ void Desk::take_fit(const std::string& part, PartState::Work& work, const std::s
   publish("fit", part, {{"part", part}});
 }
 
-void Desk::take_explanation(const std::string& part, PartState::Work& work,
-                            const std::string& text, bool is_done) {
+void Desk::take_explanation(const std::string& part, PartState::Work& work, const std::string& text,
+                            bool is_done) {
   (is_done ? work.rest : work.head) = text;
   if (work.head.empty()) return;
   work.state = job_state::done;

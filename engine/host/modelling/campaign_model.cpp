@@ -138,8 +138,7 @@ Expected<void> without_mistakes(const std::vector<std::string>& effects,
 
 void set_model(PartModel& part, const std::vector<std::string>& effects,
                const reading::ReadCampaign& read) {
-  auto terms =
-      model::terms_of(part.part, read.manifest->campaign.machine, effects, read.effects);
+  auto terms = model::terms_of(part.part, read.manifest->campaign.machine, effects, read.effects);
   part.unfit = terms ? "" : terms.error().message;
   part.terms = terms ? std::move(*terms) : std::vector<model::Term>{};
 }
@@ -158,8 +157,8 @@ void fill_catalogue(PartModel& part, const reading::ReadCampaign& read) {
 }
 
 void fill_interpolated(PartModel& part, const reading::ReadCampaign& read) {
-  part.interpolated = place_of(part, read.manifest->campaign,
-                               model::interpolated_temperatures(part.part));
+  part.interpolated =
+      place_of(part, read.manifest->campaign, model::interpolated_temperatures(part.part));
 }
 
 Expected<std::vector<PartModel>> part_models(const reading::ReadCampaign& read,

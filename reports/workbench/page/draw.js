@@ -3,11 +3,12 @@
 // brings the data, from the page itself or from the server, and says what is hidden and what is done with a reading.
 "use strict";
 /// figure(k): the element of picture k; tip: what shows a reading; hidden: {d: directions, r: runs}, sets.
-/// Where a caller wants them: elsewhere(k) where it draws a picture itself, pick(row) and brushed(rows) when a reading or a region is chosen, said(lines) when a key
-/// moves to a reading, drawn(k, frame) after each picture.
-function nonioPictures({figure, tip, hidden, elsewhere, pick, brushed, said, drawn}) {
+/// Where a caller wants them: elsewhere(k) where it draws picture k itself, pick(row) and brushed(rows) when a reading or
+/// a region is chosen, said(lines) when a key moves to a reading, drawn(k, frame) after each picture, inTurn() after all
+/// of them; with it those in view come first.
+function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, said, drawn}) {
   let data, words, n, wrong, residual, place, ends_of_lane, lines, ghost = null;
-  let shown = [], range = [0, 1], pictures = [], marked = -1, by_key = false, printing = false, chosen = new Set();
+  let shown = [], range = [0, 1], pictures = [], marked = -1, by_key = false, printing = false, chosen = new Set(), turns = 0;
 
   const text = (template, places) =>
     template.replace(/\{(\w+)\}/g, (all, name) => (name in places ? places[name] : all));
@@ -361,15 +362,34 @@ function nonioPictures({figure, tip, hidden, elsewhere, pick, brushed, said, dra
     const columns = [place, null, data.time, data.run, null, data.temperature, says, null, place];
     if (ghost && !data.pictures[4].none) columns[4] = phases();
     pictures = [];
-    drawers.forEach((drawer, k) => {
-      if (data.pictures[k].none || (elsewhere && elsewhere(k))) return;
-      const frame = drawer();
+    const one = (k) => {
+      const frame = drawers[k]();
       ghost_in(frame, k, columns);
       pictures.push(frame);
       if (drawn) drawn(k, frame);
-    });
-    mark(marked);
-    select(chosen);
+    };
+    const all = drawers.map((_, k) => k).filter((k) => !data.pictures[k].none && !(elsewhere && elsewhere(k)));
+    // Of many readings what is in view comes first.
+    const later = inTurn && n > 2000 && !printing ? all.filter((k) => !in_view(k)) : [];
+    all.filter((k) => !later.includes(k)).forEach(one);
+    const turn = ++turns;
+    const next = () => {
+      if (turn !== turns) return;
+      if (later.length) {
+        one(later.shift());
+        setTimeout(next);
+        return;
+      }
+      mark(marked);
+      select(chosen);
+      if (inTurn) inTurn();
+    };
+    if (later.length) setTimeout(next, 40);
+    else next();
+  }
+  function in_view(k) {
+    const box = figure(k).getBoundingClientRect();
+    return box.bottom > 0 && box.top < window.innerHeight;
   }
 
   // ---- one reading, in every picture ----

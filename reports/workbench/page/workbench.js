@@ -12,7 +12,7 @@
     aliases: JSON.parse(sessionStorage.getItem("nonio-aliases") || "{}")};
   const hidden = {d: new Set(), r: new Set()};
   const pictures = nonioPictures({figure: (k) => by("picture-" + k), tip: by("tip"), hidden,
-    elsewhere: (k) => readings.isBig(shown, k),
+    inTurn: () => performance.mark("all"), elsewhere: (k) => readings.isBig(shown, k),
     pick: (i) => readings.openOne(shown, pictures, i, act), brushed: (rows) => region(rows), said: (lines) => view.speak(lines.join(", "))});
   const part = () => state.parts.find((p) => p.name === shown.part);
   /// What a fit depends on beside the files: numbers of another trial are never shown as those of this one.
