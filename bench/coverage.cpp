@@ -11,8 +11,6 @@
 // reason (bench/coverage/exceptions.cpp).
 #include "coverage/coverage.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -52,21 +50,6 @@ std::map<std::string, Tally::Share> Tally::shares() const {
                  of.campaigns};
   }
   return out;
-}
-
-Analysis load(const char* path) {
-  struct Taker final : Registry {
-    Analysis analysis;
-    void add(Reader) override {}
-    void add(Effect) override {}
-    void add(Analysis a) override { analysis = std::move(a); }
-    void add(Output) override {}
-    void add(Controller) override {}
-  } taker;
-  void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) throw std::runtime_error(dlerror());
-  static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"))->add_to(taker);
-  return taker.analysis;
 }
 
 Settings defaults(const Analysis& a) {

@@ -70,12 +70,12 @@ void compare(const Analysis& analysis, const Scenario& s, unsigned seed, double 
 }
 
 void iso(const Scenario& s, unsigned seed, double size, Tally& tally) {
-  static const Analysis analysis = load(NONIO_ISO_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ISO_PLUGIN);
   compare(analysis, s, seed, size, tally);
 }
 
 void vdi(const Scenario& s, unsigned seed, double size, Tally& tally) {
-  static const Analysis analysis = load(NONIO_VDI_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_VDI_PLUGIN);
   compare(analysis, s, seed, size, tally);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "loaded_analysis.h"
 #include "nonio/sdk/plugin.h"
 #include "shop.h"
 
@@ -55,7 +56,6 @@ const std::vector<Exception>& exceptions();
 
 extern const std::vector<Method> axis_methods, line_methods, rotary_methods;
 
-Analysis load(const char* path);
 Settings defaults(const Analysis&);
 Measurement named(const std::string& id, const std::string& kind, const std::string& axis);
 Evaluation evaluated(const Analysis&, const Campaign&, std::size_t measurement,

@@ -3,7 +3,6 @@
 // The plugin as it was built, on campaigns of the exact machine.
 #include "nonio/sdk/plugin.h"
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "bench.h"
+#include "loaded_analysis.h"
 
 namespace nonio {
 namespace {
@@ -21,22 +21,8 @@ using namespace bench;
 constexpr unsigned seed = 20261121;
 
 const Analysis& the_analysis() {
-  struct Taker final : Registry {
-    Analysis analysis;
-    void add(Reader) override {}
-    void add(Effect) override {}
-    void add(Analysis a) override { analysis = std::move(a); }
-    void add(Output) override {}
-    void add(Controller) override {}
-  };
-  static const Taker taker = [] {
-    Taker t;
-    void* library = dlopen(NONIO_DIAGONAL_PLUGIN, RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr) throw std::runtime_error(dlerror());
-    static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"))->add_to(t);
-    return t;
-  }();
-  return taker.analysis;
+  static const Analysis analysis = loaded_analysis(NONIO_DIAGONAL_PLUGIN);
+  return analysis;
 }
 
 Measurement named(const std::string& id, const std::string& kind, const std::string& axis) {

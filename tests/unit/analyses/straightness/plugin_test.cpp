@@ -2,7 +2,6 @@
 // The plugin as it was built, on lines of a known shape.
 #include "nonio/sdk/plugin.h"
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "loaded_analysis.h"
 #include "nonio/math/straightness.h"
 
 namespace nonio {
@@ -22,22 +22,8 @@ constexpr double um = 1e-6;
 using Shape = std::function<double(double)>;
 
 const Analysis& the_analysis() {
-  struct Taker final : Registry {
-    Analysis analysis;
-    void add(Reader) override {}
-    void add(Effect) override {}
-    void add(Analysis a) override { analysis = std::move(a); }
-    void add(Output) override {}
-    void add(Controller) override {}
-  };
-  static const Taker taker = [] {
-    Taker t;
-    void* library = dlopen(NONIO_STRAIGHTNESS_PLUGIN, RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr) throw std::runtime_error(dlerror());
-    static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"))->add_to(t);
-    return t;
-  }();
-  return taker.analysis;
+  static const Analysis analysis = loaded_analysis(NONIO_STRAIGHTNESS_PLUGIN);
+  return analysis;
 }
 
 struct Plan {
