@@ -13,17 +13,14 @@ MatrixXd covariance_of(const Series& s) {
   const auto n = static_cast<Index>(s.points.size());
   MatrixXd V = MatrixXd::Zero(n, n);
   std::map<std::string, VectorXd> of_source;
-  double squares = 0.0;
   for (Index i = 0; i < n; ++i) {
     const Point& p = s.points[static_cast<std::size_t>(i)];
     const double u = s.excess * p.u;
     V(i, i) += u * u;
-    squares += p.u * p.u;
     for (const Common& c : p.common)
       of_source.try_emplace(c.source, VectorXd::Zero(n)).first->second(i) += c.u;
   }
   for (const auto& [source, u] : of_source) V += u * u.transpose();
-  if (s.excess < 1.0) V.array() += (1.0 - s.excess * s.excess) * squares / static_cast<double>(n);
   return V;
 }
 

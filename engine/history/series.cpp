@@ -10,7 +10,7 @@ namespace nonio::history {
 namespace {
 
 constexpr double most_of_a_ratio = 4.0, expected = 0.92053692563632;  // of min(chi2, 4), 1 degree
-constexpr double least_scatter = 0.5, most_scatter = 1000.0;
+constexpr double most_excess = 1000.0;
 constexpr std::size_t fewest_ratios = 20;
 
 /// How far a point is from the line through its neighbours, in variances of that: a level, a slope
@@ -62,8 +62,6 @@ Expected<void> check(const Series& s) {
   if (!std::isfinite(s.spread) || s.spread < 0.0)
     return fail("expected a spread of slopes of 0 or more");
   if (!std::isfinite(s.excess) || s.excess < 1.0) return fail("expected an excess of 1 or more");
-  if (const double scatter = s.scatter.value_or(1.0); !std::isfinite(scatter) || !(scatter > 0.0))
-    return fail("expected a scatter above 0");
   return {};
 }
 
@@ -74,14 +72,15 @@ std::vector<Scatter> scatter_of(const Series& s) {
   return out;
 }
 
-double scatter_of_ratios(const std::vector<double>& ratios) {
+double excess_of_ratios(const std::vector<double>& ratios) {
   if (ratios.size() < fewest_ratios) return 1.0;
   const auto is_beyond = [&](double excess) {
     double sum = 0.0;
     for (const double ratio : ratios) sum += std::min(ratio / (excess * excess), most_of_a_ratio);
     return sum > expected * static_cast<double>(ratios.size());
   };
-  double low = least_scatter, high = most_scatter;
+  if (!is_beyond(1.0)) return 1.0;
+  double low = 1.0, high = most_excess;
   for (int step = 0; step < 40; ++step) {
     const double middle = std::sqrt(low * high);
     (is_beyond(middle) ? low : high) = middle;
@@ -93,7 +92,7 @@ double excess_scatter(const std::vector<const Series*>& all) {
   std::vector<double> ratios;
   for (const Series* s : all)
     for (const Scatter& one : scatter_of(*s)) ratios.push_back(one.ratio);
-  return std::max(1.0, scatter_of_ratios(ratios));
+  return excess_of_ratios(ratios);
 }
 
 }  // namespace nonio::history

@@ -77,16 +77,16 @@ class Trending {
   }
 
  private:
-  MatrixXd whitened(const Whitened& w, const Shape& shape) const {
+  MatrixXd whitened(const Shape& shape) const {
     const MatrixXd X = columns_.of(shape);
-    MatrixXd out(w.y.size(), X.cols());
+    MatrixXd out(w_.y.size(), X.cols());
     for (Index k = 0; k < X.cols(); ++k)
-      out.col(k) =
-          shape.drifts && !shape.free && k + 1 == X.cols() ? w.slope(X.col(k)) : w.column(X.col(k));
+      out.col(k) = shape.drifts && !shape.free && k + 1 == X.cols() ? w_.slope(X.col(k))
+                                                                    : w_.column(X.col(k));
     return out;
   }
   std::optional<Gls> fit(const Shape& shape) const {
-    auto out = gls(w_, whitened(w_, shape));
+    auto out = gls(w_, whitened(shape));
     if (out && w_.spread > 0.0 && !(shape.drifts && !shape.free)) out->dof -= 1.0;
     return out;
   }
@@ -240,10 +240,7 @@ class Trending {
     if (!held) return out;
     Shape told = shape_;
     free_slope(told);
-    Series scattered = s_;
-    scattered.excess = s_.scatter.value_or(s_.excess);
-    const Whitened w(scattered);
-    const Gls last = *gls(w, whitened(w, told));
+    const Gls last = *fit(told);
     const Index p = last.b.size();
     out.chi2 = held->chi2, out.dof = held->dof, out.drifts = told.drifts;
     out.line_or_step = line_or_step_;

@@ -309,7 +309,7 @@ class Assessment::State {
     w(m.kept.rows);
     for (std::size_t k = 0; k < m.kept.series.size(); ++k) {
       const KeptMachine::Series& s = m.kept.series[k];
-      w(s.manner.excess, s.manner.scatter, s.manner.spread, s.manner.drift_below);
+      w(s.manner.excess, s.manner.spread, s.manner.drift_below);
       for (std::size_t i = 0; i < s.tests.changes.size(); ++i) {
         const Verdict v = verdict_of(s.tests.changes[i], m.adjusted[k][i]);
         w(v.told, v.surely, v.mailed, v.told ? m.adjusted[k][i].news : 1.0);

@@ -160,8 +160,7 @@ Learned learn(const std::vector<const Lesson*>& lessons) {
       for (const auto& [evaluation, ratio] : lesson->ratios)
         if (evaluation <= counted) ratios.push_back(ratio);
     }
-    of.scatter = std::round(kernel::scatter_of_ratios(ratios) / excess_step) * excess_step;
-    of.excess = std::max(1.0, of.scatter);
+    of.excess = std::round(kernel::excess_of_ratios(ratios) / excess_step) * excess_step;
     for (kernel::Slope& slope : slopes) slope.u *= of.excess;
     if (const double spread = kernel::spread_of_slopes(slopes); spread > 0.0)
       of.spread = std::exp(std::round(std::log(spread) / spread_step) * spread_step);
@@ -172,12 +171,11 @@ Learned learn(const std::vector<const Lesson*>& lessons) {
 
 Manner manner_of(const std::string& quantity, const Learned& learned) {
   const OfQuantity& of = learned.of.at(quantity);
-  return {of.excess, of.scatter, of.spread,
-          std::min(kernel::Series{}.drift_below, learned.drift_below)};
+  return {of.excess, of.spread, std::min(kernel::Series{}.drift_below, learned.drift_below)};
 }
 
 void fit(FollowedSeries& s, const Manner& manner, Fits& fits) {
-  s.series.excess = manner.excess, s.series.scatter = manner.scatter;
+  s.series.excess = manner.excess;
   s.series.spread = manner.spread;
   s.series.drift_below = manner.drift_below;
   s.series.steps.reset();
@@ -284,7 +282,7 @@ std::map<std::string, OfQuantity> learn(std::vector<AssessedMachine>& machines, 
   for (AssessedMachine& m : machines)
     for (FollowedSeries& s : m.followed) {
       const Manner manner = manner_of(s.quantity + " " + s.unit, learned);
-      s.series.excess = manner.excess, s.series.scatter = manner.scatter;
+      s.series.excess = manner.excess;
       s.series.spread = manner.spread;
       s.series.drift_below = manner.drift_below;
     }

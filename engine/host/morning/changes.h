@@ -21,9 +21,8 @@ inline constexpr double declared_below = 0.01;
 
 /// What all series of one quantity say together; of which no series can say it alone.
 struct OfQuantity {
-  double excess = 1.0;   ///< by how much campaigns scatter more than each says
-  double scatter = 1.0;  ///< the same, below 1 too
-  double spread = 0.0;   ///< standard deviation of slopes, per year, in the printed unit
+  double excess = 1.0;  ///< by how much campaigns scatter more than each says
+  double spread = 0.0;  ///< standard deviation of slopes, per year, in the printed unit
 };
 
 /// What is learned from one series.
@@ -47,7 +46,7 @@ Learned learn(const std::vector<const Lesson*>& lessons);
 
 /// How a series is fitted.
 struct Manner {
-  double excess = 1.0, scatter = 1.0, spread = 0.0, drift_below = 0.0;
+  double excess = 1.0, spread = 0.0, drift_below = 0.0;
   bool operator==(const Manner&) const = default;
 };
 Manner manner_of(const std::string& quantity, const Learned& learned);

@@ -31,8 +31,7 @@ std::string key_of(char what, const kernel::Series& s) {
   w.each(s.declared, [&](const kernel::Declared& d) { w.put(d.after), w.put(d.kind); });
   w.put(s.steps.has_value());
   if (s.steps) w.each(*s.steps, [&](std::size_t after) { w.put(after); });
-  w.put(s.seed), w.put(s.scatter), w.put(s.excess), w.put(s.spread), w.put(s.drift_below),
-      w.put(s.own_slope);
+  w.put(s.seed), w.put(s.excess), w.put(s.spread), w.put(s.drift_below), w.put(s.own_slope);
   return storage::sha256(w.take());
 }
 

@@ -90,7 +90,7 @@ void fields(Io& io, T& l) { io(l.quantity, l.points, l.ratios, l.slope); }
 
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, Manner>
-void fields(Io& io, T& m) { io(m.excess, m.scatter, m.spread, m.drift_below); }
+void fields(Io& io, T& m) { io(m.excess, m.spread, m.drift_below); }
 
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, SeriesTests::Of>

@@ -270,10 +270,6 @@ TEST(ExcessScatter, IsThatOfTheLaboratory) {
   for (Series& s : all)
     for (Point& p : s.points) p.u = 0.9;
   EXPECT_EQ(excess_scatter(pointers), 1.0);
-  std::vector<double> ratios;
-  for (const Series& s : all)
-    for (const Scatter& one : scatter_of(s)) ratios.push_back(one.ratio);
-  EXPECT_NEAR(scatter_of_ratios(ratios), 0.5, 0.07);
   pointers.resize(2);
   EXPECT_EQ(excess_scatter(pointers), 1.0);  // too few to say
 }
@@ -359,21 +355,6 @@ TEST(SpreadOfSlopes, SlopesAndForecastsAreCoveredWhateverTheOthersDo) {
     EXPECT_NEAR(slopes, 0.95 * series, 0.009 * series) << wear;
     EXPECT_NEAR(states, 0.95 * series, 0.009 * series) << wear;
   }
-}
-
-TEST(Trend, WhatNoCampaignScattersByIsCommonToAll) {
-  Series s = reference_series();
-  s.own_slope = true;
-  const Segment stated = trend_of(s)->segments.back();
-  const auto seen = trend_of(s)->smallest_change;
-  s.scatter = 0.6;
-  const auto trend = trend_of(s);
-  EXPECT_NEAR(trend->segments.back().u_slope, 0.6 * stated.u_slope, 1e-9);
-  // Of a state all of a campaign's u is left.
-  EXPECT_GT(trend->segments.back().u_last, 0.8 * s.points.back().u);
-  EXPECT_EQ(trend->smallest_change, seen) << "steps are asked for as before";
-  s.scatter = 0.0;
-  EXPECT_FALSE(trend_of(s));
 }
 
 TEST(Trend, KnownStepsAreTheOnlyOnes) {

@@ -43,9 +43,6 @@ struct Series {
   /// Factor of all `u`: campaigns of a laboratory may scatter more than each says of itself
   /// (excess_scatter).
   double excess = 1.0;
-  /// The same for slopes and forecasts, where it may be below 1: what a campaign says and no campaign
-  /// scatters by is then common to all of them. Not given: as `excess`.
-  std::optional<double> scatter{};
   /// Standard deviation, per year, of the slopes that such series have in this laboratory
   /// (spread_of_slopes): what is known of a slope before the points, while steps are asked for.
   /// 0: nothing is known, and a drift is tested.
@@ -71,13 +68,13 @@ Expected<void> check(const Series&);
 /// high in a small laboratory makes all its intervals too long. Not over a declared event; not below
 /// 1, and 1 for fewer than 20 points.
 double excess_scatter(const std::vector<const Series*>&);
-/// d^2/u(d)^2 at a point of one series, and what it gives for those of many together, also below 1.
+/// d^2/u(d)^2 at a point of one series, and what it gives for those of many together.
 struct Scatter {
   std::size_t point = 0;
   double ratio = 0.0;
 };
 std::vector<Scatter> scatter_of(const Series&);
-double scatter_of_ratios(const std::vector<double>& ratios);
+double excess_of_ratios(const std::vector<double>& ratios);
 
 /// Slope per year beside a step at each declared event and at each place where chance makes one in
 /// fewer than one of 10,000 series. None for fewer than four points, or if they cannot tell.
