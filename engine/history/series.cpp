@@ -9,8 +9,7 @@
 namespace nonio::history {
 namespace {
 
-constexpr double most_of_a_ratio = 4.0, expected = 0.92053692563632;  // of min(chi2, 4), 1 degree
-constexpr double most_excess = 1000.0;
+constexpr double median_of_chi2 = 0.45493642311957;  // with 1 degree of freedom
 constexpr std::size_t fewest_ratios = 20;
 
 /// How far a point is from the line through its neighbours, in variances of that: a level, a slope
@@ -72,27 +71,18 @@ std::vector<Scatter> scatter_of(const Series& s) {
   return out;
 }
 
-double excess_of_ratios(const std::vector<double>& ratios) {
+double excess_of_ratios(std::vector<double> ratios) {
   if (ratios.size() < fewest_ratios) return 1.0;
-  const auto is_beyond = [&](double excess) {
-    double sum = 0.0;
-    for (const double ratio : ratios) sum += std::min(ratio / (excess * excess), most_of_a_ratio);
-    return sum > expected * static_cast<double>(ratios.size());
-  };
-  if (!is_beyond(1.0)) return 1.0;
-  double low = 1.0, high = most_excess;
-  for (int step = 0; step < 40; ++step) {
-    const double middle = std::sqrt(low * high);
-    (is_beyond(middle) ? low : high) = middle;
-  }
-  return high;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return std::max(1.0, std::sqrt(*middle / median_of_chi2));
 }
 
 double excess_scatter(const std::vector<const Series*>& all) {
   std::vector<double> ratios;
   for (const Series* s : all)
     for (const Scatter& one : scatter_of(*s)) ratios.push_back(one.ratio);
-  return excess_of_ratios(ratios);
+  return excess_of_ratios(std::move(ratios));
 }
 
 }  // namespace nonio::history

@@ -160,7 +160,7 @@ Learned learn(const std::vector<const Lesson*>& lessons) {
       for (const auto& [evaluation, ratio] : lesson->ratios)
         if (evaluation <= counted) ratios.push_back(ratio);
     }
-    of.excess = std::round(kernel::excess_of_ratios(ratios) / excess_step) * excess_step;
+    of.excess = std::round(kernel::excess_of_ratios(std::move(ratios)) / excess_step) * excess_step;
     for (kernel::Slope& slope : slopes) slope.u *= of.excess;
     if (const double spread = kernel::spread_of_slopes(slopes); spread > 0.0)
       of.spread = std::exp(std::round(std::log(spread) / spread_step) * spread_step);

@@ -130,15 +130,15 @@ TEST(MorningChanges, OfVeryManyCampaignsTheNewestWait) {
   // The excess of 100,000 campaigns or more is that of the first 100,000, until there are 110,000.
   const auto excess = [](std::uint64_t first, std::uint64_t last) {
     morning::Lesson lesson{"B_mean um", 8, {}, {}};
-    for (std::uint64_t i = 0; i < 500; ++i) lesson.ratios.emplace_back(first - i, 0.9);
-    for (std::uint64_t i = 0; i < 150; ++i) lesson.ratios.emplace_back(last - i, 3.6);
+    for (std::uint64_t i = 0; i < 50; ++i) lesson.ratios.emplace_back(first - i, 0.454936);
+    for (std::uint64_t i = 0; i < 150; ++i) lesson.ratios.emplace_back(last - i, 4 * 0.454936);
     return morning::learn({&lesson}).of.at("B_mean um").excess;
   };
   EXPECT_DOUBLE_EQ(excess(100'000, 100'150), 1.0);
   EXPECT_DOUBLE_EQ(excess(100'000, 109'999), 1.0);
   EXPECT_DOUBLE_EQ(excess(100'000, 110'149), 1.0);  // one of them is among the first 110,000
-  EXPECT_DOUBLE_EQ(excess(100'000, 110'000), 1.3);
-  EXPECT_DOUBLE_EQ(excess(9'000, 9'999), 1.3);
+  EXPECT_DOUBLE_EQ(excess(100'000, 110'000), 2.0);
+  EXPECT_DOUBLE_EQ(excess(9'000, 9'999), 2.0);
 }
 
 TEST(MorningChanges, ANightChargesATestOnce) {

@@ -61,12 +61,11 @@ struct Series {
 /// a time before the one before it, an event behind the last point.
 Expected<void> check(const Series&);
 
-/// By how much points scatter more than their u, over many series: the factor c at which the mean of
-/// min(d^2/(c u(d))^2, 4) is what it is of a normal variable, 0.9205, d each point less the line
-/// through its neighbours: levels, slopes and what they have in common cancel, and a step in few of
-/// them moves it little. A median would move less, and vary by half as much again: what it lies too
-/// high in a small laboratory makes all its intervals too long. Not over a declared event; not below
-/// 1, and 1 for fewer than 20 points.
+/// By how much points scatter more than their u, over many series: the root of the median of
+/// d^2/u(d)^2 over 0.4549, the median of chi-square with 1 degree of freedom, d each point less the
+/// line through its neighbours: levels, slopes and what they have in common cancel, and a step in
+/// few of them moves a median little. Not over a declared event; not below 1, and 1 for fewer than
+/// 20 points.
 double excess_scatter(const std::vector<const Series*>&);
 /// d^2/u(d)^2 at a point of one series, and what it gives for those of many together.
 struct Scatter {
@@ -74,7 +73,7 @@ struct Scatter {
   double ratio = 0.0;
 };
 std::vector<Scatter> scatter_of(const Series&);
-double excess_of_ratios(const std::vector<double>& ratios);
+double excess_of_ratios(std::vector<double> ratios);
 
 /// Slope per year beside a step at each declared event and at each place where chance makes one in
 /// fewer than one of 10,000 series. None for fewer than four points, or if they cannot tell.
