@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one page, its words, its table and its plots.
 //
 // The page of the machine's history up to this campaign.
 #include "nonio/sdk/history.h"
@@ -293,10 +294,9 @@ class HistoryPage {
     }
     const double edge = std::max(0.06 * (high - low), 1e-9);
     out.range = {low - edge, high + edge};
-    // Nothing lies on the frame.
-    Curve sides = line({left - margin, right + margin}, {low, low}, style.text, Dash::solid);
-    sides.kind = Curve::Kind::points;
-    out.curves.push_back(std::move(sides));
+    Curve margins = line({left - margin, right + margin}, {low, low}, style.text, Dash::solid);
+    margins.kind = Curve::Kind::points;
+    out.curves.push_back(std::move(margins));
     for (const MachineEvent& e : h_.events)
       if (const double x = time.at(e.date);
           x >= left && x <= right && (e.axis.empty() || e.axis == s.axis))
