@@ -10,6 +10,7 @@
 #include <string>
 
 #include "dense.h"
+#include "nonio/math/distributions.h"
 
 namespace nonio::math {
 
