@@ -4,7 +4,7 @@
     by("app").replaceChildren(el("main", {class: "lost"}, el("h1", {}, say("shell.title")), el("p", {role: "alert"}, say("net.no_token"))));
     return;
   }
-  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asked = 0, stale = true, dismissed = "", shown = "", released = null, wanted = "";
+  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asking = false, again = false, stale = true, dismissed = "", shown = "", released = null, wanted = "";
   const own = ["campaigns", "certificates", "entries"];
   const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
   let pages = new Map(); // name: its text
@@ -50,24 +50,41 @@
     if (!of.has(name)) of.set(name, await (await net.ask("/site/" + name.split("/").map(encodeURIComponent).join("/"), {raw: true})).text());
     return of.get(name);
   }
+  /// One after the other: what comes meanwhile makes it ask once more.
   async function refresh(fresh = true) {
     stale = stale || fresh;
-    const mine = ++asked, next = await net.ask("/api/site/state");
-    if (mine !== asked) return;
+    again = true;
+    if (asking) return;
+    asking = true;
+    try {
+      while (again) {
+        again = false;
+        await ask();
+      }
+    } finally {
+      asking = false;
+    }
+  }
+  async function ask() {
+    const next = await net.ask("/api/site/state");
     if (state && next.engine !== state.engine) return location.reload();
     state = next;
     if (stale) {
+      stale = false;
       pages = new Map();
       const has = state.out && state.night.last;
-      const [morning, all, index] = await Promise.all([has ? net.ask("/api/site") : {lines: []}, net.ask("/api/ack"), has ? text("index.html") : ""]);
-      if (mine !== asked) return; // the newer one asks again
-      stale = false;
-      lines = morning.lines;
-      known = all.acknowledged;
-      // In the words of the night: the names of its pages, its number and date.
-      const page = markup.page(index);
-      links = page.links;
-      by("beside").textContent = page.beside;
+      try {
+        const [morning, all, index] = await Promise.all([has ? net.ask("/api/site") : {lines: []}, net.ask("/api/ack"), has ? text("index.html") : ""]);
+        lines = morning.lines;
+        known = all.acknowledged;
+        // In the words of the night: the names of its pages, its number and date.
+        const page = markup.page(index);
+        links = page.links;
+        by("beside").textContent = page.beside;
+      } catch (e) {
+        stale = true;
+        throw e;
+      }
     }
     drawHead();
     await draw();
@@ -168,7 +185,7 @@
     if (!["issued", "approved"].includes(answer.state)) throw Object.assign(new Error(answer.why || answer.state), {answer});
     released = answer.state === "issued" ? {number: answer.number, files: answer.files.map((f) => f.split("/").slice(-2).join("/"))} : {approved: true};
     await refresh();
-    by("released").focus();
+    if (by("released")) by("released").focus();
   }
   async function certificatesView() {
     const {drafts} = state.out ? await net.ask("/api/drafts").catch((e) => ({drafts: [], error: complain(e)})) : {drafts: []};
@@ -228,10 +245,10 @@
   }
   /// New content of the main part; what had the focus has it again.
   async function draw(moved = false) {
-    const name = view(), mine = asked;
+    const name = view();
     if (name === "index.html" && state.night.last === 0) return put([el("h1", {tabindex: -1}, say("site.morning")), el("p", {}, say("night.none"))], name, moved);
     const content = name === "campaigns" ? campaignsView() : name === "certificates" ? await certificatesView() : name === "entries" ? await entriesView() : await night(name);
-    if (mine !== asked || name !== view()) return;
+    if (name !== view()) return;
     put(content, name, moved);
   }
   function put(content, name, moved) {
