@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one search, from the first fit to what it found; its steps share the series and the shape.
 #include "nonio/history/trend.h"
 
 #include <algorithm>

@@ -2,11 +2,10 @@
 //
 // Straightness of a line of motion, measured by itself: with straightness optics, a straightedge and
 // its reversal, a taut wire, or a level or autocollimator by integration.
-#include "nonio/math/straightness.h"
-
 #include <cmath>
 
 #include "nonio/math/budget.h"
+#include "nonio/math/straightness.h"
 #include "points.h"
 
 using namespace nonio;
