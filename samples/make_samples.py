@@ -306,7 +306,7 @@ def straightness():
                  "structure": "single-column", "control": "siemens-840d"},
                 {"X": linear(1000.0), "Y": linear(600.0)},
                 [axis_measurement("X"), axis_measurement("X", "straightness", "X-in-Y", lateral="Y")],
-                environment=GOOD_ROOM),
+                environment=GOOD_ROOM, analyses=["iso230-2", "vdi-dgq-3441", "direct-straightness"]),
             "x.csv": table(rows, [MADE_UP]),
             "x-in-y.csv": table(lateral, [MADE_UP])}
 

@@ -121,7 +121,7 @@ MatrixXd basis_of(const Observations& o, const std::vector<Term>& terms, const W
   }
   if (a.cols() == 0) return a;
   white.take_out_zeros(a);
-  a = a * a.colwise().norm().cwiseMax(1e-300).cwiseInverse().asDiagonal();
+  a = of_unit_length(std::move(a));
   const Eigen::HouseholderQR<MatrixXd> qr(a);
   return qr.householderQ() * MatrixXd::Identity(a.rows(), a.cols());
 }
