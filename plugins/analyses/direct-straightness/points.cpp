@@ -47,12 +47,15 @@ tl::expected<Side, Finding> side_of(const Observations& o, const std::string& id
                    {"least", static_cast<double>(least), Quantity::count}},
                   {{"which", id}});
   const auto direction = s.line.direction();
-  if (!direction) {
-    const auto lacking = [](const math::MeasuredLine::Stop& p) {
-      return p.n_plus == 0 || p.n_minus == 0;
-    };
-    const auto& stops = s.line.stops;
-    const auto at = std::find_if(stops.begin(), stops.end(), lacking);
+  const auto& stops = s.line.stops;
+  const auto from = [](int d) {
+    return [d](const math::MeasuredLine::Stop& p) { return (d > 0 ? p.n_plus : p.n_minus) > 0; };
+  };
+  const bool both = std::any_of(stops.begin(), stops.end(), from(1)) &&
+                    std::any_of(stops.begin(), stops.end(), from(-1));
+  if (!direction || (both && *direction != 0)) {
+    const auto at = std::find_if(stops.begin(), stops.end(),
+                                 [](const auto& p) { return p.n_plus == 0 || p.n_minus == 0; });
     return refuse("incomplete", {{"at", at->position, Quantity::length}}, {{"which", id}});
   }
   s.direction = *direction;

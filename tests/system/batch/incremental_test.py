@@ -151,6 +151,9 @@ class Incremental(NightTest):
     def test_json_events(self):
         done = self.run_nonio("--json", expect=0)
         events = [json.loads(line) for line in done.stdout.splitlines()]
+        stages = [e["name"] for e in events if e["event"] == "stage"]
+        self.assertEqual(stages, ["survey", "campaigns", "history", "pages"])
+        events = [e for e in events if e["event"] != "stage"]
         self.assertEqual([e["event"] for e in events], ["planned"] + 3 * ["campaign"] + ["end"])
         self.assertEqual(events[-1]["done"], 3)
 

@@ -302,7 +302,7 @@ TEST(Diagonals, ADirectStraightnessAgreesAsOftenAsItShould) {
   clean.EYX = straightness(e.EYX, rect.Lx, rect.n);
   clean.EXY = straightness(e.EXY, rect.Ly, rect.n);
   const ReadingModel model = repetition_alone(clean);
-  constexpr int campaigns = 1000;
+  constexpr int campaigns = 400;
   double below_half = 0.0, below_percent = 0.0, bent_found = 0.0;
   const auto noisy = [&] {
     auto r = clean;
@@ -335,7 +335,7 @@ TEST(Diagonals, ADirectStraightnessAgreesAsOftenAsItShould) {
   std::cout << "p below 0.5: " << 100.0 * below_half / campaigns
             << " %, below 0.01: " << 100.0 * below_percent / campaigns
             << " %, a sag of 8 um found: " << 100.0 * bent_found / campaigns << " %\n";
-  EXPECT_NEAR(below_half / campaigns, 0.5, 0.04);
+  EXPECT_NEAR(below_half / campaigns, 0.5, 0.06);
   EXPECT_LE(below_percent / campaigns, 0.02);
   EXPECT_GE(bent_found / campaigns, 0.95);
 }

@@ -152,6 +152,30 @@ TEST(Manifest, WhereTheOtherAxesStoodStill) {
             std::string::npos);
 }
 
+TEST(Manifest, AReversalIsOfOneOtherMeasurementOfTheLine) {
+  const auto with = [](const std::string& second, const std::string& third) {
+    const std::string begin =
+        "[[measurement]]\nkind = \"straightness\"\naxis = \"Y\"\nfile = \"s.csv\"\n";
+    std::string all;
+    for (const std::string& rest : {std::string("id = \"S\"\nlateral = \"C\"\n"), second, third})
+      if (!rest.empty()) all += begin + rest;
+    return complaint("[run]\n", all + "[run]\n");
+  };
+  const std::string reversed = "id = \"R\"\nlateral = \"C\"\nreversal_of = \"S\"\n";
+  EXPECT_EQ(with(reversed, ""), "accepted");
+  for (const auto& [second, third] :
+       {std::pair<std::string, std::string>{"id = \"R\"\nlateral = \"C\"\nreversal_of = \"no\"\n",
+                                            ""},
+        {"id = \"R\"\nlateral = \"C\"\nreversal_of = \"R\"\n", ""},
+        {"id = \"R\"\nlateral = \"Z\"\nreversal_of = \"S\"\n", ""},
+        {"id = \"R\"\nlateral = \"C\"\nreversal_of = \"Y\"\n", ""},
+        {reversed, "id = \"T\"\nlateral = \"C\"\nreversal_of = \"S\"\n"},
+        {reversed, "id = \"T\"\nlateral = \"C\"\nreversal_of = \"R\"\n"}})
+    EXPECT_NE(with(second, third).find("reversal_of: expected the id of another straightness of Y"),
+              std::string::npos)
+        << second << third << with(second, third);
+}
+
 TEST(Manifest, KeysHaveTheirLines) {
   const auto m = config::parse_manifest(whole, "campaign.toml");
   ASSERT_TRUE(m);
