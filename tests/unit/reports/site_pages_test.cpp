@@ -53,7 +53,9 @@ TEST(SitePages, NumbersAreThoseOfTheValues) {
   EXPECT_TRUE(has(index, "limit 8.00"));
   EXPECT_TRUE(has(index, "Known to B. Sample until 2026-06-01: repair ordered"));
   const std::string& machine = pages.at("machines/S-0042.html");
-  EXPECT_TRUE(has(machine, "Changed by −4.20 ± 0.40 µm between 2024-07-14 and 2025-01-14"));
+  EXPECT_TRUE(has(machine,
+                  "Changed by −4.20 ± 0.40 µm between <span class=\"day\">2024-07-14</span> and "
+                  "<span class=\"day\">2025-01-14</span>"));
   EXPECT_TRUE(has(machine, "−9.60 ± 0.80 µm expected, 98.0 % beyond the limit"));
   EXPECT_TRUE(has(machine, "From 1.30 µm on a change would have been seen"));
 }
