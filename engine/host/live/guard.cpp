@@ -219,7 +219,8 @@ int head_status(std::string_view bytes) {
   for (std::size_t lines = 0; !bytes.empty(); ++lines) {
     const std::size_t end = std::min(bytes.find('\n'), bytes.size());
     std::string_view line = bytes.substr(0, end);
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    // The last line stands before its CR LF.
+    if (end < bytes.size() && line.ends_with('\r')) line.remove_suffix(1);
     bytes.remove_prefix(std::min(end + 1, bytes.size()));
     status = lines == 0 ? request_line_status(line) : is_field(line) ? 200 : 400;
     if (lines > most_fields) status = 431;
