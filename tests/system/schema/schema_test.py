@@ -28,6 +28,8 @@ ONLY_PROGRAM = [
     (r"machine\.axes\.X\.slave", "the master"),
     (r"measurement\.\d+\.lateral", "the axis that moves"),
     (r"measurement\.\d+\.at", "the axis that moves"),
+    (r"(acknowledged|withdrawn)(\..*)?", "the acknowledgement that is taken back"),
+    (r"measurement\.[12](\.(id|kind|axis|reversal_of))?", "the line before the straightedge was turned over"),
     (r"model\.formula\.0\.(axis|expression|parameters.*)", "a formula that is none on this machine"),
     (r"signing(\.(pkcs12|pkcs11|password_\w+|trust))?", "which keys stand together"),
     (r"mail\.(to|smtp|sendmail|user|password_\w+)(\.\d+)?", "which keys stand together; addresses"),

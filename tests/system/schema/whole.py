@@ -57,7 +57,8 @@ def campaign():
 LOGS = {
     "events": {"event": [{"date": DAY, "machine": "S-1", "axis": "X", "kind": "crash", "text": "T", "by": "B"}]},
     "acknowledged": {"acknowledged": [{"date": DAY, "finding": "F", "machine": "S-1", "axis": "X", "quantity": "Q",
-                                       "until": DAY, "value": 1.5, "U": 0.5, "by": "B", "why": "W"}]},
+                                       "until": DAY, "value": 1.5, "U": 0.5, "by": "B", "why": "W"}],
+                     "withdrawn": [{"date": DAY, "finding": "F", "machine": "S-1", "axis": "X", "quantity": "Q", "by": "B", "why": "W"}]},
     "forgotten": {"forgotten": [{"date": DAY, "campaign": "c", "by": "B", "why": "W"}]},
 }
 
