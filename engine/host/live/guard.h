@@ -35,7 +35,7 @@ struct Post {
 };
 
 /// Nothing of the head may be larger.
-inline constexpr std::size_t most_head = 16 * 1024, most_fields = 64, most_target = 2048;
+inline constexpr std::size_t most_head = 16UL * 1024UL, most_fields = 64, most_target = 2048;
 /// Of a body, in bytes; of a certificate that is to be verified.
 inline constexpr std::size_t most_body = 1 << 20, most_certificate = 32 << 20;
 

@@ -272,16 +272,26 @@ TEST(LiveGuard, HostileHeads) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
-  const std::vector<std::string> pieces{"GET",         "POST",
-                                        "/api/state",  "/",
-                                        "%",           "%41",
-                                        "?",           "Host",
-                                        "Origin",      "127.0.0.1:4711",
-                                        ":",           "[",
-                                        "]",           token.substr(0, 31),
-                                        "\0x",         "{part}",
-                                        "/api/parts/", "fit",
-                                        "chunked",     std::string(300, 'a')};
+  const std::vector<std::string> pieces{"GET",
+                                        "POST",
+                                        "/api/state",
+                                        "/",
+                                        "%",
+                                        "%41",
+                                        "?",
+                                        "Host",
+                                        "Origin",
+                                        "127.0.0.1:4711",
+                                        ":",
+                                        "[",
+                                        "]",
+                                        token.substr(0, 31),
+                                        std::string("\0x", 2),
+                                        "{part}",
+                                        "/api/parts/",
+                                        "fit",
+                                        "chunked",
+                                        std::string(300, 'a')};
   const auto text = [&] {
     std::string out;
     for (auto n = random() % 4; n > 0; --n) out += pieces[random() % pieces.size()];
