@@ -83,6 +83,7 @@ bool BenchClient::connect() {
     return false;
   }
   const std::lock_guard lock(mutex_);
+  if (over_) return false;  // nobody would shut this one down
   channel_ = std::move(*channel);
   for (const auto& [job, text] : unsent_) send("do", job, text);
   unsent_.clear();
@@ -128,6 +129,8 @@ void BenchClient::listen() {
       if (Clock::now() - begun > soon) again_ = true;
       if (over_) return;
       is_begun_again = again_;
+    } else if (const std::lock_guard lock(mutex_); over_) {
+      return;
     }
     tell_(0, "ended", is_begun_again ? "again" : "");
     fail_all(gone_words);

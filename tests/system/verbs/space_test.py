@@ -52,7 +52,7 @@ class Space(VerbTest):
         def pages(sample, effects):
             self.sample(sample)
             path = self.folder / "campaign.toml"
-            text = re.sub(r"\n\[(model|run)\]\n[^\[]*", "\n", path.read_text())
+            text = re.sub(r"\n\[(model|run)\]\n([^\[\n][^\n]*\n)*", "\n", path.read_text())
             path.write_text(text + f'\n[model]\neffects = {json.dumps(effects)}\n[run]\nanalyses = ["model-fit"]\n'
                             'outputs = ["model-html"]\n')
             out = self.site.parent / "out"
