@@ -15,6 +15,7 @@
 #include "host/reading/campaign_reader.h"
 #include "host/storage/files.h"
 #include "host/storage/nearest.h"
+#include "host/storage/scratch_folder.h"
 #include "new_text.h"
 #include "verbs.h"
 
@@ -252,34 +253,15 @@ std::vector<Artifact> files_of(const NewCampaign& c) {
   return files;
 }
 
-/// A folder that is gone at the end.
-class Trial {
- public:
-  Trial() {
-    std::string name = (fs::temp_directory_path() / "nonio-new-XXXXXX").string();
-    if (::mkdtemp(name.data()) != nullptr) folder_ = name;
-  }
-  Trial(const Trial&) = delete;
-  Trial& operator=(const Trial&) = delete;
-  ~Trial() {
-    std::error_code error;
-    if (!folder_.empty()) fs::remove_all(folder_, error);
-  }
-  const fs::path& folder() const { return folder_; }
-
- private:
-  fs::path folder_;
-};
-
 /// What is wrong with the files, evaluated as a night would do it, with the site's own settings.
 std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::string& id,
                             const std::optional<fs::path>& site, const Common& common) {
-  const Trial trial;
-  if (trial.folder().empty()) return {Error{"cannot make a folder for a trial"}};
-  const fs::path folder = trial.folder() / "campaign";
+  const host::storage::ScratchFolder trial("new");
+  if (trial.path().empty()) return {Error{"cannot make a folder for a trial"}};
+  const fs::path folder = trial.path() / "campaign";
   if (site)
     if (const auto text = host::storage::read_file(*site / host::config::site_name))
-      if (auto done = host::storage::publish(trial.folder(), {{host::config::site_name, *text}});
+      if (auto done = host::storage::publish(trial.path(), {{host::config::site_name, *text}});
           !done)
         return {done.error()};
   if (auto done = host::storage::publish(folder, files); !done) return {done.error()};

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 
@@ -25,6 +24,7 @@
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
 #include "host/storage/json_values.h"
+#include "host/storage/scratch_folder.h"
 
 namespace nonio::host::certificates {
 namespace fs = std::filesystem;
@@ -38,25 +38,6 @@ const pdf::Attachment* find_attachment(const sign::Verified& v, std::string_view
 namespace {
 
 using State = sign::Check::State;
-
-/// A folder that goes away with the object.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string path = (fs::temp_directory_path(error_) / "nonio-verify-XXXXXX").string();
-    if (::mkdtemp(path.data()) != nullptr) path_ = path;
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder() {
-    if (!path_.empty()) fs::remove_all(path_, error_);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  std::error_code error_;
-  fs::path path_;
-};
 
 /// The campaign's folder as it was, from what is attached.
 Expected<void> unpack(const sign::Verified& v, const fs::path& folder) {
@@ -350,7 +331,7 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
   for (const char* name : {config::manifest_name, evaluation::results_name})
     if (find_attachment(v, name) == nullptr)
       return fail(std::string("cannot be recomputed: ") + name + " is not attached");
-  const ScratchFolder scratch;
+  const storage::ScratchFolder scratch("verify");
   process::SharedStatus words;
   if (scratch.path().empty()) return fail("no folder for temporary files");
   if (!words.valid()) return fail("no memory");

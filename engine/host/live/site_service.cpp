@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
-#include <cstdlib>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -23,6 +21,7 @@
 #include "host/live/site_run.h"
 #include "host/live/tool.h"
 #include "host/storage/files.h"
+#include "host/storage/scratch_folder.h"
 
 namespace nonio::host::live {
 namespace fs = std::filesystem;
@@ -47,26 +46,6 @@ std::string command_line(const std::vector<std::string>& arguments) {
 Answer answered(int status, const Json& json) {
   return {status, of_json, storage::dump_line(json)};
 }
-
-/// A file for a moment, readable by this user alone; gone at the end.
-class Temporary {
- public:
-  Temporary(const std::string& bytes, std::string suffix) : suffix_(std::move(suffix)) {
-    std::string pattern = (fs::temp_directory_path() / "nonio-live-XXXXXX").string();
-    folder_ = ::mkdtemp(pattern.data()) != nullptr ? pattern : "";
-    std::ofstream(file(), std::ios::binary) << bytes;
-  }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-  ~Temporary() {
-    std::error_code ignored;
-    if (!folder_.empty()) fs::remove_all(folder_, ignored);
-  }
-  std::string file() const { return folder_ + "/certificate" + suffix_; }
-
- private:
-  std::string folder_, suffix_;
-};
 
 class SiteService : public Starting {
  public:
@@ -415,12 +394,15 @@ Answer SiteService::release(const Json& body) {
 
 Answer SiteService::verify(const Request& request) {
   const std::string type = request.head.first("Content-Type");
-  const char* const suffix = type.find("pdf") != std::string::npos   ? ".pdf"
-                             : type.find("xml") != std::string::npos ? ".xml"
-                                                                     : ".json";
-  const Temporary file(request.body, suffix);
-  return of_verb(
-      with_places({"verify", "--json", option("site", wish_.folder.string()), file.file()}));
+  const std::string name = type.find("pdf") != std::string::npos   ? "certificate.pdf"
+                           : type.find("xml") != std::string::npos ? "certificate.xml"
+                                                                   : "certificate.json";
+  const storage::ScratchFolder folder("live");
+  if (folder.path().empty()) return refused(503, "no_scratch");
+  if (const auto kept = storage::publish(folder.path(), {{name, request.body}}); !kept)
+    return refusal(503, kept.error().message);
+  return of_verb(with_places({"verify", "--json", option("site", wish_.folder.string()),
+                              (folder.path() / name).string()}));
 }
 
 /// One campaign of the last night again; or what a night would do now, of all that has changed.

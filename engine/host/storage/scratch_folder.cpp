@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/storage/scratch_folder.h"
+
+#include <cstdlib>
+
+namespace nonio::host::storage {
+namespace fs = std::filesystem;
+
+ScratchFolder::ScratchFolder(const std::string& purpose) {
+  std::error_code error;
+  // mkdtemp puts letters of its own in the place of each X.
+  std::string name =
+      (fs::temp_directory_path(error) / ("nonio-" + purpose + "-" + std::string(6, 'X'))).string();
+  if (!error && ::mkdtemp(name.data()) != nullptr) path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
+}
+
+}  // namespace nonio::host::storage
