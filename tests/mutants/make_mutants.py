@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a copy of a source that holds all its mutants: make_mutants.py MUTANTS.toml SOURCE COPY
 
-NONIO_MUTANT in the environment says which one is alive; without it the copy does what the source does. `change` is a
+NONIO_MUTANT in the environment says which one is alive (FILE.NAME, FILE of MUTANTS.toml); without it the copy does what the source does. `change` is a
 list of [from, to]: each place of the text `from` becomes a choice between both expressions; `statement` the same for
 statements; `insert` puts the statement `to` behind `from`. A mutant with `source` is of that file only."""
 import pathlib
 import sys
 import tomllib
 
-HEAD = """#include <cstdlib>
+HEAD = """#ifndef NONIO_MUTANTS
+#define NONIO_MUTANTS
+#include <cstdlib>
 #include <cstring>
 namespace {
 bool alive(const char* mutant) {
@@ -17,6 +19,7 @@ bool alive(const char* mutant) {
   return name != nullptr && std::strcmp(name, mutant) == 0;
 }
 }  // namespace
+#endif
 """
 
 
@@ -32,7 +35,7 @@ def main():
             for old, new in mutant.get(kind, []):
                 if old not in text:
                     sys.exit(f"{declared}: mutant {name}: expected \"{old}\" in {source}, not found; it needs the new text")
-                text = text.replace(old, form.format(name=name, old=old, new=new))
+                text = text.replace(old, form.format(name=f"{declared.stem}.{name}", old=old, new=new))
     copy.write_text(HEAD + text)
 
 

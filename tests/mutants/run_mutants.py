@@ -30,7 +30,8 @@ def run(arguments, mutant):
 
 
 def main():
-    declared = tomllib.loads(pathlib.Path(sys.argv[1]).read_text())
+    file = pathlib.Path(sys.argv[1])
+    declared = tomllib.loads(file.read_text())
     programs = dict(argument.split("=", 1) for argument in sys.argv[2:])
     killers = {name: command(programs, {**declared, **mutant}) for name, mutant in declared["mutant"].items()}
     wrong = 0
@@ -40,7 +41,7 @@ def main():
             wrong += 1
             print(f"without a mutant: expected the tests to run and pass, found status {status}\n{' '.join(arguments)}\n{said}")
     for name, arguments in killers.items():
-        status, said = run(arguments, name)
+        status, said = run(arguments, f"{file.stem}.{name}")
         if status < 0 and "[  FAILED  ]" in said:
             status = 1
         verdict = {0: "survived", 1: "killed"}.get(status, f"stopped with status {status}, which no test saw")

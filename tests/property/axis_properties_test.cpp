@@ -12,7 +12,7 @@
 #include "nonio/math/reversal.h"
 #include "nonio/math/vdi3441.h"
 
-namespace nonio {
+namespace nonio::axis_properties_test {
 namespace {
 
 using math::AxisTest;
@@ -174,4 +174,4 @@ TEST(Numbers, ALargeOffsetKeepsTheDigits) {
 }
 
 }  // namespace
-}  // namespace nonio
+}  // namespace nonio::axis_properties_test

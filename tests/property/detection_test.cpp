@@ -9,7 +9,7 @@
 #include "axis_builder.h"
 #include "nonio/math/axis_findings.h"
 
-namespace nonio {
+namespace nonio::detection_test {
 namespace {
 
 constexpr double um = 1e-6;
@@ -185,4 +185,4 @@ TEST(Detection, ATargetThatStandsApartIsNamed) {
 }
 
 }  // namespace
-}  // namespace nonio
+}  // namespace nonio::detection_test

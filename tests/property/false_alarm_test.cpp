@@ -12,7 +12,7 @@
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/reversal.h"
 
-namespace nonio {
+namespace nonio::false_alarm_test {
 namespace {
 
 struct Clean {
@@ -96,4 +96,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Clean>& i) { return std::string(i.param.name); });
 
 }  // namespace
-}  // namespace nonio
+}  // namespace nonio::false_alarm_test

@@ -56,7 +56,7 @@ HOMES = {
 
 def of_host(part, room, name):
     """What is wrong with including `name`, a header of engine/host, or with what a room includes."""
-    where = re.match(r"host/(\w+)/\w+\.h$", name)
+    where = re.match(r"host/(\w+)/(?:\w+/)?\w+\.h$", name)
     if where:
         if where.group(1) not in ROOMS:
             return f"there is no room {where.group(1)}"
@@ -74,7 +74,7 @@ def of_host(part, room, name):
 
 def leaking_headers():
     """Headers of engine/host through which a third-party type comes."""
-    headers = {f"host/{p.parent.name}/{p.name}": p.read_text(encoding="utf-8") for p in (ROOT / "engine/host").rglob("*.h")}
+    headers = {p.relative_to(ROOT / "engine").as_posix(): p.read_text(encoding="utf-8") for p in (ROOT / "engine/host").rglob("*.h")}
     leaks = {name for name, text in headers.items() if re.search(THIRD_PARTY, text)}
     while more := {n for n, text in headers.items() if n not in leaks and any(f'"{leak}"' in text for leak in leaks)}:
         leaks |= more
@@ -90,7 +90,7 @@ def complaint(part, path, line):
     if not header:
         return None
     name = header.group(2)
-    room = path.parent.name if part == "engine/host" else None
+    room = (ROOT / path).relative_to(ROOT / "engine/host").parts[0] if part == "engine/host" else None
     if why := of_host(part, room, name):
         return why
     if header.group(1) == '"' and not re.match(r"(nonio|host|reports)/", name):

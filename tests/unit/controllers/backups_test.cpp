@@ -6,6 +6,8 @@
 
 #include "workshop.h"
 
+namespace backups_test {
+
 using namespace workshop;
 
 namespace {
@@ -163,3 +165,5 @@ TEST(Backup, ACrossTableOfTwincatHasAllItsPoints) {
   ASSERT_FALSE(read);
   EXPECT_TRUE(contains(read.error().message, "last_index")) << read.error().message;
 }
+
+}  // namespace backups_test

@@ -13,6 +13,8 @@
 #include "host/tables/table_check.h"
 #include "models.h"
 
+namespace blind_machines_test {
+
 using namespace workshop;
 
 namespace {
@@ -363,3 +365,5 @@ TEST(BlindMachines, WithATableAlreadyOn) {
     EXPECT_TRUE(failures() > so_far || written >= rounds * 8 / 10) << k.name;
   }
 }
+
+}  // namespace blind_machines_test

@@ -3,6 +3,8 @@
 
 #include "workshop.h"
 
+namespace compensation_test {
+
 using namespace workshop;
 using math::ErrorCurve;
 
@@ -184,3 +186,5 @@ TEST(MeanDeviations, AreTheLettersOfIso230) {
   EXPECT_TRUE(std::isnan(bad.E()));
   EXPECT_TRUE(std::isnan(bad.B()));
 }
+
+}  // namespace compensation_test

@@ -12,6 +12,8 @@
 #include "nonio/controllers/text.h"
 #include "workshop.h"
 
+namespace cross_test {
+
 using namespace workshop;
 
 namespace {
@@ -421,3 +423,5 @@ TEST(Cross, EachStateOfAVolumeHasItsOwnColumns) {
 }
 
 }  // namespace
+
+}  // namespace cross_test

@@ -7,6 +7,8 @@
 #include "nonio/sdk/format.h"
 #include "workshop.h"
 
+namespace every_table_test {
+
 using namespace workshop;
 
 namespace {
@@ -573,3 +575,5 @@ TEST(EveryModel, SeesAWrongBacklashSign) {
   EXPECT_LT(math::after(curve, *right).B(), 0.2 * math::before(curve).B());
   EXPECT_GT(math::after(curve, *wrong).B(), 1.8 * math::before(curve).B());
 }
+
+}  // namespace every_table_test

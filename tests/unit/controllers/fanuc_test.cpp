@@ -4,6 +4,8 @@
 
 #include "workshop.h"
 
+namespace fanuc_test {
+
 using namespace workshop;
 
 namespace {
@@ -261,3 +263,5 @@ TEST(Fanuc, SumsFollowTheCurveWithinHalfAUnit) {
     }
   }
 }
+
+}  // namespace fanuc_test

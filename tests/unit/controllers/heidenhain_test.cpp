@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workshop.h"
 
+namespace heidenhain_test {
+
 using namespace workshop;
 
 namespace {
@@ -134,3 +136,5 @@ TEST(Heidenhain, NamesThatFitNoColumnAreRefused) {
   m.axis = "Querbalken links";
   EXPECT_FALSE(Bench(m).write(heidenhain_plugin()));
 }
+
+}  // namespace heidenhain_test

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workshop.h"
 
+namespace linuxcnc_test {
+
 using namespace workshop;
 
 namespace {
@@ -108,3 +110,5 @@ TEST(LinuxCnc, TurnIsClosedByHand) {
   EXPECT_EQ(all.front().substr(10), all.back().substr(12));
   EXPECT_EQ(all.back().substr(0, 12), "360.00000000");
 }
+
+}  // namespace linuxcnc_test

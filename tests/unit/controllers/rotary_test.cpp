@@ -3,6 +3,8 @@
 
 #include "workshop.h"
 
+namespace rotary_test {
+
 using namespace workshop;
 
 namespace {
@@ -126,3 +128,5 @@ TEST(Rotary, FanucSumsOfATurnAreZero) {
     ASSERT_EQ(first, last) << "seed " << seed;
   }
 }
+
+}  // namespace rotary_test

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workshop.h"
 
+namespace siemens_test {
+
 using namespace workshop;
 
 namespace {
@@ -137,3 +139,5 @@ TEST(Siemens, ReaderRefusesWhatTheControlWould) {
     EXPECT_FALSE(control(siemens_plugin(), {{"", bad}})) << from;
   }
 }
+
+}  // namespace siemens_test

@@ -6,6 +6,8 @@
 
 #include "workshop.h"
 
+namespace ten_thousand_test {
+
 using namespace workshop;
 
 namespace {
@@ -134,3 +136,5 @@ TEST(TenThousandCurves, DriftOfRoundedIncrementsWouldBeSeen) {
   }
   EXPECT_GT(worst, 0.5 * um);
 }
+
+}  // namespace ten_thousand_test

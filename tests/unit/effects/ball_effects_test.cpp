@@ -10,7 +10,7 @@
 #include "nonio/model/explain.h"
 #include "space_table.h"
 
-namespace nonio {
+namespace nonio::ball_effects_test {
 
 namespace {
 
@@ -206,4 +206,4 @@ TEST(BallEffects, WavesOfARunOutFollowFromTheAngles) {
   EXPECT_EQ(waves(36), (Grid{1, 2, 3}));
 }
 
-}  // namespace nonio
+}  // namespace nonio::ball_effects_test

@@ -13,7 +13,7 @@
 #include "host/loader/plugins.h"
 #include "nonio/sdk/axis_readings.h"
 
-namespace nonio {
+namespace nonio::effects_test {
 
 namespace {
 
@@ -97,6 +97,8 @@ std::vector<double> first_shape(const Effect& e, const Observations& o, const Ax
   return shape;
 }
 
+}  // namespace
+
 struct ByHand {
   std::string kind;
   bool turns;
@@ -107,8 +109,6 @@ struct ByHand {
 void PrintTo(const ByHand& c, std::ostream* out) { *out << c.kind; }
 
 class ByHandTest : public testing::TestWithParam<ByHand> {};
-
-}  // namespace
 
 // Linear: 0, 0.4, 1.0 m; p = -0.5, -0.1, 0.5; d = +, +, -; t = 0, 60, 180 s; K = -0.2, -0.1, 0.3.
 // Rotary: 0, 90, 210 deg; p = -105, -15, 105 deg.
@@ -508,4 +508,4 @@ TEST(Effects, HostileReadingsAreRefusedOrGiveFiniteColumns) {
   EXPECT_GT(given, 100);
 }
 
-}  // namespace nonio
+}  // namespace nonio::effects_test

@@ -9,7 +9,7 @@
 #include "nonio/math/spline.h"
 #include "space_table.h"
 
-namespace nonio {
+namespace nonio::space_effects_test {
 
 namespace {
 
@@ -378,4 +378,4 @@ TEST(SpaceEffects, ARoundedDiagonalDoesNotGoInSteps) {
   EXPECT_EQ(effect("mirror-tilt").instances(table(lines)), Names{});
 }
 
-}  // namespace nonio
+}  // namespace nonio::space_effects_test

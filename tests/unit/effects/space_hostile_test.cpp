@@ -4,7 +4,7 @@
 
 #include "space_table.h"
 
-namespace nonio {
+namespace nonio::space_hostile_test {
 
 using namespace space;
 
@@ -66,4 +66,4 @@ TEST(SpaceEffects, HostileReadingsAreRefusedOrGiveFiniteColumns) {
   EXPECT_GT(given, 100);
 }
 
-}  // namespace nonio
+}  // namespace nonio::space_hostile_test

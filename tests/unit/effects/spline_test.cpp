@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace nonio::math {
+namespace nonio::math::spline_test {
 
 namespace {
 
@@ -93,4 +93,4 @@ TEST(SmoothBasis, RefusesWhatTargetsDoNotDetermine) {
   EXPECT_FALSE(smooth_basis({}, heaps, 10));
 }
 
-}  // namespace nonio::math
+}  // namespace nonio::math::spline_test

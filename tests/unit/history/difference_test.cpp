@@ -9,7 +9,7 @@
 #include "made.h"
 #include "nonio/history/trend.h"
 
-namespace nonio::history {
+namespace nonio::history::difference_test {
 namespace {
 
 TEST(Difference, ZetaAndEn) {
@@ -151,4 +151,4 @@ TEST(Table, OfGoodTablesOneInAHundredIsDoubted) {
 }
 
 }  // namespace
-}  // namespace nonio::history
+}  // namespace nonio::history::difference_test

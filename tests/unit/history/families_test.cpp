@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace nonio::history {
+namespace nonio::history::families_test {
 namespace {
 
 void near(const std::vector<double>& found, const std::vector<double>& expected) {
@@ -27,4 +27,4 @@ TEST(Families, NothingAndOne) {
 }
 
 }  // namespace
-}  // namespace nonio::history
+}  // namespace nonio::history::families_test

@@ -8,7 +8,7 @@
 
 #include "made.h"
 
-namespace nonio::history {
+namespace nonio::history::forecast_test {
 namespace {
 
 TEST(Forecast, AtTheNextDate) {
@@ -133,4 +133,4 @@ TEST(ForecastCovers, MachinesThatWearAndWereRepaired) {
 }
 
 }  // namespace
-}  // namespace nonio::history
+}  // namespace nonio::history::forecast_test

@@ -6,7 +6,7 @@
 
 #include "made.h"
 
-namespace nonio::history {
+namespace nonio::history::gls_test {
 namespace {
 
 MatrixXd line(const Series& s, const Whitened& w) {
@@ -72,4 +72,4 @@ TEST(Gls, ColumnsThatAreTheSameAreRefused) {
 }
 
 }  // namespace
-}  // namespace nonio::history
+}  // namespace nonio::history::gls_test

@@ -9,7 +9,7 @@
 
 #include "made.h"
 
-namespace nonio::history {
+namespace nonio::history::intervals_test {
 namespace {
 
 constexpr double days = 12.0 / 365.25;  // months
@@ -169,4 +169,4 @@ TEST(Intervals, TheControlChartEndsWhereTheBoundMeetsTheLimit) {
 }
 
 }  // namespace
-}  // namespace nonio::history
+}  // namespace nonio::history::intervals_test

@@ -11,7 +11,7 @@
 #include "nonio/history/trend.h"
 #include "oracles.h"
 
-namespace nonio::history {
+namespace nonio::history::many_points_test {
 namespace {
 
 Series at_equal_times(const std::vector<double>& x, double u) {
@@ -120,4 +120,4 @@ TEST(ManyPoints, TheHandbooksCusum) {
 }
 
 }  // namespace
-}  // namespace nonio::history
+}  // namespace nonio::history::many_points_test

@@ -12,7 +12,7 @@
 #include "made.h"
 #include "nonio/history/forecast.h"
 
-namespace nonio::history {
+namespace nonio::history::trend_test {
 namespace {
 
 TEST(Trend, ALineIsNotTakenForAStep) {
@@ -371,4 +371,4 @@ TEST(Trend, KnownStepsAreTheOnlyOnes) {
 }
 
 }  // namespace
-}  // namespace nonio::history
+}  // namespace nonio::history::trend_test

@@ -9,7 +9,7 @@
 #include "made.h"
 #include "nile.h"
 
-namespace nonio::history {
+namespace nonio::history::walk_test {
 namespace {
 
 Series river(double variance) {
@@ -47,4 +47,4 @@ TEST(Walk, NoneWhereALevelSaysAsMuch) {
 }
 
 }  // namespace
-}  // namespace nonio::history
+}  // namespace nonio::history::walk_test

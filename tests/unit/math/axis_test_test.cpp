@@ -5,7 +5,7 @@
 
 #include "axis_builder.h"
 
-namespace nonio {
+namespace nonio::axis_test_test {
 namespace {
 
 using math::AxisTest;
@@ -96,4 +96,4 @@ TEST(AxisTest, OnlySomeTargets) {
 }
 
 }  // namespace
-}  // namespace nonio
+}  // namespace nonio::axis_test_test

@@ -8,7 +8,7 @@
 
 #include "nonio/math/distributions.h"
 
-namespace nonio::math {
+namespace nonio::math::budget_test {
 namespace {
 
 constexpr double um = 1e-6;
@@ -288,4 +288,4 @@ TEST(Budget, TheReadingsCountWhereTheyGoBeyondWhatIsStated) {
 }
 
 }  // namespace
-}  // namespace nonio::math
+}  // namespace nonio::math::budget_test

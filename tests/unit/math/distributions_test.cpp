@@ -11,7 +11,7 @@
 #include "axis_builder.h"
 #include "nonio/math/vdi3441.h"
 
-namespace nonio::math {
+namespace nonio::math::distributions_test {
 namespace {
 
 // Closed forms: F with 2 degrees above has P(F > f) = (1 + 2 f/n)^(-n/2); t with 1 degree is
@@ -77,4 +77,4 @@ TEST(Distributions, TheTableOfRangesIsRight) {
 }
 
 }  // namespace
-}  // namespace nonio::math
+}  // namespace nonio::math::distributions_test

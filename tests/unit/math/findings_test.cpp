@@ -9,7 +9,7 @@
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/reversal.h"
 
-namespace nonio::math {
+namespace nonio::math::findings_test {
 namespace {
 
 constexpr double um = 1e-6;
@@ -240,4 +240,4 @@ TEST(Analysis, RefusesWhatIsNotAnAxisTest) {
 }
 
 }  // namespace
-}  // namespace nonio::math
+}  // namespace nonio::math::findings_test

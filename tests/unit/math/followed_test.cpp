@@ -12,7 +12,7 @@
 #include "axis_builder.h"
 #include "nonio/math/iso230_2.h"
 
-namespace nonio::math {
+namespace nonio::math::followed_test {
 namespace {
 
 using made::Noise;
@@ -298,4 +298,4 @@ TEST(Followed, RepeatabilityFollowsMoreTargetsAndTheScatterDoesNot) {
 }
 
 }  // namespace
-}  // namespace nonio::math
+}  // namespace nonio::math::followed_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace nonio::math {
+namespace nonio::math::measuring_path_test {
 namespace {
 
 using Places = std::vector<std::vector<double>>;
@@ -161,4 +161,4 @@ TEST(AxisTargets, TooCloseIsRefused) {
 }
 
 }  // namespace
-}  // namespace nonio::math
+}  // namespace nonio::math::measuring_path_test

@@ -15,7 +15,7 @@
 #include "nonio/math/iso230_2.h"
 #include "nonio/math/vdi3441.h"
 
-namespace nonio {
+namespace nonio::oracle_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -154,4 +154,4 @@ TEST(Oracle, ARealRotaryAxisHasTheResultsOfAnotherProgram) {
 }
 
 }  // namespace
-}  // namespace nonio
+}  // namespace nonio::oracle_test

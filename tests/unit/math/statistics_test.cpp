@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace nonio::math {
+namespace nonio::math::statistics_test {
 namespace {
 
 // NIST Statistical Reference Datasets, univariate: NumAcc1..4, made to break one-pass formulas.
@@ -57,4 +57,4 @@ TEST(Statistics, TooFewValues) {
 }
 
 }  // namespace
-}  // namespace nonio::math
+}  // namespace nonio::math::statistics_test

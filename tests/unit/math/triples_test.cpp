@@ -12,7 +12,7 @@
 #include <random>
 #include <tuple>
 
-namespace nonio::math {
+namespace nonio::math::triples_test {
 namespace {
 
 TripleRequest wish(double x_mm, double y_mm, double largest_step_mm = 0.0) {
@@ -359,4 +359,4 @@ TEST(Triples, AnEndlessSearchIsRefusedBeforeItBegins) {
 }
 
 }  // namespace
-}  // namespace nonio::math
+}  // namespace nonio::math::triples_test

@@ -12,7 +12,7 @@
 #include <set>
 #include <sstream>
 
-namespace nonio {
+namespace nonio::words_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ TEST(Words, EveryFindingHasThem) {
 }
 
 }  // namespace
-}  // namespace nonio
+}  // namespace nonio::words_test

@@ -8,7 +8,7 @@
 
 #include "nonio/sdk/axis_readings.h"
 
-namespace nonio::model {
+namespace nonio::model::fit_test {
 
 namespace {
 
@@ -169,4 +169,4 @@ TEST(Fit, TooFewReadings) {
   EXPECT_FALSE(fit(points({0, 1}, {0, 1}), {{&line, Axis{.name = "X"}}}));
 }
 
-}  // namespace nonio::model
+}  // namespace nonio::model::fit_test

@@ -7,7 +7,7 @@
 
 #include "nonio/model/explain.h"
 
-namespace nonio::model {
+namespace nonio::model::long_table_test {
 
 namespace {
 
@@ -64,4 +64,4 @@ TEST(LongTable, MisreadValueIsSuspectedAndMakesNoPlace) {
   EXPECT_FALSE(c->fails());
 }
 
-}  // namespace nonio::model
+}  // namespace nonio::model::long_table_test

@@ -9,7 +9,7 @@
 
 #include "nonio/model/explain.h"
 
-namespace nonio::model {
+namespace nonio::model::noise_test {
 
 namespace {
 
@@ -331,4 +331,4 @@ TEST(Noise, a_zero_that_is_not_steady_is_in_u_of_least_squares) {
   }
 }
 
-}  // namespace nonio::model
+}  // namespace nonio::model::noise_test

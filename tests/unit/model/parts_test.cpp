@@ -10,7 +10,7 @@
 
 #include "nonio/model/explain.h"
 
-namespace nonio::model {
+namespace nonio::model::parts_test {
 
 namespace {
 
@@ -464,4 +464,4 @@ TEST(Parts, NothingIsMadeOfNothing) {
   EXPECT_EQ(names(t.parts()), Ids{});
 }
 
-}  // namespace nonio::model
+}  // namespace nonio::model::parts_test

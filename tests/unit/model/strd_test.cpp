@@ -9,7 +9,7 @@
 
 #include "nonio/model/fit.h"
 
-namespace nonio::model {
+namespace nonio::model::strd_test {
 
 namespace {
 
@@ -194,4 +194,4 @@ TEST(StRD, Wampler3To5) {
   }
 }
 
-}  // namespace nonio::model
+}  // namespace nonio::model::strd_test

@@ -3,7 +3,7 @@
 
 #include "nonio/model/explain.h"
 
-namespace nonio::model {
+namespace nonio::model::where_test {
 namespace {
 
 // The words are those of results.json and of the ids in templates/words.
@@ -27,4 +27,4 @@ TEST(Where, HasBothFactorsOfAProduct) {
 }
 
 }  // namespace
-}  // namespace nonio::model
+}  // namespace nonio::model::where_test

@@ -8,7 +8,7 @@
 #include "pdf_reader.h"
 #include "png_file.h"
 
-namespace nonio::fixtures {
+namespace nonio::fixtures::certificate_test {
 namespace {
 
 bool has(const std::string& text, const std::string& what) {
@@ -505,4 +505,4 @@ TEST_F(Certificate, WithoutANumberThereIsNone) {
 }
 
 }  // namespace
-}  // namespace nonio::fixtures
+}  // namespace nonio::fixtures::certificate_test

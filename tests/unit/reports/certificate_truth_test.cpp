@@ -11,7 +11,7 @@
 #include "nonio/sdk/format.h"
 #include "pdf_reader.h"
 
-namespace nonio::fixtures {
+namespace nonio::fixtures::certificate_truth_test {
 namespace {
 
 bool has(const std::string& text, const std::string& what) {
@@ -525,4 +525,4 @@ TEST_F(Truth, TheSignatureHasAFrameOnThePage) {
 }
 
 }  // namespace
-}  // namespace nonio::fixtures
+}  // namespace nonio::fixtures::certificate_truth_test

@@ -13,7 +13,7 @@
 #include "nonio/reports/text.h"
 #include "pdf_reader.h"
 
-namespace nonio::reports {
+namespace nonio::reports::document_test {
 namespace {
 
 std::shared_ptr<const Fonts> fonts() {
@@ -423,4 +423,4 @@ TEST(Pdf, ALabelIsCutBetweenCharacters) {
 }
 
 }  // namespace
-}  // namespace nonio::reports
+}  // namespace nonio::reports::document_test

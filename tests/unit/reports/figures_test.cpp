@@ -4,7 +4,7 @@
 #include "fixtures.h"
 #include "pages.h"
 
-namespace nonio::fixtures {
+namespace nonio::fixtures::figures_test {
 namespace {
 
 /// Figures against the table of targets and the results that stand beside them.
@@ -162,4 +162,4 @@ TEST_F(Figures, NoBracketWhereNoTargetHasBothDirections) {
 }
 
 }  // namespace
-}  // namespace nonio::fixtures
+}  // namespace nonio::fixtures::figures_test

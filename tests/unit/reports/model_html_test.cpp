@@ -4,7 +4,7 @@
 #include "fixtures.h"
 #include "model_fixture.h"
 
-namespace nonio::fixtures {
+namespace nonio::fixtures::model_html_test {
 namespace {
 
 struct ModelHtml : testing::Test {
@@ -151,4 +151,4 @@ TEST_F(ModelHtml, NumbersThatAreNoneAreNoneOnThePage) {
 }
 
 }  // namespace
-}  // namespace nonio::fixtures
+}  // namespace nonio::fixtures::model_html_test

@@ -7,7 +7,7 @@
 #include "nonio/reports/residuals.h"
 #include "pdf_reader.h"
 
-namespace nonio::fixtures {
+namespace nonio::fixtures::model_report_test {
 namespace {
 
 /// Lines are as the layout breaks them; sentences are wanted.
@@ -229,4 +229,4 @@ TEST(Residuals, AMultipleOfThePeriodHasPhaseZeroWhateverItsLastDigit) {
 }
 
 }  // namespace
-}  // namespace nonio::fixtures
+}  // namespace nonio::fixtures::model_report_test

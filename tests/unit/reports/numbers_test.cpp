@@ -6,7 +6,7 @@
 
 #include "nonio/reports/number.h"
 
-namespace nonio::reports {
+namespace nonio::reports::numbers_test {
 namespace {
 
 struct Line {
@@ -71,4 +71,4 @@ TEST(Rounding, ColumnsOfTargetsShowEveryDigitTheyHave) {
 }
 
 }  // namespace
-}  // namespace nonio::reports
+}  // namespace nonio::reports::numbers_test

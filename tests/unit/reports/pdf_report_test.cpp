@@ -6,7 +6,7 @@
 #include "nonio/reports/number.h"
 #include "pdf_reader.h"
 
-namespace nonio::fixtures {
+namespace nonio::fixtures::pdf_report_test {
 namespace {
 
 struct PdfReport : testing::Test {
@@ -579,4 +579,4 @@ TEST_F(PdfReport, ValuesThatNameAnotherMeasurementHaveTheirMeaning) {
 }
 
 }  // namespace
-}  // namespace nonio::fixtures
+}  // namespace nonio::fixtures::pdf_report_test

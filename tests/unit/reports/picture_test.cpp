@@ -6,7 +6,7 @@
 #include "pdf_reader.h"
 #include "png_file.h"
 
-namespace nonio::reports {
+namespace nonio::reports::picture_test {
 namespace {
 
 using fixtures::png;
@@ -99,4 +99,4 @@ TEST(Pictures, ADocumentHoldsEachOnce) {
 }
 
 }  // namespace
-}  // namespace nonio::reports
+}  // namespace nonio::reports::picture_test

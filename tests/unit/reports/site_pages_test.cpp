@@ -9,7 +9,7 @@
 #include "nonio/sdk/text.h"
 #include "site_fixture.h"
 
-namespace nonio::fixtures {
+namespace nonio::fixtures::site_pages_test {
 namespace {
 
 const Templates& templates() {
@@ -159,4 +159,4 @@ TEST(SitePages, AValueThatIsNoNumberDrawsNothingWrong) {
 }
 
 }  // namespace
-}  // namespace nonio::fixtures
+}  // namespace nonio::fixtures::site_pages_test

@@ -10,7 +10,7 @@
 #include "pdf_reader.h"
 #include "text.h"
 
-namespace nonio::reports {
+namespace nonio::reports::text_test {
 namespace {
 
 const Fonts& fonts() {
@@ -208,4 +208,4 @@ TEST(WideFont, APartThatIsLargerThanShortOffsetsAllowKeepsItsOutlines) {
 }
 
 }  // namespace
-}  // namespace nonio::reports
+}  // namespace nonio::reports::text_test

@@ -7,7 +7,7 @@
 #include "nonio/sign/verify.h"
 #include "time_server.h"
 
-namespace nonio::sign_tests {
+namespace nonio::sign_tests::long_term_test {
 namespace {
 
 using sign::Check;
@@ -281,4 +281,4 @@ TEST_F(LongTerm, TimesFollowEachOther) {
 }
 
 }  // namespace
-}  // namespace nonio::sign_tests
+}  // namespace nonio::sign_tests::long_term_test

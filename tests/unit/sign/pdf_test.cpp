@@ -4,7 +4,7 @@
 #include "authority.h"
 #include "nonio/sign/verify.h"
 
-namespace nonio::sign_tests {
+namespace nonio::sign_tests::pdf_test {
 namespace {
 
 TEST(Reserve, IsReproducibleAndKeepsThePages) {
@@ -87,4 +87,4 @@ TEST(Verify, SaysNoToWhatIsNoSignedPdf) {
 }
 
 }  // namespace
-}  // namespace nonio::sign_tests
+}  // namespace nonio::sign_tests::pdf_test

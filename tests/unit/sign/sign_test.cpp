@@ -6,7 +6,7 @@
 #include "nonio/sign/verify.h"
 #include "time_server.h"
 
-namespace nonio::sign_tests {
+namespace nonio::sign_tests::sign_test {
 namespace {
 
 using sign::Check;
@@ -418,4 +418,4 @@ TEST(Xml, OnlyOfTheWholeDocumentAndWithoutTricks) {
 }
 
 }  // namespace
-}  // namespace nonio::sign_tests
+}  // namespace nonio::sign_tests::sign_test

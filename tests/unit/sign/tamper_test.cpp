@@ -15,7 +15,7 @@
 #include "nonio/sign/verify.h"
 #include "time_server.h"
 
-namespace nonio::sign_tests {
+namespace nonio::sign_tests::tamper_test {
 namespace {
 
 using sign::Check;
@@ -304,4 +304,4 @@ TEST(Tamper, RandomDamageIsAlwaysRefused) {
 }
 
 }  // namespace
-}  // namespace nonio::sign_tests
+}  // namespace nonio::sign_tests::tamper_test

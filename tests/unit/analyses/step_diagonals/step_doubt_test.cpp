@@ -4,7 +4,7 @@
 
 #include "workshop.h"
 
-namespace steps {
+namespace steps::step_doubt_test {
 namespace {
 
 using namespace nonio::math;
@@ -95,4 +95,4 @@ TEST(StepDoubt, AngularErrorsThroughTheMirrorContradictTheAxis) {
 }
 
 }  // namespace
-}  // namespace steps
+}  // namespace steps::step_doubt_test

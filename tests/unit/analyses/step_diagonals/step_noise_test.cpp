@@ -4,7 +4,7 @@
 
 #include "workshop.h"
 
-namespace steps {
+namespace steps::step_noise_test {
 namespace {
 
 using namespace nonio::math;
@@ -169,4 +169,4 @@ TEST(StepNoise, UncertaintyCoversTheTruth) {
 }
 
 }  // namespace
-}  // namespace steps
+}  // namespace steps::step_noise_test

@@ -4,7 +4,7 @@
 
 #include "workshop.h"
 
-namespace steps {
+namespace steps::step_recovery_test {
 namespace {
 
 using namespace nonio::math;
@@ -278,4 +278,4 @@ TEST(StepRecovery, ThreeDiagonalsOrAFunctionWithoutReadingsIsRefused) {
 }
 
 }  // namespace
-}  // namespace steps
+}  // namespace steps::step_recovery_test

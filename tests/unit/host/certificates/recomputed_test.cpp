@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace nonio::host {
+namespace nonio::host::recomputed_test {
 namespace {
 
 std::string results(const std::string& value, const std::string& more = {}) {
@@ -107,4 +107,4 @@ TEST(Dcc, UnitsAndLengthsOfListsThatTheSchemaLetsPass) {
 }
 
 }  // namespace
-}  // namespace nonio::host
+}  // namespace nonio::host::recomputed_test

@@ -15,7 +15,7 @@
 #include "host/config/number_pattern.h"
 #include "host/storage/database.h"
 
-namespace nonio::host {
+namespace nonio::host::register_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -356,4 +356,4 @@ TEST_F(RegisterTest, ATransactionThatWasCutShortDidNotHappen) {
 }
 
 }  // namespace
-}  // namespace nonio::host
+}  // namespace nonio::host::register_test

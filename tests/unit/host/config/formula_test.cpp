@@ -11,7 +11,7 @@
 #include "host/reading/formula_copy.h"
 #include "nonio/sdk/axis_readings.h"
 
-namespace nonio::host {
+namespace nonio::host::formula_test {
 
 namespace {
 
@@ -330,4 +330,4 @@ TEST(Formula, ComesFromTheManifest) {
               "no axis \"Q\"");
 }
 
-}  // namespace nonio::host
+}  // namespace nonio::host::formula_test

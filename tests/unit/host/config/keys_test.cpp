@@ -11,7 +11,7 @@
 #include "host/config/manifest.h"
 #include "host/config/toml_reader.h"
 
-namespace nonio::host {
+namespace nonio::host::keys_test {
 namespace {
 
 using Holds = config::Key::Holds;
@@ -151,4 +151,4 @@ TEST(Keys, RulesOfTexts) {
   EXPECT_FALSE(config::obeys("a\\b", {.not_letters = "/\\"}));
 }
 
-}  // namespace nonio::host
+}  // namespace nonio::host::keys_test

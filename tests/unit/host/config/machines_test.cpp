@@ -8,7 +8,7 @@
 
 #include "host/evaluation/evaluate.h"
 
-namespace nonio::host {
+namespace nonio::host::machines_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -296,4 +296,4 @@ TEST_F(MachinesFolder, NothingIsReadFromOutsideOfTheSite) {
 }
 
 }  // namespace
-}  // namespace nonio::host
+}  // namespace nonio::host::machines_test

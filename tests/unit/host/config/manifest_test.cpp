@@ -7,7 +7,7 @@
 
 #include "host/config/secret_files.h"
 
-namespace nonio::host {
+namespace nonio::host::manifest_test {
 
 namespace {
 
@@ -279,4 +279,4 @@ TEST(Options, DefaultsSiteCampaignInThisOrder) {
   EXPECT_EQ(unknown.error()[0].message, "unknown option options.p.wort (nearest: \"word\")");
 }
 
-}  // namespace nonio::host
+}  // namespace nonio::host::manifest_test

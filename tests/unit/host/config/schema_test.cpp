@@ -7,7 +7,7 @@
 
 #include "host/loader/plugins.h"
 
-namespace nonio::host {
+namespace nonio::host::schema_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -91,4 +91,4 @@ TEST(Schema, IsGoodWithoutPlugins) {
   }
 }
 
-}  // namespace nonio::host
+}  // namespace nonio::host::schema_test

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <string>
 
-namespace nonio::host {
+namespace nonio::host::secrets_test {
 namespace {
 
 std::string loaded_library(const std::string& name) {
@@ -28,4 +28,4 @@ TEST(Secrets, ThePasswordIsWipedByWhatIsNotLeftOut) {
 }
 
 }  // namespace
-}  // namespace nonio::host
+}  // namespace nonio::host::secrets_test

@@ -8,7 +8,7 @@
 
 #include "host/storage/files.h"
 
-namespace nonio::test {
+namespace nonio::test::site_logs_test {
 
 namespace {
 namespace fs = std::filesystem;
@@ -235,4 +235,4 @@ TEST(SiteLogs, AMachineIsDueByOneRule) {
   EXPECT_NE(all.find("is missing"), std::string::npos) << all;
 }
 
-}  // namespace nonio::test
+}  // namespace nonio::test::site_logs_test

@@ -11,7 +11,7 @@
 
 #include "host/config/manifest.h"
 
-namespace nonio::host {
+namespace nonio::host::words_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -240,4 +240,4 @@ TEST(WordFiles, EveryRemarkHasThem) {
 }
 
 }  // namespace
-}  // namespace nonio::host
+}  // namespace nonio::host::words_test

@@ -13,7 +13,7 @@
 #include "host/storage/nearest.h"
 #include "nonio/sdk/format.h"
 
-namespace nonio {
+namespace nonio::decision_test {
 
 TEST(Decision, UpperLimitAfterIso14253) {
   using host::evaluation::decide;
@@ -105,4 +105,4 @@ TEST(Suggestion, NearestOrNothing) {
   EXPECT_EQ(host::storage::suggestion("qqqqqq", {"structure", "serial"}), "");
 }
 
-}  // namespace nonio
+}  // namespace nonio::decision_test

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-namespace nonio::host::evaluation {
+namespace nonio::host::evaluation::record_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,4 +56,4 @@ TEST_F(RecordTest, AnotherWordForTheStatusIsNoRecord) {
 }
 
 }  // namespace
-}  // namespace nonio::host::evaluation
+}  // namespace nonio::host::evaluation::record_test

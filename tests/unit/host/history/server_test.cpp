@@ -8,7 +8,7 @@
 #include "host/history/query.h"
 #include "laboratory.h"
 
-namespace nonio::test {
+namespace nonio::test::server_test {
 
 namespace {
 
@@ -206,4 +206,4 @@ TEST(HistoryServer, AddressesWithAPasswordAreRefusedAndNotRepeated) {
   }
 }
 
-}  // namespace nonio::test
+}  // namespace nonio::test::server_test

@@ -11,7 +11,7 @@
 #include "host/history/query.h"
 #include "laboratory.h"
 
-namespace nonio::test {
+namespace nonio::test::store_test {
 
 namespace {
 
@@ -430,4 +430,4 @@ TEST(HistoryIdentity, SpellingsAreProposedAndNeverJoined) {
   EXPECT_TRUE(history::spellings_in(out.root())->empty());
 }
 
-}  // namespace nonio::test
+}  // namespace nonio::test::store_test

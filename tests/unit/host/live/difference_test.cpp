@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+namespace difference_test {
+
 using nonio::host::live::unified_difference;
 
 TEST(LiveDifference, IsThatOfDiff) {
@@ -15,3 +17,5 @@ TEST(LiveDifference, IsThatOfDiff) {
   EXPECT_EQ(unified_difference("f", "1", "2\n"),
             "--- f\n+++ f\n@@ -1,1 +1,1 @@\n-1\n\\ No newline at end of file\n+2\n");
 }
+
+}  // namespace difference_test

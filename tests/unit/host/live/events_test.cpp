@@ -5,6 +5,8 @@
 
 #include <thread>
 
+namespace events_test {
+
 using namespace nonio::host::live;
 using namespace std::chrono_literals;
 
@@ -81,3 +83,5 @@ TEST(LiveEvents, ManyTellAndListenAtOnce) {
   for (std::thread& one : all) one.join();
   EXPECT_EQ(events.listeners(), 0U);
 }
+
+}  // namespace events_test

@@ -7,6 +7,8 @@
 
 #include "host/live/service.h"
 
+namespace guard_test {
+
 using namespace nonio::host::live;
 
 namespace {
@@ -306,3 +308,5 @@ TEST(LiveGuard, HostileHeads) {
     EXPECT_TRUE(v.status != 200 || v.route->open);
   }
 }
+
+}  // namespace guard_test

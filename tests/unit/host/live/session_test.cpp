@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <random>
 
+namespace session_test {
+
 using namespace nonio::host::live;
 using Names = std::vector<std::string>;
 
@@ -140,3 +142,5 @@ TEST(LiveSession, VersionsOnlyGrowAndUndoIsExact) {
     }
   }
 }
+
+}  // namespace session_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace nonio::host {
+namespace nonio::host::plugins_test {
 namespace {
 
 Output output_named(const char* name) {
@@ -51,4 +51,4 @@ TEST(Plugins, TheCatalogueHasEveryKind) {
 }
 
 }  // namespace
-}  // namespace nonio::host
+}  // namespace nonio::host::plugins_test

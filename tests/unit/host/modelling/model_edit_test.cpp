@@ -5,7 +5,7 @@
 
 #include "host/modelling/model_history.h"
 
-namespace nonio::host {
+namespace nonio::host::model_edit_test {
 namespace {
 
 std::string added(const std::string& text, const std::string& effect = "backlash:X") {
@@ -129,4 +129,4 @@ TEST(ModelHistory, ReadsWhatItWrites) {
 }
 
 }  // namespace
-}  // namespace nonio::host
+}  // namespace nonio::host::model_edit_test

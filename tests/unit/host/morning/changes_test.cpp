@@ -7,7 +7,7 @@
 
 #include "made.h"
 
-namespace nonio::test {
+namespace nonio::test::changes_test {
 namespace {
 
 using Cause = nonio::history::Change::Cause;
@@ -200,4 +200,4 @@ TEST(MorningChanges, AMailCountsAllThatItCouldTell) {
 }
 
 }  // namespace
-}  // namespace nonio::test
+}  // namespace nonio::test::changes_test

@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-namespace nonio::test {
+namespace nonio::test::curves_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -50,4 +50,4 @@ TEST(MorningCurves, AreThoseOfTheResults) {
 }
 
 }  // namespace
-}  // namespace nonio::test
+}  // namespace nonio::test::curves_test

@@ -9,7 +9,7 @@
 
 #include "made.h"
 
-namespace nonio::test {
+namespace nonio::test::fits_test {
 namespace {
 namespace fs = std::filesystem;
 
@@ -86,4 +86,4 @@ TEST_F(MorningFits, WhatIsDamagedIsNone) {
 }
 
 }  // namespace
-}  // namespace nonio::test
+}  // namespace nonio::test::fits_test

@@ -8,7 +8,7 @@
 #include "../history/laboratory.h"
 
 /// What a report may say of its machine: what its day knew, and nothing else.
-namespace nonio::test {
+namespace nonio::test::history_so_far_test {
 namespace {
 
 namespace morning = host::morning;
@@ -161,4 +161,4 @@ TEST_F(HistorySoFarTest, WithoutDayOrMachineThereIsNone) {
 }
 
 }  // namespace
-}  // namespace nonio::test
+}  // namespace nonio::test::history_so_far_test

@@ -10,7 +10,7 @@
 #include "host/storage/disk.h"
 
 /// What a large site keeps of its machines changes no byte of what it says.
-namespace nonio::test {
+namespace nonio::test::kept_test {
 namespace {
 
 namespace batch = host::batch;
@@ -202,4 +202,4 @@ TEST_F(KeptMachinesTest, AreUsed) {
 }
 
 }  // namespace
-}  // namespace nonio::test
+}  // namespace nonio::test::kept_test

@@ -20,7 +20,7 @@
 #include "made.h"
 #include "nonio/sdk/format.h"
 
-namespace nonio::test {
+namespace nonio::test::lines_test {
 namespace {
 
 using reports::MorningLine;
@@ -432,4 +432,4 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
 }
 
 }  // namespace
-}  // namespace nonio::test
+}  // namespace nonio::test::lines_test

@@ -8,7 +8,7 @@
 
 #include "made.h"
 
-namespace nonio::test {
+namespace nonio::test::proposals_test {
 namespace {
 
 using reports::IntervalProposal;
@@ -165,4 +165,4 @@ TEST(Proposals, OfManyLikeMachinesTheFleetIsAsked) {
 }
 
 }  // namespace
-}  // namespace nonio::test
+}  // namespace nonio::test::proposals_test

@@ -7,7 +7,7 @@
 
 #include "made.h"
 
-namespace nonio::test {
+namespace nonio::test::series_test {
 namespace {
 
 using Kind = nonio::history::Declared::Kind;
@@ -135,4 +135,4 @@ TEST(MorningSeries, AnEventMayNameTheSerialNumberOfOneMachine) {
 }
 
 }  // namespace
-}  // namespace nonio::test
+}  // namespace nonio::test::series_test

@@ -8,7 +8,7 @@
 
 #include "host/storage/digest.h"
 
-namespace nonio::host {
+namespace nonio::host::files_test {
 namespace fs = std::filesystem;
 
 class Files : public testing::Test {
@@ -65,4 +65,4 @@ TEST(Digest, PublishedVectors) {  // FIPS 180-4 examples
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
-}  // namespace nonio::host
+}  // namespace nonio::host::files_test

@@ -8,7 +8,7 @@
 
 #include "nonio/sdk/axis_readings.h"
 
-namespace nonio::host {
+namespace nonio::host::simulate_test {
 namespace {
 
 Effect backlash() {
@@ -239,4 +239,4 @@ TEST(Simulate, errors_name_the_line_and_the_nearest_name) {
 }
 
 }  // namespace
-}  // namespace nonio::host
+}  // namespace nonio::host::simulate_test

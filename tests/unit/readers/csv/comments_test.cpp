@@ -5,7 +5,7 @@
 
 #include "csv.h"
 
-namespace nonio::csv {
+namespace nonio::csv::comments_test {
 namespace {
 
 struct Doubt {
@@ -152,4 +152,4 @@ TEST(Comments, AnotherAxisOfTheMachineIsDoubted) {
 }
 
 }  // namespace
-}  // namespace nonio::csv
+}  // namespace nonio::csv::comments_test

@@ -9,7 +9,7 @@
 
 #include "nonio/sdk/fields.h"
 
-namespace nonio::csv {
+namespace nonio::csv::csv_fields_test {
 using namespace reading;
 namespace {
 
@@ -159,4 +159,4 @@ TEST(Fields, NearestName) {
 }
 
 }  // namespace
-}  // namespace nonio::csv
+}  // namespace nonio::csv::csv_fields_test

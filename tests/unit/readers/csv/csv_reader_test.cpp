@@ -11,7 +11,7 @@
 
 #include "csv.h"
 
-namespace nonio::csv {
+namespace nonio::csv::csv_reader_test {
 namespace {
 
 using namespace std::string_literals;
@@ -533,4 +533,4 @@ TEST(Csv, ReadsItsKinds) {
 }
 
 }  // namespace
-}  // namespace nonio::csv
+}  // namespace nonio::csv::csv_reader_test

@@ -8,7 +8,7 @@
 
 #include "csv.h"
 
-namespace nonio::csv {
+namespace nonio::csv::spatial_test {
 namespace {
 
 Measurement measurement(const std::string& kind) {
@@ -174,4 +174,4 @@ TEST(General, BadTables) {
 }
 
 }  // namespace
-}  // namespace nonio::csv
+}  // namespace nonio::csv::spatial_test
