@@ -111,8 +111,7 @@ std::vector<std::uint32_t> lines_in(const std::string& text) {
 
 int change_campaign(const char* verb, const ModelOptions& options, const Common& common,
                     const host::modelling::CampaignEdit& edit) {
-  auto opened =
-      open_campaign(verb, options.folder, common, host::reading::TemplatesFor::terminal);
+  auto opened = open_campaign(verb, options.folder, common, host::reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   const auto changed = host::modelling::change_campaign(open.folder, open.read, edit);
@@ -145,22 +144,22 @@ Verb exclude_verb(const std::shared_ptr<ModelOptions>& options, Common& common) 
           .run = [options, &common] {
             const auto lines = lines_in(options->lines);
             if (lines.empty())
-              return complain(model_name, "LINES: expected numbers with commas between them, such "
-                                          "as 57,103; found \"" +
-                                              options->lines + "\"");
-            return change_campaign(
-                "nonio model exclude", *options, common,
-                {.excluded = {{options->measurement, lines, options->why}}});
+              return complain(model_name,
+                              "LINES: expected numbers with commas between them, such "
+                              "as 57,103; found \"" +
+                                  options->lines + "\"");
+            return change_campaign("nonio model exclude", *options, common,
+                                   {.excluded = {{options->measurement, lines, options->why}}});
           }};
 }
 
 Verb period_verb(const std::shared_ptr<ModelOptions>& options, Common& common) {
   return {.name = "period",
           .summary = "Sets the period of an axis: screw_pitch_mm",
-          .arguments = joined(
-              campaign_arguments(options->folder, common),
-              {required({"AXIS", &options->axis, "A linear axis of the machine, such as X"}),
-               required({"MM", &options->period_mm, "Its period in mm, such as 10"})}),
+          .arguments =
+              joined(campaign_arguments(options->folder, common),
+                     {required({"AXIS", &options->axis, "A linear axis of the machine, such as X"}),
+                      required({"MM", &options->period_mm, "Its period in mm, such as 10"})}),
           .footer = keeps_the_rest +
                     std::string("nonio model period samples/site/02-constant-reversal Z 10"),
           .run = [options, &common] {
@@ -180,7 +179,8 @@ Verb model_verb(Common& common) {
                      .arguments = campaign_arguments(options->folder, common),
                      .run = [options, &common] { return show_model(*options, common); }},
                     change_verb(options, common, true),
-                    change_verb(options, common, false), exclude_verb(options, common),
+                    change_verb(options, common, false),
+                    exclude_verb(options, common),
                     period_verb(options, common)}};
 }
 

@@ -22,14 +22,13 @@ std::vector<std::string> model_in(const Json& request) {
 
 /// Whole lines only: campaign.toml knows no other readings.
 Expected<modelling::Exclusion> exclusion_of(const Bench& bench, const Json& one) {
-  modelling::Exclusion out{one.at("measurement").get<std::string>(), {},
-                           one.at("why").get<std::string>()};
+  modelling::Exclusion out{
+      one.at("measurement").get<std::string>(), {}, one.at("why").get<std::string>()};
   const auto& all = bench.campaign().measurements;
   const auto m = std::find_if(all.begin(), all.end(),
                               [&](const Measurement& x) { return x.id == out.measurement; });
   if (m == all.end()) return fail("there is no measurement \"" + out.measurement + "\"");
-  const Observations& o =
-      bench.read.observations.at(static_cast<std::size_t>(m - all.begin()));
+  const Observations& o = bench.read.observations.at(static_cast<std::size_t>(m - all.begin()));
   const auto rows = one.at("rows").get<std::set<std::size_t>>();
   std::set<std::uint32_t> lines;
   for (const std::size_t row : rows) {

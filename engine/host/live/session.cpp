@@ -189,11 +189,12 @@ std::string command_between(const std::string& campaign, const Trial& from, cons
     std::string lines;
     for (const std::uint64_t line : one.first)
       lines += (lines.empty() ? "" : ",") + std::to_string(line);
-    run("exclude", quoted_for_shell(measurement) + " " + lines + " --why " +
-                       quoted_for_shell(one.second));
+    run("exclude",
+        quoted_for_shell(measurement) + " " + lines + " --why " + quoted_for_shell(one.second));
   }
   for (const auto& [axis, mm] : to.period_mm)
-    if (const auto was = from.period_mm.find(axis); was == from.period_mm.end() || was->second != mm)
+    if (const auto was = from.period_mm.find(axis);
+        was == from.period_mm.end() || was->second != mm)
       run("period", quoted_for_shell(axis) + " " + storage::Json(mm).dump());
   for (const modelling::ModelEdit& edit : modelling::edits_between(from.model, to.model))
     run(edit.add ? "add" : "drop", quoted_for_shell(edit.effect));

@@ -246,9 +246,9 @@ Expected<std::string> with_effect(std::string_view text, const std::string& effe
   if (!parsed) return fail(parsed.error());
   Names wanted = names_in(parsed->root);
   wanted.push_back(effect);
-  const std::vector<std::string> tries = parsed->list
-                                             ? std::vector{appended(text, *parsed->list, quoted(effect))}
-                                             : with_new_list(text, effect);
+  const std::vector<std::string> tries =
+      parsed->list ? std::vector{appended(text, *parsed->list, quoted(effect))}
+                   : with_new_list(text, effect);
   for (const std::string& one : tries)
     if (is_meant(parsed->root, one, wanted)) return one;
   return refusal("\"" + effect + "\" could not be added without changing something else",
@@ -356,8 +356,9 @@ Expected<std::string> with_period(std::string_view text, const std::string& axis
   if (!root) return fail(root.error());
   toml::table* const table = (*root)["machine"]["axes"][axis].as_table();
   if (table == nullptr)
-    return fail(Error{"does not describe axis " + axis + ": write screw_pitch_mm by hand, here or "
-                      "in the record of the machine; nothing was changed",
+    return fail(Error{"does not describe axis " + axis +
+                          ": write screw_pitch_mm by hand, here or "
+                          "in the record of the machine; nothing was changed",
                       config::manifest_name});
   const std::string value = storage::Json(mm).dump();
   std::string out;

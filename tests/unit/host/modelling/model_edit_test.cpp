@@ -134,7 +134,8 @@ TEST(ModelEdit, ExcludedLinesComeIntoTheirMeasurement) {
   EXPECT_EQ(excluded("[[measurement]]\r\nid = \"m\"\r\nexclude = [1]\r\n", {2}, "\"a\" # b\\"),
             "[[measurement]]\r\nid = \"m\"\r\nexclude = [1, 2]\r\nexclude_reason = \"\\\"a\\\" # "
             "b\\\\\"\r\n");
-  EXPECT_TRUE(excluded("measurement = [{ id = \"m\", file = \"a\" }]\n", {2}).starts_with("refused"));
+  EXPECT_TRUE(
+      excluded("measurement = [{ id = \"m\", file = \"a\" }]\n", {2}).starts_with("refused"));
   EXPECT_TRUE(excluded("[[measurement]]\nid = \"n\"\n", {2}).starts_with("refused"));
 }
 
