@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
 #include <iostream>
 
 #include "campaign_verb.h"
@@ -12,7 +13,8 @@ namespace nonio::app {
 namespace {
 
 struct ModelOptions {
-  std::string folder, effect;
+  std::string folder, effect, measurement, lines, why, axis;
+  double period_mm = 0.0;
 };
 
 const char* const model_name = "nonio model";
@@ -93,6 +95,79 @@ Verb change_verb(const std::shared_ptr<ModelOptions>& options, Common& common, b
       .run = [options, &common, add] { return change(*options, common, add); }};
 }
 
+/// "57,103" as numbers; nothing if it is something else.
+std::vector<std::uint32_t> lines_in(const std::string& text) {
+  std::vector<std::uint32_t> out;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    std::uint32_t line = 0;
+    const auto [rest, error] = std::from_chars(text.data() + begin, text.data() + end, line);
+    if (error != std::errc{} || rest != text.data() + end || line == 0) return {};
+    out.push_back(line);
+    begin = end + 1;
+  }
+  return out;
+}
+
+int change_campaign(const char* verb, const ModelOptions& options, const Common& common,
+                    const host::modelling::CampaignEdit& edit) {
+  auto opened = open_campaign(verb, options.folder, common, host::reading::TemplatesFor::terminal);
+  if (!opened) return opened.error();
+  OpenCampaign& open = *opened;
+  const auto changed = host::modelling::change_campaign(open.folder, open.read, edit);
+  if (!changed)
+    return complain(model_name, text_of(changed.error()) + "; nothing was changed", exit_failed);
+  if (common.json)
+    std::cout << host::modelling::change_json(changed->front(), open.campaign(),
+                                              words_for(open, common));
+  else
+    print_step(std::cout, changed->front().step, words_for(open, common).terminal());
+  return open.read.errors.empty() ? exit_done : exit_failed;
+}
+
+constexpr const char* keeps_the_rest =
+    "campaign.toml keeps its comments and everything else; model-history.jsonl next to it\n"
+    "records the change.\n\nExample: ";
+
+Verb exclude_verb(const std::shared_ptr<ModelOptions>& options, Common& common) {
+  return {.name = "exclude",
+          .summary = "Leaves readings of a measurement out, with a reason",
+          .arguments =
+              joined(campaign_arguments(options->folder, common),
+                     {required({"MEASUREMENT", &options->measurement, "Its id in campaign.toml"}),
+                      required({"LINES", &options->lines, "Lines of its file, such as 57,103"}),
+                      required({"--why", &options->why,
+                                "The reason, in one line, such as \"beam interrupted\""})}),
+          .footer = keeps_the_rest + std::string("nonio model exclude "
+                                                 "samples/site/02-constant-reversal Z 9 --why "
+                                                 "\"beam interrupted\""),
+          .run = [options, &common] {
+            const auto lines = lines_in(options->lines);
+            if (lines.empty())
+              return complain(model_name,
+                              "LINES: expected numbers with commas between them, such "
+                              "as 57,103; found \"" +
+                                  options->lines + "\"");
+            return change_campaign("nonio model exclude", *options, common,
+                                   {.excluded = {{options->measurement, lines, options->why}}});
+          }};
+}
+
+Verb period_verb(const std::shared_ptr<ModelOptions>& options, Common& common) {
+  return {.name = "period",
+          .summary = "Sets the period of an axis: screw_pitch_mm",
+          .arguments =
+              joined(campaign_arguments(options->folder, common),
+                     {required({"AXIS", &options->axis, "A linear axis of the machine, such as X"}),
+                      required({"MM", &options->period_mm, "Its period in mm, such as 10"})}),
+          .footer = keeps_the_rest +
+                    std::string("nonio model period samples/site/02-constant-reversal Z 10"),
+          .run = [options, &common] {
+            return change_campaign("nonio model period", *options, common,
+                                   {.periods = {{options->axis, options->period_mm}}});
+          }};
+}
+
 }  // namespace
 
 Verb model_verb(Common& common) {
@@ -104,7 +179,9 @@ Verb model_verb(Common& common) {
                      .arguments = campaign_arguments(options->folder, common),
                      .run = [options, &common] { return show_model(*options, common); }},
                     change_verb(options, common, true),
-                    change_verb(options, common, false)}};
+                    change_verb(options, common, false),
+                    exclude_verb(options, common),
+                    period_verb(options, common)}};
 }
 
 }  // namespace nonio::app

@@ -295,6 +295,21 @@ void print_change(std::ostream& out, const host::modelling::Change& change,
     out << "  " << say("warning") << ": " << warning << "\n";
 }
 
+void print_step(std::ostream& out, const host::modelling::ModelStep& step,
+                const host::config::TerminalWords& say) {
+  if (step.excluded) {
+    std::string lines;
+    for (const std::uint32_t line : step.excluded->lines)
+      lines += (lines.empty() ? "" : ", ") + std::to_string(line);
+    out << say("excluded", {{"measurement", step.excluded->measurement},
+                            {"lines", lines},
+                            {"why", step.excluded->why}});
+  } else if (step.period) {
+    out << say("period", {{"axis", step.period->axis}, {"mm", short_text(step.period->mm)}});
+  }
+  out << "\n";
+}
+
 void print_history(std::ostream& out, const std::vector<host::modelling::ModelStep>& history,
                    const host::config::TerminalWords& say) {
   if (history.empty()) return;
@@ -302,12 +317,18 @@ void print_history(std::ostream& out, const std::vector<host::modelling::ModelSt
   double whole = 0.0;
   for (const host::modelling::ModelStep& step : history)
     whole = std::max({whole, step.rms_before.value_or(0.0), step.rms_after.value_or(0.0)});
-  for (const host::modelling::ModelStep& step : history)
+  for (const host::modelling::ModelStep& step : history) {
+    if (step.excluded || step.period) {
+      out << "  ";
+      print_step(out, step, say);
+      continue;
+    }
     out << "  " << padded((step.added ? "+ " : "- ") + step.effect, 24)
         << (step.rms_after ? bar(*step.rms_after, whole, bar_width, step.floor) + " " +
                                  with_unit(*step.rms_after, step.quantity)
                            : "-")
         << "\n";
+  }
 }
 
 }  // namespace nonio::app

@@ -135,26 +135,9 @@ Json Desk::steps() const {
   return list;
 }
 
-std::vector<std::string> Desk::by_hand() const {
-  std::map<std::string, std::vector<const Excluded*>> excluded;
-  for (const Excluded& e : session_.trial().excluded) excluded[e.measurement].push_back(&e);
-  std::vector<std::string> out;
-  for (const auto& [measurement, rows] : excluded) {
-    std::string lines, why;
-    for (const Excluded* e : rows) {
-      lines += (lines.empty() ? "" : ", ") + std::to_string(e->line);
-      if (why.find(e->why) == std::string::npos) why += (why.empty() ? "" : "; ") + e->why;
-    }
-    out.push_back("[[measurement]] id = " + Json(measurement).dump() + ": exclude = [" + lines +
-                  "], exclude_reason = " + Json(why).dump());
-  }
-  for (const auto& [axis, mm] : session_.trial().period_mm)
-    out.push_back("[machine.axes." + axis + "] screw_pitch_mm = " + Json(mm).dump());
-  return out;
-}
-
+/// What leads to the trial on a terminal.
 std::string Desk::command() const {
-  const std::string change = command_of(name_, session_.saved(), session_.trial().model);
+  const std::string change = command_of(name_, session_.saved(), session_.trial());
   return change.empty() ? "nonio compare " + quoted_for_shell(name_) : change;
 }
 
@@ -200,7 +183,6 @@ Answer Desk::state() {
   json["parts_state"] = parts_state();
   if (searching_) json["job"] = {{"job", searching_->job}, {"kind", searching_->kind}};
   json["command"] = command();
-  json["by_hand"] = by_hand();
   return {200, json_type, storage::dump_line(json)};
 }
 

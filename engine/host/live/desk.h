@@ -131,7 +131,8 @@ class Desk {
   Json parts_state() const;
   Json part_state(const PartState& state) const;
   Json steps() const;
-  std::vector<std::string> by_hand() const;
+  Json save_request(const std::string& kind) const;
+  void read_again();
   std::string command() const;
   bool has_part(const std::string& part) const { return parts_.contains(part); }
 

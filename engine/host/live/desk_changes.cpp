@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a person changes: model, excluded readings, steps; saving; effects found one by one.
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "host/live/bench.h"
 #include "host/live/desk.h"
@@ -33,10 +35,10 @@ Answer Desk::post(const std::string& what, const Json& body, const Request& requ
   if (what == "reload") return reload();
   const std::lock_guard lock(mutex_);
   if (what != "name") end_search();
-  const auto before = session_.trial().model;
+  const Trial before = session_.trial();
   std::string told;
   const auto done = change(what, body, told);
-  if (told.empty()) told = command_of(name_, before, session_.trial().model);
+  if (told.empty()) told = command_between(name_, before, session_.trial());
   return changed(done, told);
 }
 
@@ -83,10 +85,11 @@ Expected<void> Desk::change(const std::string& what, const Json& body, std::stri
     told = command();
     return session_.name(body.at("n").get<std::size_t>(), body.at("name").get<std::string>());
   }
-  told = "nonio compare " + quoted_for_shell(name_);
-  if (what == "include")
+  if (what == "include") {
+    told = "nonio compare " + quoted_for_shell(name_);
     return session_.include(body.at("part").get<std::string>(),
                             body.at("rows").get<std::vector<std::size_t>>());
+  }
   const auto axis = body.at("axis").get<std::string>();
   const Json& axes = campaign_.at("machine").at("axes");
   if (std::none_of(axes.begin(), axes.end(), [&](const Json& one) {
@@ -117,18 +120,40 @@ Answer Desk::exclude(const Json& body) {
                         one.at("measurement").get<std::string>(), one.at("file").get<std::string>(),
                         one.at("measurement_row").get<std::uint32_t>(),
                         one.value("line", std::uint64_t{0}), why});
-  return changed(session_.exclude(readings), "nonio compare " + quoted_for_shell(name_));
+  const Trial before = session_.trial();
+  const auto done = session_.exclude(readings);
+  return changed(done, command_between(name_, before, session_.trial()));
 }
 
-Answer Desk::reload() {
-  const std::lock_guard lock(mutex_);
-  end_search();
+void Desk::read_again() {
   read_again_ = true;
   bench_state_ = "opening";
   fits_.clear();
   explanations_.clear();
   bench_->restart();
   forget_parts();
+}
+
+/// Excluded readings with their reasons, by measurement, beside what a fit depends on.
+Json Desk::save_request(const std::string& kind) const {
+  std::map<std::string, std::pair<Json, std::string>> of;
+  for (const Excluded& e : session_.trial().excluded) {
+    auto& [rows, why] = of[e.measurement];
+    rows.push_back(e.measurement_row);
+    if (why.find(e.why) == std::string::npos) why += (why.empty() ? "" : "; ") + e.why;
+  }
+  Json request = request_for(kind, "");
+  request["exclusions"] = Json::array();
+  for (const auto& [measurement, one] : of)
+    request["exclusions"].push_back(
+        {{"measurement", measurement}, {"rows", one.first}, {"why", one.second}});
+  return request;
+}
+
+Answer Desk::reload() {
+  const std::lock_guard lock(mutex_);
+  end_search();
+  read_again();
   publish("state", "", Json::object());
   return json_answer(202, {{"version", session_.version()},
                            {"command", "nonio compare " + quoted_for_shell(name_)}});
@@ -136,13 +161,12 @@ Answer Desk::reload() {
 
 Answer Desk::difference() {
   std::unique_lock lock(mutex_);
-  const Waiting done = wait_for(lock, request_for("difference", ""), "");
+  const Waiting done = wait_for(lock, save_request("difference"), "");
   if (!done.well) return refusal(done.done ? 422 : 503, done.text);
   Json json = {{"version", session_.version()}};
   json.update(Json::parse(done.text));
   json["model"] = session_.trial().model;
   json["command"] = command();
-  json["by_hand"] = by_hand();
   return json_answer(200, json);
 }
 
@@ -150,7 +174,7 @@ Answer Desk::save(const Request& request) {
   const std::string wanted = request.head.first("If-Match");
   if (wanted.empty()) return refused(428, "match");
   std::unique_lock lock(mutex_);
-  const Waiting looked = wait_for(lock, request_for("difference", ""), "");
+  const Waiting looked = wait_for(lock, save_request("difference"), "");
   if (!looked.well) return refusal(looked.done ? 422 : 503, looked.text);
   const Json now = Json::parse(looked.text);
   const std::string digest = now.at("manifest_sha256").get<std::string>();
@@ -166,21 +190,24 @@ Answer Desk::save(const Request& request) {
   }
   const Json body = Json::parse(request.body.empty() ? "{}" : request.body);
   const std::string told = command();
-  Json wish = request_for("save", "");
+  Json wish = save_request("save");
   wish["why"] = body.value("why", "").substr(0, longest_text);
   const Waiting done = wait_for(lock, wish, "");
   if (!done.well)
     return refusal(done.text.find("changed while") != std::string::npos ? 412 : 422, done.text);
   const Json saved = Json::parse(done.text);
+  const Trial& trial = session_.trial();
+  const bool reads_others = !trial.excluded.empty() || !trial.period_mm.empty();
   session_.was_saved(saved.at("model").get<std::vector<std::string>>());
   campaign_["manifest_sha256"] = saved.at("manifest_sha256");
   campaign_["inputs"]["campaign.toml"] = saved.at("manifest_sha256");
   watch_->expect(campaign_.at("inputs").get<std::map<std::string, std::string>>());
+  // Other readings, or another machine: they are those of the file from now on.
+  if (reads_others) end_search(), read_again();
   publish("state", "", Json::object());
   return json_answer(200, {{"version", session_.version()},
                            {"manifest_sha256", saved.at("manifest_sha256")},
                            {"steps", saved.at("steps")},
-                           {"by_hand", by_hand()},
                            {"command", told}});
 }
 

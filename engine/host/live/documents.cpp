@@ -2,6 +2,7 @@
 #include "host/live/documents.h"
 
 #include <algorithm>
+#include <set>
 
 #include "host/evaluation/evaluation.h"
 #include "host/live/difference.h"
@@ -19,13 +20,54 @@ std::vector<std::string> model_in(const Json& request) {
   return request.at("model").get<std::vector<std::string>>();
 }
 
+/// Whole lines only: campaign.toml knows no other readings.
+Expected<modelling::Exclusion> exclusion_of(const Bench& bench, const Json& one) {
+  modelling::Exclusion out{
+      one.at("measurement").get<std::string>(), {}, one.at("why").get<std::string>()};
+  const auto& all = bench.campaign().measurements;
+  const auto m = std::find_if(all.begin(), all.end(),
+                              [&](const Measurement& x) { return x.id == out.measurement; });
+  if (m == all.end()) return fail("there is no measurement \"" + out.measurement + "\"");
+  const Observations& o = bench.read.observations.at(static_cast<std::size_t>(m - all.begin()));
+  const auto rows = one.at("rows").get<std::set<std::size_t>>();
+  std::set<std::uint32_t> lines;
+  for (const std::size_t row : rows) {
+    if (row >= o.size() || row >= o.source_line.size() || o.source_line[row] == 0)
+      return fail("the reader of " + m->file +
+                  " does not say in which line a reading stands: it cannot be excluded there");
+    lines.insert(o.source_line[row]);
+  }
+  for (std::size_t row = 0; row < o.size(); ++row)
+    if (lines.contains(o.source_line[row]) && !rows.contains(row))
+      return fail("line " + std::to_string(o.source_line[row]) + " of " + m->file +
+                  " holds other readings too, and campaign.toml excludes whole lines: leave them "
+                  "all out, or none");
+  out.lines.assign(lines.begin(), lines.end());
+  return out;
+}
+
+/// What leads from campaign.toml to the trial.
+Expected<modelling::CampaignEdit> edit_of(const Bench& bench, const Json& request) {
+  modelling::CampaignEdit edit{
+      .model = modelling::edits_between(bench.campaign().model, model_in(request)),
+      .why = request.value("why", "")};
+  for (const Json& one : request.at("exclusions")) {
+    auto exclusion = exclusion_of(bench, one);
+    if (!exclusion) return fail(exclusion.error());
+    edit.excluded.push_back(std::move(*exclusion));
+  }
+  for (const auto& [axis, mm] : request.at("period_mm").items())
+    edit.periods.push_back({axis, mm.get<double>()});
+  return edit;
+}
+
 }  // namespace
 
 Expected<std::string> save(Bench& bench, const Json& request) {
-  auto edits = modelling::edits_between(bench.campaign().model, model_in(request));
-  for (modelling::ModelEdit& edit : edits) edit.why = request.value("why", "");
-  if (edits.empty()) return fail("campaign.toml has this model already; nothing was written");
-  const auto changes = modelling::change_model(bench.folder, bench.read, edits);
+  const auto edit = edit_of(bench, request);
+  if (!edit) return fail(edit.error());
+  if (edit->empty()) return fail("campaign.toml has this model already; nothing was written");
+  const auto changes = modelling::change_campaign(bench.folder, bench.read, *edit);
   if (!changes) return fail(changes.error());
   Json steps = Json::array();
   for (const modelling::Change& change : *changes)
@@ -47,8 +89,9 @@ Expected<std::string> difference(Bench& bench, const Json& request) {
   else
     out["on_disk_error"] = manifest.error().front().message;
   if (digest != bench.read.inputs.front().second) return storage::dump_line(out);
-  const auto edited = modelling::edited_manifest(
-      *text, modelling::edits_between(bench.campaign().model, model_in(request)));
+  const auto edit = edit_of(bench, request);
+  if (!edit) return fail(edit.error());
+  const auto edited = modelling::edited_manifest(*text, *edit);
   if (!edited) return fail(edited.error());
   out["diff"] = unified_difference(config::manifest_name, *text, *edited);
   return storage::dump_line(out);

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "host/modelling/model_change.h"
+#include "host/storage/json_values.h"
 
 namespace nonio::host::live {
 
@@ -154,7 +157,7 @@ void Session::was_saved(const std::vector<std::string>& model) {
 void Session::was_read_again(const std::vector<std::string>& model) {
   saved_ = model;
   ++version_;
-  for (Step& step : steps_) step.trial.excluded.clear();
+  for (Step& step : steps_) step.trial.excluded.clear(), step.trial.period_mm.clear();
   Trial next = trial();
   next.model = model;
   take(std::move(next), "campaign.toml");
@@ -169,14 +172,38 @@ std::string quoted_for_shell(const std::string& word) {
   return out + "'";
 }
 
-std::string command_of(const std::string& campaign, const std::vector<std::string>& from,
-                       const std::vector<std::string>& to) {
+std::string command_between(const std::string& campaign, const Trial& from, const Trial& to) {
   std::string out;
-  for (const modelling::ModelEdit& edit : modelling::edits_between(from, to))
-    out += (out.empty() ? "" : " && ") + std::string("nonio model ") +
-           (edit.add ? "add " : "drop ") + quoted_for_shell(campaign) + " " +
-           quoted_for_shell(edit.effect);
+  const auto run = [&](const char* verb, const std::string& what) {
+    out += (out.empty() ? "" : " && ") + std::string("nonio model ") + verb + " " +
+           quoted_for_shell(campaign) + " " + what;
+  };
+  std::map<std::string, std::pair<std::set<std::uint64_t>, std::string>> excluded;
+  for (const Excluded& e : to.excluded) {
+    if (std::find(from.excluded.begin(), from.excluded.end(), e) != from.excluded.end()) continue;
+    auto& [lines, why] = excluded[e.measurement];
+    lines.insert(e.line);
+    if (why.find(e.why) == std::string::npos) why += (why.empty() ? "" : "; ") + e.why;
+  }
+  for (const auto& [measurement, one] : excluded) {
+    std::string lines;
+    for (const std::uint64_t line : one.first)
+      lines += (lines.empty() ? "" : ",") + std::to_string(line);
+    run("exclude",
+        quoted_for_shell(measurement) + " " + lines + " --why " + quoted_for_shell(one.second));
+  }
+  for (const auto& [axis, mm] : to.period_mm)
+    if (const auto was = from.period_mm.find(axis);
+        was == from.period_mm.end() || was->second != mm)
+      run("period", quoted_for_shell(axis) + " " + storage::Json(mm).dump());
+  for (const modelling::ModelEdit& edit : modelling::edits_between(from.model, to.model))
+    run(edit.add ? "add" : "drop", quoted_for_shell(edit.effect));
   return out;
+}
+
+std::string command_of(const std::string& campaign, const std::vector<std::string>& saved,
+                       const Trial& trial) {
+  return command_between(campaign, Trial{saved, {}, {}}, trial);
 }
 
 }  // namespace nonio::host::live

@@ -69,8 +69,8 @@ class Session {
 
   /// The model was written to campaign.toml, or read from it anew.
   void was_saved(const std::vector<std::string>& model);
-  /// The files were read again: readings may be others, so none is excluded any more. The model is
-  /// that of the file.
+  /// The files were read again: readings may be others, so none is excluded any more. Model and
+  /// periods are those of the file.
   void was_read_again(const std::vector<std::string>& model);
   /// Something that the page shows has changed beside the trial.
   void touch() { ++version_; }
@@ -85,9 +85,12 @@ class Session {
   std::vector<std::string> saved_;
 };
 
-/// What does on a terminal what leads from one model to another; "" where they are the same.
-std::string command_of(const std::string& campaign, const std::vector<std::string>& from,
-                       const std::vector<std::string>& to);
+/// What does on a terminal what leads from campaign.toml with this model to the trial; "" where they
+/// are the same.
+std::string command_of(const std::string& campaign, const std::vector<std::string>& saved,
+                       const Trial& trial);
+/// From one trial to the next: what a terminal cannot take back is left out.
+std::string command_between(const std::string& campaign, const Trial& from, const Trial& to);
 /// A word as a shell takes it.
 std::string quoted_for_shell(const std::string& word);
 

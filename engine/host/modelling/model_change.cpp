@@ -2,6 +2,7 @@
 #include "host/modelling/model_change.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "host/modelling/model_edit.h"
 #include "host/modelling/model_history.h"
@@ -61,12 +62,10 @@ Expected<std::string> unchanged_manifest(const fs::path& folder,
 }
 
 Expected<void> write(const fs::path& folder, const reading::ReadCampaign& read,
-                     const std::vector<Change>& changes) {
+                     const CampaignEdit& edit, const std::vector<Change>& changes) {
   const auto text = unchanged_manifest(folder, read);
   if (!text) return fail(text.error());
-  std::vector<ModelEdit> edits;
-  for (const Change& change : changes) edits.push_back({change.step.effect, change.step.added, {}});
-  auto edited = edited_manifest(*text, edits);
+  auto edited = edited_manifest(*text, edit);
   if (!edited) return fail(edited.error());
   std::string history;
   std::error_code error;
@@ -113,6 +112,45 @@ Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<st
   return change;
 }
 
+/// Takes the readings of these lines out, as the next start would read the file.
+Expected<void> leave_out(reading::ReadCampaign& read, const Exclusion& one) {
+  const auto& all = read.manifest->campaign.measurements;
+  const auto m = std::find_if(all.begin(), all.end(),
+                              [&](const Measurement& x) { return x.id == one.measurement; });
+  const auto at = static_cast<std::size_t>(m - all.begin());
+  if (m == all.end() || at >= read.observations.size())
+    return fail("there is no measurement \"" + one.measurement + "\"");
+  if (one.lines.empty()) return fail("expected the line of at least one reading");
+  if (one.why.find_first_not_of(" \t") == std::string::npos ||
+      one.why.find_first_of("\r\n") != std::string::npos)
+    return fail("expected a reason in one line why these readings do not count");
+  Observations& o = read.observations[at];
+  std::vector<char> kept(o.size(), 1);
+  for (const std::uint32_t line : one.lines) {
+    bool any = false;
+    for (std::size_t i = 0; i < o.size() && i < o.source_line.size(); ++i)
+      if (o.source_line[i] == line) kept[i] = 0, any = true;
+    if (!any)
+      return fail("line " + std::to_string(line) + " of " + m->file +
+                  " holds no reading that counts");
+  }
+  keep_rows(o, kept);
+  return {};
+}
+
+Expected<void> set_period(reading::ReadCampaign& read, const Period& one) {
+  constexpr double most = 1e5;  // mm
+  auto& axes = read.manifest->campaign.machine.axes;
+  const auto axis =
+      std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == one.axis; });
+  if (axis == axes.end() || axis->rotary)
+    return fail("the machine has no linear axis \"" + one.axis + "\"");
+  if (!(one.mm > 0.0 && one.mm <= most))
+    return fail("expected a period above 0 and up to 100000 mm");
+  axis->screw_pitch = one.mm * 1e-3;
+  return {};
+}
+
 }  // namespace
 
 std::vector<ModelEdit> edits_between(const std::vector<std::string>& from,
@@ -128,27 +166,51 @@ std::vector<ModelEdit> edits_between(const std::vector<std::string>& from,
   return edits;
 }
 
-Expected<std::string> edited_manifest(std::string_view text, const std::vector<ModelEdit>& edits) {
+Expected<std::string> edited_manifest(std::string_view text, const CampaignEdit& edit) {
   std::string out(text);
-  for (const ModelEdit& edit : edits) {
-    auto next = edit.add ? with_effect(out, edit.effect) : without_effect(out, edit.effect);
+  Expected<std::string> next = out;
+  for (const Exclusion& one : edit.excluded) {
+    if (next = with_excluded(out, one.measurement, one.lines, one.why); !next) return next;
+    out = *next;
+  }
+  for (const Period& one : edit.periods) {
+    if (next = with_period(out, one.axis, one.mm); !next) return next;
+    out = *next;
+  }
+  for (const ModelEdit& one : edit.model) {
+    next = one.add ? with_effect(out, one.effect) : without_effect(out, one.effect);
     if (!next) return next;
-    out = std::move(*next);
+    out = *next;
   }
   return out;
 }
 
-Expected<std::vector<Change>> change_model(const fs::path& folder, reading::ReadCampaign& read,
-                                           const std::vector<ModelEdit>& edits) {
+Expected<std::vector<Change>> change_campaign(const fs::path& folder, reading::ReadCampaign& read,
+                                              const CampaignEdit& edit) {
   std::vector<Change> changes;
   std::vector<std::string> model = read.manifest->campaign.model;
-  for (const ModelEdit& edit : edits) {
-    auto change = changed(read, model, edit);
+  const auto note = [&](ModelStep step) {
+    if (step.why.empty()) step.why = edit.why;
+    changes.push_back({std::move(step), model, {}, {}, {}});
+  };
+  for (const Exclusion& one : edit.excluded) {
+    if (auto done = leave_out(read, one); !done) return fail(done.error());
+    note({.effect = {}, .why = one.why, .excluded = one});
+  }
+  for (const Period& one : edit.periods) {
+    if (auto done = set_period(read, one); !done) return fail(done.error());
+    note({.effect = {}, .period = one});
+  }
+  if (!changes.empty())
+    if (auto left = part_models(read, model); !left) return fail(left.error());
+  for (const ModelEdit& one : edit.model) {
+    auto change = changed(read, model, one);
     if (!change) return fail(change.error());
+    if (change->step.why.empty()) change->step.why = edit.why;
     model = change->effects;
     changes.push_back(std::move(*change));
   }
-  if (auto written = write(folder, read, changes); !written) return fail(written.error());
+  if (auto written = write(folder, read, edit, changes); !written) return fail(written.error());
   read.manifest->campaign.model = std::move(model);
   if (const auto text = storage::read_file(folder / config::manifest_name))
     read.inputs.front().second = storage::sha256(*text);
@@ -157,7 +219,7 @@ Expected<std::vector<Change>> change_model(const fs::path& folder, reading::Read
 
 Expected<Change> change_model(const fs::path& folder, reading::ReadCampaign& read,
                               const std::string& effect, bool add) {
-  auto changes = change_model(folder, read, {{effect, add, {}}});
+  auto changes = change_campaign(folder, read, {.model = {{effect, add, {}}}});
   if (!changes) return fail(changes.error());
   return std::move(changes->front());
 }

@@ -34,13 +34,24 @@ struct ModelEdit {
 /// What leads from one model to another: first what leaves, then what comes in.
 std::vector<ModelEdit> edits_between(const std::vector<std::string>& from,
                                      const std::vector<std::string>& to);
-/// The text of a campaign.toml after them.
-Expected<std::string> edited_manifest(std::string_view text, const std::vector<ModelEdit>& edits);
 
-/// Several changes in a row: all of them are written, each with its line of the history, or none.
-Expected<std::vector<Change>> change_model(const std::filesystem::path& folder,
-                                           reading::ReadCampaign& read,
-                                           const std::vector<ModelEdit>& edits);
+/// What a person changes in a campaign.toml after looking at its model.
+struct CampaignEdit {
+  std::vector<ModelEdit> model{};
+  std::vector<Exclusion> excluded{};
+  std::vector<Period> periods{};
+  std::string why{};  ///< of all of them; an exclusion has its own
+
+  bool empty() const { return model.empty() && excluded.empty() && periods.empty(); }
+};
+/// The text of a campaign.toml after it.
+Expected<std::string> edited_manifest(std::string_view text, const CampaignEdit& edit);
+
+/// All of it is written, each change with its line of the history, or nothing. Exclusions and
+/// periods come first, so that effects are fitted to what is left.
+Expected<std::vector<Change>> change_campaign(const std::filesystem::path& folder,
+                                              reading::ReadCampaign& read,
+                                              const CampaignEdit& edit);
 
 /// Adds an effect to campaign.toml or takes it out, and notes that in the history. Both files are
 /// written whole or not at all; an effect is only added if the new model can be fitted. `read` then

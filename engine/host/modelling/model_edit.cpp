@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/config/toml_reader.h"
+#include "host/storage/json_values.h"
 
 namespace nonio::host::modelling {
 
@@ -60,7 +61,7 @@ std::string newline_of(std::string_view text) {
 
 std::string quoted(const std::string& name) { return "\"" + name + "\""; }
 
-/// One text of the list: [begin, end) with its quotes, and its comma if it has one.
+/// One text or number of the list: [begin, end) with its quotes, and its comma if it has one.
 struct Item {
   std::size_t begin, end;
   std::optional<std::size_t> comma;
@@ -84,6 +85,12 @@ std::size_t text_end(std::string_view text, std::size_t i) {
   return std::min(i + 1, text.size());
 }
 
+/// End of the number, word or date that begins at `i`.
+std::size_t word_end(std::string_view text, std::size_t i) {
+  const std::size_t end = text.find_first_of(" \t\r\n,]}#\"'[", i);
+  return std::min(end, text.size());
+}
+
 std::optional<List> list_at(std::string_view text, std::size_t open) {
   if (open >= text.size() || text[open] != '[') return std::nullopt;
   List list{open, 0, {}};
@@ -94,19 +101,21 @@ std::optional<List> list_at(std::string_view text, std::size_t open) {
     }
     if (text[i] == ',' && !list.items.empty())
       list.items.back().comma = i++;
-    else if (text[i] == '"' || text[i] == '\'') {
-      const std::size_t end = text_end(text, i);
+    else {
+      const bool is_text = text[i] == '"' || text[i] == '\'';
+      const std::size_t end = is_text ? text_end(text, i) : word_end(text, i);
+      if (end == i) return std::nullopt;
       list.items.push_back({i, end, std::nullopt});
       i = end;
-    } else
-      return std::nullopt;
+    }
   }
   return std::nullopt;
 }
 
-std::string appended(std::string_view text, const List& list, const std::string& effect) {
+/// With one more value, as the file writes it.
+std::string appended(std::string_view text, const List& list, const std::string& value) {
   std::string out(text);
-  if (list.items.empty()) return out.insert(list.open + 1, quoted(effect));
+  if (list.items.empty()) return out.insert(list.open + 1, value);
   const Item& last = list.items.back();
   const std::size_t after = last.comma ? *last.comma + 1 : last.end;
   const std::size_t end = line_end(text, after);
@@ -116,7 +125,7 @@ std::string appended(std::string_view text, const List& list, const std::string&
   if (own_line && list.close > end) {
     const std::size_t begin = line_begin(text, last.begin);
     const std::string indent(text.substr(begin, text.find_first_not_of(" \t", begin) - begin));
-    out.insert(end, newline_of(text) + indent + quoted(effect) + (last.comma ? "," : ""));
+    out.insert(end, newline_of(text) + indent + value + (last.comma ? "," : ""));
     if (!last.comma) out.insert(last.end, ",");
     return out;
   }
@@ -124,9 +133,9 @@ std::string appended(std::string_view text, const List& list, const std::string&
   if (own_line) {
     const std::size_t begin = line_begin(text, last.begin);
     const std::string indent(text.substr(begin, text.find_first_not_of(" \t", begin) - begin));
-    return out.insert(after, (last.comma ? "" : ",") + newline_of(text) + indent + quoted(effect));
+    return out.insert(after, (last.comma ? "" : ",") + newline_of(text) + indent + value);
   }
-  return out.insert(after, before + quoted(effect) + (last.comma ? "," : ""));
+  return out.insert(after, before + value + (last.comma ? "," : ""));
 }
 
 bool blank(std::string_view text) {
@@ -223,7 +232,9 @@ Expected<Parsed> look(std::string_view text) {
   if (node == nullptr) return out;
   out.line = node->source().begin.line;
   if (node->is_array()) out.list = list_at(text, offset_of(text, node->source().begin));
-  if (!out.list || out.list->items.size() != names_in(out.root).size())
+  const toml::array* const all = node->as_array();
+  if (!out.list || out.list->items.size() != all->size() ||
+      std::any_of(all->begin(), all->end(), [](const auto& one) { return !one.is_string(); }))
     return refusal("expected a list of texts", out.line);
   return out;
 }
@@ -235,9 +246,9 @@ Expected<std::string> with_effect(std::string_view text, const std::string& effe
   if (!parsed) return fail(parsed.error());
   Names wanted = names_in(parsed->root);
   wanted.push_back(effect);
-  const std::vector<std::string> tries = parsed->list
-                                             ? std::vector{appended(text, *parsed->list, effect)}
-                                             : with_new_list(text, effect);
+  const std::vector<std::string> tries =
+      parsed->list ? std::vector{appended(text, *parsed->list, quoted(effect))}
+                   : with_new_list(text, effect);
   for (const std::string& one : tries)
     if (is_meant(parsed->root, one, wanted)) return one;
   return refusal("\"" + effect + "\" could not be added without changing something else",
@@ -256,6 +267,109 @@ Expected<std::string> without_effect(std::string_view text, const std::string& e
   if (is_meant(parsed->root, one, wanted)) return one;
   return refusal("\"" + effect + "\" could not be taken out without changing something else",
                  parsed->line);
+}
+
+namespace {
+
+tl::unexpected<Error> not_meant(const std::string& key, const toml::table& table) {
+  return fail(Error{key + ": could not be written without changing something else; nothing was "
+                          "changed, edit it by hand",
+                    config::manifest_name, table.source().begin.line});
+}
+
+/// The table with a line for `key`, below the key `behind` or, without it, below its header.
+std::string with_line(std::string_view text, const toml::table& table, const char* behind,
+                      const std::string& line) {
+  const toml::node* const above = table.get(behind);
+  const std::size_t at = offset_of(text, (above == nullptr ? table : *above).source().begin);
+  const auto list = above != nullptr ? list_at(text, at) : std::nullopt;
+  const std::size_t begin = line_begin(text, at);
+  const std::string indent(text.substr(begin, text.find_first_not_of(" \t", begin) - begin));
+  std::string out(text);
+  return out.insert(line_end(text, list ? list->close : at), newline_of(text) + indent + line);
+}
+
+/// With another value of a key that is there: a text or a number.
+std::string with_value(std::string_view text, const toml::node& node, const std::string& value) {
+  const std::size_t at = offset_of(text, node.source().begin);
+  const std::size_t end = node.is_string() ? text_end(text, at) : word_end(text, at);
+  std::string out(text);
+  return out.replace(at, end - at, value);
+}
+
+toml::table* measurement_in(toml::table& root, const std::string& id) {
+  if (toml::array* const all = root["measurement"].as_array())
+    for (toml::node& one : *all)
+      if (toml::table* const table = one.as_table(); table && (*table)["id"].value_or("") == id)
+        return table;
+  return nullptr;
+}
+
+}  // namespace
+
+Expected<std::string> with_excluded(std::string_view text, const std::string& measurement,
+                                    const std::vector<std::uint32_t>& lines,
+                                    const std::string& why) {
+  auto root = config::parse_toml(text, config::manifest_name);
+  if (!root) return fail(root.error());
+  toml::table* table = measurement_in(*root, measurement);
+  if (table == nullptr)
+    return fail(Error{"there is no measurement \"" + measurement + "\"", config::manifest_name});
+  toml::array wanted;
+  if (const toml::array* const there = (*table)["exclude"].as_array()) wanted = *there;
+  std::string out(text), numbers;
+  for (const std::uint32_t line : lines) {
+    const auto is_line = [&](const toml::node& one) { return one.value_or(-1LL) == line; };
+    if (std::any_of(wanted.begin(), wanted.end(), is_line)) continue;
+    wanted.push_back(static_cast<std::int64_t>(line));
+    numbers += (numbers.empty() ? "" : ", ") + std::to_string(line);
+  }
+  if (const toml::node* const there = table->get("exclude")) {
+    const auto list = list_at(text, offset_of(text, there->source().begin));
+    if (!list) return not_meant("exclude", *table);
+    if (!numbers.empty()) out = appended(text, *list, numbers);
+  } else if (!numbers.empty()) {
+    out = with_line(text, *table, "file", "exclude = [" + numbers + "]");
+  }
+  table->insert_or_assign("exclude", std::move(wanted));
+  // The reason, in the text as it is now.
+  auto half = config::parse_toml(out, config::manifest_name);
+  toml::table* const now = half ? measurement_in(*half, measurement) : nullptr;
+  if (now == nullptr) return not_meant("exclude", *table);
+  const std::string before = (*now)["exclude_reason"].value_or(std::string());
+  std::string reason = before;
+  if (before.find(why) == std::string::npos) reason += (before.empty() ? "" : "; ") + why;
+  const std::string value = storage::Json(reason).dump();
+  if (const toml::node* const there = now->get("exclude_reason"))
+    out = with_value(out, *there, value);
+  else
+    out = with_line(out, *now, "exclude", "exclude_reason = " + value);
+  table->insert_or_assign("exclude_reason", reason);
+  const auto after = config::parse_toml(out, config::manifest_name);
+  if (!after || *after != *root) return not_meant("exclude", *table);
+  return out;
+}
+
+Expected<std::string> with_period(std::string_view text, const std::string& axis, double mm) {
+  constexpr const char* key = "screw_pitch_mm";
+  auto root = config::parse_toml(text, config::manifest_name);
+  if (!root) return fail(root.error());
+  toml::table* const table = (*root)["machine"]["axes"][axis].as_table();
+  if (table == nullptr)
+    return fail(Error{"does not describe axis " + axis +
+                          ": write screw_pitch_mm by hand, here or "
+                          "in the record of the machine; nothing was changed",
+                      config::manifest_name});
+  const std::string value = storage::Json(mm).dump();
+  std::string out;
+  if (const toml::node* const there = table->get(key))
+    out = with_value(text, *there, value);
+  else
+    out = with_line(text, *table, "kind", key + (" = " + value));
+  table->insert_or_assign(key, mm);
+  const auto after = config::parse_toml(out, config::manifest_name);
+  if (!after || *after != *root) return not_meant(key, *table);
+  return out;
 }
 
 }  // namespace nonio::host::modelling

@@ -16,8 +16,19 @@ std::optional<double> get(const storage::Json& json, const char* name, Quantity 
 
 ModelStep step_of(const storage::Json& json) {
   ModelStep step;
+  step.why = json.value("why", "");
+  const auto action = json.at("action").get<std::string>();
+  if (action == "exclude") {
+    step.excluded = Exclusion{json.at("measurement").get<std::string>(),
+                              json.at("lines").get<std::vector<std::uint32_t>>(), step.why};
+    return step;
+  }
+  if (action == "period") {
+    step.period = Period{json.at("axis").get<std::string>(), json.at("period_mm").get<double>()};
+    return step;
+  }
   step.effect = json.at("effect").get<std::string>();
-  step.added = json.at("action").get<std::string>() == "add";
+  step.added = action == "add";
   if (json.contains("rms_before_arcsec") || json.contains("rms_after_arcsec"))
     step.quantity = Quantity::angular_deviation;
   const Quantity q = step.quantity;
@@ -26,14 +37,21 @@ ModelStep step_of(const storage::Json& json) {
   step.cv_before = get(json, "cv_rms_before", q);
   step.cv_after = get(json, "cv_rms_after", q);
   step.floor = get(json, "noise_floor", q);
-  step.why = json.value("why", "");
   return step;
 }
 
 }  // namespace
 
 std::string history_line(const ModelStep& step) {
-  storage::Json json = {{"action", step.added ? "add" : "drop"}, {"effect", step.effect}};
+  storage::Json json;
+  if (step.excluded)
+    json = {{"action", "exclude"},
+            {"measurement", step.excluded->measurement},
+            {"lines", step.excluded->lines}};
+  else if (step.period)
+    json = {{"action", "period"}, {"axis", step.period->axis}, {"period_mm", step.period->mm}};
+  else
+    json = {{"action", step.added ? "add" : "drop"}, {"effect", step.effect}};
   storage::put(json, "rms_before", step.rms_before, step.quantity);
   storage::put(json, "rms_after", step.rms_after, step.quantity);
   storage::put(json, "cv_rms_before", step.cv_before, step.quantity);

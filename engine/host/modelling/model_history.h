@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,7 +13,21 @@
 
 namespace nonio::host::modelling {
 
-/// One change of the model, as it was noted when it was made.
+/// Readings that do not count any more: lines of the file of one measurement.
+struct Exclusion {
+  std::string measurement;
+  std::vector<std::uint32_t> lines;
+  std::string why;
+};
+
+/// The period of an axis that was set.
+struct Period {
+  std::string axis;
+  double mm = 0.0;
+};
+
+/// One change of the model, as it was noted when it was made: of an effect, or of what its fit
+/// depends on.
 struct ModelStep {
   std::string effect;
   bool added = true;  ///< else dropped
@@ -21,6 +36,8 @@ struct ModelStep {
   std::optional<double> rms_before{}, rms_after{};
   std::optional<double> cv_before{}, cv_after{}, floor{};  ///< left-out runs; noise floor
   std::string why{};  ///< what a person said of it; mostly nothing
+  std::optional<Exclusion> excluded{};
+  std::optional<Period> period{};
 };
 
 /// Beside campaign.toml: a JSON object a line for each change of the model, oldest first. It holds

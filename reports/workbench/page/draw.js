@@ -119,22 +119,42 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       put(this.svg, "path", {class: "line " + look, d});
     }
     /// Readings by direction; suspects that lie outside stand at the edge.
+    /// On paper they are drawn: sharp at any size. On the screen very many are painted, which takes a tenth of the time.
     scatter(rows, xs, ys) {
-      const path = {plus: "", minus: "", other: ""}, many = rows.length > 1200;
+      const path = {plus: "", minus: "", other: ""}, many = rows.length > 1200, painted = many && !printing;
+      const dots = {plus: [], minus: [], other: []};
       const inset = 0.03 * (this.high - this.low), rings = [];
       rows.forEach((i, j) => {
         if (!finite(xs[j]) || !finite(ys[j])) return;
         const v = wrong.has(i) ? Math.min(Math.max(ys[j], this.low + inset), this.high - inset) : ys[j];
-        const x = this.px(xs[j]), y = this.py(v), at = "M" + r1(x) + " " + r1(y);
-        const d = data.direction[i];
-        path[d > 0 ? "plus" : d < 0 ? "minus" : "other"] +=
-          many || d === 0 ? at + "h0" : d > 0 ? at + "m-3 2.2h6l-3-5.2z" : at + "m-3-2.2h6l-3 5.2z";
+        const x = this.px(xs[j]), y = this.py(v), d = data.direction[i], look = d > 0 ? "plus" : d < 0 ? "minus" : "other";
         this.points.push([x, y, i]);
         if (wrong.has(i)) rings.push([x, y]);
+        if (painted) return void dots[look].push(x, y);
+        const at = "M" + r1(x) + " " + r1(y);
+        path[look] += many || d === 0 ? at + "h0" : d > 0 ? at + "m-3 2.2h6l-3-5.2z" : at + "m-3-2.2h6l-3 5.2z";
       });
+      if (painted) this.paint(dots);
       for (const look in path)
         if (path[look]) put(this.svg, "path", {class: (many || look === "other" ? "dots " : "marks ") + look, d: path[look]});
       for (const [cx, cy] of rings) put(this.svg, "circle", {class: "suspect", cx: r1(cx), cy: r1(cy), r: 6});
+    }
+    paint(dots) {
+      const {x, y, w, h} = this, sharp = Math.min(3, window.devicePixelRatio || 1);
+      const canvas = () => Object.assign(document.createElement("canvas"), {width: Math.ceil(w * sharp), height: Math.ceil(h * sharp)});
+      const shown_ = canvas(), one = canvas(), to = shown_.getContext("2d"), pen = one.getContext("2d");
+      const style = getComputedStyle(document.documentElement), size = 2 * sharp;
+      to.globalAlpha = 0.6;
+      for (const [look, name] of [["plus", "--plus"], ["minus", "--minus"], ["other", "--accent"]]) {
+        const at = dots[look];
+        if (at.length === 0) continue;
+        pen.clearRect(0, 0, one.width, one.height);
+        pen.fillStyle = style.getPropertyValue(name).trim();
+        for (let k = 0; k < at.length; k += 2) pen.fillRect((at[k] - x) * sharp - size / 2, (at[k + 1] - y) * sharp - size / 2, size, size);
+        to.drawImage(one, 0, 0);
+      }
+      Object.assign(shown_.style, {width: w + "px", height: h + "px", display: "block"});
+      put(this.svg, "foreignObject", {class: "dots", x, y, width: w, height: h, "pointer-events": "none"}).append(shown_);
     }
   }
 
@@ -547,6 +567,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     clearTimeout(pending);
     pending = setTimeout(() => data && draw(), 100);
   });
+  // What is painted has no colours that follow a theme.
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => data && draw());
   for (const [event, now] of [["beforeprint", true], ["afterprint", false]])
     window.addEventListener(event, () => {
       printing = now;

@@ -259,7 +259,7 @@
     const focus = document.activeElement;
     if (!moved && drawn === same) return;
     if (!moved && main.contains(focus) && ["INPUT", "SELECT"].includes(focus.tagName) && focus.type !== "file" && name !== "index.html") return;
-    const key = main.contains(focus) ? focus.dataset.key : null;
+    const before = main.contains(focus) ? box.focused() : {};
     // What somebody has typed stays theirs.
     const id = (e) => e.id || `${e.name} ${e.dataset.finding || ""}`, typed_ = new Map();
     for (const e of main.querySelectorAll("input:not([type=file])")) if (!moved && e.value !== e.defaultValue) typed_.set(id(e), e.value);
@@ -271,9 +271,8 @@
     nonioLines(main, {signal: gone.signal});
     drawHead();
     document.title = `${main.querySelector("h1").textContent} \u2013 ${state.site} \u2013 Nonio`;
-    const again = key && [...main.querySelectorAll("[data-key]")].find((e) => e.dataset.key === key);
     if (moved) main.querySelector("h1").focus();
-    else if (again) again.focus({preventScroll: true});
+    else box.focusAgain(before);
   }
   let at = "";
   function moved() {

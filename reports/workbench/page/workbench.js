@@ -297,7 +297,7 @@
     by("undo").disabled = !state.can_undo;
     by("redo").disabled = !state.can_redo;
     const same = state.model.length === state.saved_model.length && state.model.every((e) => state.saved_model.includes(e));
-    by("save").disabled = same;
+    by("save").disabled = same && !(state.excluded || []).length && !Object.keys(state.period_mm || {}).length;
     by("command").textContent = state.command || say("command.none");
     by("read-at").textContent = say("read.at", {at: new Date(state.campaign.read_at).toLocaleTimeString(language)});
     if (state.bench === "failed") view.alarm(say("bench.failed", {error: state.bench_error || ""}), " ", view.button("reload", "changed.read", {onclick: reload}));
@@ -379,10 +379,8 @@
     }
     const lines = (difference.diff || "").split("\n").map((line) => el("span", {class: line.startsWith("+") ? "plus" : line.startsWith("-") ? "minus" : ""}, line + "\n"));
     const write = el("button", {type: "submit", class: "strong", id: "save-write", disabled: !state.edit}, say("save.write"));
-    const by_hand = difference.by_hand || [];
     view.dialog(say("save.title"), state.edit ? el("p", {}, say("save.what")) : el("p", {class: "flag"}, say("save.readonly")),
       el("pre", {class: "diff", tabindex: 0, role: "region", "aria-label": say("save.diff")}, ...lines),
-      by_hand.length ? [el("p", {}, say("save.by_hand")), el("pre", {class: "diff", tabindex: 0}, by_hand.join("\n"))] : "",
       el("form", {onsubmit: async (event) => {
         event.preventDefault();
         write.disabled = true;

@@ -14,7 +14,7 @@ import tomllib
 import unittest
 
 import live_browser
-from live_browser import By, Keys, NONIO, SOURCE
+from live_browser import By, Keys, NONIO, SOURCE, StaleElementReferenceException
 from hindrances import HINDRANCES
 
 DATE = "2026-11-22"
@@ -219,8 +219,9 @@ class SitePage(live_browser.LivePage):
         self.press("nut is ordered, j and k are letters here", Keys.ENTER)
         self.dialog_closed()
         self.wait(lambda: self.known(line), "the line is known")
+        self.wait(lambda: self.js("(document.activeElement.closest('tr[data-line]') || {dataset: {}}).dataset.line") == line["id"], "the focus is where it was, at the line")
         for _ in range(60):
-            if (self.js("(document.activeElement.dataset || {}).key") or "").startswith("filter-kind"):
+            if self.js("(document.activeElement.dataset || {}).key") == "filter-kind":
                 break
             live_browser.ActionChains(self.d).key_down(Keys.SHIFT).send_keys(Keys.TAB).key_up(Keys.SHIFT).perform()
         self.assertEqual("filter-kind", self.js("document.activeElement.dataset.key"))
@@ -304,16 +305,31 @@ class SitePage(live_browser.LivePage):
         self.no_complaints()
 
     def test_a_run_is_cancelled(self):
-        for n in range(30):
-            shutil.copytree(SOURCE / "samples/site/02-constant-reversal", self.site / f"more-{n}")
-            manifest = self.site / f"more-{n}/campaign.toml"
-            manifest.write_text(manifest.read_text().replace('id = "02-constant-reversal"', f'id = "more-{n}"'))
+        # 24,000 readings a campaign, 25 campaigns: several seconds of work on any computer.
+        truth = (SOURCE / "samples/simulate/worn-screw.toml").read_text()
+        for before, after in (("step_mm = 58.0", "step_mm = 1.0"), ("runs = 5", "runs = 10"), ("dwell_s = 4.0", "dwell_s = 0.1")):
+            self.assertIn(before, truth)
+            truth = truth.replace(before, after)
+        (self.folder / "truth.toml").write_text(truth)
+        nonio("simulate", self.folder / "truth.toml", "--out", self.folder / "long", "--quiet")
+        manifest = (self.folder / "long/campaign.toml").read_text()
+        self.assertIn('id = "worn-screw"', manifest)
+        for n in range(25):
+            shutil.copytree(self.folder / "long", self.site / f"more-{n}")
+            (self.site / f"more-{n}/campaign.toml").write_text(manifest.replace('id = "worn-screw"', f'id = "more-{n}"'))
         self.open(self.serve_site("--edit"), "&to=campaigns", "campaigns")
         self.assertIn("nav-due.html", self.js("[...document.querySelectorAll('#nav a')].map((a) => a.dataset.key)"))
         self.click("run-all")
         self.wait(lambda: self.js("document.getElementById('run-share') !== null"), "progress")
         self.assertLessEqual(0, self.js("document.getElementById('run-share').value"))
-        self.click("run-cancel")
+
+        def cancelled():
+            try:  # progress draws the button anew
+                self.click("run-cancel")
+                return True
+            except StaleElementReferenceException:
+                return False
+        self.wait(cancelled, "the button")
         self.wait(lambda: "cancelled" in (self.js("(document.getElementById('run-end') || {}).textContent") or ""), "cancelled")
 
     # ---- what happens elsewhere ----

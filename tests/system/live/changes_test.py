@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Steps, undo, names; saving with If-Match; a file that changes beside the page."""
 import json
+import shlex
 import time
 import unittest
 
@@ -93,6 +94,52 @@ class Changes(LiveTest):
             self.assertIn('effects = ["backlash:Z"]', self.manifest.read_text())
             time.sleep(2.5)
             self.assertFalse(s.get("/api/state")["campaign"]["changed_on_disk"])
+
+    def test_exclusions_and_a_period_are_saved_as_the_verbs_write_them(self):
+        twin = self.site / "twin"
+        twin.mkdir()
+        for file in self.folder.iterdir():
+            (twin / file.name).write_bytes(file.read_bytes())
+        with Server(self.folder, "--edit") as s:
+            s.opened()
+            s.post("/api/exclude", {"part": "Z", "rows": [3, 17], "why": "hit by a chip"})
+            told = s.post("/api/exclude", {"part": "Z", "rows": [64], "why": "beam # \"interrupted\""})["command"]
+            self.assertIn("nonio model exclude", told)
+            s.post("/api/period", {"axis": "Z", "period_mm": 7.5})
+            s.post("/api/model", {"add": "backlash:Z"})
+            command = s.get("/api/state")["command"]
+            tried = s.fit("Z")["compare"]
+            shown = s.get("/api/save")
+            self.assertIn("+exclude = [", shown["diff"])
+            self.assertIn("screw_pitch_mm = 7.5", shown["diff"])
+            self.assertNotIn("exclude", self.manifest.read_text())
+            s.post("/api/save", {"why": "seen on Monday"}, headers=self.match(s))
+            # The command that the page has shown does the same on a terminal, byte by byte.
+            for one in command.split(" && "):
+                words = shlex.split(one)
+                self.assertEqual(words[0], "nonio")
+                nonio(*[str(twin) if w == self.folder.name or w == str(self.folder) else w for w in words[1:]])
+            self.assertEqual(self.manifest.read_text(), (twin / "campaign.toml").read_text())
+            history = [json.loads(l) for l in (self.folder / "model-history.jsonl").read_text().splitlines()]
+            theirs = [json.loads(l) for l in (twin / "model-history.jsonl").read_text().splitlines()]
+            self.assertEqual([step["action"] for step in history], ["exclude", "period", "add"])
+            self.assertEqual([step.pop("why") for step in history[1:]], ["seen on Monday"] * 2)
+            self.assertEqual(history, theirs)
+            self.assertIn("period of Z: 7.50 mm", nonio("model", "show", self.folder).stdout)
+            state = s.until("/api/state", lambda state: state["bench"] == "open" and state["excluded"] == [], "read again")
+            self.assertEqual((state["model"], state["period_mm"], state["campaign"]["changed_on_disk"]), (["backlash:Z"], {}, False))
+            self.assertEqual(state["command"].split()[1], "compare")
+            now = s.fit("Z")["compare"]
+            self.assertEqual((now["rms_um"], now["observations"]), (tried["rms_um"], tried["observations"]))
+            self.assertEqual(json_of("compare", self.folder)["parts"][0]["rms_um"], tried["rms_um"])
+            # A second time: the list grows, the reasons stand behind each other.
+            s.post("/api/exclude", {"part": "Z", "rows": [0], "why": "tap"})
+            diff = s.get("/api/save")["diff"]
+            self.assertIn('interrupted\\"; tap"', diff)
+            # Beside the page somebody writes: nothing of it is overwritten.
+            self.manifest.write_text(self.manifest.read_text() + "# mine\n")
+            self.assertEqual(s.post("/api/save", expect=412, headers=self.match(s))["status"], 412)
+            self.assertIn("# mine", self.manifest.read_text())
 
     def test_a_file_that_changed_is_not_overwritten(self):
         with Server(self.folder, "--edit") as s:

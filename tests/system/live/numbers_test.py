@@ -90,7 +90,7 @@ class Numbers(LiveTest):
             state = server.get("/api/state")
             self.assertEqual([e["row"] for e in state["excluded"]], [3, 17, 64])
             lines = [e["line"] for e in state["excluded"]]
-            self.assertIn(f"exclude = {lines}", state["by_hand"][0])
+            self.assertIn(f"/02-constant-reversal Z {','.join(map(str, lines))} --why 'hit by a chip'", state["command"])
             text = (folder / "campaign.toml").read_text()
             (folder / "campaign.toml").write_text(text.replace('file = "z.csv"\n', f'file = "z.csv"\nexclude = {lines}\nexclude_reason = "hit by a chip"\n'))
             nonio("model", "add", folder, "backlash:Z")

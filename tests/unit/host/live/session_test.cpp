@@ -91,9 +91,9 @@ TEST(LiveSession, SavingKeepsTheSteps) {
   ASSERT_TRUE(s.add("a:X"));
   s.was_saved({"a:X"});
   EXPECT_EQ(s.saved(), Names{"a:X"});
-  EXPECT_EQ(command_of("c", s.saved(), s.trial().model), "");
+  EXPECT_EQ(command_of("c", s.saved(), s.trial()), "");
   ASSERT_TRUE(s.undo());
-  EXPECT_EQ(command_of("c", s.saved(), s.trial().model), "nonio model drop c a:X");
+  EXPECT_EQ(command_of("c", s.saved(), s.trial()), "nonio model drop c a:X");
 }
 
 TEST(LiveSession, ReadAgainNoReadingIsExcluded) {
@@ -107,8 +107,17 @@ TEST(LiveSession, ReadAgainNoReadingIsExcluded) {
 }
 
 TEST(LiveSession, CommandsAreForAShell) {
-  EXPECT_EQ(command_of("my c", {"a:X"}, {"b:X"}),
-            "nonio model drop 'my c' a:X && nonio model add 'my c' b:X");
+  Trial trial{{"b:X"}, {reading("X", 3), reading("X", 4)}, {{"X", 12.5}}};
+  trial.excluded[0].line = 57, trial.excluded[1].line = 58;
+  for (Excluded& e : trial.excluded) e.measurement = "X", e.why = "beam interrupted";
+  EXPECT_EQ(command_of("my c", {"a:X"}, trial),
+            "nonio model exclude 'my c' X 57,58 --why 'beam interrupted' && nonio model period 'my "
+            "c' X 12.5 && nonio model drop 'my c' a:X && nonio model add 'my c' b:X");
+  Trial before = trial;
+  before.excluded.pop_back(), before.model = {"a:X"};
+  EXPECT_EQ(command_between("c", before, trial),
+            "nonio model exclude c X 58 --why 'beam interrupted' && nonio model drop c a:X && "
+            "nonio model add c b:X");
   EXPECT_EQ(quoted_for_shell("it's; rm -rf $HOME"), "'it'\\''s; rm -rf $HOME'");
   EXPECT_EQ(quoted_for_shell(""), "''");
 }

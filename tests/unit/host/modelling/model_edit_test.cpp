@@ -111,6 +111,49 @@ TEST(ModelEdit, DropIsTheReverseOfAdd) {
     EXPECT_EQ(dropped(added(text), "backlash:X"), text);
 }
 
+std::string excluded(const std::string& text, std::vector<std::uint32_t> lines,
+                     const std::string& why = "chip") {
+  const auto out = modelling::with_excluded(text, "m", lines, why);
+  return out ? *out : "refused: " + out.error().message;
+}
+
+TEST(ModelEdit, ExcludedLinesComeIntoTheirMeasurement) {
+  const std::string two =
+      "[[measurement]]\nid = \"other\"\nfile = \"o.csv\"\n\n[[measurement]] # mine\n  id = "
+      "'m'\n  file = \"m.csv\" # seen\n  axis = \"X\"\n";
+  EXPECT_EQ(excluded(two, {57, 103}),
+            "[[measurement]]\nid = \"other\"\nfile = \"o.csv\"\n\n[[measurement]] # mine\n  id = "
+            "'m'\n  file = \"m.csv\" # seen\n  exclude = [57, 103]\n  exclude_reason = \"chip\"\n  "
+            "axis = \"X\"\n");
+  const std::string there =
+      "[[measurement]]\nid = \"m\"\nfile = \"m.csv\"\nexclude = [\n  57, # hit\n]\nexclude_reason "
+      "= 'hit' # by whom?\n";
+  EXPECT_EQ(excluded(there, {57, 9}),
+            "[[measurement]]\nid = \"m\"\nfile = \"m.csv\"\nexclude = [\n  57, # hit\n  9,\n]\n"
+            "exclude_reason = \"hit; chip\" # by whom?\n");
+  EXPECT_EQ(excluded("[[measurement]]\r\nid = \"m\"\r\nexclude = [1]\r\n", {2}, "\"a\" # b\\"),
+            "[[measurement]]\r\nid = \"m\"\r\nexclude = [1, 2]\r\nexclude_reason = \"\\\"a\\\" # "
+            "b\\\\\"\r\n");
+  EXPECT_TRUE(
+      excluded("measurement = [{ id = \"m\", file = \"a\" }]\n", {2}).starts_with("refused"));
+  EXPECT_TRUE(excluded("[[measurement]]\nid = \"n\"\n", {2}).starts_with("refused"));
+}
+
+TEST(ModelEdit, ThePeriodOfAnAxis) {
+  const auto period = [](const std::string& text, double mm) {
+    const auto out = modelling::with_period(text, "X", mm);
+    return out ? *out : "refused: " + out.error().message;
+  };
+  EXPECT_EQ(period("[machine.axes.X]\nkind = \"linear\" # ball\ntravel = [0, 9]\n", 10.0),
+            "[machine.axes.X]\nkind = \"linear\" # ball\nscrew_pitch_mm = 10.0\ntravel = [0, 9]\n");
+  EXPECT_EQ(period("[machine.axes.X]\nscrew_pitch_mm = 5# mm\n", 12.5),
+            "[machine.axes.X]\nscrew_pitch_mm = 12.5# mm\n");
+  EXPECT_EQ(period("[machine.axes.X]\ntravel = [0, 9]\n", 4.0),
+            "[machine.axes.X]\nscrew_pitch_mm = 4.0\ntravel = [0, 9]\n");
+  EXPECT_TRUE(period("[machine.axes]\nX = { kind = \"linear\" }\n", 4.0).starts_with("refused"));
+  EXPECT_TRUE(period("[machine.axes.Y]\nkind = \"linear\"\n", 4.0).starts_with("refused"));
+}
+
 TEST(ModelHistory, ReadsWhatItWrites) {
   modelling::ModelStep step{.effect = "backlash:X", .rms_before = 4.1e-6, .rms_after = 0.7e-6};
   step.floor = 0.6e-6;
