@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <regex>
 
+#include "content_policy.h"
 #include "fixtures.h"
 #include "model_fixture.h"
 
@@ -83,6 +84,7 @@ TEST_F(ModelHtml, HostileTextStaysText) {
 TEST_F(ModelHtml, NeedsNothingFromOutside) {
   const std::string text = page(made_model());
   EXPECT_TRUE(has(text, "default-src 'none'; script-src 'sha256-"));
+  EXPECT_EQ(refused_by_policy(text), std::vector<std::string>{});
   EXPECT_FALSE(has(text, "unsafe-inline"));
   EXPECT_FALSE(has(text, "https:"));
   EXPECT_FALSE(has(text, "url("));

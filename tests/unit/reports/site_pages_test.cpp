@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "content_policy.h"
 #include "fixtures.h"
 #include "nonio/sdk/text.h"
 #include "site_fixture.h"
@@ -81,6 +82,14 @@ TEST(SitePages, NothingIsFetchedFromAnywhere) {
   for (const auto& [name, bytes] : pages_of(made_site())) {
     EXPECT_FALSE(has(bytes, "http://") || has(bytes, "https://") || has(bytes, " src=")) << name;
     EXPECT_EQ(has(bytes, "default-src 'none'"), name != "due.ics") << name;
+  }
+}
+
+TEST(SitePages, ABrowserUsesTheirStyleAndScript) {
+  for (const auto& [name, bytes] : pages_of(made_site())) {
+    if (!name.ends_with(".html")) continue;
+    EXPECT_TRUE(has(bytes, "<style>")) << name;
+    EXPECT_EQ(refused_by_policy(bytes), std::vector<std::string>{}) << name;
   }
 }
 
