@@ -425,7 +425,7 @@ class Words(unittest.TestCase):
     # Words that a script puts together: what they begin with, and where the program says what may follow. None: a list
     # in the script itself.
     SENT = {
-        "event.kind_": ("engine/host/config/keys.cpp", r"event_kinds\[\] = (.*?);", {}),
+        "event.kind_": ("engine/host/config/keys/logs.cpp", r"event_kinds\[\] = (.*?);", {}),
         "run.stage_": ("engine/host/batch/run.cpp", r"tell_stage\(events, (\"\w+\")\)", {"begin"}),
         "run.status_": ("engine/host/evaluation/status.cpp", r"to_text\(Status status\) \{(.*?)\n\}", {"none"}),
         "release.as_": ("engine/app/release_verb.cpp", r"one_of\((\{.*?\})", {"site"}),

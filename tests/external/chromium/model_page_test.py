@@ -30,7 +30,7 @@ def check(browser, page, width):
     browser.open(page.as_uri(), width)
     assert browser.value("document.querySelectorAll('figure').length") == 9, where
     drawn = browser.value("[...document.querySelectorAll('figure svg')]"
-                          ".filter(s => s.querySelector('path')).length")
+                          ".filter(s => s.querySelector('path, canvas')).length")
     assert drawn == sum(not p["none"] for p in data["pictures"]), f"{where}: {drawn} drawn"
     wide = browser.value("document.documentElement.scrollWidth")
     assert wide <= width, f"{where}: the page is {wide} wide"
