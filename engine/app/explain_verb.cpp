@@ -14,6 +14,7 @@ constexpr std::size_t most_steps = 12;
 struct ExplainOptions {
   std::string folder;
   bool automatic = false;
+  bool what_if = false;
   std::uint64_t seed = 1;
 };
 
@@ -97,8 +98,10 @@ class Explain {
                                                  steps_, warnings_, errors_);
       return;
     }
-    for (const host::modelling::Explained& e : all_)
+    for (const host::modelling::Explained& e : all_) {
       print_explanation(std::cout, e, open_.campaign(), *words_);
+      if (options_.what_if) print_foresight(std::cout, e, words_->terminal());
+    }
   }
 
   const ExplainOptions& options_;
@@ -121,7 +124,10 @@ Verb explain_verb(Common& common) {
       .summary = "Finds the effect that is missing from the model: ranked candidates and a verdict",
       .arguments = joined(
           campaign_arguments(options->folder, common),
-          {{"--auto", &options->automatic,
+          {{"--what-if", &options->what_if,
+            "Also predicts what one run more would do to the uncertainties and to the smallest\n"
+            "effects that could be found: from the places and times of its readings alone"},
+           {"--auto", &options->automatic,
             "While an effect is missing or certain, add it to campaign.toml; show each step"},
            {.name = "--seed",
             .target = &options->seed,

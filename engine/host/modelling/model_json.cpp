@@ -393,6 +393,24 @@ std::string compare_json(const std::vector<Compared>& all, const Campaign& campa
   return storage::dump(json);
 }
 
+std::string foresight_json(const std::vector<model::Foresight>& all) {
+  storage::Json list = storage::Json::array();
+  for (const model::Foresight& one : all) {
+    storage::Json parameters = storage::Json::array(), candidates = storage::Json::array();
+    for (const auto& f : one.parameters)
+      parameters.push_back({{"effect", f.effect},
+                            {"name", f.parameter},
+                            {"factor", printed(f.factor, Quantity::number)}});
+    for (const auto& f : one.candidates)
+      candidates.push_back({{"effect", f.effect}, {"factor", printed(f.factor, Quantity::number)}});
+    list.push_back({{"id", one.id},
+                    {"readings", one.readings},
+                    {"parameters", std::move(parameters)},
+                    {"candidates", std::move(candidates)}});
+  }
+  return storage::dump(list);
+}
+
 std::string explain_json(const std::vector<Explained>& all, const Campaign& campaign,
                          const ModelWords& words, std::uint64_t seed,
                          const std::vector<ModelStep>& steps,

@@ -41,6 +41,8 @@ std::string next_effect(const std::vector<Told>& parts);
 std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
                          const ModelWords& words, const std::vector<std::string>& warnings,
                          const std::vector<Error>& errors);
+/// What one run more would do, by id: factors of uncertainties and of smallest effects.
+std::string foresight_json(const std::vector<model::Foresight>& all);
 std::string explain_json(const std::vector<Explained>& all, const Campaign& campaign,
                          const ModelWords& words, std::uint64_t seed,
                          const std::vector<ModelStep>& steps,

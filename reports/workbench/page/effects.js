@@ -151,5 +151,23 @@ const effects = (() => {
     fill(box, table, next.length ? el("ul", {}, ...next.map((t) => el("li", {}, typeset(t)))) : null, ...[...more, ...(text.more ? [] : explain.warnings || [])].map((t) => el("p", {}, typeset(t))),
       !plans.length && !next.length ? el("p", {class: "muted"}, say("next.nothing")) : null);
   }
-  return {drawList, drawAbout, drawNext, groups, fingerprint};
+  /// What one run more would do, in each order of directions: u of each parameter, smallest effects; on a terminal too.
+  function drawWhatIf(state, shown) {
+    const explain = shown.explain, box = by("what-if"), all = shown.explainIsOld || shown.learning ? [] : shown.whatIf || [];
+    if (!explain || !all.length) return fill(box);
+    const parameters = ((explain.model || {}).parameters || []).filter((p) => finite(p.u));
+    const smallest = (explain.candidates || []).filter((c) => finite(field(c, "minimum_detectable_rms"))).sort((a, b) => field(a, "minimum_detectable_rms") - field(b, "minimum_detectable_rms")).slice(0, 6);
+    const cell = (v) => el("td", {class: "number"}, short(v));
+    const row = (name, unit, now, factorOf) => el("tr", {}, el("th", {scope: "row"}, name, " ", el("span", {class: "muted"}, unit)), cell(now), ...all.map((one) => {
+      const f = factorOf(one);
+      return cell(f ? now * f.factor : NaN);
+    }));
+    fill(box, el("h3", {}, say("more.title")), el("p", {class: "muted"}, say("more.what")),
+      el("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": say("more.title")}, el("table", {}, el("thead", {}, el("tr", {}, el("td"), el("th", {scope: "col", class: "number"}, say("more.now")),
+        ...all.map((one) => el("th", {scope: "col", class: "number"}, `${say("more.is_" + one.id.replace(/-/g, "_"))} (+${one.readings})`)))),
+      el("tbody", {}, ...parameters.map((p) => row(`U ${p.effect} ${p.name}`, shownUnit(p.unit || ""), 2 * p.u, (one) => one.parameters.find((f) => f.effect === p.effect && f.name === p.name))),
+        ...smallest.map((c) => row(say("more.smallest", {effect: c.effect}), shown.unit, field(c, "minimum_detectable_rms"), (one) => one.candidates.find((f) => f.effect === c.effect)))))),
+      el("p", {class: "muted"}, say("command.label") + " ", el("code", {}, `nonio explain ${state.campaign.folder} --what-if`)));
+  }
+  return {drawList, drawAbout, drawWhatIf, drawNext, groups, fingerprint};
 })();

@@ -430,6 +430,8 @@ class Words(unittest.TestCase):
         "run.status_": ("engine/host/evaluation/status.cpp", r"to_text\(Status status\) \{(.*?)\n\}", {"none"}),
         "release.as_": ("engine/app/release_verb.cpp", r"one_of\((\{.*?\})", {"site"}),
         "verify.is_": ("engine/app/verify_verb.cpp", r"to_text\(sign::Check::State state\) \{(.*?)\n\}", {}),
+        "space.is_": ("engine/host/config/keys.cpp", r"structures\[\] = (.*?);", {}), "space.": None, "more.is_": ("engine/model/diagnosis/foresight.cpp", r"wanted\{(.*?)\}", {}), 
+        "check.": ("engine/sign/src/*.cpp engine/host/certificates/content_check.cpp engine/host/certificates/verify.cpp engine/host/certificates/register_check.cpp", r"(?:add\(|Check check\{|State state\) \{|push_back\(\{|sign::Check\{)\s*(\"(?:signature|file|updates|signer|certificate|xml|register|content|attachments)[a-z.-]*\")", {"dcc", "dcc_none", "dcc_values", "signature_form", "signature_time", "xml_time"}),
         "where.": ("engine/model/fit/places.cpp", r"name_of\(Factor factor\) \{(.*?)\n\}", {}),
         "verdict.": None, "verify.": None, "x.": None, "column.": None, "key.": None, "drawn.": None, "drawn.rms.": None, "learn.step": None, "learn.hint.": None, "site.": None,
     }
@@ -453,9 +455,9 @@ class Words(unittest.TestCase):
             self.assertTrue([k for k in english if k.startswith(prefix)], prefix)
             if source is None:
                 continue
-            values = {v for text in re.findall(source[1], (SOURCE / source[0]).read_text(), re.S) for v in re.findall(r'"([\w -]+)"', text)}
+            values = {v for text in re.findall(source[1], "".join(p.read_text() for one in source[0].split() for p in SOURCE.glob(one)), re.S) for v in re.findall(r'"([\w. -]+)"', text)}
             self.assertGreater(len(values), 1, f"{prefix}: {source[0]}")
-            self.assertEqual(set(), {prefix + v.replace(" ", "_") for v in values | set(source[2])} - set(english), "what the program sends has a word")
+            self.assertEqual(set(), {prefix + re.sub("[ .-]", "_" if prefix != "where." else "-", v) for v in values | set(source[2])} - set(english), "what the program sends has a word")
         made = (*self.SENT, "shell.", "refused.")
         self.assertEqual([], [k for k in english if k not in asked and not k.startswith(made)], "words that nobody asks for")
         for language in ("de", "it"):

@@ -175,6 +175,19 @@ struct Plan {
   std::string of{};          ///< in space: the axes, or what is measured ("EYX")
 };
 
+/// What one run more would do to what is known, whatever its readings are: from the designs alone.
+/// Standard uncertainties, and the smallest effects that would be found, are multiplied by `factor`;
+/// shapes are held.
+struct Foresight {
+  struct Factor {
+    std::string effect, parameter;  ///< no parameter: of a candidate, all of it
+    double factor = 1.0;
+  };
+  std::string id;            ///< as in Plan: "another-run", "another-run-reversed", ...
+  std::size_t readings = 0;  ///< to be taken
+  std::vector<Factor> parameters, candidates;
+};
+
 struct Verdict {
   enum class Kind { missing, nothing, unknown, unrepeatable };
   Kind kind = Kind::nothing;
@@ -242,5 +255,9 @@ Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed = 1,
                               const Groundwork* known = nullptr);
+
+/// One run more of an axis, in each direction order. Empty for other parts, and where the readings
+/// cannot be laid out again.
+std::vector<Foresight> foresee(const Part& part, const Explanation& e);
 
 }  // namespace nonio::model
