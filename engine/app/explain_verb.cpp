@@ -90,9 +90,11 @@ class Explain {
     return true;
   }
 
-  void show() const {
+  void show() {
     for (const std::string& warning : warnings_) tell(warning);
     if (all_.empty()) return;
+    for (host::modelling::Explained& e : all_)
+      if (options_.what_if) e.what_if = model::foresee(e.part.part, e.explanation);
     if (common_.json) {
       std::cout << host::modelling::explain_json(all_, open_.campaign(), *words_, options_.seed,
                                                  steps_, warnings_, errors_);
@@ -100,7 +102,7 @@ class Explain {
     }
     for (const host::modelling::Explained& e : all_) {
       print_explanation(std::cout, e, open_.campaign(), *words_);
-      if (options_.what_if) print_foresight(std::cout, e, words_->terminal());
+      if (e.what_if) print_foresight(std::cout, e, words_->terminal());
     }
   }
 
@@ -125,8 +127,8 @@ Verb explain_verb(Common& common) {
       .arguments = joined(
           campaign_arguments(options->folder, common),
           {{"--what-if", &options->what_if,
-            "Also predicts what one run more would do to the uncertainties and to the smallest\n"
-            "effects that could be found: from the places and times of its readings alone"},
+            "Also predicts what one run more, in each order of directions, would do to the\n"
+            "uncertainties and to the evidence"},
            {"--auto", &options->automatic,
             "While an effect is missing or certain, add it to campaign.toml; show each step"},
            {.name = "--seed",

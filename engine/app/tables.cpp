@@ -269,24 +269,18 @@ void print_explanation(std::ostream& out, const host::modelling::Explained& e,
 
 void print_foresight(std::ostream& out, const host::modelling::Explained& e,
                      const host::config::TerminalWords& say) {
-  const Quantity q = e.part.deviation();
-  const auto all = model::foresee(e.part.part, e.explanation);
-  out << "  " << say("what-if") << (all.empty() ? ": -" : "") << "\n";
-  for (const model::Foresight& one : all) {
+  out << "  " << say("what-if") << (e.what_if->empty() ? ": -" : "") << "\n";
+  for (const model::Foresight& one : *e.what_if) {
     out << "  " << say("what-if." + one.id, {{"readings", std::to_string(one.readings)}}) << "\n";
     for (const auto& f : one.parameters)
       for (const model::Parameter& p : e.explanation.comparison.fit.parameters)
-        if (p.effect == f.effect && p.name == f.parameter && std::isfinite(p.u))
+        if (p.effect == f.effect && p.name == f.parameter)
           out << "    " << padded("u " + p.effect + " " + p.name, 30)
               << padded(short_text(printed(p.u, p.quantity)), 10) << "-> "
-              << short_text(printed(p.u * f.factor, p.quantity)) << " "
-              << unit_of(p.quantity).symbol << "\n";
-    for (const auto& f : one.candidates)
-      for (const model::Candidate& c : e.explanation.candidates)
-        if (c.term.name() == f.effect && c.minimal_detectable > 0.0)
-          out << "    " << padded(say("what-if.smallest") + " " + f.effect, 30)
-              << padded(short_text(printed(c.minimal_detectable, q)), 10) << "-> "
-              << with_unit(c.minimal_detectable * f.factor, q) << "\n";
+              << with_unit(p.u * f.factor, p.quantity) << "\n";
+    for (const auto& x : one.evidence)
+      out << "    " << padded(say("what-if.evidence") + " " + x.effect, 30)
+          << padded(short_text(x.now), 10) << "-> " << short_text(x.then) << "\n";
   }
 }
 

@@ -109,7 +109,7 @@ std::vector<Course> courses_of(const Observations& o, const AxisReadings& r) {
 
 }  // namespace
 
-std::vector<Further> further_runs(const Part& part, const std::string& axis) {
+std::vector<Further> further_runs(const Part& part, const Axis& axis) {
   std::vector<Further> out;
   const auto read = readings_of(part.table, axis);
   if (!read) return out;

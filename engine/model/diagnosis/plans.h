@@ -16,7 +16,7 @@ struct Further {
 void fill_measured(Observations& o);
 
 /// Further runs of an axis, laid behind its readings.
-std::vector<Further> further_runs(const Part& part, const std::string& axis);
+std::vector<Further> further_runs(const Part& part, const Axis& axis);
 
 /// What could be measured besides on a machine with several axes, or on a ball.
 std::vector<Further> further_in_space(const Part& part);
