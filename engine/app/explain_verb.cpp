@@ -14,6 +14,7 @@ constexpr std::size_t most_steps = 12;
 struct ExplainOptions {
   std::string folder;
   bool automatic = false;
+  bool what_if = false;
   std::uint64_t seed = 1;
 };
 
@@ -89,16 +90,20 @@ class Explain {
     return true;
   }
 
-  void show() const {
+  void show() {
     for (const std::string& warning : warnings_) tell(warning);
     if (all_.empty()) return;
+    for (host::modelling::Explained& e : all_)
+      if (options_.what_if) e.what_if = model::foresee(e.part.part, e.explanation);
     if (common_.json) {
       std::cout << host::modelling::explain_json(all_, open_.campaign(), *words_, options_.seed,
                                                  steps_, warnings_, errors_);
       return;
     }
-    for (const host::modelling::Explained& e : all_)
+    for (const host::modelling::Explained& e : all_) {
       print_explanation(std::cout, e, open_.campaign(), *words_);
+      if (e.what_if) print_foresight(std::cout, e, words_->terminal());
+    }
   }
 
   const ExplainOptions& options_;
@@ -121,7 +126,10 @@ Verb explain_verb(Common& common) {
       .summary = "Finds the effect that is missing from the model: ranked candidates and a verdict",
       .arguments = joined(
           campaign_arguments(options->folder, common),
-          {{"--auto", &options->automatic,
+          {{"--what-if", &options->what_if,
+            "Also predicts what one run more, in each order of directions, would do to the\n"
+            "uncertainties and to the evidence"},
+           {"--auto", &options->automatic,
             "While an effect is missing or certain, add it to campaign.toml; show each step"},
            {.name = "--seed",
             .target = &options->seed,

@@ -267,6 +267,23 @@ void print_explanation(std::ostream& out, const host::modelling::Explained& e,
     out << "  " << say("warning") << ": " << warning << "\n";
 }
 
+void print_foresight(std::ostream& out, const host::modelling::Explained& e,
+                     const host::config::TerminalWords& say) {
+  out << "  " << say("what-if") << (e.what_if->empty() ? ": -" : "") << "\n";
+  for (const model::Foresight& one : *e.what_if) {
+    out << "  " << say("what-if." + one.id, {{"readings", std::to_string(one.readings)}}) << "\n";
+    for (const auto& f : one.parameters)
+      for (const model::Parameter& p : e.explanation.comparison.fit.parameters)
+        if (p.effect == f.effect && p.name == f.parameter)
+          out << "    " << padded("u " + p.effect + " " + p.name, 30)
+              << padded(short_text(printed(p.u, p.quantity)), 10) << "-> "
+              << with_unit(p.u * f.factor, p.quantity) << "\n";
+    for (const auto& x : one.evidence)
+      out << "    " << padded(say("what-if.evidence") + " " + x.effect, 30)
+          << padded(short_text(x.now), 10) << "-> " << short_text(x.then) << "\n";
+  }
+}
+
 void print_change(std::ostream& out, const host::modelling::Change& change,
                   const host::modelling::ModelWords& words) {
   const host::modelling::ModelStep& step = change.step;

@@ -21,6 +21,9 @@ void print_change(std::ostream& out, const host::modelling::Change& change,
 /// The effects with their values, and what they leave.
 void print_model(std::ostream& out, const host::modelling::Compared& compared,
                  const host::modelling::ModelWords& words);
+/// What one run more would do to the uncertainties of the model and to the evidence.
+void print_foresight(std::ostream& out, const host::modelling::Explained& e,
+                     const host::config::TerminalWords& say);
 /// Readings that were excluded, or a period that was set, in one line.
 void print_step(std::ostream& out, const host::modelling::ModelStep& step,
                 const host::config::TerminalWords& say);

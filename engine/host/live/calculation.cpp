@@ -329,7 +329,8 @@ Expected<std::string> explain(Bench& bench, const Json& request, const First& fi
   const modelling::Explained both{one->part(), std::move(*explained)};
   first("{\"explain\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) + "}");
   return "{\"fingerprints\":" + storage::dump_line(fingerprints_of(one->part(), both.explanation)) +
-         "}";
+         ",\"what_if\":" +
+         modelling::foresight_json(model::foresee(one->part().part, both.explanation)) + "}";
 }
 
 Expected<std::string> without(Bench& bench, const Json& request) {

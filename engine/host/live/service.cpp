@@ -48,13 +48,14 @@ std::string Sentences::operator()(const Said& said) const {
 
 Answer Sentences::spelled(Answer answer) const {
   if (answer.said.name.empty()) return answer;
-  Answer out = refusal(answer.status, (*this)(answer.said));
+  const storage::Json json = {{"error", (*this)(answer.said)}, {"status", answer.status}};
+  Answer out{answer.status, "application/json", storage::dump_line(json)};
   out.headers = std::move(answer.headers);
   return out;
 }
 
 Answer refusal(int status, const std::string& words) {
-  const storage::Json json = {{"error", words}, {"status", status}};
+  const storage::Json json = {{"error", words}, {"status", status}, {"lang", "en"}};
   return {status, "application/json", storage::dump_line(json)};
 }
 

@@ -255,7 +255,9 @@ Answer SiteService::of_verb(const std::vector<std::string>& arguments) {
   const ToolEnd end = call(arguments);
   Json out = Json::parse(end.out, nullptr, false);
   if (!out.is_object()) {
-    out = {{"error", end.errors.empty() ? "it printed nothing" : end.errors}, {"status", 422}};
+    out = {{"error", end.errors.empty() ? "it printed nothing" : end.errors},
+           {"status", 422},
+           {"lang", "en"}};
     out["command"] = command_line(arguments);
     return answered(422, out);
   }

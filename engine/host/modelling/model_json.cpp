@@ -231,6 +231,26 @@ storage::Json verdict_json(const Explained& e, const ModelWords& words) {
   return json;
 }
 
+storage::Json what_if_json(const std::vector<model::Foresight>& all) {
+  storage::Json list = storage::Json::array();
+  for (const model::Foresight& one : all) {
+    storage::Json parameters = storage::Json::array(), evidence = storage::Json::array();
+    for (const auto& f : one.parameters)
+      parameters.push_back({{"effect", f.effect},
+                            {"name", f.parameter},
+                            {"factor", printed(f.factor, Quantity::ratio)}});
+    for (const auto& x : one.evidence)
+      evidence.push_back({{"effect", x.effect},
+                          {"score", printed(x.now, Quantity::ratio)},
+                          {"then", printed(x.then, Quantity::ratio)}});
+    list.push_back({{"plan", one.id},
+                    {"readings", one.readings},
+                    {"parameters", std::move(parameters)},
+                    {"evidence", std::move(evidence)}});
+  }
+  return list;
+}
+
 void put_explained(storage::Json& json, const Explained& e, const Campaign& campaign,
                    const ModelWords& words) {
   const model::Explanation& x = e.explanation;
@@ -275,6 +295,7 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
   }
   json["suspects"] = suspects_json(x.comparison.suspects, e.part, campaign, words);
   json["warnings"] = warnings_of(e.part, x.comparison.fit, words);
+  if (e.what_if) json["what_if"] = what_if_json(*e.what_if);
 }
 
 storage::Json steps_json(const std::vector<ModelStep>& steps) {
@@ -391,6 +412,10 @@ std::string compare_json(const std::vector<Compared>& all, const Campaign& campa
   json["parts"] = std::move(parts);
   put_trouble(json, warnings, errors);
   return storage::dump(json);
+}
+
+std::string foresight_json(const std::vector<model::Foresight>& all) {
+  return storage::dump(what_if_json(all));
 }
 
 std::string explain_json(const std::vector<Explained>& all, const Campaign& campaign,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace nonio::host::modelling {
 struct Explained {
   PartModel part;
   model::Explanation explanation;
+  std::optional<std::vector<model::Foresight>> what_if{};  ///< if it was asked for
 };
 
 /// The part whose verdict asks most: missing, unrepeatable, unknown, nothing.
@@ -41,6 +43,8 @@ std::string next_effect(const std::vector<Told>& parts);
 std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
                          const ModelWords& words, const std::vector<std::string>& warnings,
                          const std::vector<Error>& errors);
+/// What one run more would do: `what_if` of nonio-explain/1.
+std::string foresight_json(const std::vector<model::Foresight>& all);
 std::string explain_json(const std::vector<Explained>& all, const Campaign& campaign,
                          const ModelWords& words, std::uint64_t seed,
                          const std::vector<ModelStep>& steps,

@@ -107,9 +107,11 @@ std::vector<Course> courses_of(const Observations& o, const AxisReadings& r) {
   return out;
 }
 
-std::vector<Further> further_runs(const Part& part, const Candidate& candidate) {
+}  // namespace
+
+std::vector<Further> further_runs(const Part& part, const Axis& axis) {
   std::vector<Further> out;
-  const auto read = readings_of(part.table, candidate.term.axis);
+  const auto read = readings_of(part.table, axis);
   if (!read) return out;
   const double interval = std::max(read->duration, 1.0) / static_cast<double>(part.table.size());
   for (const Course& course : courses_of(part.table, *read)) {
@@ -118,6 +120,8 @@ std::vector<Further> further_runs(const Part& part, const Candidate& candidate) 
   }
   return out;
 }
+
+namespace {
 
 /// Those that reach far enough first, at most three.
 std::vector<Plan> cheapest(std::vector<Plan> plans) {
@@ -142,8 +146,8 @@ std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
   for (const Parameter& p : candidate.parameters)
     if (!p.shape) value(linear++) = p.value;
   value.conservativeResize(linear);
-  const auto further =
-      part.kind == Part::Kind::axis ? further_runs(part, candidate) : further_in_space(part);
+  const auto further = part.kind == Part::Kind::axis ? further_runs(part, candidate.term.axis)
+                                                     : further_in_space(part);
   for (const Further& f : further) {
     const Observations& o = f.table;
     const auto columns = columns_of(o, candidate.term, candidate.term.shape);
@@ -166,9 +170,7 @@ std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& mode
                                  double s) {
   std::vector<Plan> plans;
   if (pair.size() != 2 || !(s > 0.0) || part.kind != Part::Kind::axis) return plans;
-  Candidate of_axis;
-  of_axis.term = pair[0];
-  for (const Further& f : further_runs(part, of_axis)) {
+  for (const Further& f : further_runs(part, pair[0].axis)) {
     VectorXd said = VectorXd::Zero(static_cast<Index>(f.table.size()));
     std::size_t at = 0;
     for (const Term& term : pair) {

@@ -15,6 +15,9 @@ struct Further {
 /// last known. Weights and columns need an entry for each reading.
 void fill_measured(Observations& o);
 
+/// Further runs of an axis, laid behind its readings.
+std::vector<Further> further_runs(const Part& part, const Axis& axis);
+
 /// What could be measured besides on a machine with several axes, or on a ball.
 std::vector<Further> further_in_space(const Part& part);
 

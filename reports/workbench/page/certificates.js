@@ -33,6 +33,14 @@ const certificates = (() => {
     if (!one.answer) return say("verify." + one.state);
     return verdicts[one.answer.verdict] ? say(verdicts[one.answer.verdict]) : one.answer.verdict;
   }
+  /// A check in words; those of a DCC inside a PDF are those of a separate one. What a file of another version sends is its id.
+  function nameOf(id) {
+    const word = (name) => words["check." + name.replace(/\./g, "_")];
+    if (id === "dcc") return say("check.dcc_none");
+    const rest = id.startsWith("dcc.") ? id.slice(4) : "";
+    const what = rest ? word(id) || word("xml_" + rest) || word("certificate_" + rest) || word("signer_" + rest) || rest : word(id) || id;
+    return rest ? say("check.dcc", {what}) : what;
+  }
   const sign = {holds: "\u2714", fails: "\u2716", "not checked": "\u2013"};
   function result(one) {
     const checks = one.answer ? one.answer.checks : [];
@@ -41,7 +49,7 @@ const certificates = (() => {
       one.answer && one.answer.signer ? el("p", {class: "muted"}, say("verify.signer", {signer: entries.visible(one.answer.signer)})) : null,
       checks.length ? el("details", {open: wrong.length > 0}, el("summary", {}, say("verify.checks", {n: checks.length, wrong: wrong.length})),
         entries.table({label: say("verify.checks", {n: checks.length, wrong: wrong.length}), columns: ["verify.check", "verify.state", "verify.says"]},
-          checks.map((c) => el("tr", {class: "check-" + c.state.replace(" ", "-")}, el("td", {}, c.id), el("td", {}, `${sign[c.state] || ""} ${say("verify.is_" + c.state.replace(" ", "_"))}`), el("td", {lang: "en"}, entries.visible(c.says)))))) : null);
+          checks.map((c) => el("tr", {class: "check-" + c.state.replace(" ", "-")}, el("th", {scope: "row", title: c.id}, nameOf(c.id)), el("td", {}, `${sign[c.state] || ""} ${say("verify.is_" + c.state.replace(" ", "_"))}`), el("td", {lang: "en"}, entries.visible(c.says)))))) : null);
   }
   function drop(draw) {
     const input = el("input", {type: "file", id: "verify-files", multiple: true, accept: ".pdf,.xml,.json", "data-key": "verify-files", onchange: () => verify(input.files, draw)});
@@ -75,7 +83,7 @@ const certificates = (() => {
         await act(body);
       } catch (e) {
         const a = e.answer || {};
-        problem.textContent = a.without_reason ? say("release.lacking", {findings: a.without_reason.join("; ")}) : a.why || e.message;
+        problem.textContent = a.without_reason ? say("release.lacking", {findings: a.without_reason.join("; ")}) : e.message;
         go.disabled = Boolean(draft.stale);
       }
     }}, asking.length ? el("p", {}, say("release.reasons")) : null,

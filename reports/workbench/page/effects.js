@@ -151,5 +151,20 @@ const effects = (() => {
     fill(box, table, next.length ? el("ul", {}, ...next.map((t) => el("li", {}, typeset(t)))) : null, ...[...more, ...(text.more ? [] : explain.warnings || [])].map((t) => el("p", {}, typeset(t))),
       !plans.length && !next.length ? el("p", {class: "muted"}, say("next.nothing")) : null);
   }
-  return {drawList, drawAbout, drawNext, groups, fingerprint};
+  /// What one run more would do, in each order of directions, to U of each parameter and to the evidence; on a terminal too.
+  function drawWhatIf(state, shown) {
+    const explain = shown.explain, box = by("what-if"), all = shown.explainIsOld || shown.learning ? [] : shown.whatIf || [];
+    if (!explain || !all.length) return fill(box);
+    const parameters = ((explain.model || {}).parameters || []).filter((p) => finite(p.u));
+    const cell = (v) => el("td", {class: "number"}, short(v));
+    const row = (name, unit, now, then) => el("tr", {}, el("th", {scope: "row"}, name, unit ? [" ", el("span", {class: "muted"}, unit)] : ""), cell(now), ...all.map((one) => cell(then(one))));
+    const u = (p) => row(`U ${p.effect} ${p.name}`, shownUnit(p.unit || ""), 2 * p.u, (one) => 2 * p.u * (one.parameters.find((f) => f.effect === p.effect && f.name === p.name) || {factor: NaN}).factor);
+    const evidence = (x) => row(say("more.evidence", {effect: x.effect}), "", x.score, (one) => (one.evidence.find((f) => f.effect === x.effect) || {then: NaN}).then);
+    fill(box, el("h3", {}, say("more.title")), el("p", {class: "muted"}, say("more.what")),
+      el("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": say("more.title")}, el("table", {}, el("thead", {}, el("tr", {}, el("td"), el("th", {scope: "col", class: "number"}, say("more.now")),
+        ...all.map((one) => el("th", {scope: "col", class: "number"}, `${say("more.is_" + one.plan.replace(/-/g, "_"))} (+${one.readings})`)))),
+      el("tbody", {}, ...parameters.map(u), ...all[0].evidence.map(evidence)))),
+      /^nonio compare /.test(state.command) ? el("p", {class: "muted"}, say("command.label") + " ", el("code", {}, state.command.replace("nonio compare", "nonio explain") + " --what-if")) : null);
+  }
+  return {drawList, drawAbout, drawWhatIf, drawNext, groups, fingerprint};
 })();

@@ -11,9 +11,11 @@ const net = (() => {
   const base = location.pathname.slice(0, location.pathname.lastIndexOf("/"));
   const token = () => sessionStorage.getItem("nonio-token") || "";
 
+  /// What the program itself says is English, as on a terminal; the page says so in its own language.
+  const program = (text) => (language === "en" ? text : `${say("net.program")} ${text}`);
   class Refused extends Error {
     constructor(status, answer) {
-      super((answer && answer.error) || say("net.status", {status}));
+      super(answer && answer.error ? (answer.lang ? program(answer.error) : answer.error) : say("net.status", {status}));
       this.status = status;
       this.answer = answer || {};
     }
@@ -103,5 +105,5 @@ const net = (() => {
     link.remove();
     setTimeout(() => URL.revokeObjectURL(url), 60000);
   }
-  return {ask, listen, download, base, hasToken: () => token() !== "", Refused};
+  return {ask, listen, download, program, base, hasToken: () => token() !== "", Refused};
 })();

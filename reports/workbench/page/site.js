@@ -182,7 +182,7 @@
   async function release(body) {
     const answer = await net.ask("/api/release", {body});
     told(answer);
-    if (!["issued", "approved"].includes(answer.state)) throw Object.assign(new Error(answer.why || answer.state), {answer});
+    if (!["issued", "approved"].includes(answer.state)) throw Object.assign(new Error(net.program(answer.why || answer.state)), {answer});
     released = answer.state === "issued" ? {number: answer.number, files: answer.files.map((f) => f.split("/").slice(-2).join("/"))} : {approved: true};
     await refresh();
     if (by("released")) by("released").focus();

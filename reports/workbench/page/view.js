@@ -52,7 +52,7 @@ const view = (() => {
           section("effects", "effects.title", el("div", {id: "effects-list"}), el("div", {id: "period"})),
           middle(),
           el("div", {class: "right"}, section("about", "about.title", el("div", {id: "about-what"})),
-            section("next", "next.title", el("div", {id: "next-what"}))))),
+            section("next", "next.title", el("div", {id: "next-what"}), el("div", {id: "what-if"}))))),
       el("footer", {}, el("span", {id: "command-label"}, say("command.label")), el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"}),
         button("copy", "command.copy"), el("span", {id: "read-at", class: "muted"})),
       el("div", {id: "tip", hidden: true}), ...box.places());

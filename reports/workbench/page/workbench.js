@@ -155,6 +155,7 @@
   }
   function takeFingerprints(says) {
     shown.fingerprints = says.fingerprints;
+    shown.whatIf = says.what_if;
     if (shown.fit) drawPictures();
     draw();
   }
@@ -183,7 +184,7 @@
   function choosePart(name) {
     shown.part = name;
     sessionStorage.setItem("nonio-part", name || "");
-    Object.assign(shown, {fit: null, explain: null, without: null, fingerprints: null, effect: null, etags: {}, fitted: [], of: {}, fitOf: null, explainOf: null, looks: false});
+    Object.assign(shown, {fit: null, explain: null, without: null, fingerprints: null, whatIf: null, effect: null, etags: {}, fitted: [], of: {}, fitOf: null, explainOf: null, looks: false});
     readings.forget();
   }
 
@@ -318,6 +319,7 @@
     effects.drawList(state, shown, act);
     effects.drawAbout(state, shown);
     effects.drawNext(state, shown);
+    effects.drawWhatIf(state, shown);
     learn.draw(state, shown);
     drawPlaces();
     drawDrawn();

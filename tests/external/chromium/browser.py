@@ -27,7 +27,7 @@ class Browser:
                                         stderr=subprocess.DEVNULL)
         os.close(to_read)
         os.close(to_write)
-        self.last, self.session, self.rest = 0, None, b""
+        self.last, self.session, self.target, self.rest = 0, None, None, b""
         self.events = []
 
     def receive(self):
@@ -53,17 +53,28 @@ class Browser:
             self.events.append(answer)
 
     def open(self, url, width):
-        self.session = None
-        target = self.ask("Target.createTarget", url="about:blank")["targetId"]
-        self.session = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        """In a tab of its own; the one before is closed."""
+        self.session, before = None, self.target
+        self.target = self.ask("Target.createTarget", url="about:blank")["targetId"]
+        if before:
+            self.ask("Target.closeTarget", targetId=before)
+        self.session = self.ask("Target.attachToTarget", targetId=self.target, flatten=True)["sessionId"]
         self.events = []
         for domain in ("Page", "Runtime", "Network", "Log"):
             self.ask(f"{domain}.enable")
-        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=900,
-                 deviceScaleFactor=1, mobile=width < 600)
+        self.metrics(width)
         self.ask("Page.navigate", url=url)
         while not any(e.get("method") == "Page.loadEventFired" for e in self.events):
             self.events.append(self.receive())
+
+    def width(self, width):
+        self.metrics(width)
+        while not self.value(f"matchMedia('(width: {width}px)').matches"):
+            pass
+
+    def metrics(self, width):
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=900,
+                 deviceScaleFactor=1, mobile=width < 600)
 
     def value(self, expression):
         result = self.ask("Runtime.evaluate", expression=expression, returnByValue=True,

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tests of the pages of `nonio live` in a real browser share: a browser, a server, and a page that keeps its
 picture when a test fails."""
+import json
 import pathlib
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+import urllib.error
+import urllib.parse
+import urllib.request
 
 try:
     from selenium import webdriver
@@ -48,6 +53,26 @@ class Live:
         self.address = self.process.stdout.readline().strip()
         if not self.address.startswith("http://127.0.0.1:"):
             raise AssertionError(f"{self.command}: {self.address} {self.process.stderr.read()}")
+
+    def ask(self, path):
+        """An answer of the interface, without the browser; one that is not there yet is waited for."""
+        base, token = self.address.split("#t=")
+        deadline = time.monotonic() + 10 * PATIENCE
+        while True:
+            try:
+                return json.load(urllib.request.urlopen(urllib.request.Request(base + path, headers={"X-Nonio-Token": token}), timeout=PATIENCE))
+            except urllib.error.HTTPError as refused:
+                with refused:
+                    if refused.code != 409 or time.monotonic() > deadline:
+                        raise
+            time.sleep(0.05)
+
+    def explained(self):
+        """Of each part that has been compared: what compare and explain say of it."""
+        while (state := self.ask("api/state"))["bench"] not in ("open", "failed"):
+            time.sleep(0.05)
+        path = lambda part, what: f"api/parts/{urllib.parse.quote(part['name'], safe='')}/{what}"
+        return {p["name"]: (self.ask(path(p, "fit?page=0"))["compare"], self.ask(path(p, "explain"))["explain"]) for p in state["parts"]}
 
     def stop(self, kill=False):
         (self.process.kill if kill else self.process.terminate)()

@@ -24,21 +24,24 @@ def rms_without(data, effects):
     return math.sqrt(sum(w * r * r for w, r in zip(weight, residual)) / sum(weight))
 
 
-def check(browser, page, width):
-    where = f"{page.parent.parent.name}/{page.parent.name} at {width}"
+def check(browser, page, widths):
+    where = f"{page.parent.parent.name}/{page.parent.name}"
     data = json.loads(page.read_text().split('id="data">')[1].split("</script>")[0])
-    browser.open(page.as_uri(), width)
+    browser.open(page.as_uri(), widths[0])
     assert browser.value("document.querySelectorAll('figure').length") == 9, where
-    drawn = browser.value("[...document.querySelectorAll('figure svg')]"
-                          ".filter(s => s.querySelector('path, canvas')).length")
+    drawn = browser.value("[...document.querySelectorAll('figure')].filter(f => f.querySelector('svg path, canvas')).length")
     assert drawn == sum(not p["none"] for p in data["pictures"]), f"{where}: {drawn} drawn"
-    wide = browser.value("document.documentElement.scrollWidth")
-    assert wide <= width, f"{where}: the page is {wide} wide"
+    for width in reversed(widths):
+        browser.width(width)
+        wide = browser.value("document.documentElement.scrollWidth")
+        assert wide <= width, f"{where} at {width}: the page is {wide} wide"
     comma = str.replace if data["language"] in ("de", "it") else lambda text, a, b: text
     shown = lambda: browser.value("document.getElementById('rms').textContent")
     wanted = comma(f"{rms_without(data, []):.2f}", ".", ",")
     assert wanted in shown(), f"{where}: wanted {wanted}, found {shown()}"
-    for effect in range(len(data["effects"])):
+    # Of many readings a click takes its time: the first and the last effect there.
+    effects = range(len(data["effects"]))
+    for effect in sorted({effects[0], effects[-1]}) if "many" in where and effects else effects:
         box = f"document.querySelectorAll('#effects input')[{effect}]"
         browser.value(f"{box}.click()")
         wanted = comma(f"{rms_without(data, [effect]):.2f}", ".", ",")
@@ -48,7 +51,7 @@ def check(browser, page, width):
         assert said in shown(), f"{where}: wanted {said}, found {shown()}"
         assert browser.value("location.hash") == f"#e{effect}", where
         browser.value(f"{box}.click()")
-    if len(data["effects"]) > 1:
+    if len(data["effects"]) > 1 and "many" not in where:
         for effect in (0, 1):
             browser.value(f"document.querySelectorAll('#effects input')[{effect}].click()")
         wanted = comma(f"{rms_without(data, [0, 1]):.2f}", ".", ",")
@@ -93,8 +96,7 @@ def main():
         subprocess.run([sys.argv[1], str(pages)], check=True)
         browser = Browser(program(), folder + "/profile")
         for page in sorted(pages.glob("*/*/model-*.html")):
-            for width in (1400,) if page.parts[-3] == "many" else (1400, 400, 320):
-                check(browser, page, width)
+            check(browser, page, (1400,) if page.parts[-3] == "many" else (1400, 400, 320))
         check_dark(browser, pages / "usual" / "en" / "model-X.html")
         check_hover(browser, pages / "usual" / "en" / "model-X.html")
         browser.close()

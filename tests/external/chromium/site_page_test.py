@@ -9,16 +9,28 @@ import tempfile
 from browser import SKIPPED, Browser, complaints, program
 from hindrances import HINDRANCES
 
-WIDTHS = (420, 1280, 1920)
+WIDTHS = (320, 420, 1280, 1920)
 
-def check(browser, page, width, where):
-    browser.open(page.as_uri(), width)
-    wide = browser.value("document.documentElement.scrollWidth")
-    assert wide <= width, f"{where}: the page is {wide} wide"
-    browser.value("document.querySelectorAll('details').forEach((d) => d.open = true)")
-    wide = browser.value("document.documentElement.scrollWidth")
-    assert wide <= width, f"{where}: with its numbers the page is {wide} wide"
-    bad = browser.value(HINDRANCES) + complaints(browser, lambda url: url == page.as_uri())
+
+def check(browser, page, where):
+    """One page, opened once: each width, closed and with its numbers; dark; printed."""
+    browser.open(page.as_uri(), WIDTHS[0])
+    for opened in (False, True):
+        if opened:
+            browser.value("document.querySelectorAll('details').forEach((d) => d.open = true)")
+        for width in WIDTHS:
+            browser.width(width)
+            wide = browser.value("document.documentElement.scrollWidth")
+            assert wide <= width, f"{where} at {width}, numbers {'' if opened else 'not '}shown: the page is {wide} wide"
+            bad = browser.value(HINDRANCES) if opened else []
+            assert not bad, f"{where} at {width}:\n  " + "\n  ".join(bad)
+    browser.width(1280)
+    browser.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+    bad = browser.value(HINDRANCES)
+    assert not bad, where + ", dark:\n  " + "\n  ".join(bad)
+    browser.ask("Emulation.setEmulatedMedia", features=[])
+    check_print(browser, where)
+    bad = complaints(browser, lambda url: url == page.as_uri())
     assert not bad, where + ":\n  " + "\n  ".join(bad)
 
 
@@ -75,8 +87,8 @@ def check_keyboard(browser, index):
     assert reached == ["A", "A", "A", "A", "SELECTkind", "SELECTcustomer"], reached
 
 
-def check_print(browser, page, where):
-    browser.open(page.as_uri(), 1123 - 76)
+def check_print(browser, where):
+    browser.width(1123 - 76)
     browser.ask("Emulation.setEmulatedMedia", media="print")
     assert browser.value("getComputedStyle(document.querySelector('nav')).display") == "none", where
     wide = browser.value("[document.documentElement.scrollWidth, innerWidth]")
@@ -103,13 +115,6 @@ def check_without_scripts(browser, index):
     browser.ask("Emulation.setScriptExecutionDisabled", value=False)
 
 
-def check_dark(browser, page, where):
-    browser.open(page.as_uri(), 1280)
-    browser.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
-    bad = browser.value(HINDRANCES)
-    assert not bad, where + ", dark:\n  " + "\n  ".join(bad)
-
-
 def main():
     if program() is None:
         print("skipped: no Chromium on this machine")
@@ -119,11 +124,7 @@ def main():
         subprocess.run([sys.argv[1], str(pages)], check=True)
         browser = Browser(program(), folder + "/profile")
         for page in sorted(pages.rglob("*.html")):
-            where = str(page.relative_to(pages))
-            for width in WIDTHS:
-                check(browser, page, width, f"{where} at {width}")
-            check_print(browser, page, where)
-            check_dark(browser, page, where)
+            check(browser, page, str(page.relative_to(pages)))
         check_filters(browser, pages / "en" / "index.html")
         check_keyboard(browser, pages / "en" / "index.html")
         check_without_scripts(browser, pages / "en" / "index.html")

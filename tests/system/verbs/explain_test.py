@@ -120,6 +120,22 @@ class Explain(VerbTest):
         e = self.explain()
         self.assertEqual(e["verdict"]["kind"], "nothing")
 
+    def test_what_one_run_more_would_do_is_told_if_asked(self):
+        self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
+        self.assertNotIn("what_if", self.explain())
+        e = self.explain("--what-if")
+        n = e["observations"]
+        plans = {p["plan"]: p for p in e["what_if"]}
+        self.assertEqual({"another-run", "another-run-reversed", "both-sides-at-each-target"}, set(plans))
+        for p in plans.values():
+            more = 1 + p["readings"] / n
+            self.assertEqual([("scale:X", "a")], [(f["effect"], f["name"]) for f in p["parameters"]])
+            self.assertLess(abs(p["parameters"][0]["factor"] * math.sqrt(more) - 1), 0.1, "the same targets again")
+            self.assertEqual(["backlash:X"], [x["effect"] for x in p["evidence"]])
+            self.assertEqual(e["candidates"][0]["score"], p["evidence"][0]["score"])
+            self.assertLess(abs(p["evidence"][0]["then"] / p["evidence"][0]["score"] / more - 1), 0.15)
+        self.assertIn("backlash:X", self.nonio("explain", self.folder, "--what-if").stdout.split("one run more")[1])
+
     def test_the_same_seed_gives_the_same_bytes(self):
         self.campaign(manifest([]), x=readings(backlash=-3))
         first = self.nonio("explain", self.folder, "--json", "--seed", "7").stdout

@@ -175,6 +175,23 @@ struct Plan {
   std::string of{};          ///< in space: the axes, or what is measured ("EYX")
 };
 
+/// What one run more would do to what is known if the noise stays as it is and the best explanation
+/// is true (docs/model.md, "One run more").
+struct Foresight {
+  struct Factor {  ///< by which the standard uncertainty of a parameter of the model is multiplied
+    std::string effect, parameter;
+    double factor = 1.0;
+  };
+  struct Evidence {  ///< `score` of an effect that the best explanation adds
+    std::string effect;
+    double now = 0.0, then = 0.0;
+  };
+  std::string id;            ///< as in Plan: "another-run", "another-run-reversed", ...
+  std::size_t readings = 0;  ///< to be taken
+  std::vector<Factor> parameters;
+  std::vector<Evidence> evidence;
+};
+
 struct Verdict {
   enum class Kind { missing, nothing, unknown, unrepeatable };
   Kind kind = Kind::nothing;
@@ -242,5 +259,9 @@ Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed = 1,
                               const Groundwork* known = nullptr);
+
+/// One run more of an axis, in each direction order. Empty for other parts, and where nothing can
+/// be said: no uncertainty, effects whose columns depend on all readings, too many readings.
+std::vector<Foresight> foresee(const Part& part, const Explanation& e);
 
 }  // namespace nonio::model
