@@ -119,6 +119,32 @@ struct Workpiece {
     observe(std::move(m), places, mean, {}).angular = true;
     scatter = lengths;
   }
+  /// EYX against a straightedge whose own error is this.
+  void straight(const std::string& id, const machine::Curve& edge) {
+    std::vector<Observations::AxisColumn> places{{"X", false, {}, {}}};
+    std::vector<double> mean;
+    for (const std::size_t i : count(rect.n)) {
+      const double x = rect.x(i);
+      places[0].position.push_back(x);
+      mean.push_back(4 * um - 3e-6 * x + errors.EYX(x) + edge(x));
+    }
+    Measurement m = named(id, "straightness", "X");
+    m.lateral = "Y";
+    observe(std::move(m), places, mean, {0.0, 1.0, 0.0});
+  }
+  void turned_over(const machine::Curve& edge) {
+    straight("SX", edge);
+    straight("SX turned", [edge](double x) { return -edge(x); });
+    campaign.measurements.back().reversal_of = "SX";
+  }
+  /// States everything that the manifest has of the uncertainty, small.
+  void states_all() {
+    campaign.instrument.U_fixed = 1e-9, campaign.instrument.U_per_length = 1e-10;
+    Environment& e = campaign.environment;
+    e.misalignment = e.temperature_range = 1e-3, e.temperature_difference = 0.01;
+    e.expansion_range = 1e-9, e.drift = 1e-10;
+    for (Axis& axis : campaign.machine.axes) axis.expansion = 1e-6;
+  }
   Workpiece& everything() {
     X("X1", 0.5);
     X("X2", 8.5);
@@ -498,6 +524,89 @@ TEST(DiagonalPlugin, UncertaintiesFromTheScatterCoverTheTruth) {
       EXPECT_LE(hit, 0.97 * solved) << how;
     }
   }
+}
+
+/// A straightedge with 20 um of its own, even and odd about its middle.
+machine::Curve crooked(double length) {
+  return [length](double x) {
+    const double t = x / length;
+    return 20 * um * (4.0 * t * (1.0 - t) + std::sin(2.0 * std::numbers::pi * t));
+  };
+}
+
+TEST(DiagonalPlugin, AStraightedgeTurnedOverLeavesNothingOfItself) {
+  const Rectangle rect{12.0, 9.0, 12};
+  std::mt19937 rng(seed + 6);
+  const Errors errors = random_gantry(rng, rect);
+  const auto with = [&](bool turned, double scatter) {
+    Workpiece w(rect, errors);
+    w.scatter = scatter;
+    w.states_all();
+    w.everything();
+    turned ? w.turned_over(crooked(rect.Lx)) : w.straight("SX", crooked(rect.Lx));
+    return w;
+  };
+  const Evaluation exact = with(true, 0.0).evaluate();
+  const Series* f = series(exact, "EYX");
+  ASSERT_NE(f, nullptr) << ids(exact);
+  for (std::size_t i = 0; i <= rect.n; ++i)
+    EXPECT_NEAR(f->value[i], errors.EYX(f->position[i]), 0.05 * um);
+  EXPECT_EQ(exact.uses, (std::vector<std::string>{"D2", "Y", "X1", "X2", "SX", "SX turned"}));
+
+  const Evaluation turned = with(true, 0.5 * um).evaluate(),
+                   one = with(false, 0.5 * um).evaluate();
+  EXPECT_NE(finding(turned, "straightness-agrees"), nullptr) << ids(turned);
+  EXPECT_NE(finding(one, "straightness-disagrees"), nullptr) << ids(one);
+  const Series* wrong = series(one, "EYX");
+  ASSERT_NE(wrong, nullptr);
+  EXPECT_GT(std::fabs(wrong->value[3] - errors.EYX(wrong->position[3])), 15 * um)
+      << "the straightedge's own odd part";
+
+  Workpiece w = with(true, 0.5 * um);
+  for (double& x : w.all.back().axes[0].position)
+    if (x == rect.x(2)) x += 0.01;
+  expect_refused(w, "refused-pitch-points");
+}
+
+/// U of the curves, and how often the comparison sees a difference that is not there.
+TEST(DiagonalPlugin, UncertaintiesWithAStraightedgeTurnedOverCoverTheTruth) {
+  const Rectangle rect{12.0, 9.0, 6};
+  std::mt19937 rng(seed + 7);
+  std::cout << "seed " << seed + 7 << "\n";
+  const Errors errors = random_gantry(rng, rect);
+  constexpr int campaigns = 2000;
+  double f_inside = 0.0, g_inside = 0.0, solved = 0.0, false_alarms = 0.0, below_half = 0.0;
+  for (int c = 0; c < campaigns; ++c) {
+    Workpiece w(rect, errors);
+    w.rng.seed(seed + 5000 + static_cast<unsigned>(c));
+    w.scatter = 1 * um;
+    w.states_all();
+    w.everything();
+    w.scatter = 3 * um;
+    w.turned_over(crooked(rect.Lx));
+    const Evaluation e = w.evaluate();
+    const Series *f = series(e, "EYX"), *g = series(e, "EXY");
+    if (f == nullptr || g == nullptr) continue;
+    solved += 1.0;
+    false_alarms += finding(e, "straightness-disagrees") != nullptr;
+    for (const Finding& found : e.findings)
+      if (found.id.rfind("diagonals.straightness-", 0) == 0)
+        below_half += found.evidence.back().value < 0.5;
+    const double inner = static_cast<double>(rect.n - 1);
+    for (std::size_t i = 1; i < rect.n; ++i) {
+      f_inside += (std::fabs(f->value[i] - errors.EYX(rect.x(i))) <= f->U[i]) / inner;
+      g_inside += (std::fabs(g->value[i] - errors.EXY(rect.y(i))) <= g->U[i]) / inner;
+    }
+  }
+  std::cout << "EYX " << 100.0 * f_inside / solved << " %, EXY " << 100.0 * g_inside / solved
+            << " % of " << solved << ", false disagreements " << 100.0 * false_alarms / solved
+            << " %, p below 0.5: " << 100.0 * below_half / solved << " %\n";
+  EXPECT_GE(solved, 0.99 * campaigns);
+  for (const double hit : {f_inside, g_inside}) {
+    EXPECT_GE(hit, 0.94 * solved);
+    EXPECT_LE(hit, 0.965 * solved);
+  }
+  EXPECT_LE(false_alarms, 0.02 * solved);
 }
 
 }  // namespace
