@@ -296,6 +296,25 @@ constexpr Key sensor_keys[] = {
     {.name = "issuer", .holds = text, .help = "Laboratory that issued the certificate."},
 };
 
+constexpr Key square_keys[] = {
+    {.name = "id",
+     .holds = text,
+     .help = "Name by which the measurements on its faces refer to the square.",
+     .required = true,
+     .missing = "a name"},
+    {.name = "error_urad",
+     .holds = number,
+     .help = "Deviation of the angle between its faces from 90 degrees, as its certificate states "
+             "it; positive: more than 90 degrees.",
+     .unit = "urad"},
+    {.name = "U_urad",
+     .holds = number,
+     .help = "Expanded uncertainty of error_urad, k = 2.",
+     .unit = "urad",
+     .wanted = "expected an uncertainty above 0",
+     .least = 1e-6},
+};
+
 constexpr Key environment_keys[] = {
     {.name = "misalignment_mm",
      .holds = number,
@@ -441,6 +460,16 @@ constexpr Key measurement_keys[] = {
      .holds = text,
      .help = "The measurement of the same line before the straightedge was turned over: both give "
              "the straightness of the motion without that of the straightedge.",
+     .only = {"kind", straightness}},
+    {.name = "square",
+     .holds = text,
+     .help = "The [[square]] on whose face the deviation was read: two lines, each axis towards "
+             "the other, give the squareness.",
+     .only = {"kind", straightness}},
+    {.name = "square_turned",
+     .holds = flag,
+     .help = "Whether the square had been turned over about one of its faces: its own error then "
+             "drops out of the mean.",
      .only = {"kind", straightness}},
     {.name = "exclude",
      .holds = wholes,
@@ -802,6 +831,10 @@ constexpr Key campaign_file_keys[] = {
      .help = "A sensor of temperature, pressure or humidity: a separate instrument with its "
              "own calibration.",
      .keys = sensor_keys},
+    {.name = "square",
+     .holds = tables,
+     .help = "A square against whose faces two axes were read.",
+     .keys = square_keys},
     {.name = "environment",
      .holds = table,
      .help = "Contributions to the uncertainty other than the instrument, as full ranges "

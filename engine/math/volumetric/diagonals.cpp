@@ -255,7 +255,8 @@ class System {
 
   /// Its even part is left alone: the diagonals may know that better than a straightness whose
   /// line and instrument are others.
-  void add_odd(const DirectStraightness& c, std::size_t source, std::size_t first, std::size_t slope) {
+  void add_odd(const DirectStraightness& c, std::size_t source, std::size_t first,
+               std::size_t slope) {
     for (std::size_t i = 0; 2 * i < n_; ++i, ++next_) {
       A_.row(next_) = (place(i, first) - place(n_ - i, first)) / 2.0;
       A_(next_, at(slope)) = way(i) - 0.5;
@@ -414,6 +415,29 @@ Closure closure_of(const System& system, std::size_t n, const Solution& solution
   return c;
 }
 
+/// Range of what the second line of X reads more than the first; there are two.
+DiagonalResult::Racking racking_of(const DiagonalReadings& r, const System& system,
+                                   const Solution& s, const std::vector<double>& ECX) {
+  const auto X = of_direction(r.X, r.D1.x_direction);
+  const auto [low, high] = std::minmax_element(ECX.begin(), ECX.end());
+  DiagonalResult::Racking out;
+  out.value = std::fabs(r.X[X[1]].across - r.X[X[0]].across) * (*high - *low);
+  out.high = static_cast<std::size_t>(high - ECX.begin());
+  out.low = static_cast<std::size_t>(low - ECX.begin());
+  Row J = Row::Zero(system.N().cols());
+  for (const auto& [k, sign] : {std::pair{X[0], 1.0}, std::pair{X[1], -1.0}}) {
+    const std::size_t first = system.first_of_X() + k * (r.n + 1);
+    J[at(first + out.high)] += sign;
+    J[at(first + out.low)] -= sign;
+  }
+  double square = 0.0;
+  for (Eigen::Index i = 0; i < J.size(); ++i)
+    square += std::pow(J[i] * system.sigma()[static_cast<std::size_t>(i)], 2);
+  out.u = s.factor() * std::sqrt(square);
+  out.shares = s.shares_of_readings(J);
+  return out;
+}
+
 void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s,
               DiagonalResult& out) {
   const auto X = of_direction(r.X, r.D1.x_direction);
@@ -457,6 +481,7 @@ void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s
         std::hypot(noise(one, i), noise(other, i)) / std::fabs(W), J);
   }
   out.slave_shift = W * out.C0Y;
+  out.racking = racking_of(r, system, s, out.ECX.value);
 }
 
 /// Variance of what is made of the readings, by repetition and all inputs.
@@ -481,10 +506,9 @@ Agreement agreement(const System& system, const Solution& s, const Functional& e
          {std::pair{k, 0.5}, {n - k, 0.5}, {std::size_t{0}, -0.5}, {n, -0.5}})
       for (std::size_t c = 0; c < curves; ++c)
         row[at(first + c * (n + 1) + i)] += share / static_cast<double>(curves);
-    out.difference.push_back((direct.mean_of(k) + direct.mean_of(n - k) - direct.mean_of(0) -
-                              direct.mean_of(n)) /
-                                 2.0 -
-                             s.value(even[k]));
+    out.difference.push_back(
+        (direct.mean_of(k) + direct.mean_of(n - k) - direct.mean_of(0) - direct.mean_of(n)) / 2.0 -
+        s.value(even[k]));
     out.u.push_back(std::sqrt(variance_of(system, s, row)));
     J.push_back(std::move(row));
   }

@@ -220,6 +220,7 @@ class Gatherer {
       if (m.kind != kind || m.axis.empty() || m.axis[0] != axis[0]) continue;
       if (!lateral.empty() && (m.lateral.empty() || m.lateral[0] != lateral[0])) continue;
       if (!m.reversal_of.empty()) continue;  // goes with the one that it names
+      if (!m.square.empty()) continue;       // of its face only the slope counts
       if (observations(i).size() == 0 || observations(i).axes.front().rotary) continue;
       const std::string of = state_of(m);
       const bool another = std::any_of(sets_.begin(), sets_.end(), [&](const Set& s) {

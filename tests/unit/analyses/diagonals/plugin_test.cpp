@@ -137,6 +137,28 @@ struct Workpiece {
     straight("SX turned", [edge](double x) { return -edge(x); });
     campaign.measurements.back().reversal_of = "SX";
   }
+  /// Both axes against a square that leans by g, as it stands and turned over about X.
+  void square(double g) {
+    campaign.squares.push_back({.name = "Q", .error = {}, .U = {}});
+    for (const double sign : {1.0, -1.0})
+      for (const bool x : {true, false}) {
+        std::vector<Observations::AxisColumn> places{{x ? "X" : "Y", false, {}, {}}};
+        std::vector<double> mean;
+        for (const std::size_t i : count(rect.n)) {
+          const double p = x ? rect.x(i) : rect.y(i);
+          places[0].position.push_back(p);
+          const machine::Vector at = machine::point(errors, {x ? p : 0.0, x ? 0.0 : p, 0.0});
+          mean.push_back(x ? at.y() : at.x() + sign * g * p);
+        }
+        Measurement m = named(std::string(x ? "QX" : "QY") + (sign < 0.0 ? " t" : ""),
+                              "straightness", x ? "X" : "Y");
+        m.state = "";
+        m.lateral = x ? "Y" : "X";
+        m.square = "Q";
+        m.square_turned = sign < 0.0;
+        observe(std::move(m), places, mean, {});
+      }
+  }
   /// States everything that the manifest has of the uncertainty, small.
   void states_all() {
     campaign.instrument.U_fixed = 1e-9, campaign.instrument.U_per_length = 1e-10;
@@ -497,7 +519,11 @@ TEST(DiagonalPlugin, UncertaintiesFromTheScatterCoverTheTruth) {
   for (const std::string how : {"two lines", "autocollimator", "one direction", "third diagonal"}) {
     std::mt19937 rng(seed + 2);
     const Errors errors = random_gantry(rng, rect);
-    double inside = 0.0, inside_k = 0.0, solved = 0.0;
+    double inside = 0.0, inside_k = 0.0, inside_racking = 0.0, solved = 0.0, low = 0.0, high = 0.0;
+    for (std::size_t i = 0; i <= rect.n; ++i) {
+      const double apart = -8.0 * errors.ECX(rect.x(i));
+      low = std::min(low, apart), high = std::max(high, apart);
+    }
     for (int c = 0; c < campaigns; ++c) {
       Workpiece w(rect, errors);
       w.rng.seed(seed + 100 + static_cast<unsigned>(c));
@@ -514,11 +540,19 @@ TEST(DiagonalPlugin, UncertaintiesFromTheScatterCoverTheTruth) {
                   static_cast<double>(rect.n - 1);
       }
       for (const Value& v : e.values)
-        if (v.name == "C0Y") inside_k += std::fabs(v.value - errors.C0Y) <= *v.repeatability;
+        if (v.name == "C0Y")
+          inside_k += std::fabs(v.value - errors.C0Y) <= *v.repeatability;
+        else if (v.name == "racking")
+          inside_racking += std::fabs(v.value - (high - low)) <= *v.repeatability;
     }
     std::cout << "seed " << seed + 2 << ", " << how << ": EYX " << 100.0 * inside / solved
-              << " %, C0Y " << 100.0 * inside_k / solved << " % of " << solved << "\n";
+              << " %, C0Y " << 100.0 * inside_k / solved << " %, racking "
+              << 100.0 * inside_racking / solved << " % of " << solved << "\n";
     EXPECT_GE(solved, 0.99 * campaigns) << how;
+    if (how == "two lines") {
+      EXPECT_GE(inside_racking, 0.93 * solved);
+      EXPECT_LE(inside_racking, 0.97 * solved);
+    }
     for (const double hit : {inside, inside_k}) {
       EXPECT_GE(hit, 0.93 * solved) << how;
       EXPECT_LE(hit, 0.97 * solved) << how;
@@ -553,8 +587,7 @@ TEST(DiagonalPlugin, AStraightedgeTurnedOverLeavesNothingOfItself) {
     EXPECT_NEAR(f->value[i], errors.EYX(f->position[i]), 0.05 * um);
   EXPECT_EQ(exact.uses, (std::vector<std::string>{"D2", "Y", "X1", "X2", "SX", "SX turned"}));
 
-  const Evaluation turned = with(true, 0.5 * um).evaluate(),
-                   one = with(false, 0.5 * um).evaluate();
+  const Evaluation turned = with(true, 0.5 * um).evaluate(), one = with(false, 0.5 * um).evaluate();
   EXPECT_NE(finding(turned, "straightness-agrees"), nullptr) << ids(turned);
   EXPECT_NE(finding(one, "straightness-disagrees"), nullptr) << ids(one);
   const Series* wrong = series(one, "EYX");
@@ -607,6 +640,50 @@ TEST(DiagonalPlugin, UncertaintiesWithAStraightedgeTurnedOverCoverTheTruth) {
     EXPECT_LE(hit, 0.965 * solved);
   }
   EXPECT_LE(false_alarms, 0.02 * solved);
+}
+
+/// Diagonals and a square: one value where they agree, with a U that covers; a finding where not.
+TEST(DiagonalPlugin, SquarenessOfASquareIsOneValueOrAFinding) {
+  const Rectangle rect{1.2, 0.9, 6};
+  std::mt19937 rng(seed + 8);
+  std::cout << "seed " << seed + 8 << "\n";
+  Errors errors = random_gantry(rng, rect, 10 * um);
+  errors.ECX = machine::zero;
+  constexpr int campaigns = 2000;
+  Workpiece exact(rect, errors);
+  exact.states_all();
+  exact.X("X1", 0.05), exact.X("X2", 0.85), exact.Y(), exact.D1(), exact.D2();
+  const double truth = value(exact.evaluate(), "C0Y_LSQ");
+  double inside = 0.0, solved = 0.0, disagree = 0.0, moved_found = 0.0, moved = 0.0;
+  for (int c = 0; c < campaigns; ++c) {
+    Workpiece w(rect, errors);
+    w.rng.seed(seed + 20000 + static_cast<unsigned>(c));
+    w.scatter = 1 * um;
+    w.states_all();
+    w.X("X1", 0.05), w.X("X2", 0.85), w.Y(), w.D1(), w.D2();
+    const bool other_machine = c % 20 == 0;
+    if (other_machine) w.errors.C0Y += 25e-6;
+    w.square(40e-6);
+    const Evaluation e = w.evaluate();
+    const bool differs = finding(e, "squareness-disagrees") != nullptr;
+    if (finding(e, "closure") != nullptr) continue;
+    if (other_machine) {
+      moved += 1.0, moved_found += differs;
+      EXPECT_FALSE(differs && series(e, "C0Y_both") != nullptr);
+      continue;
+    }
+    solved += 1.0, disagree += differs;
+    if (differs) continue;
+    for (const Value& v : e.values)
+      if (v.name == "C0Y_both") inside += std::fabs(v.value - truth) <= *v.U;
+  }
+  std::cout << "C0Y_both " << 100.0 * inside / (solved - disagree) << " %, false disagreements "
+            << 100.0 * disagree / solved << " % of " << solved << ", moved machines found "
+            << moved_found << " of " << moved << "\n";
+  EXPECT_GE(inside, 0.94 * (solved - disagree));
+  EXPECT_LE(inside, 0.97 * (solved - disagree));
+  EXPECT_LE(disagree, 0.02 * solved);
+  EXPECT_GE(moved_found, 0.95 * moved);
 }
 
 }  // namespace

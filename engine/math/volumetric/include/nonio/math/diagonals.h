@@ -129,6 +129,13 @@ struct DiagonalResult {
   std::vector<double> d1, d2;         ///< readings less positioning and yaw
   KnownCurve ECX;                     ///< yaw as it was subtracted; empty if there was none
   std::optional<double> slave_shift;  ///< of the second line's zero, removes C0Y; from two lines
+  /// Range of the second line of X less the first, m: how far the sides run apart over the travel.
+  struct Racking {
+    double value = 0.0, u = 0.0;
+    std::size_t high = 0, low = 0;  ///< points of the grid
+    Shares shares;
+  };
+  std::optional<Racking> racking;  ///< from two lines
   Closure closure;
   /// Of a direct straightness that is not whole, with a model of the readings.
   std::optional<Agreement> EYX_agrees, EXY_agrees;
