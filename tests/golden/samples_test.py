@@ -11,6 +11,7 @@ import importlib.util
 import io
 import math
 import os
+import re
 import statistics
 import sys
 import tempfile
@@ -55,6 +56,17 @@ def evaluated(campaign, file):
             "E": max(both) - min(both), "A": max(upper) - min(lower),
             "Ps_max": 6.0 * max(S_j), "Ps_mean": 6.0 * statistics.fmean(S_j),
             "U_max": max(abs(b) for b in B_i), "U_mean": statistics.fmean(abs(b) for b in B_i)}
+
+
+def expected(campaign):
+    """{(analysis, measurement, value): number} of what golden.program has stored."""
+    out = {}
+    with open(os.path.join(ROOT, "tests", "golden", "expected", campaign, "results.txt"), encoding="utf-8") as opened:
+        for line in opened:
+            found = re.match(r"analyses\[(.+?)/(.+?)#1\]\.values\.(.+?)\.value = (.+)", line)
+            if found:
+                out[found.group(1, 2, 3)] = float(found.group(4))
+    return out
 
 
 def pass_means(campaign, file):
@@ -220,6 +232,34 @@ class Samples(unittest.TestCase):
                 # 1 um of noise; B's start lies 20 um nearer to its leaning line.
                 self.assertAlmostEqual(radius, 261.0, delta=0.03)
             self.assertEqual(len({row["angle_deg"] for row in rows}), count)
+
+    def test_square_turned_over(self):
+        def slope(name):
+            points = readings("19-square-turned-over", name + ".csv").items()
+            x = [p for p, _ in points]
+            y = [(statistics.fmean(r["+"]) + statistics.fmean(r["-"])) / 2.0 for _, r in points]
+            return 1000.0 * statistics.linear_regression(x, y).slope  # um/m
+        stands, turned = slope("qx") + slope("qy"), slope("qx-turned") + slope("qy-turned")
+        self.assertAlmostEqual(-(stands + turned) / 2.0, 22.0, delta=0.01)
+        self.assertAlmostEqual((stands - turned) / 2.0, -14.0, delta=0.01)
+        program = expected("19-square-turned-over")
+        self.assertAlmostEqual(program[("square", "QX", "C0Y_LSQ")], -(stands + turned) / 2.0, delta=1e-6)
+        self.assertAlmostEqual(program[("square", "QX", "square_error")], (stands - turned) / 2.0, delta=1e-6)
+
+    def test_body_diagonals(self):
+        """What the program makes of each diagonal is what this file makes of it; the machine's is the largest."""
+        program = expected("20-body-diagonals")
+        for when in ("00", "final"):
+            names = ["%s %s" % (d, when) for d in ("PPP", "NPP", "PNP", "PPN")]
+            here = [evaluated("20-body-diagonals", n.lower().replace(" ", "-") + ".csv") for n in names]
+            for name, values in zip(names, here):
+                for value in ("E", "B", "R+", "R-", "A"):
+                    self.assertAlmostEqual(program[("iso230-6", name, value)], values[value], delta=1e-6)
+            for value in "EB":
+                self.assertAlmostEqual(program[("iso230-6", names[0], value + "_d")], max(v[value] for v in here), delta=1e-6)
+        self.assertGreater(program[("iso230-6", "PPP final", "E_d")], program[("iso230-6", "PPP 00", "E_d")])
+        self.assertAlmostEqual(program[("before-after", "X final", "left_share")], 0.0, delta=0.05)
+        self.assertAlmostEqual(program[("before-after", "Y final", "left_share")], 2.0, delta=0.1)
 
 
 if __name__ == "__main__":

@@ -111,14 +111,14 @@ std::vector<SquareLines> squares_of(const Campaign& campaign) {
     const SquarePlane* plane =
         m.kind == "straightness" && !m.square.empty() ? square_plane_of(m) : nullptr;
     if (plane == nullptr) continue;
-    const std::string state = state_of(m);
-    auto at = std::find_if(out.begin(), out.end(), [&](const SquareLines& s) {
-      return s.square == m.square && s.state == state && s.name == plane->name;
-    });
-    if (at == out.end()) at = out.insert(out.end(), {m.square, state, plane->name, {}, {}, {}, {}});
     const bool is_first = m.axis[0] == plane->first;
-    (is_first ? at->first : at->second) = m.axis;
-    (is_first ? at->second : at->first) = m.lateral;
+    const std::string state = state_of(m), &first = is_first ? m.axis : m.lateral,
+                      &second = is_first ? m.lateral : m.axis;
+    auto at = std::find_if(out.begin(), out.end(), [&](const SquareLines& s) {
+      return s.square == m.square && s.state == state && s.first == first && s.second == second;
+    });
+    if (at == out.end())
+      at = out.insert(out.end(), {m.square, state, plane->name, first, second, {}, {}});
     auto& lines = m.square_turned ? at->turned : at->as_stands;
     lines.insert(is_first ? lines.begin() : lines.end(), i);
   }

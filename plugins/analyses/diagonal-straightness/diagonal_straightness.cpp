@@ -3,6 +3,7 @@
 // Squareness and straightness of two axes from the diagonals of their rectangle.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "doubt.h"
 #include "nonio/math/diagonals.h"
@@ -141,8 +142,17 @@ class Report {
         for (double& u : *parts) u *= std::fabs(W);
       value("slave_shift", *r_.slave_shift, Quantity::deviation, std::fabs(W) * r_.u_C0Y, shares);
     }
-    if (r_.racking)
-      value("racking", r_.racking->value, Quantity::deviation, r_.racking->u, r_.racking->shares);
+    if (r_.racking) add_racking(*r_.racking);
+  }
+
+  /// The range of many values that only scatter is 4 of their standard deviations; u is of two.
+  void add_racking(const math::DiagonalResult::Racking& racking) {
+    value("racking", racking.value, Quantity::deviation, racking.u, racking.shares);
+    const double noise = 4.0 / std::numbers::sqrt2 * racking.u;
+    if (known_ && racking.value <= noise)
+      e_.findings.push_back({.id = "diagonals.racking-noise",
+                             .evidence = {{"racking", racking.value, Quantity::deviation},
+                                          {"noise", noise, Quantity::deviation}}});
   }
 
   void add_both() {

@@ -642,6 +642,29 @@ TEST(DiagonalPlugin, UncertaintiesWithAStraightedgeTurnedOverCoverTheTruth) {
   EXPECT_LE(false_alarms, 0.02 * solved);
 }
 
+/// Sides that run together: the range of what only scatters is said to be an upper limit.
+TEST(DiagonalPlugin, RackingIsNotTakenFromScatter) {
+  std::mt19937 rng(seed + 9);
+  const Rectangle rect{12.0, 9.0, 10};
+  Errors errors = random_gantry(rng, rect);
+  const auto racking_of = [&](double scatter) {
+    Workpiece w(rect, errors);
+    w.scatter = scatter;
+    w.X("X1", 0.5), w.X("X2", 8.5), w.Y(), w.D1(), w.D2();
+    return w.evaluate();
+  };
+  double low = 0.0, high = 0.0;
+  for (std::size_t i = 0; i <= rect.n; ++i) {
+    const double apart = -8.0 * errors.ECX(rect.x(i));
+    low = std::min(low, apart), high = std::max(high, apart);
+  }
+  const Evaluation racks = racking_of(0.5 * um);
+  EXPECT_NEAR(value(racks, "racking"), high - low, 2 * um);
+  EXPECT_EQ(finding(racks, "racking-noise"), nullptr) << ids(racks);
+  errors.ECX = machine::zero;
+  EXPECT_NE(finding(racking_of(0.5 * um), "racking-noise"), nullptr);
+}
+
 /// Diagonals and a square: one value where they agree, with a U that covers; a finding where not.
 TEST(DiagonalPlugin, SquarenessOfASquareIsOneValueOrAFinding) {
   const Rectangle rect{1.2, 0.9, 6};

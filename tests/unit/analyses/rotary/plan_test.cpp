@@ -10,8 +10,13 @@
 
 #include "nonio/math/rotary_plan.h"
 
-namespace nonio::math {
+namespace nonio::fixtures::rotary_plan_test {
 namespace {
+
+using math::cheapest;
+using math::expected_of;
+using math::RotaryPlan;
+using math::simulated;
 
 constexpr std::uint64_t seed = 20261125;
 constexpr double um = 1e-6, urad = 1e-6;
@@ -79,4 +84,4 @@ TEST(RotaryPlan, TheCheapestPlanReachesWhatIsWantedAndOneBallLessDoesNot) {
 }
 
 }  // namespace
-}  // namespace nonio::math
+}  // namespace nonio::fixtures::rotary_plan_test

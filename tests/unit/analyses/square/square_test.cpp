@@ -16,7 +16,7 @@
 #include "machine.h"
 #include "nonio/sdk/plugin.h"
 
-namespace nonio {
+namespace nonio::fixtures::square_test {
 namespace {
 
 using machine::Errors;
@@ -51,6 +51,7 @@ struct Block {
   double g = 0.0;
   bool turned = false;
   Vector askew = Vector::Zero();
+  double bent = 0.0;  ///< m, size of a form of both faces
 
   /// Along a face, and the normal of its plane.
   std::pair<Vector, Vector> face(bool of_first) const {
@@ -72,7 +73,15 @@ struct Block {
     std::vector<double> out;
     for (const Vector& p : places)
       out.push_back((machine::point(errors, p) - origin).dot(n) / n.dot(unit(lateral)));
+    for (std::size_t i = 0; i < stops && bent != 0.0; ++i)
+      out[i] -= form(axis == first, i) - form(axis == first, 0);
     return out;
+  }
+  /// Turned about the first face: that face to the other side, the second one end for end.
+  double form(bool of_first, std::size_t i) const {
+    const double t = static_cast<double>(i) / static_cast<double>(stops - 1);
+    if (of_first) return (turned ? -bent : bent) * t * t;
+    return 2.0 * bent * std::pow(turned ? 1.0 - t : t, 3);
   }
 };
 
@@ -210,6 +219,32 @@ TEST(Square, SignsAreThoseOfExactTransforms) {
   EXPECT_NEAR(truth(only, 'Y', 'Z'), only.A0Z, 0.01 * urad);
 }
 
+/// Not straight, with other forms: what is left of them in the mean of both positions is nothing.
+TEST(Square, BentFacesDropOutOfTheMean) {
+  std::mt19937 rng(seed + 3);
+  const Errors errors = random_errors(rng);
+  Shop shop(errors);
+  Block block{'X', 'Y', 40 * urad};
+  block.bent = 30 * um;
+  shop.both(block);
+  block.turned = true;
+  shop.both(block);
+  const Evaluation e = shop.evaluate();
+  ASSERT_NE(value(e, "C0Y_LSQ"), nullptr);
+  EXPECT_NEAR(value(e, "C0Y_LSQ")->value, truth(errors, 'X', 'Y'), 0.1 * urad);
+  EXPECT_GT(std::fabs(value(e, "square_error")->value - 40 * urad), 20 * urad) << "faces' own lines";
+}
+
+/// Two sides of a gantry against one square are two results, not one of four lines.
+TEST(Square, EachNameOfAnAxisHasItsOwnLines) {
+  std::mt19937 rng(seed + 4);
+  Shop shop(random_errors(rng));
+  shop.line({'X', 'Y'}, true);
+  shop.line({'X', 'Y'}, true);
+  shop.campaign.measurements[1].axis = "X2";
+  EXPECT_TRUE(says(shop.evaluate(), "square.one-line"));
+}
+
 TEST(Square, RefusesWhatItCannotKnow) {
   std::mt19937 rng(seed + 1);
   const Errors errors = random_errors(rng);
@@ -277,4 +312,4 @@ TEST(Square, OneQuantityWeighsByUncertainty) {
 }
 
 }  // namespace
-}  // namespace nonio
+}  // namespace nonio::fixtures::square_test
