@@ -96,7 +96,7 @@ void fill(const AnalysisInput& in, const math::MeasuredLine& one, const math::Me
           int direction, const math::ReadingModel& model, double dof, Evaluation& e) {
   const bool angular = in.observations.angular;
   const Quantity q = angular ? Quantity::angular_deviation : Quantity::deviation;
-  std::vector<double> before, after, position, way_b, way_a, in_u;
+  std::vector<double> before, after, position, way_b, way_a, in_u, U;
   for (std::size_t i = 0; i < one.stops.size(); ++i) {
     before.push_back(one.stops[i].mean(direction));
     after.push_back(two.stops[i].mean(direction));
@@ -105,15 +105,18 @@ void fill(const AnalysisInput& in, const math::MeasuredLine& one, const math::Me
     way_a.push_back(after.back() - after.front());
   }
   const BeforeAfter r = math::before_after(before, after, model, dof);
-  for (std::size_t i = 0; i < r.rest.size(); ++i)
-    in_u.push_back(r.u[i] > 0.0 ? r.rest[i] / r.u[i] : 0.0);
-  e.values.push_back({"left_share", r.f, Quantity::ratio});
   const double k = math::coverage_factor(std::min(dof, 1e6));
+  for (std::size_t i = 0; i < r.rest.size(); ++i) {
+    in_u.push_back(r.u[i] > 0.0 ? r.rest[i] / r.u[i] : 0.0);
+    U.push_back(k * r.u[i]);
+  }
+  e.values.push_back({"left_share", r.f, Quantity::ratio});
   (model.missing.empty() ? e.values.back().U : e.values.back().repeatability) = k * r.u_f;
   e.values.back().k = k;
   e.points.columns = {{"target", angular ? Quantity::angle : Quantity::length, position},
                       {"before", q, way_b},
                       {"predicted", q, r.predicted},
+                      {"U_predicted", q, U},
                       {"after", q, way_a},
                       {"in_u", Quantity::ratio, in_u}};
   e.findings.push_back(

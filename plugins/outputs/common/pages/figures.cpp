@@ -97,7 +97,7 @@ Plot empty_plot(const Source& source, const Measured& m, std::string title) {
   plot.title = std::move(title);
   plot.x_title =
       along_diagonal(m)
-          ? source.words.get("plot.way", {{"unit", unit_text(position)}})
+          ? source.words.get("plot.along", {{"unit", unit_text(position)}})
           : source.words.get("plot.position", {{"axis", axis_of(m)}, {"unit", unit_text(position)}});
   plot.y_title = source.words.get("plot.deviation", {{"unit", unit_text(deviation)}});
   plot.language = source.language();
@@ -417,7 +417,10 @@ void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
     if (plot) plots.push_back(std::move(*plot));
   };
   for (const std::string& kind : source.look.plots) {
-    if (kind == "runs" && over_one_position(m.measurement)) add(runs_plot(source, m));
+    if (kind == "runs" && over_one_position(m.measurement)) {
+      add(runs_plot(source, m));
+      add_before_after(source, m, plots);
+    }
     if (kind == "iso") add(iso_plot(source, m));
     if (kind == "vdi") add(vdi_plot(source, m));
     if (kind == "reversal") add(reversal_plot(source, m));

@@ -97,6 +97,8 @@ Expected<void> check_texts(const Campaign&, const reports::Fonts&);
 std::vector<Error> check_templates(const Templates&, const std::string& name,
                                    Expected<Look> (*look_of)(const Templates&, const std::string&));
 
+/// One line before and after an adjustment, with what was predicted and its U.
+void add_before_after(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// Diagonals before and after, and their plane with its errors exaggerated.
 void add_diagonals(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// The volume of step diagonals as a box of wire, its errors exaggerated.
