@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -8,7 +7,7 @@
 #include <optional>
 
 #include "axis_argument.h"
-#include "nonio/math/rotary_plan.h"
+#include "host/tools/plan_rotary.h"
 #include "nonio/sdk/format.h"
 #include "verbs.h"
 
@@ -23,10 +22,7 @@ struct RotaryWish {
   std::uint64_t seed = 1;
 };
 
-struct RotaryRow {
-  math::RotaryPlan plan;
-  math::RotaryPlanU u;
-};
+using host::tools::RotaryRow;
 
 constexpr double um_of_m = 1e6;
 
@@ -56,22 +52,6 @@ nlohmann::ordered_json json_of(const RotaryRow& row) {
           {"U_tilt_urad", um_of_m * 2.0 * u.tilt},
           {"direction_rms_urad", um_of_m * u.direction_rms},
           {"direction_mean_urad", um_of_m * u.direction_mean}};
-}
-
-/// The plan of the user first, then 3, 4, 5, 10 balls at its radius and at 500 and 50 mm.
-std::vector<math::RotaryPlan> plans_of(const math::RotaryPlan& own) {
-  std::vector<math::RotaryPlan> out{own};
-  for (const double radius : {own.radius, 0.5, 0.05})
-    for (const std::size_t balls : {3U, 4U, 5U, 10U}) {
-      math::RotaryPlan p = own;
-      p.radius = radius;
-      p.balls = balls;
-      const bool there = std::any_of(out.begin(), out.end(), [&](const math::RotaryPlan& o) {
-        return o.balls == balls && std::fabs(o.radius - radius) < 1e-9;
-      });
-      if (!there) out.push_back(p);
-    }
-  return out;
 }
 
 using Fewest = std::optional<Expected<std::size_t>>;
@@ -126,22 +106,17 @@ int plan_rotary(const RotaryWish& wish, const Common& common) {
   own.radius = *radius;
   own.arc = wish.arc * std::numbers::pi / 180.0;
   own.sigma = wish.probe_u / um_of_m;
-  std::vector<RotaryRow> rows;
-  for (const math::RotaryPlan& plan : plans_of(own)) {
-    const auto u = math::simulated(plan, static_cast<std::size_t>(wish.trials), wish.seed);
-    if (u)
-      rows.push_back({plan, *u});
-    else if (rows.empty())
-      return complain(verb, u.error().message);  // of the user's own plan; others need not fit
-  }
+  const auto rows = host::tools::rotary_rows(own, static_cast<std::size_t>(wish.trials), wish.seed);
+  if (!rows) return complain(verb, rows.error().message);
   Fewest fewest;
   if (wish.want_centre > 0.0 || wish.want_direction > 0.0)
-    fewest = math::cheapest(own, wish.want_centre / um_of_m, wish.want_direction / um_of_m);
+    fewest =
+        host::tools::fewest_balls(own, wish.want_centre / um_of_m, wish.want_direction / um_of_m);
   const double two_points = 2.0 * wish.probe_u / std::numbers::sqrt2;
   if (common.json)
-    print_json(wish, rows, two_points, fewest);
+    print_json(wish, *rows, two_points, fewest);
   else
-    print_plans_of(wish, rows, two_points, fewest);
+    print_plans_of(wish, *rows, two_points, fewest);
   if (fewest && !*fewest) return complain(verb, fewest->error().message, exit_failed);
   return exit_done;
 }

@@ -13,7 +13,6 @@
 #include "campaign_verb.h"
 #include "host/storage/files.h"
 #include "host/tools/plan.h"
-#include "nonio/math/triples.h"
 #include "nonio/sdk/format.h"
 #include "verbs.h"
 

@@ -163,24 +163,23 @@ void add_before_after(const Source& source, const Measured& m, std::vector<Plot>
     const std::string unit = unit_text(target->quantity);
     Plot plot;
     plot.title = source.words.get("plot.before_after");
-    plot.x_title = m.measurement.kind == "diagonal"
-                       ? source.words.get("plot.along", {{"unit", unit}})
-                       : source.words.get("plot.position",
-                                          {{"axis", m.measurement.axis}, {"unit", unit}});
+    plot.x_title =
+        m.measurement.kind == "diagonal"
+            ? source.words.get("plot.along", {{"unit", unit}})
+            : source.words.get("plot.position", {{"axis", m.measurement.axis}, {"unit", unit}});
     plot.y_title = source.words.get("plot.deviation", {{"unit", unit_text(before->quantity)}});
     plot.language = source.language();
     plot.degrees = target->quantity == Quantity::angle;
     plot.empty_text = source.words.get("plot.nothing");
-    Curve band = curve_of(*target, *U, pale(style.text), Dash::solid,
-                          source.words.get("plot.predicted"));
+    Curve band =
+        curve_of(*target, *U, pale(style.text), Dash::solid, source.words.get("plot.predicted"));
     band.kind = Curve::Kind::band;
     band.width = 0.3;
     for (const double v : band.y) band.y2.push_back(-v);
-    plot.curves = {std::move(band),
-                   curve_of(*target, *before, style.minus, Dash::dashed,
-                            source.words.get("plot.before")),
-                   curve_of(*target, *after, style.plus, Dash::solid,
-                            source.words.get("plot.after"))};
+    plot.curves = {
+        std::move(band),
+        curve_of(*target, *before, style.minus, Dash::dashed, source.words.get("plot.before")),
+        curve_of(*target, *after, style.plus, Dash::solid, source.words.get("plot.after"))};
     plot.curves[1].marker = Marker::down;
     plot.curves[2].marker = Marker::up;
     plots.push_back(std::move(plot));

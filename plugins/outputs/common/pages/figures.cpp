@@ -95,10 +95,10 @@ Plot empty_plot(const Source& source, const Measured& m, std::string title) {
   const Quantity position = position_of(m.rotary), deviation = deviation_of(m.rotary);
   Plot plot;
   plot.title = std::move(title);
-  plot.x_title =
-      along_diagonal(m)
-          ? source.words.get("plot.along", {{"unit", unit_text(position)}})
-          : source.words.get("plot.position", {{"axis", axis_of(m)}, {"unit", unit_text(position)}});
+  plot.x_title = along_diagonal(m)
+                     ? source.words.get("plot.along", {{"unit", unit_text(position)}})
+                     : source.words.get("plot.position",
+                                        {{"axis", axis_of(m)}, {"unit", unit_text(position)}});
   plot.y_title = source.words.get("plot.deviation", {{"unit", unit_text(deviation)}});
   plot.language = source.language();
   plot.degrees = m.rotary;

@@ -232,7 +232,8 @@ TEST(Square, BentFacesDropOutOfTheMean) {
   const Evaluation e = shop.evaluate();
   ASSERT_NE(value(e, "C0Y_LSQ"), nullptr);
   EXPECT_NEAR(value(e, "C0Y_LSQ")->value, truth(errors, 'X', 'Y'), 0.1 * urad);
-  EXPECT_GT(std::fabs(value(e, "square_error")->value - 40 * urad), 20 * urad) << "faces' own lines";
+  EXPECT_GT(std::fabs(value(e, "square_error")->value - 40 * urad), 20 * urad)
+      << "faces' own lines";
 }
 
 /// Two sides of a gantry against one square are two results, not one of four lines.
