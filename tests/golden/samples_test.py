@@ -217,6 +217,32 @@ class Samples(unittest.TestCase):
         self.assertGreater(abs(worst[0] - worst[1]), 4)
         self.assertGreater(max(map(abs, before[0])), 3.0 * max(map(abs, x1 + x2 + y)))
 
+    def test_gantry_tables_keep_both_sides_together(self):
+        """The tables of X and X2, read here: what is left of each side, of racking, and of the squareness."""
+        def mean(file):
+            values = [(statistics.fmean(p["+"]) + statistics.fmean(p["-"])) / 2.0
+                      for p in readings("13-gantry-diagonals", file).values()]
+            return [v - values[0] for v in values]
+
+        def table(axis):
+            with open(os.path.join(ROOT, "tests", "golden", "expected", "13-gantry-diagonals",
+                                   "siemens-840d-%s-EEC.ini" % axis), encoding="utf-8") as opened:
+                entries = re.findall(r"^\$AA_ENC_COMP\[0,(\d+),AX\d+\]=(\S+)$", opened.read(), re.M)
+            self.assertEqual([int(i) for i, _ in entries], list(range(31)))
+            return [1000.0 * float(value) for _, value in entries]
+
+        x1, x2 = mean("x1.csv"), mean("x2.csv")
+        apart = [b - a for a, b in zip(x1, x2)]
+        left = [[x - t for x, t in zip(side, table(axis))] for side, axis in ((x1, "X"), (x2, "X2"))]
+        for side in left:
+            self.assertLess(max(map(abs, side)), 0.01)
+        program = expected("13-gantry-diagonals")
+        self.assertAlmostEqual(program[("diagonal-straightness", "D1 00", "racking")], max(apart) - min(apart), delta=1e-6)
+        self.assertLess(max(b - a for a, b in zip(*left)) - min(b - a for a, b in zip(*left)), 0.02)
+        self.assertEqual("%.2f" % program[("diagonal-straightness", "D1 00", "slave_shift")], "67.20")
+        self.assertAlmostEqual(program[("diagonal-straightness", "D1 00", "slave_shift")] / 8.4,
+                               program[("diagonal-straightness", "D1 00", "C0Y")], delta=1e-6)
+
     def test_rotary_table_turns_about_its_lines(self):
         for file, count, point, lean in (
                 ("c.csv", 8, (412.300, 305.120, -148.600), (0.00012, -0.00008, 1.0)),
