@@ -376,6 +376,113 @@ def step_diagonal_900():
                           "BM 9", (900, 720, 720), 30, 58000, 8700)
 
 
+# --- a square, and body diagonals -------------------------------------------------------------------
+
+def square_turned_over():
+    """Two axes against a granite square; signs of plugins/analyses/square."""
+    noise, files, measurements = Noise(119), {}, []
+    squareness, square, askew = 22.0, -14.0, (63.0, -41.0)  # urad; of the set-up in both positions
+    places = {"X": [150.0 + 50.0 * i for i in range(11)], "Y": [50.0 + 50.0 * i for i in range(11)]}
+    bow = {"X": 3000.0, "Y": -2000.0}  # 0.001 um, about the middle of the stops: no slope of its own
+    for turned, a in zip((False, True), askew):
+        g = -square if turned else square
+        for axis, lateral in (("X", "Y"), ("Y", "X")):
+            slope = -a if axis == "X" else a + g - squareness
+            mean = []
+            for p in places[axis]:
+                t = (p - places[axis][0]) / 500.0
+                mean.append(round(4.0 * bow[axis] * t * (1.0 - t) + slope * 500.0 * t))
+            rows = standard_cycle(places[axis], [y - 150 for y in mean], [y + 150 for y in mean],
+                                  drawn(mean, noise, 300.0), drawn(mean, noise, 300.0), noise, runs=3)
+            name = "Q%s%s" % (axis, "-turned" if turned else "")
+            files[name.lower() + ".csv"] = table(rows, [MADE_UP])
+            measurements.append({"id": name, "kind": "straightness", "axis": axis, "lateral": lateral,
+                                 "square": "granite 500", "file": name.lower() + ".csv"})
+            if turned:
+                measurements[-1]["square_turned"] = True
+    story = ["X and Y against the faces of a granite square, and again after it was turned over. Its certificate states",
+             "1.5 urad, but it was dropped since: turned over it shows %.0f urad. The squareness of the machine, %.0f urad," % (
+                 square, squareness),
+             "depends on neither; with the certificate alone it would have been %.1f urad." % (squareness - square + 1.5)]
+    text = manifest(story, "19-square-turned-over", "Esempio Diciannove S.p.A.", "Modena", "2026-05-18",
+                    {"maker": "Sample Machines", "model": "BM 8", "serial": "S-0119", "structure": "bridge"},
+                    {"X": linear(800.0), "Y": linear(600.0)}, measurements,
+                    {"maker": '"Sample Optics"', "model": '"Length gauge"', "serial": '"G-001"',
+                     "calibrated": "2026-01-12", "certificate": '"SO-2026-0004"',
+                     "U_fixed_um": "0.2", "U_per_m_um": "0.5"}, GOOD_ROOM)
+    text += """
+[[square]]
+id = "granite 500"
+error_urad = 1.5
+U_urad = 2.0
+
+[run]
+analyses = ["square"]
+"""
+    files["campaign.toml"] = text
+    return files
+
+
+class Volume:
+    """Errors in um over t = 0..1 of each travel, and what the tables of X and Y add at every tenth."""
+    travel, reversal, B0Z = (800.0, 600.0, 500.0), (-1.2, -0.8, -0.6), 10.0
+    own = (lambda t: -30.0 * t + 2.5 * math.sin(5.0 * t), lambda t: 14.0 * t + 1.5 * math.sin(6.0 * t),
+           lambda t: 4.0 * t - 0.8 * math.sin(4.0 * t))
+
+    def __init__(self):
+        self.length = math.sqrt(sum(v * v for v in self.travel))
+        self.added = [[0.0] * 11 for _ in self.travel]
+
+    def axis(self, k, i):
+        return self.own[k](i / 10.0) + self.added[k][i]
+
+    def along(self, sign):
+        """Of a body diagonal: place, mm, and deviation from the first stop, 0.001 um."""
+        values = []
+        for i in range(11):
+            stop = [i if s > 0 else 10 - i for s in sign]
+            error = [self.axis(k, stop[k]) for k in range(3)]
+            error[0] += self.B0Z * 1e-3 * self.travel[2] * stop[2] / 10.0
+            values.append(sum(s * v * e for s, v, e in zip(sign, self.travel, error)) / self.length)
+        return [round(self.length * i / 10.0, 3) for i in range(11)], [1000.0 * (v - values[0]) for v in values]
+
+
+def body_diagonals():
+    noise, files, measurements, machine = Noise(120), {}, [], Volume()
+
+    def add(name, rows, **keys):
+        file = name.lower().replace(" ", "-") + ".csv"
+        files[file] = table(rows, [MADE_UP])
+        measurements.append({"id": name, "file": file, **keys})
+
+    back = sum(v * b for v, b in zip(machine.travel, machine.reversal)) / machine.length
+    for when, adjustment in (("00", "before"), ("final", "after")):
+        tables = {}
+        for k, axis in enumerate("XY"):
+            places = [machine.travel[k] * i / 10.0 for i in range(11)]
+            mean = [1000.0 * (machine.axis(k, i) - machine.axis(k, 0)) for i in range(11)]
+            rows = with_noise(places, mean, machine.reversal[k], noise, 300.0, runs=5)
+            add("%s %s" % (axis, when), rows, kind="axis", axis=axis, adjustment=adjustment)
+            means = [sum(r["deviation"] for r in rows if r["target"] == p) / 10000.0 for p in places]
+            tables[k] = [(-1.0, 1.0)[k] * round(m - means[0], 1) for m in means]  # Y: with the wrong sign
+        for name, sign in DIAGONALS.items():
+            ends = [dict(zip("XYZ", (v if s < 0 else 0.0 for v, s in zip(machine.travel, sign)))),
+                    dict(zip("XYZ", (v if s > 0 else 0.0 for v, s in zip(machine.travel, sign))))]
+            add("%s %s" % (name, when), with_noise(*machine.along(sign), back, noise, 300.0, runs=5),
+                kind="diagonal", **{"from": ends[0], "to": ends[1]})
+        for k, entries in tables.items():
+            machine.added[k] = entries
+    story = ["Pitch of X and Y was compensated, and the body diagonals became worse. The axis runs before and after say",
+             "why: the table of X did what it should, that of Y has the wrong sign. ISO 230-6 alone sees that something is",
+             "wrong, but not what: scales of X, Y and Z that cancel move no body diagonal."]
+    files["campaign.toml"] = manifest(
+        story, "20-body-diagonals", "Esempio Venti S.r.l.", "Piacenza", "2026-05-20",
+        {"maker": "Sample Machines", "model": "BM 8", "serial": "S-0120", "structure": "bridge"},
+        {axis: linear(v) for axis, v in zip("XYZ", machine.travel)}, measurements, environment=GOOD_ROOM,
+        analyses=["iso230-2", "iso230-6", "before-after"])
+    return files
+
+
 STORIES = {
     "13-gantry-diagonals": gantry_diagonals,
     "14-rotary-table": rotary_table,
@@ -383,4 +490,6 @@ STORIES = {
     "16-step-diagonal": step_diagonal_900,
     "17-straight-or-square": straight_or_square,
     "18-one-column": one_column,
+    "19-square-turned-over": square_turned_over,
+    "20-body-diagonals": body_diagonals,
 }

@@ -130,7 +130,9 @@ def table(rows, comment, rotary=False, extra=(), separator=","):
 
 
 def toml(value):
-    """A text, or a table of positions."""
+    """A text, a yes or no, or a table of positions."""
+    if isinstance(value, bool):
+        return str(value).lower()
     if isinstance(value, dict):
         return "{ %s }" % ", ".join("%s = %g" % item for item in value.items())
     return '"%s"' % value

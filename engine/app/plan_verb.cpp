@@ -293,7 +293,8 @@ Verb program_verb(Common& common) {
 Verb plan_verb(Common& common) {
   return {.name = "plan",
           .summary = "Plans measurements: stops and part programs",
-          .verbs = {triples_verb(common), program_verb(common), sign_probe_verb(common)}};
+          .verbs = {triples_verb(common), program_verb(common), plan_rotary_verb(common),
+                    plan_table_verb(common), sign_probe_verb(common)}};
 }
 
 }  // namespace nonio::app

@@ -41,6 +41,8 @@ Verb version_verb(Common& common);
 Verb help_verb(const Program& program);
 Verb completion_verb(const Program& program);
 /// Below `plan`.
+Verb plan_rotary_verb(Common& common);
+Verb plan_table_verb(Common& common);
 Verb sign_probe_verb(Common& common);
 
 }  // namespace nonio::app

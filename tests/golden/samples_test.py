@@ -11,6 +11,7 @@ import importlib.util
 import io
 import math
 import os
+import re
 import statistics
 import sys
 import tempfile
@@ -55,6 +56,17 @@ def evaluated(campaign, file):
             "E": max(both) - min(both), "A": max(upper) - min(lower),
             "Ps_max": 6.0 * max(S_j), "Ps_mean": 6.0 * statistics.fmean(S_j),
             "U_max": max(abs(b) for b in B_i), "U_mean": statistics.fmean(abs(b) for b in B_i)}
+
+
+def expected(campaign):
+    """{(analysis, measurement, value): number} of what golden.program has stored."""
+    out = {}
+    with open(os.path.join(ROOT, "tests", "golden", "expected", campaign, "results.txt"), encoding="utf-8") as opened:
+        for line in opened:
+            found = re.match(r"analyses\[(.+?)/(.+?)#1\]\.values\.(.+?)\.value = (.+)", line)
+            if found:
+                out[found.group(1, 2, 3)] = float(found.group(4))
+    return out
 
 
 def pass_means(campaign, file):
@@ -205,6 +217,32 @@ class Samples(unittest.TestCase):
         self.assertGreater(abs(worst[0] - worst[1]), 4)
         self.assertGreater(max(map(abs, before[0])), 3.0 * max(map(abs, x1 + x2 + y)))
 
+    def test_gantry_tables_keep_both_sides_together(self):
+        """The tables of X and X2, read here: what is left of each side, of racking, and of the squareness."""
+        def mean(file):
+            values = [(statistics.fmean(p["+"]) + statistics.fmean(p["-"])) / 2.0
+                      for p in readings("13-gantry-diagonals", file).values()]
+            return [v - values[0] for v in values]
+
+        def table(axis):
+            with open(os.path.join(ROOT, "tests", "golden", "expected", "13-gantry-diagonals",
+                                   "siemens-840d-%s-EEC.ini" % axis), encoding="utf-8") as opened:
+                entries = re.findall(r"^\$AA_ENC_COMP\[0,(\d+),AX\d+\]=(\S+)$", opened.read(), re.M)
+            self.assertEqual([int(i) for i, _ in entries], list(range(31)))
+            return [1000.0 * float(value) for _, value in entries]
+
+        x1, x2 = mean("x1.csv"), mean("x2.csv")
+        apart = [b - a for a, b in zip(x1, x2)]
+        left = [[x - t for x, t in zip(side, table(axis))] for side, axis in ((x1, "X"), (x2, "X2"))]
+        for side in left:
+            self.assertLess(max(map(abs, side)), 0.01)
+        program = expected("13-gantry-diagonals")
+        self.assertAlmostEqual(program[("diagonal-straightness", "D1 00", "racking")], max(apart) - min(apart), delta=1e-6)
+        self.assertLess(max(b - a for a, b in zip(*left)) - min(b - a for a, b in zip(*left)), 0.02)
+        self.assertEqual("%.2f" % program[("diagonal-straightness", "D1 00", "slave_shift")], "67.20")
+        self.assertAlmostEqual(program[("diagonal-straightness", "D1 00", "slave_shift")] / 8.4,
+                               program[("diagonal-straightness", "D1 00", "C0Y")], delta=1e-6)
+
     def test_rotary_table_turns_about_its_lines(self):
         for file, count, point, lean in (
                 ("c.csv", 8, (412.300, 305.120, -148.600), (0.00012, -0.00008, 1.0)),
@@ -220,6 +258,34 @@ class Samples(unittest.TestCase):
                 # 1 um of noise; B's start lies 20 um nearer to its leaning line.
                 self.assertAlmostEqual(radius, 261.0, delta=0.03)
             self.assertEqual(len({row["angle_deg"] for row in rows}), count)
+
+    def test_square_turned_over(self):
+        def slope(name):
+            points = readings("19-square-turned-over", name + ".csv").items()
+            x = [p for p, _ in points]
+            y = [(statistics.fmean(r["+"]) + statistics.fmean(r["-"])) / 2.0 for _, r in points]
+            return 1000.0 * statistics.linear_regression(x, y).slope  # um/m
+        stands, turned = slope("qx") + slope("qy"), slope("qx-turned") + slope("qy-turned")
+        self.assertAlmostEqual(-(stands + turned) / 2.0, 22.0, delta=0.01)
+        self.assertAlmostEqual((stands - turned) / 2.0, -14.0, delta=0.01)
+        program = expected("19-square-turned-over")
+        self.assertAlmostEqual(program[("square", "QX", "C0Y_LSQ")], -(stands + turned) / 2.0, delta=1e-6)
+        self.assertAlmostEqual(program[("square", "QX", "square_error")], (stands - turned) / 2.0, delta=1e-6)
+
+    def test_body_diagonals(self):
+        """What the program makes of each diagonal is what this file makes of it; the machine's is the largest."""
+        program = expected("20-body-diagonals")
+        for when in ("00", "final"):
+            names = ["%s %s" % (d, when) for d in ("PPP", "NPP", "PNP", "PPN")]
+            here = [evaluated("20-body-diagonals", n.lower().replace(" ", "-") + ".csv") for n in names]
+            for name, values in zip(names, here):
+                for value in ("E", "B", "R+", "R-", "A"):
+                    self.assertAlmostEqual(program[("iso230-6", name, value)], values[value], delta=1e-6)
+            for value in "EB":
+                self.assertAlmostEqual(program[("iso230-6", names[0], value + "_d")], max(v[value] for v in here), delta=1e-6)
+        self.assertGreater(program[("iso230-6", "PPP final", "E_d")], program[("iso230-6", "PPP 00", "E_d")])
+        self.assertAlmostEqual(program[("before-after", "X final", "left_share")], 0.0, delta=0.05)
+        self.assertAlmostEqual(program[("before-after", "Y final", "left_share")], 2.0, delta=0.1)
 
 
 if __name__ == "__main__":

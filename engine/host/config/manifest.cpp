@@ -181,6 +181,23 @@ std::vector<Sensor> read_sensors(TableReader& top) {
   return sensors;
 }
 
+std::vector<Square> read_squares(TableReader& top) {
+  constexpr double urad = 1e-6;
+  std::vector<Square> squares;
+  for (TableReader& reader : top.tables("square")) {
+    Square s;
+    s.name = reader.text("id");
+    s.error = reader.number("error_urad", urad);
+    s.U = reader.number("U_urad", urad);
+    const bool twice = std::any_of(squares.begin(), squares.end(),
+                                   [&](const Square& other) { return other.name == s.name; });
+    if (twice) reader.error("id", "\"" + s.name + "\" is there twice");
+    reader.finish();
+    squares.push_back(std::move(s));
+  }
+  return squares;
+}
+
 Environment read_environment(TableReader& top) {
   Environment environment;
   auto reader = top.table("environment");
@@ -271,7 +288,17 @@ Measurement read_measurement(TableReader& reader) {
   if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
     reader.error("lateral", "expected another axis than " + m.axis +
                                 ", which moves: along it the deviation is one of positioning");
-  if (m.kind == "straightness") m.reversal_of = reader.text("reversal_of");
+  if (m.kind == "straightness") {
+    m.reversal_of = reader.text("reversal_of");
+    m.square = reader.text("square");
+    m.square_turned = reader.flag("square_turned").value_or(false);
+    if (!m.square.empty() && !m.reversal_of.empty())
+      reader.error("square",
+                   "stands beside reversal_of; expected one of them: a square that was "
+                   "turned over has square_turned = true");
+    if (m.square_turned && m.square.empty())
+      reader.error("square_turned", "expected the key square beside it");
+  }
   if (m.kind == "angle") {
     m.lateral = reader.text("about");
     m.foot = reader.number("foot_mm", mm);
@@ -312,6 +339,24 @@ void check_reversals(std::vector<TableReader>& list, const std::vector<Measureme
   }
 }
 
+/// A line on the face of a square: of a square that there is, and once in each of its positions.
+void check_squares(std::vector<TableReader>& list, const Campaign& campaign) {
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Measurement& m = campaign.measurements[i];
+    if (m.square.empty()) continue;
+    const bool known = std::any_of(campaign.squares.begin(), campaign.squares.end(),
+                                   [&](const Square& s) { return s.name == m.square; });
+    if (!known)
+      list[i].error("square", "expected the id of a [[square]], found \"" + m.square + "\"");
+    std::string line = state_of(m) + "\n" + m.square + "\n" + m.axis + "\n" + m.lateral;
+    if (m.square_turned) line += "\nturned";
+    if (!seen.insert(std::move(line)).second)
+      list[i].error("square", "expected one line of " + m.axis + " towards " + m.lateral +
+                                  " on this square in each of its two positions");
+  }
+}
+
 void read_measurements(TableReader& top, Manifest& manifest, bool plans) {
   Campaign& campaign = manifest.campaign;
   const bool any_named = !campaign.machine.axes.empty();
@@ -334,7 +379,9 @@ void read_measurements(TableReader& top, Manifest& manifest, bool plans) {
                                "] slave, the name of the control's axis on that side");
     campaign.measurements.push_back(std::move(m));
   }
-  if (list.size() == campaign.measurements.size()) check_reversals(list, campaign.measurements);
+  if (list.size() != campaign.measurements.size()) return;
+  check_reversals(list, campaign.measurements);
+  check_squares(list, campaign);
 }
 
 void read_tables(TableReader& top, Manifest& manifest) {
@@ -400,6 +447,7 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   restore_axis_order(*root, campaign.machine);
   campaign.instrument = read_instrument(top);
   campaign.sensors = read_sensors(top);
+  campaign.squares = read_squares(top);
   campaign.environment = read_environment(top);
   if (auto reader = top.table("certificate")) {
     campaign.certificate = read_certificate(*reader);

@@ -86,8 +86,12 @@ Expected<void> check(const DiagonalReadings& r) {
   for (const PitchLine& line : r.X) curves.emplace_back(&line, "X");
   for (const PitchLine& line : r.Y) curves.emplace_back(&line, "Y");
   for (const MeanCurve& yaw : r.ECX) curves.emplace_back(&yaw, "ECX");
-  if (r.EYX) curves.emplace_back(&*r.EYX, "EYX");
-  if (r.EXY) curves.emplace_back(&*r.EXY, "EXY");
+  for (const auto& [direct, what] : {std::pair{&r.EYX, "EYX"}, std::pair{&r.EXY, "EXY"}}) {
+    if (!*direct) continue;
+    curves.emplace_back(&**direct, what);
+    if ((*direct)->reversed)
+      curves.emplace_back(&*(*direct)->reversed, std::string(what) + " turned over");
+  }
   for (const auto& [curve, what] : curves)
     if (auto ok = check_curve(*curve, r.n + 1, what); !ok) return ok;
   return {};
@@ -119,7 +123,7 @@ class System {
     for (const auto* direct : {&r.EYX, &r.EXY}) {
       if (*direct && (*direct)->whole) add_whole(**direct, source, first);
       if (*direct && !(*direct)->whole) add_odd(**direct, source, first, slope++);
-      if (*direct) source += n_ + 1;
+      if (*direct) source += (*direct)->readings();
       first = n_ - 1;
     }
   }
@@ -134,9 +138,8 @@ class System {
   const std::vector<double>& sigma() const { return sigma_; }
   /// First reading of a direct straightness: EYX, or (second) EXY.
   std::size_t first_of_direct(bool second) const {
-    const std::size_t both =
-        static_cast<std::size_t>(r_.EYX.has_value()) + static_cast<std::size_t>(r_.EXY.has_value());
-    return sigma_.size() - (both - (second && r_.EYX ? 1 : 0)) * (n_ + 1);
+    const std::size_t last = r_.EXY ? r_.EXY->readings() : 0;
+    return sigma_.size() - last - (!second && r_.EYX ? r_.EYX->readings() : 0);
   }
   bool noise_known() const { return noise_known_; }
   std::size_t unknowns() const { return unknowns_; }
@@ -187,9 +190,13 @@ class System {
     for (const GridLine& line : r_.third) add(line, 1.0);
     for (const auto* direct : {&r_.EYX, &r_.EXY})
       if (*direct) {
-        add(**direct, 1.0);
-        if ((*direct)->whole && (*direct)->zeroed)
-          sigma_.back() = unit_.back() = equal_.back() = 0.0;
+        const bool through_ends = (*direct)->whole && (*direct)->zeroed;
+        const auto add_one = [&](const MeanCurve& curve) {
+          add(curve, 1.0);
+          if (through_ends) sigma_.back() = unit_.back() = equal_.back() = 0.0;
+        };
+        add_one(**direct);
+        if ((*direct)->reversed) add_one(*(*direct)->reversed);
       }
     if (!known) sigma_ = equal_;
     return known;
@@ -236,28 +243,34 @@ class System {
     }
   }
 
+  /// factor times point i of a straightness, in the next row.
+  void put_direct(const DirectStraightness& c, std::size_t source, std::size_t i, double factor) {
+    y_[next_] += factor * c.mean_of(i);
+    const std::size_t curves = c.reversed ? 2 : 1;
+    for (std::size_t k = 0; k < curves; ++k)
+      N_(next_, at(source + k * c.mean.size() + i)) += factor / static_cast<double>(curves);
+  }
+
   double way(std::size_t i) const { return static_cast<double>(i) / static_cast<double>(n_); }
 
   /// Its even part is left alone: the diagonals may know that better than a straightness whose
   /// line and instrument are others.
-  void add_odd(const MeanCurve& c, std::size_t source, std::size_t first, std::size_t slope) {
+  void add_odd(const DirectStraightness& c, std::size_t source, std::size_t first,
+               std::size_t slope) {
     for (std::size_t i = 0; 2 * i < n_; ++i, ++next_) {
       A_.row(next_) = (place(i, first) - place(n_ - i, first)) / 2.0;
       A_(next_, at(slope)) = way(i) - 0.5;
-      y_[next_] = (c.mean[i] - c.mean[n_ - i]) / 2.0;
-      N_(next_, at(source + i)) += 0.5;
-      N_(next_, at(source + n_ - i)) -= 0.5;
+      put_direct(c, source, i, 0.5);
+      put_direct(c, source, n_ - i, -0.5);
     }
   }
 
-  void add_whole(const MeanCurve& c, std::size_t source, std::size_t first) {
+  void add_whole(const DirectStraightness& c, std::size_t source, std::size_t first) {
     for (std::size_t i = 1; i < n_; ++i, ++next_) {
       A_.row(next_) = place(i, first);
       for (const auto& [j, factor] :
-           {std::pair{i, 1.0}, {std::size_t{0}, way(i) - 1.0}, {n_, -way(i)}}) {
-        y_[next_] += factor * c.mean[j];
-        N_(next_, at(source + j)) += factor;
-      }
+           {std::pair{i, 1.0}, {std::size_t{0}, way(i) - 1.0}, {n_, -way(i)}})
+        put_direct(c, source, j, factor);
     }
   }
 
@@ -402,6 +415,29 @@ Closure closure_of(const System& system, std::size_t n, const Solution& solution
   return c;
 }
 
+/// Range of what the second line of X reads more than the first; there are two.
+DiagonalResult::Racking racking_of(const DiagonalReadings& r, const System& system,
+                                   const Solution& s, const std::vector<double>& ECX) {
+  const auto X = of_direction(r.X, r.D1.x_direction);
+  const auto [low, high] = std::minmax_element(ECX.begin(), ECX.end());
+  DiagonalResult::Racking out;
+  out.value = std::fabs(r.X[X[1]].across - r.X[X[0]].across) * (*high - *low);
+  out.high = static_cast<std::size_t>(high - ECX.begin());
+  out.low = static_cast<std::size_t>(low - ECX.begin());
+  Row J = Row::Zero(system.N().cols());
+  for (const auto& [k, sign] : {std::pair{X[0], 1.0}, std::pair{X[1], -1.0}}) {
+    const std::size_t first = system.first_of_X() + k * (r.n + 1);
+    J[at(first + out.high)] += sign;
+    J[at(first + out.low)] -= sign;
+  }
+  double square = 0.0;
+  for (Eigen::Index i = 0; i < J.size(); ++i)
+    square += std::pow(J[i] * system.sigma()[static_cast<std::size_t>(i)], 2);
+  out.u = s.factor() * std::sqrt(square);
+  out.shares = s.shares_of_readings(J);
+  return out;
+}
+
 void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s,
               DiagonalResult& out) {
   const auto X = of_direction(r.X, r.D1.x_direction);
@@ -445,6 +481,7 @@ void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s
         std::hypot(noise(one, i), noise(other, i)) / std::fabs(W), J);
   }
   out.slave_shift = W * out.C0Y;
+  out.racking = racking_of(r, system, s, out.ECX.value);
 }
 
 /// Variance of what is made of the readings, by repetition and all inputs.
@@ -460,16 +497,17 @@ double variance_of(const System& system, const Solution& s, const Row& J) {
 
 Agreement agreement(const System& system, const Solution& s, const Functional& even,
                     const DirectStraightness& direct, std::size_t first, double dof) {
-  const std::size_t n = direct.mean.size() - 1;
+  const std::size_t n = direct.mean.size() - 1, curves = direct.reversed ? 2 : 1;
   std::vector<Row> J;
   Agreement out;
   for (std::size_t k = 1; 2 * k <= n; ++k) {
     Row row = -s.by_readings(even[k]);
     for (const auto& [i, share] :
          {std::pair{k, 0.5}, {n - k, 0.5}, {std::size_t{0}, -0.5}, {n, -0.5}})
-      row[at(first + i)] += share;
+      for (std::size_t c = 0; c < curves; ++c)
+        row[at(first + c * (n + 1) + i)] += share / static_cast<double>(curves);
     out.difference.push_back(
-        (direct.mean[k] + direct.mean[n - k] - direct.mean[0] - direct.mean[n]) / 2.0 -
+        (direct.mean_of(k) + direct.mean_of(n - k) - direct.mean_of(0) - direct.mean_of(n)) / 2.0 -
         s.value(even[k]));
     out.u.push_back(std::sqrt(variance_of(system, s, row)));
     J.push_back(std::move(row));

@@ -219,6 +219,8 @@ class Gatherer {
       const Measurement& m = measurement(i);
       if (m.kind != kind || m.axis.empty() || m.axis[0] != axis[0]) continue;
       if (!lateral.empty() && (m.lateral.empty() || m.lateral[0] != lateral[0])) continue;
+      if (!m.reversal_of.empty()) continue;  // goes with the one that it names
+      if (!m.square.empty()) continue;       // of its face only the slope counts
       if (observations(i).size() == 0 || observations(i).axes.front().rotary) continue;
       const std::string of = state_of(m);
       const bool another = std::any_of(sets_.begin(), sets_.end(), [&](const Set& s) {
@@ -408,6 +410,13 @@ class Gatherer {
     return {};
   }
 
+  /// The measurement of the same line with the straightedge turned over.
+  std::optional<std::size_t> turned_over(std::size_t first) const {
+    for (std::size_t i = 0; i < in_.campaign.measurements.size(); ++i)
+      if (measurement(i).reversal_of == measurement(first).id) return i;
+    return std::nullopt;
+  }
+
   Step find_straightness() {
     const bool whole = in_.options.text("direct_straightness") == "whole";
     for (const bool along_x : {true, false}) {
@@ -427,6 +436,13 @@ class Gatherer {
       put(direct, *curve, both);
       direct.whole = whole;
       direct.zeroed = false;
+      if (const auto turned = turned_over(found.front())) {
+        auto other_side = on_grid(*turned, along_x);
+        if (!other_side) return tl::unexpected<Finding>(other_side.error());
+        if (!other_side->has(both)) return one_direction({*turned});
+        put(direct.reversed.emplace(), *other_side, both);
+        direct.reversed->zeroed = false;
+      }
       (along_x ? out_.readings.EYX : out_.readings.EXY) = std::move(direct);
     }
     return {};

@@ -3,10 +3,12 @@
 // Squareness and straightness of two axes from the diagonals of their rectangle.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "doubt.h"
 #include "nonio/math/diagonals.h"
 #include "nonio/math/distributions.h"
+#include "nonio/math/square.h"
 #include "sets.h"
 
 using namespace nonio;
@@ -25,9 +27,10 @@ bool applies(const Campaign& campaign, const Measurement& m) {
 class Report {
  public:
   Report(const AnalysisInput& in, const Collected& c, const math::DiagonalResult& r,
-         const math::ReadingModel& model, Evaluation& e)
+         const math::ReadingModel& model, const Set& set, Evaluation& e)
       : in_(in),
         c_(c),
+        set_(set),
         r_(r),
         e_(e),
         known_(r.noise_known || r.dof >= enough_dof),
@@ -52,9 +55,11 @@ class Report {
           {.id = "diagonals.flat",
            .attention = true,
            .evidence = {{"gain", gain, Quantity::ratio}, {"limit", most, Quantity::ratio}}});
-      return add_squareness();
+      add_squareness();
+      return compare_squares();
     }
     add_squareness();
+    compare_squares();
     series("ECX", c_.x_axis, r_.ECX, Quantity::small_angle);
     if (r_.separable())
       add_both();
@@ -137,6 +142,17 @@ class Report {
         for (double& u : *parts) u *= std::fabs(W);
       value("slave_shift", *r_.slave_shift, Quantity::deviation, std::fabs(W) * r_.u_C0Y, shares);
     }
+    if (r_.racking) add_racking(*r_.racking);
+  }
+
+  /// The range of many values that only scatter is 4 of their standard deviations; u is of two.
+  void add_racking(const math::DiagonalResult::Racking& racking) {
+    value("racking", racking.value, Quantity::deviation, racking.u, racking.shares);
+    const double noise = 4.0 / std::numbers::sqrt2 * racking.u;
+    if (known_ && racking.value <= noise)
+      e_.findings.push_back({.id = "diagonals.racking-noise",
+                             .evidence = {{"racking", racking.value, Quantity::deviation},
+                                          {"noise", noise, Quantity::deviation}}});
   }
 
   void add_both() {
@@ -170,6 +186,41 @@ class Report {
       f.evidence.push_back({"half_width", bound * r.Lx / r.Ly, Quantity::deviation});
     }
     e_.findings.push_back(std::move(f));
+  }
+
+  /// A square of the same plane and state: no reading of it is in the diagonals.
+  void compare_squares() {
+    constexpr double level = 0.01;
+    if (!known_ || !complete_) return;
+    for (const math::SquareLines& lines : math::squares_of(in_.campaign)) {
+      if (lines.first != c_.x_axis || lines.second != c_.y_axis) continue;
+      if (lines.state != set_.name && !lines.state.empty()) continue;
+      const auto s = math::squareness_of(in_.campaign, *in_.all, lines);
+      if (!s || s->dof == 0.0 || !s->model.missing.empty()) continue;
+      const math::BudgetOf of_square(s->model, s->largest_u, s->dof, Quantity::deviation);
+      const math::Expanded a = budget_.expand(r_.lsq.u_C0Y, r_.lsq.shares_C0Y),
+                           b = of_square.expand(s->u, s->shares);
+      const math::OneQuantity one = math::one_quantity(r_.lsq.C0Y, a, s->value, b);
+      const bool differs = math::significant(one.p, level);
+      for (const std::size_t i : lines.all()) use(in_.campaign.measurements[i].id);
+      if (!differs) {
+        const double k = math::coverage_factor(one.dof);
+        e_.values.push_back({"C0Y_both", one.value, Quantity::small_angle, k * one.u, k, {}});
+      }
+      e_.findings.push_back(
+          {.id = differs ? "diagonals.squareness-disagrees" : "diagonals.squareness-agrees",
+           .attention = differs,
+           .evidence = {{"diagonals", r_.lsq.C0Y, Quantity::small_angle},
+                        {"U_diagonals", *a.U, Quantity::small_angle},
+                        {"square", s->value, Quantity::small_angle},
+                        {"U_square", *b.U, Quantity::small_angle},
+                        {"p", one.p, Quantity::probability}},
+           .texts = {{"name", lines.square}}});
+      return;  // one square is compared
+    }
+  }
+  void use(const std::string& id) {
+    if (std::find(e_.uses.begin(), e_.uses.end(), id) == e_.uses.end()) e_.uses.push_back(id);
   }
 
   /// A straightness measured directly, with the even part that the diagonals have without it.
@@ -217,6 +268,7 @@ class Report {
 
   const AnalysisInput& in_;
   const Collected& c_;
+  const Set& set_;
   const math::DiagonalResult& r_;
   Evaluation& e_;
   bool known_;
@@ -248,7 +300,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   if (!model.missing.empty()) e.findings.push_back(math::missing_finding(model.missing));
   const auto solved = math::solve_diagonals(collected->readings, &model);
   if (!solved) return fail(solved.error());
-  Report(in, *collected, *solved, model, e).fill(set == &sets.front());
+  Report(in, *collected, *solved, model, *set, e).fill(set == &sets.front());
   return e;
 }
 

@@ -36,7 +36,11 @@ class Lines {
       put(std::move(of), ++group, {line->cx, line->cy});
     }
     for (const auto& [direct, step] : {std::pair{&r_.EYX, step_x}, std::pair{&r_.EXY, step_y}})
-      if (*direct) put_other(along(**direct, step), BudgetLine::Kind::lateral, ++group);
+      if (*direct) {
+        put_other(along(**direct, step), BudgetLine::Kind::lateral, ++group);
+        if (const auto& turned = (*direct)->reversed)
+          put_other(along(*turned, step), BudgetLine::Kind::lateral, ++group);
+      }
     // One curve without repetition: then the residuals of all give the noise.
     if (std::any_of(out_.begin(), out_.end(), [](const BudgetLine& l) { return l.u == 0.0; }))
       for (BudgetLine& line : out_) line.u = 0.0;

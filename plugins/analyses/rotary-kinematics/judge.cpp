@@ -20,6 +20,7 @@ constexpr double significant = 0.01;      // of a wave
 constexpr double surely = 1e-3;           // residuals against a stated sigma
 constexpr double no_circle_share = 1e-3;  // of the radius, where no sigma is known
 constexpr double half_turn = std::numbers::pi, full_turn = 2.0 * std::numbers::pi;
+constexpr double opposite = 1e-3;     // rad, of half a turn between two places
 constexpr double few = 7;             // degrees of freedom below which Student's factor is large
 constexpr double shear_unit = 10e-6;  // rad, in which the sensitivity of an arc is told
 
@@ -85,6 +86,7 @@ class Judge {
     out_.given = true;
     tell_points();
     tell_waves();
+    tell_two_points();
     tell_tolerances();
     return std::move(out_);
   }
@@ -218,6 +220,34 @@ class Judge {
                                        deg("at", axial_.phase),
                                        {"p", axial_.p, Quantity::probability}}));
     if (wish_.use_angles) tell_angles();
+  }
+
+  /// The classic method: the middle of two places half a turn apart, the axis taken as parallel to
+  /// an axis of the machine. What it would have said of these readings.
+  void tell_two_points() {
+    const RotaryFit& fit = out_.fit;
+    const auto& all = out_.centres;
+    if (all.size() < 3) return;
+    for (std::size_t a = 0; a < all.size(); ++a)
+      for (std::size_t b = a + 1; b < all.size(); ++b) {
+        const double apart = std::remainder(all[b].angle - all[a].angle, full_turn);
+        if (std::fabs(std::fabs(apart) - half_turn) > opposite) continue;
+        math::Vector3 off{};
+        double along = 0.0, size = 0.0, steepest = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          off[k] = (all[a].at[k] + all[b].at[k]) / 2.0 - fit.centre[k];
+          along += off[k] * fit.direction[k];
+          steepest = std::max(steepest, std::fabs(fit.direction[k]));
+        }
+        for (std::size_t k = 0; k < 3; ++k) size += std::pow(off[k] - along * fit.direction[k], 2);
+        const double u = out_.sigma / 2.0 * std::sqrt(1.0 / all[a].weight + 1.0 / all[b].weight);
+        out_.findings.push_back(finding(
+            "rotary.two-points", false,
+            {deg("from", all[a].angle), deg("to", all[b].angle), um("difference", std::sqrt(size)),
+             um("U_two", out_.k * u), um("U", U_centre()),
+             urad("tilt", std::acos(std::min(1.0, steepest))), urad("U_tilt", U_direction())}));
+        return;
+      }
   }
 
   /// Encoder against circle: larger than the rest, the angles do not deserve their trust.

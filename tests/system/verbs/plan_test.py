@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """nonio plan: the planner, the programs, and both in a campaign."""
 import json
+import math
 import re
 import unittest
 
@@ -100,6 +101,96 @@ class Triples(VerbTest):
                 (["--x", "400", "--y", "400", "--program", "p"], "want a control"),
                 (["--x", "400", "--y", "300", "--program", "p", "--control", "gcode", "--choose", "99"], "--choose")):
             done = self.nonio("plan", "triples", *args, expect=2)
+            self.assertIn(words, done.stderr, args)
+
+
+
+class LookUpTable(VerbTest):
+    def test_it_is_every_primitive_triple_below_300_to_the_third_decimal(self):
+        wanted = set()
+        for a in range(1, 300):  # every pair of legs, not Euclid's formula
+            for b in range(a, 300):
+                c = math.isqrt(a * a + b * b)
+                if c * c == a * a + b * b and c < 300 and math.gcd(a, b) == 1:
+                    wanted.add((a, b, c, f"{b / a:.3f}"))
+        self.assertEqual(len(wanted), 47)
+        for sort, key in (("ratio", lambda r: r[1] / r[0]), ("c", lambda r: r[2])):
+            shown = self.nonio("plan", "table", "--sort", sort).stdout.splitlines()
+            self.assertEqual(shown[0].split(), ["a", "b", "c", "b/a"])
+            rows = [(int(a), int(b), int(c), ratio) for a, b, c, ratio in map(str.split, shown[1:])]
+            self.assertEqual(set(rows), wanted)
+            self.assertEqual(len(rows), 47)
+            self.assertEqual([key(r) for r in rows], sorted(key(r) for r in rows))
+
+    def test_rows_that_fit_go_by_their_cost(self):
+        whole = self.json_of("plan", "table", "--x", 20000, "--y", 12000, "--max-step", 500, "--feed", 5000,
+                             "--dwell", 3, "--runs", 2)
+        self.assertEqual((whole["schema"], whole["sort"]), ("nonio-triple-table/1", "minutes"))
+        cost = []
+        for r in whole["rows"]:
+            self.assertEqual(r["a"] ** 2 + r["b"] ** 2, r["c"] ** 2)
+            for step, leg, travel, cover in (("step_x_mm", "a", 20000, "cover_x"), ("step_y_mm", "b", 12000, "cover_y")):
+                self.assertAlmostEqual(r[step], r[leg] * r["q"], places=6)
+                self.assertLessEqual(r[step], 500)
+                self.assertAlmostEqual(r[cover], r["n"] * r[step] / travel, places=9)
+                self.assertGreaterEqual(r[cover], 0.9)
+            way = r["n"] * (r["step_x_mm"] + r["step_y_mm"] + 2 * r["step_d_mm"])
+            cost.append(4 * (way / 5000 + 4 * (r["n"] + 1) * 3 / 60))
+            self.assertAlmostEqual(r["minutes"], cost[-1], places=6)
+        self.assertGreater(len(cost), 3)
+        self.assertEqual(cost, sorted(cost))
+
+    def test_programs_of_every_row(self):
+        out = self.site / "programs"
+        table = ["plan", "table", "--x", 4000, "--y", 3000, "--max-step", 400, "--least-cover", 0.99]
+        rows = self.json_of(*table)["rows"]
+        self.nonio(*table, "--program", out, "--control", "gcode")
+        folders = sorted(p.name for p in out.iterdir())
+        self.assertEqual(folders, [f"{i + 1:02}-{r['a']}-{r['b']}-{r['c']}" for i, r in enumerate(rows)])
+        for folder in folders:
+            self.assertTrue((out / folder / "program-gcode-D2.ngc").exists(), folder)
+
+    def test_what_cannot_be(self):
+        for args, status, words in ((["--x", 4000], 2, "expected both"), (["--sort", "minutes"], 2, "--x and --y"),
+                                    (["--program", "p"], 2, "--x and --y"),
+                                    (["--x", 4000, "--y", 3000, "--program", "p"], 2, "want a control"),
+                                    (["--x", 4000, "--y", 4000, "--max-step", 2], 1, "--max-step"),
+                                    (["--x", 4000, "--y", 100, "--least-cover", 1], 1, "--least-cover")):
+            self.assertIn(words, self.nonio("plan", "table", *args, expect=status).stderr, args)
+
+
+class RotaryPlan(VerbTest):
+    def test_its_figures_are_those_of_the_theory(self):
+        whole = self.json_of("plan", "rotary", "--axis", "C", "--balls", 6, "--radius", 300, "--probe-u", 10,
+                             "--trials", 4000, "--seed", 7)
+        self.assertEqual(whole["schema"], "nonio-rotary-plan/1")
+        self.assertAlmostEqual(whole["U_two_points_um"], 20 / math.sqrt(2), places=9)
+        asked = [(r["balls"], round(r["radius_mm"], 6)) for r in whole["plans"]]
+        self.assertEqual(asked[0], (6, 300))
+        for radius in (300, 500, 50):
+            for balls in (3, 4, 5, 10):
+                self.assertIn((balls, radius), asked)
+        for r in whole["plans"]:  # an rms of 4,000 has 1.1 % in each coordinate: 5 of them
+            N, R = r["balls"], r["radius_mm"]
+            for name, theory in (("U_across_um", 20 * math.sqrt(2 / N)), ("U_along_um", 20 / math.sqrt(N)),
+                                 ("centre_rms_um", 10 * math.sqrt(5 / N)), ("U_tilt_urad", 2e4 * math.sqrt(2 / N) / R),
+                                 ("direction_rms_urad", 2e4 / (R * math.sqrt(N)))):
+                self.assertAlmostEqual(r[name] / theory, 1, delta=0.055, msg=(name, N, R))
+        self.assertEqual(whole, self.json_of("plan", "rotary", "--axis", "C", "--balls", 6, "--radius", 300,
+                                             "--probe-u", 10, "--trials", 4000, "--seed", 7))
+
+    def test_the_fewest_balls(self):
+        plan = ["plan", "rotary", "--axis", "C", "--radius", 250, "--probe-u", 1.5, "--trials", 100]
+        self.assertEqual(self.json_of(*plan, "--want-centre", 2)["fewest_balls"], 5)  # 3 sqrt(2/5) = 1.90
+        self.assertEqual(self.json_of(*plan, "--want-direction", 4)["fewest_balls"], 18)  # 12 sqrt(2/18) = 4
+        self.assertIn("balls reach", self.nonio(*plan, "--want-centre", 0.01, expect=1).stderr)
+
+    def test_what_cannot_be(self):
+        for args, words in ((["--axis", "X", "--radius", 250], "rotary axis"),
+                            (["--axis", "C", "--radius", 0.1], "radius"),
+                            (["--axis", "C", "--radius", 250, "--balls", 2], "--balls"),
+                            (["--axis", "C", "--radius", 250, "--arc", 361], "--arc")):
+            done = self.nonio("plan", "rotary", "--probe-u", 2, *args, expect=2)
             self.assertIn(words, done.stderr, args)
 
 

@@ -129,6 +129,10 @@ constexpr Key campaign_file_keys[] = {
      .help = "A sensor of temperature, pressure or humidity: a separate instrument with its "
              "own calibration.",
      .keys = sensor_keys},
+    {.name = "square",
+     .holds = tables,
+     .help = "A square against whose faces two axes were read.",
+     .keys = square_keys},
     {.name = "environment",
      .holds = table,
      .help = "Contributions to the uncertainty other than the instrument, as full ranges "

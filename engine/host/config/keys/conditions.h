@@ -104,6 +104,25 @@ inline constexpr Key sensor_keys[] = {
     {.name = "issuer", .holds = text, .help = "Laboratory that issued the certificate."},
 };
 
+inline constexpr Key square_keys[] = {
+    {.name = "id",
+     .holds = text,
+     .help = "Name by which the measurements on its faces refer to the square.",
+     .required = true,
+     .missing = "a name"},
+    {.name = "error_urad",
+     .holds = number,
+     .help = "Deviation of the angle between its faces from 90 degrees, as its certificate states "
+             "it; positive: more than 90 degrees.",
+     .unit = "urad"},
+    {.name = "U_urad",
+     .holds = number,
+     .help = "Expanded uncertainty of error_urad, k = 2.",
+     .unit = "urad",
+     .wanted = "expected an uncertainty above 0",
+     .least = 1e-6},
+};
+
 inline constexpr Key environment_keys[] = {
     {.name = "misalignment_mm",
      .holds = number,

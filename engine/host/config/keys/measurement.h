@@ -93,6 +93,16 @@ inline constexpr Key measurement_keys[] = {
      .help = "The measurement of the same line before the straightedge was turned over: both give "
              "the straightness of the motion without that of the straightedge.",
      .only = {"kind", straightness}},
+    {.name = "square",
+     .holds = text,
+     .help = "The [[square]] on whose face the deviation was read: two lines, each axis towards "
+             "the other, give the squareness.",
+     .only = {"kind", straightness}},
+    {.name = "square_turned",
+     .holds = flag,
+     .help = "Whether the square had been turned over about one of its faces: its own error then "
+             "drops out of the mean.",
+     .only = {"kind", straightness}},
     {.name = "exclude",
      .holds = wholes,
      .help = "Lines of the file whose readings are excluded from all analyses; the results "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Diagonals as they were read, before and after a compensation; and the plane as the machine draws
-// it, its errors exaggerated.
+// Diagonals as they were read, before and after a compensation, and any line of both states; and the
+// plane as the machine draws it, its errors exaggerated.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -152,6 +152,39 @@ std::optional<Plot> plane_plot(const Source& source, const Evaluation& e) {
 }
 
 }  // namespace
+
+void add_before_after(const Source& source, const Measured& m, std::vector<Plot>& plots) {
+  for (const auto* a : m.analyses) {
+    const PointTable& p = a->evaluation.points;
+    const auto *target = p.column("target"), *before = p.column("before"),
+               *after = p.column("after"), *U = p.column("U_predicted");
+    if (target == nullptr || before == nullptr || after == nullptr || U == nullptr) continue;
+    const Style& style = source.look.style;
+    const std::string unit = unit_text(target->quantity);
+    Plot plot;
+    plot.title = source.words.get("plot.before_after");
+    plot.x_title =
+        m.measurement.kind == "diagonal"
+            ? source.words.get("plot.along", {{"unit", unit}})
+            : source.words.get("plot.position", {{"axis", m.measurement.axis}, {"unit", unit}});
+    plot.y_title = source.words.get("plot.deviation", {{"unit", unit_text(before->quantity)}});
+    plot.language = source.language();
+    plot.degrees = target->quantity == Quantity::angle;
+    plot.empty_text = source.words.get("plot.nothing");
+    Curve band =
+        curve_of(*target, *U, pale(style.text), Dash::solid, source.words.get("plot.predicted"));
+    band.kind = Curve::Kind::band;
+    band.width = 0.3;
+    for (const double v : band.y) band.y2.push_back(-v);
+    plot.curves = {
+        std::move(band),
+        curve_of(*target, *before, style.minus, Dash::dashed, source.words.get("plot.before")),
+        curve_of(*target, *after, style.plus, Dash::solid, source.words.get("plot.after"))};
+    plot.curves[1].marker = Marker::down;
+    plot.curves[2].marker = Marker::up;
+    plots.push_back(std::move(plot));
+  }
+}
 
 void add_diagonals(const Source& source, const Measured& m, std::vector<Plot>& plots) {
   for (const auto* a : m.analyses)

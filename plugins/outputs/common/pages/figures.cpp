@@ -81,6 +81,10 @@ Colour lighter(Colour c, float share) {
   return {mix(c.red), mix(c.green), mix(c.blue)};
 }
 
+bool along_diagonal(const Measured& m) {
+  return m.measurement.kind == "diagonal" && m.observations.axes.size() > 1;
+}
+
 /// A diagonal has none of its own: that of its first column.
 std::string axis_of(const Measured& m) {
   const auto& axes = m.observations.axes;
@@ -91,8 +95,10 @@ Plot empty_plot(const Source& source, const Measured& m, std::string title) {
   const Quantity position = position_of(m.rotary), deviation = deviation_of(m.rotary);
   Plot plot;
   plot.title = std::move(title);
-  plot.x_title =
-      source.words.get("plot.position", {{"axis", axis_of(m)}, {"unit", unit_text(position)}});
+  plot.x_title = along_diagonal(m)
+                     ? source.words.get("plot.along", {{"unit", unit_text(position)}})
+                     : source.words.get("plot.position",
+                                        {{"axis", axis_of(m)}, {"unit", unit_text(position)}});
   plot.y_title = source.words.get("plot.deviation", {{"unit", unit_text(deviation)}});
   plot.language = source.language();
   plot.degrees = m.rotary;
@@ -124,15 +130,21 @@ Curve mean_curve(const Source& source, std::vector<double> x, std::vector<double
 
 using Run = std::vector<std::pair<double, double>>;
 
-/// The readings by direction and run, by position.
-std::map<std::pair<bool, std::uint32_t>, Run> runs_of(const Observations& o) {
+/// The readings by direction and run, by position; along a diagonal from its begin on.
+std::map<std::pair<bool, std::uint32_t>, Run> runs_of(const Measured& m) {
   std::map<std::pair<bool, std::uint32_t>, Run> runs;
+  const Observations& o = m.observations;
   const auto& axis = o.axes.front();
+  const std::vector<double> places = along_line(m);
+  const auto& ends = m.measurement;
+  const bool falls = along_diagonal(m) && ends.from.contains(axis.axis) &&
+                     ends.to.contains(axis.axis) && ends.to.at(axis.axis) < ends.from.at(axis.axis);
   const double px = unit_of(position_of(axis.rotary)).per_si;
   const double py = unit_of(deviation_of(o.angular)).per_si;
   for (std::size_t i = 0; i < o.size(); ++i) {
-    const bool minus = i < axis.approach.size() && axis.approach[i] < 0;
-    runs[{minus, i < o.run.size() ? o.run[i] : 0}].emplace_back(axis.position[i] * px,
+    const bool minus =
+        i < axis.approach.size() && axis.approach[i] != 0 && (axis.approach[i] < 0) != falls;
+    runs[{minus, i < o.run.size() ? o.run[i] : 0}].emplace_back(places[i] * px,
                                                                 o.deviation[i] * py);
   }
   for (auto& [key, run] : runs)
@@ -142,9 +154,9 @@ std::map<std::pair<bool, std::uint32_t>, Run> runs_of(const Observations& o) {
 }
 
 /// Of very many runs the range only: single lines would be a blot of many megabytes.
-void add_ranges(const Source& source, const Observations& o, Plot& plot) {
+void add_ranges(const Source& source, const Measured& m, Plot& plot) {
   std::map<std::pair<bool, double>, std::pair<double, double>> ranges;
-  for (const auto& [key, run] : runs_of(o))
+  for (const auto& [key, run] : runs_of(m))
     for (const auto& [x, y] : run) {
       const auto [it, fresh] = ranges.try_emplace({key.first, x}, y, y);
       it->second = {std::min(it->second.first, y), std::max(it->second.second, y)};
@@ -184,10 +196,11 @@ Colour colour_of_run(std::size_t place, std::size_t count) {
           mix(scale[from].blue, scale[from + 1].blue)};
 }
 
-void add_runs(const Source& source, const Observations& o, Plot& plot) {
-  const auto runs = runs_of(o);
+void add_runs(const Source& source, const Measured& m, Plot& plot) {
+  const Observations& o = m.observations;
+  const auto runs = runs_of(m);
   constexpr std::size_t most_runs = 60, most_readings = 40000;
-  if (runs.size() > most_runs || o.size() > most_readings) return add_ranges(source, o, plot);
+  if (runs.size() > most_runs || o.size() > most_readings) return add_ranges(source, m, plot);
   std::set<std::uint32_t> numbers;
   for (const auto& [key, run] : runs) numbers.insert(key.second);
   std::set<std::uint32_t> named;
@@ -214,7 +227,7 @@ std::optional<Plot> runs_plot(const Source& source, const Measured& m) {
   if (o.axes.empty() || o.size() == 0) return {};
   Plot plot = empty_plot(source, m, source.words.get("plot.runs"));
   plot.y_title = source.words.get("plot.deviation", {{"unit", unit_text(deviation_of(o.angular))}});
-  add_runs(source, o, plot);
+  add_runs(source, m, plot);
   const std::size_t readings = plot.curves.size();
   const Points points(m, {"mean+", "mean-"});
   for (const bool plus : {true, false})
@@ -404,7 +417,10 @@ void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
     if (plot) plots.push_back(std::move(*plot));
   };
   for (const std::string& kind : source.look.plots) {
-    if (kind == "runs" && over_one_position(m.measurement)) add(runs_plot(source, m));
+    if (kind == "runs" && over_one_position(m.measurement)) {
+      add(runs_plot(source, m));
+      add_before_after(source, m, plots);
+    }
     if (kind == "iso") add(iso_plot(source, m));
     if (kind == "vdi") add(vdi_plot(source, m));
     if (kind == "reversal") add(reversal_plot(source, m));

@@ -141,9 +141,6 @@ std::string heading_of(const Source& source, const Measured& m) {
   return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});
 }
 
-namespace {
-
-/// Where the targets lie: positions of the axis, of a diagonal the distance from its begin.
 std::vector<double> along_line(const Measured& m) {
   const auto& axes = m.observations.axes;
   if (m.measurement.kind != "diagonal" || axes.size() < 2) return axes.front().position;
@@ -159,8 +156,6 @@ std::vector<double> along_line(const Measured& m) {
   }
   return along;
 }
-
-}  // namespace
 
 /// How the test was made, as the readings show it.
 std::string test_of(const Source& source, const Measured& m) {

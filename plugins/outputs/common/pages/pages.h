@@ -57,6 +57,8 @@ inline bool over_one_position(const Measurement& m) {
 std::string heading_of(const Source&, const Measured&);
 /// How the test was made, as the readings show it.
 std::string test_of(const Source&, const Measured&);
+/// Where the targets lie: positions of the axis, of a diagonal the distance from its begin.
+std::vector<double> along_line(const Measured&);
 /// Without the name of a standard whose plan of the test was not followed.
 std::string analysis_title(const Source&, const Results::Analysed&);
 /// Whether the test was made as the standard plans it, as the findings say. Of an axis that the
@@ -95,6 +97,8 @@ Expected<void> check_texts(const Campaign&, const reports::Fonts&);
 std::vector<Error> check_templates(const Templates&, const std::string& name,
                                    Expected<Look> (*look_of)(const Templates&, const std::string&));
 
+/// One line before and after an adjustment, with what was predicted and its U.
+void add_before_after(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// Diagonals before and after, and their plane with its errors exaggerated.
 void add_diagonals(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// The volume of step diagonals as a box of wire, its errors exaggerated.

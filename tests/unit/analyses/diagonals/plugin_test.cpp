@@ -119,6 +119,54 @@ struct Workpiece {
     observe(std::move(m), places, mean, {}).angular = true;
     scatter = lengths;
   }
+  /// EYX against a straightedge whose own error is this.
+  void straight(const std::string& id, const machine::Curve& edge) {
+    std::vector<Observations::AxisColumn> places{{"X", false, {}, {}}};
+    std::vector<double> mean;
+    for (const std::size_t i : count(rect.n)) {
+      const double x = rect.x(i);
+      places[0].position.push_back(x);
+      mean.push_back(4 * um - 3e-6 * x + errors.EYX(x) + edge(x));
+    }
+    Measurement m = named(id, "straightness", "X");
+    m.lateral = "Y";
+    observe(std::move(m), places, mean, {0.0, 1.0, 0.0});
+  }
+  void turned_over(const machine::Curve& edge) {
+    straight("SX", edge);
+    straight("SX turned", [edge](double x) { return -edge(x); });
+    campaign.measurements.back().reversal_of = "SX";
+  }
+  /// Both axes against a square that leans by g, as it stands and turned over about X.
+  void square(double g) {
+    campaign.squares.push_back({.name = "Q", .error = {}, .U = {}});
+    for (const double sign : {1.0, -1.0})
+      for (const bool x : {true, false}) {
+        std::vector<Observations::AxisColumn> places{{x ? "X" : "Y", false, {}, {}}};
+        std::vector<double> mean;
+        for (const std::size_t i : count(rect.n)) {
+          const double p = x ? rect.x(i) : rect.y(i);
+          places[0].position.push_back(p);
+          const machine::Vector at = machine::point(errors, {x ? p : 0.0, x ? 0.0 : p, 0.0});
+          mean.push_back(x ? at.y() : at.x() + sign * g * p);
+        }
+        Measurement m = named(std::string(x ? "QX" : "QY") + (sign < 0.0 ? " t" : ""),
+                              "straightness", x ? "X" : "Y");
+        m.state = "";
+        m.lateral = x ? "Y" : "X";
+        m.square = "Q";
+        m.square_turned = sign < 0.0;
+        observe(std::move(m), places, mean, {});
+      }
+  }
+  /// States everything that the manifest has of the uncertainty, small.
+  void states_all() {
+    campaign.instrument.U_fixed = 1e-9, campaign.instrument.U_per_length = 1e-10;
+    Environment& e = campaign.environment;
+    e.misalignment = e.temperature_range = 1e-3, e.temperature_difference = 0.01;
+    e.expansion_range = 1e-9, e.drift = 1e-10;
+    for (Axis& axis : campaign.machine.axes) axis.expansion = 1e-6;
+  }
   Workpiece& everything() {
     X("X1", 0.5);
     X("X2", 8.5);
@@ -471,7 +519,11 @@ TEST(DiagonalPlugin, UncertaintiesFromTheScatterCoverTheTruth) {
   for (const std::string how : {"two lines", "autocollimator", "one direction", "third diagonal"}) {
     std::mt19937 rng(seed + 2);
     const Errors errors = random_gantry(rng, rect);
-    double inside = 0.0, inside_k = 0.0, solved = 0.0;
+    double inside = 0.0, inside_k = 0.0, inside_racking = 0.0, solved = 0.0, low = 0.0, high = 0.0;
+    for (std::size_t i = 0; i <= rect.n; ++i) {
+      const double apart = -8.0 * errors.ECX(rect.x(i));
+      low = std::min(low, apart), high = std::max(high, apart);
+    }
     for (int c = 0; c < campaigns; ++c) {
       Workpiece w(rect, errors);
       w.rng.seed(seed + 100 + static_cast<unsigned>(c));
@@ -488,16 +540,173 @@ TEST(DiagonalPlugin, UncertaintiesFromTheScatterCoverTheTruth) {
                   static_cast<double>(rect.n - 1);
       }
       for (const Value& v : e.values)
-        if (v.name == "C0Y") inside_k += std::fabs(v.value - errors.C0Y) <= *v.repeatability;
+        if (v.name == "C0Y")
+          inside_k += std::fabs(v.value - errors.C0Y) <= *v.repeatability;
+        else if (v.name == "racking")
+          inside_racking += std::fabs(v.value - (high - low)) <= *v.repeatability;
     }
     std::cout << "seed " << seed + 2 << ", " << how << ": EYX " << 100.0 * inside / solved
-              << " %, C0Y " << 100.0 * inside_k / solved << " % of " << solved << "\n";
+              << " %, C0Y " << 100.0 * inside_k / solved << " %, racking "
+              << 100.0 * inside_racking / solved << " % of " << solved << "\n";
     EXPECT_GE(solved, 0.99 * campaigns) << how;
+    if (how == "two lines") {
+      EXPECT_GE(inside_racking, 0.93 * solved);
+      EXPECT_LE(inside_racking, 0.97 * solved);
+    }
     for (const double hit : {inside, inside_k}) {
       EXPECT_GE(hit, 0.93 * solved) << how;
       EXPECT_LE(hit, 0.97 * solved) << how;
     }
   }
+}
+
+/// A straightedge with 20 um of its own, even and odd about its middle.
+machine::Curve crooked(double length) {
+  return [length](double x) {
+    const double t = x / length;
+    return 20 * um * (4.0 * t * (1.0 - t) + std::sin(2.0 * std::numbers::pi * t));
+  };
+}
+
+TEST(DiagonalPlugin, AStraightedgeTurnedOverLeavesNothingOfItself) {
+  const Rectangle rect{12.0, 9.0, 12};
+  std::mt19937 rng(seed + 6);
+  const Errors errors = random_gantry(rng, rect);
+  const auto with = [&](bool turned, double scatter) {
+    Workpiece w(rect, errors);
+    w.scatter = scatter;
+    w.states_all();
+    w.everything();
+    turned ? w.turned_over(crooked(rect.Lx)) : w.straight("SX", crooked(rect.Lx));
+    return w;
+  };
+  const Evaluation exact = with(true, 0.0).evaluate();
+  const Series* f = series(exact, "EYX");
+  ASSERT_NE(f, nullptr) << ids(exact);
+  for (std::size_t i = 0; i <= rect.n; ++i)
+    EXPECT_NEAR(f->value[i], errors.EYX(f->position[i]), 0.05 * um);
+  EXPECT_EQ(exact.uses, (std::vector<std::string>{"D2", "Y", "X1", "X2", "SX", "SX turned"}));
+
+  const Evaluation turned = with(true, 0.5 * um).evaluate(), one = with(false, 0.5 * um).evaluate();
+  EXPECT_NE(finding(turned, "straightness-agrees"), nullptr) << ids(turned);
+  EXPECT_NE(finding(one, "straightness-disagrees"), nullptr) << ids(one);
+  const Series* wrong = series(one, "EYX");
+  ASSERT_NE(wrong, nullptr);
+  EXPECT_GT(std::fabs(wrong->value[3] - errors.EYX(wrong->position[3])), 15 * um)
+      << "the straightedge's own odd part";
+
+  Workpiece w = with(true, 0.5 * um);
+  for (double& x : w.all.back().axes[0].position)
+    if (x == rect.x(2)) x += 0.01;
+  expect_refused(w, "refused-pitch-points");
+}
+
+/// U of the curves, and how often the comparison sees a difference that is not there.
+TEST(DiagonalPlugin, UncertaintiesWithAStraightedgeTurnedOverCoverTheTruth) {
+  const Rectangle rect{12.0, 9.0, 6};
+  std::mt19937 rng(seed + 7);
+  std::cout << "seed " << seed + 7 << "\n";
+  const Errors errors = random_gantry(rng, rect);
+  constexpr int campaigns = 2000;
+  double f_inside = 0.0, g_inside = 0.0, solved = 0.0, false_alarms = 0.0, below_half = 0.0;
+  for (int c = 0; c < campaigns; ++c) {
+    Workpiece w(rect, errors);
+    w.rng.seed(seed + 5000 + static_cast<unsigned>(c));
+    w.scatter = 1 * um;
+    w.states_all();
+    w.everything();
+    w.scatter = 3 * um;
+    w.turned_over(crooked(rect.Lx));
+    const Evaluation e = w.evaluate();
+    const Series *f = series(e, "EYX"), *g = series(e, "EXY");
+    if (f == nullptr || g == nullptr) continue;
+    solved += 1.0;
+    false_alarms += finding(e, "straightness-disagrees") != nullptr;
+    for (const Finding& found : e.findings)
+      if (found.id.rfind("diagonals.straightness-", 0) == 0)
+        below_half += found.evidence.back().value < 0.5;
+    const double inner = static_cast<double>(rect.n - 1);
+    for (std::size_t i = 1; i < rect.n; ++i) {
+      f_inside += (std::fabs(f->value[i] - errors.EYX(rect.x(i))) <= f->U[i]) / inner;
+      g_inside += (std::fabs(g->value[i] - errors.EXY(rect.y(i))) <= g->U[i]) / inner;
+    }
+  }
+  std::cout << "EYX " << 100.0 * f_inside / solved << " %, EXY " << 100.0 * g_inside / solved
+            << " % of " << solved << ", false disagreements " << 100.0 * false_alarms / solved
+            << " %, p below 0.5: " << 100.0 * below_half / solved << " %\n";
+  EXPECT_GE(solved, 0.99 * campaigns);
+  for (const double hit : {f_inside, g_inside}) {
+    EXPECT_GE(hit, 0.94 * solved);
+    EXPECT_LE(hit, 0.965 * solved);
+  }
+  EXPECT_LE(false_alarms, 0.02 * solved);
+}
+
+/// Sides that run together: the range of what only scatters is said to be an upper limit.
+TEST(DiagonalPlugin, RackingIsNotTakenFromScatter) {
+  std::mt19937 rng(seed + 9);
+  const Rectangle rect{12.0, 9.0, 10};
+  Errors errors = random_gantry(rng, rect);
+  const auto racking_of = [&](double scatter) {
+    Workpiece w(rect, errors);
+    w.scatter = scatter;
+    w.X("X1", 0.5), w.X("X2", 8.5), w.Y(), w.D1(), w.D2();
+    return w.evaluate();
+  };
+  double low = 0.0, high = 0.0;
+  for (std::size_t i = 0; i <= rect.n; ++i) {
+    const double apart = -8.0 * errors.ECX(rect.x(i));
+    low = std::min(low, apart), high = std::max(high, apart);
+  }
+  const Evaluation racks = racking_of(0.5 * um);
+  EXPECT_NEAR(value(racks, "racking"), high - low, 2 * um);
+  EXPECT_EQ(finding(racks, "racking-noise"), nullptr) << ids(racks);
+  errors.ECX = machine::zero;
+  EXPECT_NE(finding(racking_of(0.5 * um), "racking-noise"), nullptr);
+}
+
+/// Diagonals and a square: one value where they agree, with a U that covers; a finding where not.
+TEST(DiagonalPlugin, SquarenessOfASquareIsOneValueOrAFinding) {
+  const Rectangle rect{1.2, 0.9, 6};
+  std::mt19937 rng(seed + 8);
+  std::cout << "seed " << seed + 8 << "\n";
+  Errors errors = random_gantry(rng, rect, 10 * um);
+  errors.ECX = machine::zero;
+  constexpr int campaigns = 2000;
+  Workpiece exact(rect, errors);
+  exact.states_all();
+  exact.X("X1", 0.05), exact.X("X2", 0.85), exact.Y(), exact.D1(), exact.D2();
+  const double truth = value(exact.evaluate(), "C0Y_LSQ");
+  double inside = 0.0, solved = 0.0, disagree = 0.0, moved_found = 0.0, moved = 0.0;
+  for (int c = 0; c < campaigns; ++c) {
+    Workpiece w(rect, errors);
+    w.rng.seed(seed + 20000 + static_cast<unsigned>(c));
+    w.scatter = 1 * um;
+    w.states_all();
+    w.X("X1", 0.05), w.X("X2", 0.85), w.Y(), w.D1(), w.D2();
+    const bool other_machine = c % 20 == 0;
+    if (other_machine) w.errors.C0Y += 25e-6;
+    w.square(40e-6);
+    const Evaluation e = w.evaluate();
+    const bool differs = finding(e, "squareness-disagrees") != nullptr;
+    if (finding(e, "closure") != nullptr) continue;
+    if (other_machine) {
+      moved += 1.0, moved_found += differs;
+      EXPECT_FALSE(differs && series(e, "C0Y_both") != nullptr);
+      continue;
+    }
+    solved += 1.0, disagree += differs;
+    if (differs) continue;
+    for (const Value& v : e.values)
+      if (v.name == "C0Y_both") inside += std::fabs(v.value - truth) <= *v.U;
+  }
+  std::cout << "C0Y_both " << 100.0 * inside / (solved - disagree) << " %, false disagreements "
+            << 100.0 * disagree / solved << " % of " << solved << ", moved machines found "
+            << moved_found << " of " << moved << "\n";
+  EXPECT_GE(inside, 0.94 * (solved - disagree));
+  EXPECT_LE(inside, 0.97 * (solved - disagree));
+  EXPECT_LE(disagree, 0.02 * solved);
+  EXPECT_GE(moved_found, 0.95 * moved);
 }
 
 }  // namespace

@@ -119,7 +119,9 @@ void expect_refused(const Evaluation& e, std::string_view id) {
 
 /// The manifest has no budget here, and a good measurement has nothing else to say.
 bool nothing_else(const Evaluation& e) {
-  return e.findings.size() == 1 && e.findings[0].id == "uncertainty.no-data";
+  return std::all_of(e.findings.begin(), e.findings.end(), [](const Finding& f) {
+    return f.id == "uncertainty.no-data" || f.id == "rotary.two-points";
+  });
 }
 
 /// Everything that a budget needs, but for the linear axes.
@@ -140,6 +142,35 @@ TEST(RotaryJudge, BothLanguagesSayTheSame) {
   const auto en = word_places("en"), it = word_places("it");
   ASSERT_GE(en.size(), 25U);
   EXPECT_EQ(en, it);
+}
+
+/// Two places half a turn apart: their middle moves with a run-out that they cannot show.
+TEST(RotaryJudge, SaysWhatTwoPointsWouldHaveSaid) {
+  Table t;
+  auto centres = t.at(full_turn(8));
+  for (const std::size_t pair : {0U, 4U}) centres[pair].at[0] += 20 * um;  // both the same way
+  Workshop shop;
+  shop.with("sigma_um", 10.0).measured("C", centres);
+  const Evaluation e = shop.last();
+  const Finding* f = found(e, "rotary.two-points");
+  ASSERT_NE(f, nullptr) << ids(e);
+  math::Vector3 middle{};
+  for (std::size_t k = 0; k < 3; ++k) middle[k] = (centres[0].at[k] + centres[4].at[k]) / 2.0;
+  double wanted = 0.0;  // of the middle to the line through the centre
+  math::Vector3 c{value(e, "centre_x")->value, value(e, "centre_y")->value,
+                  value(e, "centre_z")->value},
+      n{value(e, "direction_i")->value, value(e, "direction_j")->value,
+        value(e, "direction_k")->value};
+  double along = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) along += (middle[k] - c[k]) * n[k];
+  for (std::size_t k = 0; k < 3; ++k) wanted += std::pow(middle[k] - c[k] - along * n[k], 2);
+  EXPECT_NEAR(evidence(*f, "difference"), std::sqrt(wanted), 1e-9);
+  EXPECT_GT(evidence(*f, "difference"), 5 * um);
+  EXPECT_NEAR(evidence(*f, "U_two"), 2.0 * 10 * um / std::sqrt(2.0), 1e-9);
+  EXPECT_EQ(
+      found(Workshop().measured("C", noisy(t, full_turn(5), 1 * um)).last(), "rotary.two-points"),
+      nullptr)
+      << "five places have no pair";
 }
 
 TEST(RotaryJudge, AGoodTableHasCentreAndDirectionAndNoFinding) {

@@ -65,6 +65,13 @@ struct Sensor {
   std::string maker{}, model{}, serial{}, calibrated{}, valid_until{}, certificate{}, issuer{};
 };
 
+/// A square against whose faces two axes are read.
+struct Square {
+  std::string name;
+  std::optional<double> error{};  ///< rad, of the angle between its faces: positive is over 90 deg
+  std::optional<double> U{};      ///< rad, of `error`, k = 2
+};
+
 /// What the uncertainty budget needs beside the instrument (ISO/TR 230-9:2005 Annex C); each is
 /// the full range in which the quantity is known to lie.
 struct Environment {
@@ -136,6 +143,8 @@ struct Measurement {
   /// Of a straightness: id of the same line's measurement before the straightedge was turned over.
   std::string reversal_of{};
   std::optional<double> foot{};  ///< m, of a level or mirror that was moved by its own length
+  std::string square{};          ///< of a straightness: the square on whose face it was read
+  bool square_turned = false;    ///< after the square was turned over about one of its faces
 };
 
 /// State of the machine in which something was measured: "final". Empty: it holds for every state.
@@ -173,6 +182,7 @@ struct Campaign {
   Machine machine;
   Instrument instrument;
   std::vector<Sensor> sensors{};
+  std::vector<Square> squares{};
   Environment environment;
   Laboratory laboratory;
   CertificateTexts certificate;

@@ -60,6 +60,14 @@ struct DirectStraightness : MeanCurve {
   /// Its even part counts too, and its line goes through both ends (`zeroed`: through readings that
   /// are 0 by definition). Else only its odd part counts, and the slope of its line is unknown.
   bool whole = false;
+  /// The same line after the straightedge was turned over: the mean of both counts, and what is
+  /// the straightedge's own drops out. Deviations in the same sense.
+  std::optional<MeanCurve> reversed{};
+  /// Readings that it has: of one curve or of both.
+  std::size_t readings() const { return mean.size() + (reversed ? reversed->mean.size() : 0); }
+  double mean_of(std::size_t i) const {
+    return reversed ? (mean[i] + reversed->mean[i]) / 2.0 : mean[i];
+  }
 };
 
 /// Everything read at the same n + 1 points of each axis. Curves of pitch and straightness have
@@ -121,6 +129,13 @@ struct DiagonalResult {
   std::vector<double> d1, d2;         ///< readings less positioning and yaw
   KnownCurve ECX;                     ///< yaw as it was subtracted; empty if there was none
   std::optional<double> slave_shift;  ///< of the second line's zero, removes C0Y; from two lines
+  /// Range of the second line of X less the first, m: how far the sides run apart over the travel.
+  struct Racking {
+    double value = 0.0, u = 0.0;
+    std::size_t high = 0, low = 0;  ///< points of the grid
+    Shares shares;
+  };
+  std::optional<Racking> racking;  ///< from two lines
   Closure closure;
   /// Of a direct straightness that is not whole, with a model of the readings.
   std::optional<Agreement> EYX_agrees, EXY_agrees;
@@ -131,7 +146,8 @@ struct DiagonalResult {
 };
 
 /// Fails if the curves do not have the lengths that the grid asks for. The lines of the model, if
-/// there is one, are Y, X, ECX, D1, D2, the third lines, EYX, EXY, a reading for each mean.
+/// there is one, are Y, X, ECX, D1, D2, the third lines, EYX, EXY, a reading for each mean; after a
+/// straightness the one with the straightedge turned over.
 Expected<DiagonalResult> solve_diagonals(const DiagonalReadings&, const ReadingModel* = nullptr);
 
 /// What a bound abs(EXY_odd) <= G (m) says of EYX_odd = (q_odd - c EXY_odd)/s:

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+
+#include "axis_argument.h"
+#include "host/tools/plan_rotary.h"
+#include "nonio/sdk/format.h"
+#include "verbs.h"
+
+namespace nonio::app {
+
+namespace {
+
+struct RotaryWish {
+  std::string axis, radius;
+  double arc = 360.0, probe_u = 0.0, want_centre = 0.0, want_direction = 0.0;
+  std::int64_t balls = 4, trials = 2000;
+  std::uint64_t seed = 1;
+};
+
+using host::tools::RotaryRow;
+
+constexpr double um_of_m = 1e6;
+
+std::string cell(const std::string& text, std::size_t width) {
+  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
+}
+
+void print_rotary_row(const RotaryRow& row) {
+  const math::RotaryPlanU& u = row.u;
+  std::cout << cell(std::to_string(row.plan.balls), 6)
+            << cell(evidence_text({"", row.plan.radius, Quantity::length}), 10);
+  for (const double m : {2.0 * u.across, 2.0 * u.along, u.centre_rms, u.centre_mean})
+    std::cout << cell(fixed_text(um_of_m * m, 2), 10);
+  for (const double rad : {2.0 * u.tilt, u.direction_rms, u.direction_mean})
+    std::cout << cell(fixed_text(um_of_m * rad, 1), 10);
+  std::cout << "\n";
+}
+
+nlohmann::ordered_json json_of(const RotaryRow& row) {
+  const math::RotaryPlanU& u = row.u;
+  return {{"balls", row.plan.balls},
+          {"radius_mm", 1e3 * row.plan.radius},
+          {"U_across_um", um_of_m * 2.0 * u.across},
+          {"U_along_um", um_of_m * 2.0 * u.along},
+          {"centre_rms_um", um_of_m * u.centre_rms},
+          {"centre_mean_um", um_of_m * u.centre_mean},
+          {"U_tilt_urad", um_of_m * 2.0 * u.tilt},
+          {"direction_rms_urad", um_of_m * u.direction_rms},
+          {"direction_mean_urad", um_of_m * u.direction_mean}};
+}
+
+using Fewest = std::optional<Expected<std::size_t>>;
+
+void print_json(const RotaryWish& wish, const std::vector<RotaryRow>& rows, double two_points,
+                const Fewest& fewest) {
+  nlohmann::ordered_json out{{"schema", "nonio-rotary-plan/1"}, {"axis", wish.axis},
+                             {"probe_u_um", wish.probe_u},      {"arc_deg", wish.arc},
+                             {"trials", wish.trials},           {"seed", wish.seed},
+                             {"U_two_points_um", two_points}};
+  for (const RotaryRow& row : rows) out["plans"].push_back(json_of(row));
+  if (fewest && *fewest) out["fewest_balls"] = **fewest;
+  std::cout << out.dump(1) << "\n";
+}
+
+void print_plans_of(const RotaryWish& wish, const std::vector<RotaryRow>& rows, double two_points,
+                    const Fewest& fewest) {
+  std::cout << "Axis " << wish.axis
+            << ", every coordinate of a ball with u = " << fixed_text(wish.probe_u, 2)
+            << " um, balls evenly over " << fixed_text(wish.arc, 1) << " deg; " << wish.trials
+            << " simulated measurements, seed " << wish.seed << "\n\n";
+  std::cout << cell("balls", 6);
+  for (const char* head :
+       {"R mm", "U across", "U along", "rms 3D", "mean 3D", "U tilt", "rms dir", "mean dir"})
+    std::cout << cell(head, 10);
+  std::cout << "\n";
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    print_rotary_row(rows[i]);
+    if (i == 0) std::cout << "\n";
+  }
+  std::cout << "\nThe first row is your plan. Point of the axis in um (across it: the worse "
+               "coordinate), direction in urad;\nU with k = 2. Two places half a turn apart: U "
+               "across "
+            << fixed_text(two_points, 2)
+            << " um, no direction, and run-out stays hidden.\nNot in these figures: squareness "
+               "and scales of the linear axes (three balls move the centre\nby R/2 times the "
+               "squareness and show nothing of it), drift, the form of the ball.\n";
+  if (fewest && *fewest)
+    std::cout << "Fewest balls for the wanted U at this radius: " << **fewest << "\n";
+}
+
+int plan_rotary(const RotaryWish& wish, const Common& common) {
+  const char* const verb = "nonio plan rotary";
+  const Axis axis = axis_named(wish.axis);
+  if (!is_axis_name(wish.axis) || !axis.rotary)
+    return complain(verb,
+                    "--axis: expected a rotary axis (A, B or C), found \"" + wish.axis + "\"");
+  const auto radius = length_of("--radius", wish.radius);
+  if (!radius) return complain(verb, radius.error().message);
+  math::RotaryPlan own;
+  own.balls = static_cast<std::size_t>(std::max<std::int64_t>(0, wish.balls));
+  own.radius = *radius;
+  own.arc = wish.arc * std::numbers::pi / 180.0;
+  own.sigma = wish.probe_u / um_of_m;
+  const auto rows = host::tools::rotary_rows(own, static_cast<std::size_t>(wish.trials), wish.seed);
+  if (!rows) return complain(verb, rows.error().message);
+  Fewest fewest;
+  if (wish.want_centre > 0.0 || wish.want_direction > 0.0)
+    fewest =
+        host::tools::fewest_balls(own, wish.want_centre / um_of_m, wish.want_direction / um_of_m);
+  const double two_points = 2.0 * wish.probe_u / std::numbers::sqrt2;
+  if (common.json)
+    print_json(wish, *rows, two_points, fewest);
+  else
+    print_plans_of(wish, *rows, two_points, fewest);
+  if (fewest && !*fewest) return complain(verb, fewest->error().message, exit_failed);
+  return exit_done;
+}
+
+}  // namespace
+
+Verb plan_rotary_verb(Common& common) {
+  auto wish = std::make_shared<RotaryWish>();
+  return {
+      .name = "rotary",
+      .summary = "U of a rotary axis's centre and direction from balls, before the measurement",
+      .arguments = joined(
+          {required({"--axis", &wish->axis, "The rotary axis: A, B or C"}),
+           required({"--radius", &wish->radius, "Distance of the ball from the axis, mm"}),
+           required(within(0.001, 1000.0,
+                           {"--probe-u", &wish->probe_u,
+                            "Standard uncertainty of one coordinate of a ball's centre, um"})),
+           within(3, 1000, {"--balls", &wish->balls, "Positions of the axis (default 4)"}),
+           within(1.0, 360.0, {"--arc", &wish->arc, "Range of the axis, deg (default 360)"}),
+           within(0.0, 1e4,
+                  {"--want-centre", &wish->want_centre,
+                   "Wanted U (k = 2) of the centre across the axis, um: prints the fewest balls"}),
+           within(0.0, 1e5,
+                  {"--want-direction", &wish->want_direction,
+                   "Wanted U (k = 2) of the direction, urad: prints the fewest balls"}),
+           within(10, 1000000,
+                  {"--trials", &wish->trials, "Simulated measurements (default 2000)"}),
+           {"--seed", &wish->seed, "Seed of the simulation (default 1)"}},
+          common_arguments(common)),
+      .footer =
+          "A larger radius helps the direction only; more balls help both, with the root of their\n"
+          "number. An arc of less than half a turn costs far more than fewer balls do.\n\n"
+          "Exit status: 0; 1 no number of balls reaches the wanted U; 2 usage.\n\n"
+          "Example: nonio plan rotary --axis C --balls 5 --radius 250 --probe-u 1.5 --want-centre "
+          "2",
+      .run = [wish, &common] { return plan_rotary(*wish, common); }};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The look-up table of right triples by the ratio of their legs, and for a machine's travels the
+// plan of each triple that fits, by what it costs.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "axis_argument.h"
+#include "campaign_verb.h"
+#include "host/storage/files.h"
+#include "host/tools/plan.h"
+#include "nonio/sdk/format.h"
+#include "verbs.h"
+
+namespace nonio::app {
+namespace fs = std::filesystem;
+
+namespace {
+
+struct TableWish {
+  std::string x, y, resolution = "1", max_step = "0", over_travel = "0", sort, out, control;
+  std::int64_t hypotenuse = 299, runs = 5, max_points = 1500;
+  double feed = 2000.0, dwell = 5.0, least_cover = 0.9;
+  std::vector<std::string> settings;
+  bool fits() const { return !x.empty() || !y.empty(); }
+};
+
+/// One row: a triple, and its plan where travels were given (an optional has GCC 12 warn in vain).
+struct TableRow {
+  math::Triple triple;
+  math::TriplePlan plan{};
+  double minutes = 0.0;
+  bool fits() const { return plan.n > 0; }
+  double ratio() const { return static_cast<double>(triple.b) / static_cast<double>(triple.a); }
+};
+
+std::string right(const std::string& text, std::size_t width) {
+  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
+}
+
+/// X, Y and both diagonals there and back in each run: moves at the feed, dwell at every stop.
+double minutes_of(const math::TriplePlan& p, const TableWish& w) {
+  const double way = p.length_x + p.length_y + 2.0 * p.length_d,
+               stops = 4.0 * static_cast<double>(p.n + 1),
+               passes = 2.0 * static_cast<double>(w.runs);
+  return passes * (1e3 * way / w.feed + stops * w.dwell / 60.0);
+}
+
+void print_table_rows(const std::vector<TableRow>& rows, const TableWish& wish) {
+  std::cout << right("a", 6) << right("b", 6) << right("c", 6) << right("b/a", 9);
+  if (wish.fits())
+    for (const char* head :
+         {"q", "n", "step X", "step Y", "step D", "cover X%", "cover Y%", "minutes"})
+      std::cout << right(head, 10);
+  std::cout << "\n";
+  for (const TableRow& row : rows) {
+    std::cout << right(std::to_string(row.triple.a), 6) << right(std::to_string(row.triple.b), 6)
+              << right(std::to_string(row.triple.c), 6) << right(fixed_text(row.ratio(), 3), 9);
+    if (row.fits()) {
+      const math::TriplePlan& p = row.plan;
+      const auto mm = [](double m) { return evidence_text({"", m, Quantity::length}); };
+      for (const std::string& text : {std::to_string(p.q), std::to_string(p.n), mm(p.step_x),
+                                      mm(p.step_y), mm(p.step_d), fixed_text(100.0 * p.cover_x, 2),
+                                      fixed_text(100.0 * p.cover_y, 2), fixed_text(row.minutes, 1)})
+        std::cout << right(text, 10);
+    }
+    std::cout << "\n";
+  }
+  if (wish.fits())
+    std::cout << "\nminutes: X, Y and both diagonals, " << wish.runs << " runs there and back, at "
+              << fixed_text(wish.feed, 0) << " mm/min, " << fixed_text(wish.dwell, 1)
+              << " s at each of the n + 1 stops.\n";
+}
+
+Expected<std::vector<TableRow>> rows_that_fit(const TableWish& wish, math::TripleRequest& w) {
+  for (const auto& [option, text, to] : {std::tuple{"--x", &wish.x, &w.x},
+                                         {"--y", &wish.y, &w.y},
+                                         {"--resolution", &wish.resolution, &w.resolution},
+                                         {"--max-step", &wish.max_step, &w.largest_step},
+                                         {"--over-travel", &wish.over_travel, &w.over_travel}}) {
+    const auto length = length_of(option, *text);
+    if (!length) return fail(length.error());
+    *to = *length;
+  }
+  w.hypotenuse = wish.hypotenuse;
+  w.max_points = wish.max_points;
+  w.count = 1000;
+  const auto found = math::plan_triples(w);
+  if (!found) return fail(found.error());
+  if (found->plans.empty()) return fail(host::tools::why_nothing(*found));
+  std::vector<TableRow> rows;
+  for (const math::TriplePlan& p : found->plans)
+    if (p.worst_cover() >= wish.least_cover)
+      rows.push_back({{p.a, p.b, p.c}, p, minutes_of(p, wish)});
+  return rows;
+}
+
+nlohmann::ordered_json json_of(const TableRow& row) {
+  nlohmann::ordered_json out{
+      {"a", row.triple.a}, {"b", row.triple.b}, {"c", row.triple.c}, {"ratio", row.ratio()}};
+  if (!row.fits()) return out;
+  const math::TriplePlan& p = row.plan;
+  out["q"] = p.q, out["n"] = p.n;
+  out["step_x_mm"] = 1e3 * p.step_x, out["step_y_mm"] = 1e3 * p.step_y;
+  out["step_d_mm"] = 1e3 * p.step_d;
+  out["cover_x"] = p.cover_x, out["cover_y"] = p.cover_y;
+  out["minutes"] = row.minutes;
+  return out;
+}
+
+/// A folder for each row: 01-56-33-65.
+int write_row_programs(const char* verb, const std::vector<TableRow>& rows, const TableWish& wish,
+                       const math::TripleRequest& w, const Common& common) {
+  if (wish.control.empty()) return complain(verb, "part programs want a control (--control)");
+  const auto given = settings_of(wish.settings);
+  if (!given) return complain(verb, given.error().message);
+  host::loader::Plugins plugins;
+  plugins.load(common.plugin_folders());
+  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  Machine machine;
+  machine.axes = {Axis{.name = "X", .travel = std::pair(0.0, w.x)},
+                  Axis{.name = "Y", .travel = std::pair(0.0, w.y)}};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    std::map<std::string, std::string> settings{
+        {"plan", "1"}, {"over_travel_mm", wish.over_travel}, {"runs", std::to_string(wish.runs)}};
+    for (const auto& [name, value] : *given) settings[name] = value;
+    const auto files = host::tools::write_programs(plugins, wish.control, machine,
+                                                   math::triple_table({rows[i].plan}), settings);
+    if (!files) {
+      for (const Error& e : files.error()) complain(verb, e.message);
+      return exit_usage;
+    }
+    const math::Triple& t = rows[i].triple;
+    const std::string number = std::to_string(i + 1);
+    const fs::path folder = fs::path(wish.out) / (std::string(number.size() < 2 ? "0" : "") +
+                                                  number + "-" + std::to_string(t.a) + "-" +
+                                                  std::to_string(t.b) + "-" + std::to_string(t.c));
+    if (auto done = host::storage::publish(fs::absolute(folder), *files); !done)
+      return complain(verb, done.error().message, exit_failed);
+    if (!common.quiet) std::cerr << folder.string() << ": " << files->size() << " files\n";
+  }
+  return exit_done;
+}
+
+int plan_table(const TableWish& wish, const Common& common) {
+  const char* const verb = "nonio plan table";
+  math::TripleRequest request;
+  std::vector<TableRow> rows;
+  if (wish.x.empty() != wish.y.empty())
+    return complain(verb, "--x and --y: expected both, or none for the table alone");
+  if (!wish.out.empty() && !wish.fits())
+    return complain(verb, "--program: expected --x and --y too");
+  if (wish.fits()) {
+    auto found = rows_that_fit(wish, request);
+    if (!found) return complain(verb, found.error().message, exit_failed);
+    rows = std::move(*found);
+    if (rows.empty())
+      return complain(verb,
+                      "no plan covers as much of both axes; a smaller --least-cover or a larger "
+                      "--hypotenuse shows more",
+                      exit_failed);
+  } else {
+    for (const math::Triple& t : math::primitive_triples(wish.hypotenuse))
+      rows.push_back({t, {}, 0.0});
+  }
+  const std::string sort = wish.sort.empty() ? (wish.fits() ? "minutes" : "ratio") : wish.sort;
+  if (sort == "minutes" && !wish.fits())
+    return complain(verb, "--sort=minutes: expected --x and --y too");
+  std::stable_sort(rows.begin(), rows.end(), [&](const TableRow& one, const TableRow& other) {
+    if (sort == "minutes") return one.minutes < other.minutes;
+    if (sort == "ratio") return one.ratio() < other.ratio();
+    return one.triple.c < other.triple.c;
+  });
+  if (common.json) {
+    nlohmann::ordered_json out{{"schema", "nonio-triple-table/1"}, {"sort", sort}};
+    out["rows"] = nlohmann::ordered_json::array();
+    for (const TableRow& row : rows) out["rows"].push_back(json_of(row));
+    std::cout << out.dump(1) << "\n";
+  } else {
+    print_table_rows(rows, wish);
+  }
+  return wish.out.empty() ? exit_done : write_row_programs(verb, rows, wish, request, common);
+}
+
+}  // namespace
+
+Verb plan_table_verb(Common& common) {
+  auto wish = std::make_shared<TableWish>();
+  return {
+      .name = "table",
+      .summary = "Look-up table of right triples by ratio; for travels the plans that fit, by cost",
+      .arguments = joined(
+          {{"--x", &wish->x, "Travel of X, mm"},
+           {"--y", &wish->y, "Travel of Y, mm"},
+           within(
+               5, 5000,
+               {"--hypotenuse", &wish->hypotenuse, "Largest c of the triples a-b-c (default 299)"}),
+           one_of(
+               {"ratio", "c", "minutes"},
+               {"--sort", &wish->sort, "Order of the rows (default ratio; with travels minutes)"}),
+           {"--resolution", &wish->resolution,
+            "Steps are whole multiples of this value, mm (default 1)"},
+           {"--max-step", &wish->max_step, "Largest step of either axis, mm (default any)"},
+           {"--over-travel", &wish->over_travel,
+            "Range kept free at each end of both axes, mm (default 0)"},
+           {"--max-points", &wish->max_points,
+            "Entries of the control's compensation table (default 1500)"},
+           within(0.0, 1.0,
+                  {"--least-cover", &wish->least_cover,
+                   "Part of each axis that a plan must cover (default 0.9)"}),
+           within(1.0, 1e6, {"--feed", &wish->feed, "Feed, mm/min, for the cost (default 2000)"}),
+           within(0.0, 1e4,
+                  {"--dwell", &wish->dwell, "Dwell at a stop, s, for the cost (default 5)"}),
+           within(1, 100, {"--runs", &wish->runs, "Runs there and back, for the cost (default 5)"}),
+           takes(Argument::Takes::folder,
+                 {"--program", &wish->out, "Folder for the part programs: a folder for each row"}),
+           {"--control", &wish->control,
+            "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"},
+           settings_argument(wish->settings, "NAME=VALUE: an option of that writer")},
+          common_arguments(common)),
+      .footer =
+          "Without travels: every primitive triple with a < b and c up to --hypotenuse, with b/a.\n"
+          "With travels: the best plan of each triple, both ways round, and its cost in "
+          "minutes.\n\n"
+          "Exit status: 0; 1 no plan fits (prints which limits to relax); 2 usage.\n\n"
+          "Example: nonio plan table --x 20000 --y 12000 --max-step 500",
+      .run = [wish, &common] { return plan_table(*wish, common); }};
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nonio/math/budget.h"
+#include "nonio/math/measured_line.h"
+#include "nonio/sdk/campaign.h"
+
+/// Squareness of two axes from two lines of straightness against the faces of one square.
+///
+/// Axis 1 moves along one face, and b1 is the least-squares slope of its deviations towards axis 2;
+/// b2 is that of axis 2 towards axis 1. The faces enclose 90 degrees + g in the quadrant between
+/// both positive directions. Then b1 + b2 = t + g with the sum t of the slopes of both axes towards
+/// each other; the set-up of the square turns b1 and b2 by opposite amounts and drops out:
+///
+///     C0Y = -t    B0Z = +t    A0Z = -t
+///
+/// Turned over about one of its faces the square shows -g: t is the mean of both positions, g half
+/// their difference. Derived; tests hold it against exact transforms. As the slopes are of least
+/// squares, so is the squareness (C0Y_LSQ of diagonals).
+namespace nonio::math {
+
+/// The lines of one square in one plane and one state of the machine.
+struct SquareLines {
+  std::string square, state;
+  std::string name;                    ///< C0Y, B0Z, A0Z
+  std::string first, second;           ///< names of the axes
+  std::vector<std::size_t> as_stands;  ///< measurements: of `first`, of `second`
+  std::vector<std::size_t> turned;     ///< the same after it was turned over
+  bool whole() const { return as_stands.size() == 2 && (turned.empty() || turned.size() == 2); }
+  /// Every measurement, in the order of the manifest.
+  std::vector<std::size_t> all() const;
+};
+
+/// In the order of the manifest.
+std::vector<SquareLines> squares_of(const Campaign&);
+
+struct Squareness {
+  double value = 0.0;                 ///< of the machine, rad
+  std::optional<double> of_square{};  ///< g, if it was turned over; its u is that of `value`
+  double u = 0.0;                     ///< by repetition; 0: no repetition
+  Shares shares;
+  ReadingModel model;
+  double largest_u = 0.0, dof = 0.0;  ///< of a reading, for the budget
+  std::vector<Finding> findings;      ///< limits that the readings go beyond
+};
+
+/// What hinders is an id and a measurement: `one-line`, `unknown` (neither turned
+/// over nor its error stated), `too-few`, `incomplete`. `all`: of the campaign's measurements.
+struct NoSquareness {
+  std::string why;
+  std::string which;
+};
+tl::expected<Squareness, NoSquareness> squareness_of(const Campaign&,
+                                                     const std::vector<Observations>& all,
+                                                     const SquareLines&);
+
+/// Two results for one quantity, by readings that share nothing.
+struct OneQuantity {
+  double value = 0.0, u = 0.0;  ///< weighted by 1/u^2
+  double dof = INFINITY;        ///< of u
+  double difference = 0.0, u_difference = 0.0;
+  double p = 1.0;  ///< of a difference as large, by chance
+};
+OneQuantity one_quantity(double a, const Expanded& of_a, double b, const Expanded& of_b);
+
+}  // namespace nonio::math

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// One line before and after an adjustment: did the table do what it should?
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "nonio/math/before_after.h"
+#include "nonio/math/distributions.h"
+#include "nonio/math/measured_line.h"
+#include "nonio/sdk/plugin.h"
+
+using namespace nonio;
+using math::BeforeAfter;
+
+namespace {
+
+bool same_line(const Measurement& a, const Measurement& b) {
+  return a.kind == b.kind && a.axis == b.axis && a.lateral == b.lateral && a.side == b.side &&
+         a.at == b.at && a.from == b.from && a.to == b.to;
+}
+
+/// The measurement of the same line before; nothing if there is none, or several.
+std::optional<std::size_t> before_of(const Campaign& campaign, const Measurement& after) {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
+    const Measurement& m = campaign.measurements[i];
+    if (m.adjustment != "before" || !same_line(m, after)) continue;
+    if (found) return std::nullopt;
+    found = i;
+  }
+  return found;
+}
+
+bool applies(const Campaign& campaign, const Measurement& m) {
+  return m.adjustment == "after" &&
+         (m.kind == "axis" || m.kind == "diagonal" || m.kind == "straightness") &&
+         before_of(campaign, m).has_value();
+}
+
+math::BudgetLine line_of(const AnalysisInput& in, const math::MeasuredLine& line, int direction,
+                         std::size_t group) {
+  const Measurement& m = in.measurement;
+  math::BudgetLine out;
+  out.kind = in.observations.angular    ? math::BudgetLine::Kind::angle
+             : m.kind == "straightness" ? math::BudgetLine::Kind::lateral
+                                        : math::BudgetLine::Kind::length;
+  out.zeroed = line.zeroed;
+  out.u = line.u_mean(direction);
+  out.dof = static_cast<double>(line.dof);
+  out.visits = line.visits(direction);
+  out.walk_seen = line.walk_seen;
+  out.group = group;
+  const auto& first = line.stops.front();
+  for (const auto& stop : line.stops)
+    out.length.push_back(std::hypot(stop.position - first.position, stop.across - first.across));
+  std::vector<std::string> axes;
+  std::vector<double> share;
+  if (m.kind == "axis") axes = {m.axis}, share = {1.0};
+  double squares = 0.0;
+  for (const auto& [axis, from] : m.from) squares += std::pow(m.to.at(axis) - from, 2);
+  for (const auto& [axis, from] : m.from)
+    axes.push_back(axis), share.push_back((m.to.at(axis) - from) / std::sqrt(squares));
+  if (!axes.empty() && !in.observations.angular) math::put_expansion(out, in.campaign, axes, share);
+  return out;
+}
+
+Finding refusal(const char* id, const std::string& which) {
+  return {.id = std::string("before-after.") + id, .attention = true, .texts = {{"which", which}}};
+}
+
+bool same_stops(const math::MeasuredLine& a, const math::MeasuredLine& b) {
+  if (a.stops.size() != b.stops.size() || a.stops.size() < 3) return false;
+  for (std::size_t i = 0; i < a.stops.size(); ++i)
+    if (std::fabs(a.stops[i].position - b.stops[i].position) > math::same_stop) return false;
+  return true;
+}
+
+const char* name_of(BeforeAfter::Answer answer) {
+  switch (answer) {
+    case BeforeAfter::Answer::worked:
+      return "before-after.worked";
+    case BeforeAfter::Answer::not_active:
+      return "before-after.not-active";
+    case BeforeAfter::Answer::wrong_sign:
+      return "before-after.wrong-sign";
+    case BeforeAfter::Answer::something_else:
+      return "before-after.something-else";
+    case BeforeAfter::Answer::cannot_tell:
+      break;
+  }
+  return "before-after.cannot-tell";
+}
+
+void fill(const AnalysisInput& in, const math::MeasuredLine& one, const math::MeasuredLine& two,
+          int direction, const math::ReadingModel& model, double dof, Evaluation& e) {
+  const bool angular = in.observations.angular;
+  const Quantity q = angular ? Quantity::angular_deviation : Quantity::deviation;
+  std::vector<double> before, after, position, way_b, way_a, in_u, U;
+  for (std::size_t i = 0; i < one.stops.size(); ++i) {
+    before.push_back(one.stops[i].mean(direction));
+    after.push_back(two.stops[i].mean(direction));
+    position.push_back(one.stops[i].position);
+    way_b.push_back(before.back() - before.front());
+    way_a.push_back(after.back() - after.front());
+  }
+  const BeforeAfter r = math::before_after(before, after, model, dof);
+  const double k = math::coverage_factor(std::min(dof, 1e6));
+  for (std::size_t i = 0; i < r.rest.size(); ++i) {
+    in_u.push_back(r.u[i] > 0.0 ? r.rest[i] / r.u[i] : 0.0);
+    U.push_back(k * r.u[i]);
+  }
+  e.values.push_back({"left_share", r.f, Quantity::ratio});
+  (model.missing.empty() ? e.values.back().U : e.values.back().repeatability) = k * r.u_f;
+  e.values.back().k = k;
+  e.points.columns = {{"target", angular ? Quantity::angle : Quantity::length, position},
+                      {"before", q, way_b},
+                      {"predicted", q, r.predicted},
+                      {"U_predicted", q, U},
+                      {"after", q, way_a},
+                      {"in_u", Quantity::ratio, in_u}};
+  e.findings.push_back(
+      {.id = name_of(r.answer),
+       .attention = r.answer != BeforeAfter::Answer::worked,
+       .evidence = {{"share", r.f, Quantity::ratio},
+                    {"u_share", r.u_f, Quantity::ratio},
+                    {"rest", r.rest[r.worst], q},
+                    {"u", r.u[r.worst], q},
+                    {"at", position[r.worst], angular ? Quantity::angle : Quantity::length},
+                    {"p_worked", r.p[0], Quantity::probability},
+                    {"p_not_active", r.p[1], Quantity::probability},
+                    {"p_wrong_sign", r.p[2], Quantity::probability}}});
+}
+
+Expected<Evaluation> analyse(const AnalysisInput& in) {
+  const auto before = before_of(in.campaign, in.measurement);
+  if (in.all == nullptr || !before) return fail("expected the measurement before the adjustment");
+  Evaluation e;
+  const Measurement& first = in.campaign.measurements[*before];
+  e.uses.push_back(first.id);
+  const Observations& o = (*in.all)[*before];
+  if (o.axes.empty() || in.observations.axes.empty()) {
+    e.findings.push_back(refusal("stops", first.id));
+    return e;
+  }
+  const auto one = math::measured_line(o, 0), two = math::measured_line(in.observations, 0);
+  if (!same_stops(one, two)) {
+    e.findings.push_back(refusal("stops", first.id));
+    return e;
+  }
+  std::optional<int> direction;
+  for (const int d : {0, 1, -1})
+    if (!direction && one.has(d) && two.has(d)) direction = d;
+  if (!direction) {
+    e.findings.push_back(refusal("directions", first.id));
+    return e;
+  }
+  const double dof = static_cast<double>(std::min(one.dof, two.dof));
+  if (dof == 0.0) {
+    e.findings.push_back(refusal("no-repetition", first.id));
+    return e;
+  }
+  const math::HeldLimits limits =
+      math::limits_held(in.campaign, std::array<const Observations*, 2>{&o, &in.observations});
+  e.findings = limits.findings;
+  const math::ReadingModel model =
+      math::reading_model(in.campaign, limits.environment,
+                          {line_of(in, one, *direction, 0), line_of(in, two, *direction, 1)});
+  if (!model.missing.empty()) e.findings.push_back(math::missing_finding(model.missing));
+  fill(in, one, two, *direction, model, dof, e);
+  e.notes.push_back({"method.before-after", {}, {{"before", first.id}}});
+  return e;
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  Analysis a;
+  a.info = {"before-after", "1.0.0",
+            "Whether a compensation did what it should: one line before and after."};
+  a.applies = applies;
+  a.analyse = analyse;
+  registry.add(std::move(a));
+}

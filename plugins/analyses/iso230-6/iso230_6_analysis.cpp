@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// ISO 230-6: positioning along body and face diagonals.
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/math/axis_analysis.h"
+#include "nonio/math/blindness.h"
+#include "nonio/math/budget.h"
+#include "nonio/math/iso230_2.h"
+#include "nonio/sdk/format.h"
+#include "nonio/sdk/plugin.h"
+
+using namespace nonio;
+using namespace nonio::math;
+
+namespace {
+
+constexpr double k_of_2002 = 2.0;
+constexpr double same_end = 1e-4;           // m
+constexpr std::size_t approaches_of_R = 5;  // fewer give no R and A of ISO 230-2
+
+bool applies(const Campaign&, const Measurement& m) {
+  return m.kind == "diagonal" && (m.from.size() == 2 || m.from.size() == 3);
+}
+
+/// One line between two corners, whichever way it was measured.
+struct Diagonal {
+  std::size_t measurement = 0;
+  std::string name;               ///< PPP, NPP, PNP, PPN; PP, PN of a face
+  std::vector<std::string> axes;  ///< X before Y before Z
+};
+
+Diagonal diagonal_of(const Campaign& campaign, std::size_t i) {
+  const Measurement& m = campaign.measurements[i];
+  Diagonal d{i, {}, {}};
+  for (const auto& [axis, at] : m.from)
+    if (m.to.contains(axis)) d.axes.push_back(axis);
+  std::sort(d.axes.begin(), d.axes.end());
+  std::size_t negative = 0;
+  for (const std::string& axis : d.axes) negative += m.to.at(axis) < m.from.at(axis);
+  const bool other_end =
+      2 * negative > d.axes.size() ||
+      (2 * negative == d.axes.size() && m.to.at(d.axes[0]) < m.from.at(d.axes[0]));
+  for (const std::string& axis : d.axes)
+    d.name += (m.to.at(axis) < m.from.at(axis)) != other_end ? 'N' : 'P';
+  return d;
+}
+
+bool same_box(const Measurement& a, const Measurement& b, const std::string& axis) {
+  const auto x = std::minmax(a.from.at(axis), a.to.at(axis)),
+             y = std::minmax(b.from.at(axis), b.to.at(axis));
+  return std::fabs(x.first - y.first) <= same_end && std::fabs(x.second - y.second) <= same_end;
+}
+
+/// The diagonals of one box and one state, in the manifest's order.
+std::vector<Diagonal> set_of(const Campaign& campaign, const Measurement& of) {
+  std::vector<Diagonal> out;
+  for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
+    const Measurement& m = campaign.measurements[i];
+    if (!applies(campaign, m) || state_of(m) != state_of(of)) continue;
+    const bool fits = m.from.size() == of.from.size() &&
+                      std::all_of(of.from.begin(), of.from.end(), [&](const auto& end) {
+                        return m.from.contains(end.first) && m.to.contains(end.first) &&
+                               of.to.contains(end.first) && same_box(m, of, end.first);
+                      });
+    if (fits) out.push_back(diagonal_of(campaign, i));
+  }
+  return out;
+}
+
+/// The readings as those of an axis along the diagonal, + from its first corner to its second.
+Observations along(const Observations& o, const Measurement& m) {
+  Observations out = o;
+  Observations::AxisColumn column{m.id, false, {}, {}};
+  double length = 0.0;
+  for (const auto& [axis, from] : m.from) length += std::pow(m.to.at(axis) - from, 2);
+  length = std::sqrt(length);
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    double way = 0.0;
+    for (const auto& a : o.axes)
+      if (m.from.contains(a.axis))
+        way += (a.position[i] - m.from.at(a.axis)) * (m.to.at(a.axis) - m.from.at(a.axis)) / length;
+    column.position.push_back(way);
+  }
+  const auto& first = o.axes.front();
+  const bool rises = m.from.contains(first.axis) && m.to.at(first.axis) > m.from.at(first.axis);
+  for (const auto approach : first.approach)
+    column.approach.push_back(static_cast<std::int8_t>(rises ? approach : -approach));
+  out.axes = {std::move(column)};
+  return out;
+}
+
+struct Tested {
+  AxisTest test;
+  Iso230Result result{};
+  BudgetOrGap budget;
+  Iso230Uncertainty U{};
+  std::size_t approaches = 0;
+  std::vector<Finding> findings;
+};
+
+/// The machine expands along the diagonal as its axes do: sum of c^2 alpha.
+BudgetOrGap budget_along(const Campaign& campaign, const Environment& environment,
+                         const Measurement& m, const AxisTest& test) {
+  std::vector<std::string> axes;
+  std::vector<double> direction;
+  for (const auto& [axis, from] : m.from)
+    axes.push_back(axis), direction.push_back((m.to.at(axis) - from) / test.length());
+  BudgetLine line;
+  put_expansion(line, campaign, axes, direction);
+  Campaign with = campaign;
+  with.machine.axes.push_back(Axis{.name = m.id, .expansion = line.expansion});
+  BudgetOrGap out = uncertainty_budget(with, environment, m.id, test);
+  for (std::string& key : out.missing)
+    if (key.find("machine.axes.") == 0) key = line.expansion_keys;
+  return out;
+}
+
+std::optional<Tested> tested(const AnalysisInput& in, std::size_t i) {
+  const Measurement& m = in.campaign.measurements[i];
+  const Observations& o = (*in.all)[i];
+  if (o.axes.empty() || o.axes.front().approach.empty()) return std::nullopt;
+  Tested out;
+  out.test = AxisTest::arrange(along(o, m));
+  if (out.test.targets.size() < 2) return std::nullopt;
+  out.result = evaluate_iso230_2(out.test, k_of_2002);
+  out.approaches = approaches_behind_means(out.test);
+  const Observations* own = &o;
+  HeldLimits limits = limits_held(in.campaign, {&own, 1});
+  out.budget = budget_along(in.campaign, limits.environment, m, out.test);
+  out.U = iso230_2_uncertainty(out.budget.budget.value_or(Budget{}), out.approaches, k_of_2002);
+  out.findings = std::move(limits.findings);
+  return out;
+}
+
+/// Values of one diagonal; R and A where every target has readings enough from both directions.
+void put_values(Evaluation& e, const AxisAnalysis& a, const Tested& t) {
+  const Iso230Result& r = t.result;
+  add_value(e, a, "E", r.E, t.U.E, Made::of_all);
+  add_value(e, a, "E+", r.E_plus, t.U.E_plus, Made::of_all);
+  add_value(e, a, "E-", r.E_minus, t.U.E_minus, Made::of_all);
+  add_value(e, a, "B", r.B, t.U.B, Made::of_environment);
+  if (t.approaches < approaches_of_R) return;
+  add_value(e, a, "R", r.R, t.U.R, Made::of_environment);
+  add_value(e, a, "R+", r.R_plus, t.U.R_plus, Made::of_environment);
+  add_value(e, a, "R-", r.R_minus, t.U.R_minus, Made::of_environment);
+  add_value(e, a, "A", r.A, t.U.A, Made::of_all);
+}
+
+PointTable table(const Iso230Result& r) {
+  PointTable::Column target{"target", Quantity::length, {}}, plus{"mean+", Quantity::deviation, {}},
+      minus{"mean-", Quantity::deviation, {}}, B{"B", Quantity::deviation, {}};
+  for (const Iso230Point& p : r.points) {
+    target.values.push_back(p.target);
+    plus.values.push_back(p.mean_plus);
+    minus.values.push_back(p.mean_minus);
+    B.values.push_back(p.B);
+  }
+  return {{std::move(target), std::move(plus), std::move(minus), std::move(B)}};
+}
+
+std::string joined(const std::vector<std::string>& parts, const char* between) {
+  std::string out;
+  for (const std::string& p : parts) out += (out.empty() ? "" : between) + p;
+  return out;
+}
+
+/// Corners with the machine's coordinates; of a face the third one is 0 throughout.
+std::vector<ThroughVolume> paths(const Campaign& campaign, const std::vector<Diagonal>& set) {
+  std::vector<ThroughVolume> out;
+  for (const Diagonal& d : set) {
+    const Measurement& m = campaign.measurements[d.measurement];
+    ThroughVolume& line = out.emplace_back();
+    for (const std::string& axis : d.axes)
+      if (const std::size_t k = coordinate_of(axis); k < 3)
+        line.from[k] = m.from.at(axis), line.to[k] = m.to.at(axis);
+  }
+  return out;
+}
+
+/// "EYY 1, EXX -0.56": sizes that together move no reading.
+Finding blind_finding(const Campaign& campaign, const std::vector<Diagonal>& set) {
+  const Blindness b = blind_to(paths(campaign, set));
+  std::vector<std::string> combinations;
+  for (const auto& terms : b.combinations) {
+    std::vector<std::string> one;
+    for (const auto& [name, size] : terms) one.push_back(name + " " + fixed_text(size, 2));
+    combinations.push_back(joined(one, ", "));
+  }
+  return {.id = "iso230-6.blind",
+          .evidence = {{"errors", static_cast<double>(b.errors), Quantity::count},
+                       {"told", static_cast<double>(b.rank), Quantity::count}},
+          .texts = {{"unseen", b.unseen.empty() ? "-" : joined(b.unseen, ", ")},
+                    {"combinations", joined(combinations, "; ")}}};
+}
+
+/// Which of the names of a set nobody measured.
+std::vector<std::string> missing_of(const std::vector<Diagonal>& set) {
+  std::vector<std::string> names{"PP", "PN"}, out;
+  if (set.front().axes.size() == 3) names = {"PPP", "NPP", "PNP", "PPN"};
+  for (const std::string& name : names)
+    if (std::none_of(set.begin(), set.end(), [&](const Diagonal& d) { return d.name == name; }))
+      out.push_back(name);
+  return out;
+}
+
+/// The machine's values: the largest of its diagonals, with the U of that one.
+void put_machine(const AnalysisInput& in, const AxisAnalysis& a, const std::vector<Diagonal>& set,
+                 Evaluation& e) {
+  struct Largest {
+    double value = -1.0, U = NAN;
+    std::string of;
+  } E, B;
+  std::vector<std::string> measured;
+  std::size_t counted = 0;
+  for (const Diagonal& d : set) {
+    const auto t = tested(in, d.measurement);
+    if (!t) continue;
+    ++counted;
+    measured.push_back(d.name);
+    const double U_E = t->budget.budget ? t->U.E : NAN, U_B = t->budget.budget ? t->U.B : NAN;
+    if (t->result.E > E.value) E = {t->result.E, U_E, d.name};
+    if (t->result.B > B.value) B = {t->result.B, U_B, d.name};
+  }
+  if (E.value >= 0.0) add_value(e, a, "E_d", E.value, E.U, Made::of_all);
+  if (B.value >= 0.0) add_value(e, a, "B_d", B.value, B.U, Made::of_environment);
+  const auto missing = missing_of(set);
+  if (!missing.empty())
+    e.findings.push_back(
+        {.id = "iso230-6.fewer",
+         .attention = true,
+         .evidence = {{"measured", static_cast<double>(counted), Quantity::count},
+                      {"wanted", set.front().axes.size() == 3 ? 4.0 : 2.0, Quantity::count}},
+         .texts = {{"which", joined(measured, ", ")}, {"missing", joined(missing, ", ")}}});
+  if (E.value < 0.0)
+    e.findings.push_back({.id = "iso230-6.one-direction", .attention = true});
+  else
+    e.findings.push_back(
+        {.id = "iso230-6.largest",
+         .evidence = {{"E_d", E.value, Quantity::deviation}, {"B_d", B.value, Quantity::deviation}},
+         .texts = {{"of_E", E.of}, {"of_B", B.of}}});
+  e.findings.push_back(blind_finding(in.campaign, set));
+}
+
+Expected<Evaluation> analyse(const AnalysisInput& in) {
+  if (in.all == nullptr) return fail("expected the other measurements of the campaign, found none");
+  const std::vector<Diagonal> set = set_of(in.campaign, in.measurement);
+  const auto own = std::find_if(set.begin(), set.end(), [&](const Diagonal& d) {
+    return in.campaign.measurements[d.measurement].id == in.measurement.id;
+  });
+  const auto t = tested(in, own->measurement);
+  Evaluation e;
+  if (!t) {
+    e.findings.push_back({.id = "iso230-6.no-directions", .attention = true});
+    return e;
+  }
+  AxisAnalysis a;
+  a.axis = in.measurement.id;
+  a.test = t->test;
+  a.budget = t->budget.budget;
+  a.approaches = t->approaches;
+  e.findings = t->findings;
+  if (!t->budget.missing.empty()) e.findings.push_back(missing_finding(t->budget.missing));
+  put_values(e, a, *t);
+  e.points = table(t->result);
+  if (own == set.begin()) {
+    for (const Diagonal& d : set)
+      if (d.measurement != own->measurement)
+        e.uses.push_back(in.campaign.measurements[d.measurement].id);
+    put_machine(in, a, set, e);
+  }
+  e.notes.push_back(
+      {"method.iso230-6",
+       {{"edition", static_cast<double>(in.options.integer("edition", 2002)), Quantity::count},
+        {"k", k_of_2002, Quantity::count}},
+       {{"name", own->name}}});
+  return e;
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  Analysis a;
+  a.info = {"iso230-6",
+            "1.0.0",
+            "Positioning along body and face diagonals after ISO 230-6.",
+            {{"edition",
+              std::int64_t{2002},
+              "",
+              "Edition of the standard whose terms are used.",
+              {"2002"}}}};
+  a.applies = applies;
+  a.analyse = analyse;
+  registry.add(std::move(a));
+}

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <random>
+
+#include "loaded_analysis.h"
+#include "nonio/sdk/plugin.h"
+
+namespace nonio::fixtures::before_after_test {
+namespace {
+
+constexpr unsigned seed = 20261127;
+constexpr double um = 1e-6, length = 1.0;
+constexpr std::size_t stops = 11;
+using Curve = std::function<double(double)>;
+
+double error_of(double x) { return 12 * um * std::sin(5.0 * x) + 20 * um * x; }
+
+struct Shop {
+  Campaign campaign;
+  std::vector<Observations> all;
+  double scatter = 1 * um;
+  std::mt19937 rng{seed};
+  std::vector<int> directions{1, -1};
+  std::uint32_t runs = 3;
+
+  Shop() {
+    campaign.machine.axes.push_back(Axis{.name = "X", .expansion = 1e-6});
+    campaign.instrument.U_fixed = 1e-9, campaign.instrument.U_per_length = 1e-10;
+    Environment& e = campaign.environment;
+    e.misalignment = e.temperature_range = 1e-3, e.temperature_difference = 0.01;
+    e.expansion_range = 1e-9, e.drift = 1e-10;
+  }
+  void line(const char* adjustment, const Curve& curve, double shift = 0.0) {
+    std::normal_distribution<double> normal;
+    Measurement m;
+    m.id = std::string("X ") + adjustment;
+    m.kind = "axis";
+    m.axis = "X";
+    m.adjustment = adjustment;
+    Observations o;
+    o.measurement = m.id;
+    o.lines.push_back({m.id, {1.0, 0.0, 0.0}});
+    o.axes.push_back({"X", false, {}, {}});
+    for (std::uint32_t run = 1; run <= runs; ++run)
+      for (const int direction : directions)
+        for (std::size_t i = 0; i < stops; ++i) {
+          const double x = length * static_cast<double>(i) / static_cast<double>(stops - 1);
+          o.axes[0].position.push_back(x + shift);
+          o.axes[0].approach.push_back(static_cast<std::int8_t>(direction));
+          o.deviation.push_back(curve(x) + direction * um + scatter * normal(rng));
+          o.run.push_back(run);
+        }
+    campaign.measurements.push_back(std::move(m));
+    all.push_back(std::move(o));
+  }
+  Evaluation evaluate() const {
+    static const Analysis analysis = loaded_analysis(NONIO_BEFORE_AFTER_PLUGIN);
+    const Settings none;
+    EXPECT_FALSE(analysis.applies(campaign, campaign.measurements[0]));
+    EXPECT_TRUE(analysis.applies(campaign, campaign.measurements[1]));
+    const auto e = analysis.analyse({campaign, campaign.measurements[1], all[1], none, &all});
+    EXPECT_TRUE(e) << (e ? "" : e.error().message);
+    return e.value_or(Evaluation{});
+  }
+};
+
+std::string answer(const Evaluation& e) {
+  for (const Finding& f : e.findings)
+    if (f.id.rfind("before-after.", 0) == 0) return f.id.substr(13);
+  return {};
+}
+
+/// The table takes away what was measured: its own scatter is in the machine afterwards.
+struct Story {
+  const char* wanted;
+  double kept;  ///< share of the error that is left
+  Curve more = [](double) { return 0.0; };
+};
+
+TEST(BeforeAfter, TellsWhatTheTableDidInTwoThousandCampaigns) {
+  std::cout << "seed " << seed << "\n";
+  const std::vector<Story> stories{
+      {"worked", 0.0},
+      {"not-active", 1.0},
+      {"wrong-sign", 2.0},
+      {"something-else", 0.0, [](double x) { return x > 0.5 ? 6 * um : 0.0; }},
+      {"something-else", 0.5}};
+  for (const Story& story : stories) {
+    std::map<std::string, int> told;
+    double inside = 0.0;
+    constexpr int campaigns = 2000;
+    for (int c = 0; c < campaigns; ++c) {
+      Shop shop;
+      shop.rng.seed(seed + static_cast<unsigned>(c));
+      shop.line("before", error_of);
+      // What the readings before said at each stop, both directions, from the first stop on.
+      std::map<double, double> mean;
+      const Observations& o = shop.all[0];
+      for (std::size_t i = 0; i < o.size(); ++i)
+        mean[o.axes[0].position[i]] += o.deviation[i] / (2.0 * shop.runs);
+      const double taken = 1.0 - story.kept;
+      shop.line("after", [&](double x) {
+        return error_of(x) - taken * (mean.at(x) - mean.at(0.0)) + story.more(x);
+      });
+      const Evaluation e = shop.evaluate();
+      ++told[answer(e)];
+      for (const Value& v : e.values)
+        if (v.name == "left_share") inside += std::fabs(v.value - story.kept) <= *v.U;
+    }
+    std::cout << story.wanted << " " << story.kept << ":";
+    for (const auto& [name, count] : told) std::cout << " " << name << " " << count;
+    std::cout << "; left_share " << 100.0 * inside / campaigns << " %\n";
+    EXPECT_GE(told[story.wanted], static_cast<int>(0.97 * campaigns)) << story.wanted;
+    if (story.more(1.0) != 0.0) continue;  // no share of the error
+    EXPECT_GE(inside, 0.94 * campaigns) << story.wanted;
+    EXPECT_LE(inside, 0.965 * campaigns) << story.wanted;
+  }
+}
+
+TEST(BeforeAfter, RefusesWhatItCannotCompare) {
+  Shop other;
+  other.line("before", error_of), other.line("after", error_of, 0.01);
+  EXPECT_EQ(answer(other.evaluate()), "stops");
+  Shop once;
+  once.runs = 1;
+  once.line("before", error_of), once.line("after", error_of);
+  EXPECT_EQ(answer(once.evaluate()), "no-repetition");
+  Shop directions;
+  directions.directions = {1};
+  directions.line("before", error_of);
+  directions.directions = {-1};
+  directions.line("after", error_of);
+  EXPECT_EQ(answer(directions.evaluate()), "directions");
+  Shop small;  // nothing to take away
+  const Curve none = [](double) { return 0.0; };
+  small.line("before", none), small.line("after", none);
+  EXPECT_EQ(answer(small.evaluate()), "cannot-tell");
+}
+
+}  // namespace
+}  // namespace nonio::fixtures::before_after_test
