@@ -43,6 +43,7 @@ Json draft_json(const WaitingDraft& draft) {
                 {"measurement", f.measurement},
                 {"severity", f.attention ? "attention" : "info"},
                 {"title", f.title}};
+    if (!f.said.empty()) one["said"] = f.said;
     if (const std::string reason = reason_of(draft, f); !reason.empty()) one["reason"] = reason;
     findings.push_back(std::move(one));
   }

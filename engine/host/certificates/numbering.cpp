@@ -333,7 +333,8 @@ Expected<void> Numbers::enter_draft(const evaluation::Evaluated& evaluated,
   draft.out = where_.out.string();
   draft.replaces = certificate.issue.replaces;
   draft.made_from = made_from(evaluated, context_);
-  draft.findings = evaluation::known_findings(evaluated.results, context_.templates);
+  draft.findings =
+      evaluation::known_findings(evaluated.results, context_.templates, context_.site.language);
   for (const Results::Written& w : evaluated.results.outputs)
     if (w.plugin == certificate.output && !w.result.artifacts.empty()) {
       draft.file = w.result.artifacts.front().name;

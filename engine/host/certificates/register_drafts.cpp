@@ -20,11 +20,14 @@ storage::Json draft_json(const WaitingDraft& d) {
                         {"replaces", d.replaces},
                         {"made_from", d.made_from},
                         {"findings", storage::Json::array()}};
-  for (const evaluation::KnownFinding& f : d.findings)
-    json["findings"].push_back({{"measurement", f.measurement},
-                                {"id", f.id},
-                                {"title", f.title},
-                                {"attention", f.attention}});
+  for (const evaluation::KnownFinding& f : d.findings) {
+    storage::Json one = {{"measurement", f.measurement},
+                         {"id", f.id},
+                         {"title", f.title},
+                         {"attention", f.attention}};
+    if (!f.said.empty()) one["said"] = f.said;
+    json["findings"].push_back(std::move(one));
+  }
   if (d.author) json["author"] = draft_json(*d.author);
   return json;
 }
@@ -40,7 +43,8 @@ WaitingDraft draft_of(const std::string& campaign, const storage::Json& json) {
   json.at("replaces").get_to(d.replaces);
   json.at("made_from").get_to(d.made_from);
   for (const storage::Json& f : json.at("findings"))
-    d.findings.push_back({f.at("measurement"), f.at("id"), f.at("title"), f.at("attention")});
+    d.findings.push_back(
+        {f.at("measurement"), f.at("id"), f.at("title"), f.at("attention"), f.value("said", "")});
   if (json.contains("author")) {
     const storage::Json& a = json["author"];
     d.author = Approval{a.at("by"), a.at("role"), a.at("at"), a.at("reasons")};

@@ -87,7 +87,7 @@ const certificates = (() => {
         go.disabled = Boolean(draft.stale);
       }
     }}, asking.length ? el("p", {}, say("release.reasons")) : null,
-    ...asking.map((f) => el("label", {class: "wide"}, el("span", {}, el("b", {}, entries.visible(f.title)), " ", el("span", {class: "muted"}, keyOf(f))), given.get(keyOf(f)))),
+    ...asking.map((f) => el("label", {class: "wide"}, el("span", {}, el("b", {}, entries.visible(f.said || f.title)), " ", el("span", {class: "muted"}, keyOf(f))), given.get(keyOf(f)))),
     el("label", {class: "wide"}, el("span", {}, say("release.by")), by_), el("label", {class: "wide"}, el("span", {}, say("release.as")), as),
     el("p", {class: "muted"}, say("release.what")), problem, el("div", {class: "buttons"}, go));
   }
@@ -98,8 +98,8 @@ const certificates = (() => {
       el("p", {}, el("button", {type: "button", class: "link", "data-key": "draft-" + one.campaign, onclick: () => fetchFile(file)}, say("release.read")),
         one.replaces ? " " + say("release.replaces", {number: one.replaces}) : "", one.author ? " " + say("release.author", {name: entries.visible(one.author.name), at: one.author.at}) : ""),
       one.stale ? el("p", {class: "flag"}, say("release.stale")) : null,
-      info.length ? el("details", {}, el("summary", {}, say("release.notes", {n: info.length})), el("ul", {}, ...info.map((f) => el("li", {}, `${keyOf(f)}: ${entries.visible(f.title)}`)))) : null,
-      edit ? draftForm(one, act) : el("ul", {}, ...one.findings.filter((f) => f.severity === "attention").map((f) => el("li", {}, `${keyOf(f)}: ${entries.visible(f.title)}`))));
+      info.length ? el("details", {}, el("summary", {}, say("release.notes", {n: info.length})), el("ul", {}, ...info.map((f) => el("li", {}, `${keyOf(f)}: ${entries.visible(f.said || f.title)}`)))) : null,
+      edit ? draftForm(one, act) : el("ul", {}, ...one.findings.filter((f) => f.severity === "attention").map((f) => el("li", {}, `${keyOf(f)}: ${entries.visible(f.said || f.title)}`))));
   }
   const results = () => el("ul", {class: "plain", id: "verified"}, ...verified.map(result));
   return {drop, draft, results};

@@ -230,10 +230,10 @@
     }
     const says = [];
     if (r.state === "cancelled") says.push(say("run.cancelled", {what}));
-    else if (r.state === "refused") says.push(say("run.refused", {what, why: r.message || ""}));
+    else if (r.state === "refused") says.push(say("run.refused", {what, why: net.program(r.message || "")}));
     else if (r.campaign) {
       says.push(say("run.done", {what, status: say("run.status_" + (r.status || "none"))}));
-      if (r.status === "failed" && r.message) says.push(r.message);
+      if (r.status === "failed" && r.message) says.push(net.program(r.message));
       says.push(r.same_results ? say("run.same") : r.was ? say("run.other") : say("run.new"));
       if (r.new_findings && r.new_findings.length) says.push(say("run.found", {what: r.new_findings.join("; ")}));
       if (r.gone_findings && r.gone_findings.length) says.push(say("run.gone", {what: r.gone_findings.join("; ")}));

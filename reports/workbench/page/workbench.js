@@ -100,7 +100,7 @@
   }
   function pieces() {
     const of = (state.parts_state || {})[shown.part] || {fit: "done", explain: "done"};
-    shown.error = of.fit === "failed" || of.explain === "failed" ? of.error || say("net.failed") : null;
+    shown.error = of.fit === "failed" || of.explain === "failed" ? (of.error ? net.program(of.error) : say("net.failed")) : null;
     shown.seconds = of.seconds || 0;
     running(state.job ? state.job.job : null);
     const ask = (...one) => piece(...one).catch(complain), due = (name) => shown.of[name] !== trial();
@@ -291,7 +291,7 @@
     document.title = `${state.campaign.id} \u2013 Nonio`;
     by("campaign").textContent = state.campaign.id;
     const wrong = [...(state.mistakes || []), ...(state.errors || []).map((e) => e.message || String(e))];
-    by("wrong").textContent = wrong.join(" ");
+    by("wrong").textContent = wrong.length ? net.program(wrong.join(" ")) : "";
     by("wrong").hidden = wrong.length === 0;
     by("machine").textContent = [m.maker, m.model, m.serial, m.asset].filter(Boolean).join(" \u00B7 ");
     fill(by("parts"), ...state.parts.map((p) => el("button", {type: "button", "data-key": "part-" + p.name, "aria-pressed": String(p.name === shown.part), onclick: () => { choosePart(p.name); refresh().catch(complain); }}, say("parts.one", {name: p.name, n: p.readings}))));
@@ -301,7 +301,7 @@
     by("save").disabled = same && !(state.excluded || []).length && !Object.keys(state.period_mm || {}).length;
     by("command").textContent = state.command || say("command.none");
     by("read-at").textContent = say("read.at", {at: new Date(state.campaign.read_at).toLocaleTimeString(language)});
-    if (state.bench === "failed") view.alarm(say("bench.failed", {error: state.bench_error || ""}), " ", view.button("reload", "changed.read", {onclick: reload}));
+    if (state.bench === "failed") view.alarm(say("bench.failed", {error: net.program(state.bench_error || "")}), " ", view.button("reload", "changed.read", {onclick: reload}));
     else if (state.campaign.changed_on_disk) view.alarm(say("changed.files"), " ", view.button("reload", "changed.read", {onclick: reload}));
   }
   function reload() {
@@ -461,7 +461,7 @@
   function event(e) {
     if (e.type === "failed") {
       running(null);
-      if (e.data.job) view.alarm(e.data.error || say("net.failed"));
+      if (e.data.job) view.alarm(e.data.error ? net.program(e.data.error) : say("net.failed"));
     }
       if (e.type === "progress" && e.data.part) {
       shown.seconds = e.data.seconds || 0;

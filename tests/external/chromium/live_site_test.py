@@ -356,15 +356,20 @@ class SitePage(live_browser.LivePage):
         self.wait(lambda: self.known(line), "and shows what came meanwhile")
 
     # ---- certificates ----
-    def test_certificates_are_released_and_verified(self):
+    def test_certificates_are_released_and_verified_in_german(self):
         shutil.rmtree(self.site), shutil.rmtree(self.out)
         shutil.copytree(SOURCE / "samples/certificates", self.site)
+        (self.site / "site.toml").write_text('language = "de"\n' + (self.site / "site.toml").read_text())
         subprocess.run([self.site / "make-key.sh"], check=True, capture_output=True)
         nonio("run", self.site, "--out", self.out, "--quiet")
         self.open(self.serve_site("--edit"), "&to=certificates", "certificates")
         form = ".draft[data-campaign=adjusted] form"
         reasons = self.d.find_elements(By.CSS_SELECTOR, form + " [name=reason]")
         self.assertEqual(3, len(reasons))
+        drafts = json.loads(nonio("release", self.site, "--list", "--json").stdout)["drafts"]
+        asking = [f for d in drafts if d["campaign"] == "adjusted" for f in d["findings"] if f["severity"] == "attention"]
+        self.assertEqual([f["said"] for f in asking], self.js(f"[...document.querySelectorAll('{form} label b')].map((b) => b.textContent)"))
+        self.assertTrue(all(f["said"] != f["title"] for f in asking), "in the words of the site")
         self.d.find_element(By.CSS_SELECTOR, form + " [name=by]").send_keys("B. Sample")
         for box in reasons:
             box.send_keys("as found")
@@ -381,6 +386,10 @@ class SitePage(live_browser.LivePage):
                   "each file has its verdict")
         self.assertGreater(self.js("document.querySelectorAll('#verified > li:first-child tbody tr').length"), 10)
         self.assertEqual("false", self.js("String(document.querySelector('#verified > li:first-child details').open)"))
+        names = self.js("[...document.querySelectorAll('#verified tbody th')].map((e) => [e.title, e.textContent])")
+        own = set(tomllib.loads((SOURCE / "templates/words/de/workbench.toml").read_text())["check"].values())
+        self.assertEqual([], [(id_, name) for id_, name in names if name.removeprefix("DCC: ") not in own], "each check has its name")
+        self.assertIn("DCC: ", {name[:5] for _, name in names})
         self.assertGreater(self.js("document.querySelectorAll('#verified > .fails .check-fails').length"), 0)
         self.assertEqual([], self.js(HINDRANCES))
         self.picture("site-verified")
