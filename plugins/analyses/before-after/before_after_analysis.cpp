@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "nonio/math/along.h"
 #include "nonio/math/before_after.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/measured_line.h"
@@ -38,6 +39,11 @@ bool applies(const Campaign& campaign, const Measurement& m) {
          before_of(campaign, m).has_value();
 }
 
+/// Stops of an axis by its positions, of a diagonal by the way from its first corner.
+math::MeasuredLine line_by_way(const Observations& o, const Measurement& m) {
+  return math::measured_line(m.kind == "diagonal" ? math::along_diagonal(o, m) : o, 0);
+}
+
 math::BudgetLine line_of(const AnalysisInput& in, const math::MeasuredLine& line, int direction,
                          std::size_t group) {
   const Measurement& m = in.measurement;
@@ -51,16 +57,12 @@ math::BudgetLine line_of(const AnalysisInput& in, const math::MeasuredLine& line
   out.visits = line.visits(direction);
   out.walk_seen = line.walk_seen;
   out.group = group;
-  const auto& first = line.stops.front();
   for (const auto& stop : line.stops)
-    out.length.push_back(std::hypot(stop.position - first.position, stop.across - first.across));
+    out.length.push_back(std::fabs(stop.position - line.stops.front().position));
   std::vector<std::string> axes;
   std::vector<double> share;
   if (m.kind == "axis") axes = {m.axis}, share = {1.0};
-  double squares = 0.0;
-  for (const auto& [axis, from] : m.from) squares += std::pow(m.to.at(axis) - from, 2);
-  for (const auto& [axis, from] : m.from)
-    axes.push_back(axis), share.push_back((m.to.at(axis) - from) / std::sqrt(squares));
+  if (m.kind == "diagonal") axes = math::moving_axes(m), share = math::direction_along(m);
   if (!axes.empty() && !in.observations.angular) math::put_expansion(out, in.campaign, axes, share);
   return out;
 }
@@ -143,7 +145,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
     e.findings.push_back(refusal("stops", first.id));
     return e;
   }
-  const auto one = math::measured_line(o, 0), two = math::measured_line(in.observations, 0);
+  const auto one = line_by_way(o, first), two = line_by_way(in.observations, in.measurement);
   if (!same_stops(one, two)) {
     e.findings.push_back(refusal("stops", first.id));
     return e;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nonio/math/along.h"
 #include "nonio/math/axis_analysis.h"
 #include "nonio/math/blindness.h"
 #include "nonio/math/budget.h"
@@ -21,7 +22,8 @@ constexpr double same_end = 1e-4;           // m
 constexpr std::size_t approaches_of_R = 5;  // fewer give no R and A of ISO 230-2
 
 bool applies(const Campaign&, const Measurement& m) {
-  return m.kind == "diagonal" && (m.from.size() == 2 || m.from.size() == 3);
+  const std::size_t moving = moving_axes(m).size();
+  return m.kind == "diagonal" && (moving == 2 || moving == 3);
 }
 
 /// One line between two corners, whichever way it was measured.
@@ -33,10 +35,7 @@ struct Diagonal {
 
 Diagonal diagonal_of(const Campaign& campaign, std::size_t i) {
   const Measurement& m = campaign.measurements[i];
-  Diagonal d{i, {}, {}};
-  for (const auto& [axis, at] : m.from)
-    if (m.to.contains(axis)) d.axes.push_back(axis);
-  std::sort(d.axes.begin(), d.axes.end());
+  Diagonal d{i, {}, moving_axes(m)};
   std::size_t negative = 0;
   for (const std::string& axis : d.axes) negative += m.to.at(axis) < m.from.at(axis);
   const bool other_end =
@@ -69,28 +68,6 @@ std::vector<Diagonal> set_of(const Campaign& campaign, const Measurement& of) {
   return out;
 }
 
-/// The readings as those of an axis along the diagonal, + from its first corner to its second.
-Observations along(const Observations& o, const Measurement& m) {
-  Observations out = o;
-  Observations::AxisColumn column{m.id, false, {}, {}};
-  double length = 0.0;
-  for (const auto& [axis, from] : m.from) length += std::pow(m.to.at(axis) - from, 2);
-  length = std::sqrt(length);
-  for (std::size_t i = 0; i < o.size(); ++i) {
-    double way = 0.0;
-    for (const auto& a : o.axes)
-      if (m.from.contains(a.axis))
-        way += (a.position[i] - m.from.at(a.axis)) * (m.to.at(a.axis) - m.from.at(a.axis)) / length;
-    column.position.push_back(way);
-  }
-  const auto& first = o.axes.front();
-  const bool rises = m.from.contains(first.axis) && m.to.at(first.axis) > m.from.at(first.axis);
-  for (const auto approach : first.approach)
-    column.approach.push_back(static_cast<std::int8_t>(rises ? approach : -approach));
-  out.axes = {std::move(column)};
-  return out;
-}
-
 struct Tested {
   AxisTest test;
   Iso230Result result{};
@@ -103,12 +80,8 @@ struct Tested {
 /// The machine expands along the diagonal as its axes do: sum of c^2 alpha.
 BudgetOrGap budget_along(const Campaign& campaign, const Environment& environment,
                          const Measurement& m, const AxisTest& test) {
-  std::vector<std::string> axes;
-  std::vector<double> direction;
-  for (const auto& [axis, from] : m.from)
-    axes.push_back(axis), direction.push_back((m.to.at(axis) - from) / test.length());
   BudgetLine line;
-  put_expansion(line, campaign, axes, direction);
+  put_expansion(line, campaign, moving_axes(m), direction_along(m));
   Campaign with = campaign;
   with.machine.axes.push_back(Axis{.name = m.id, .expansion = line.expansion});
   BudgetOrGap out = uncertainty_budget(with, environment, m.id, test);
@@ -120,9 +93,10 @@ BudgetOrGap budget_along(const Campaign& campaign, const Environment& environmen
 std::optional<Tested> tested(const AnalysisInput& in, std::size_t i) {
   const Measurement& m = in.campaign.measurements[i];
   const Observations& o = (*in.all)[i];
-  if (o.axes.empty() || o.axes.front().approach.empty()) return std::nullopt;
   Tested out;
-  out.test = AxisTest::arrange(along(o, m));
+  const Observations line = along_diagonal(o, m);
+  if (line.axes.front().approach.size() != o.size() || o.size() == 0) return std::nullopt;
+  out.test = AxisTest::arrange(line);
   if (out.test.targets.size() < 2) return std::nullopt;
   out.result = evaluate_iso230_2(out.test, k_of_2002);
   out.approaches = approaches_behind_means(out.test);

@@ -58,6 +58,24 @@ struct Shop {
     campaign.measurements.push_back(std::move(m));
     all.push_back(std::move(o));
   }
+  /// The last line as a body diagonal of 0.36 x 0.48 x 0.8 m along which X falls.
+  void as_diagonal() {
+    Measurement& m = campaign.measurements.back();
+    m.kind = "diagonal", m.axis = "";
+    m.from = {{"X", 0.36}, {"Y", 0.0}, {"Z", 0.0}}, m.to = {{"X", 0.0}, {"Y", 0.48}, {"Z", 0.8}};
+    Observations& o = all.back();
+    const auto along = o.axes[0];
+    o.axes.clear();
+    for (const auto& [axis, from] : m.from) {
+      const double way = m.to.at(axis) - from;
+      auto& column = o.axes.emplace_back(Observations::AxisColumn{axis, false, {}, {}});
+      for (std::size_t i = 0; i < along.position.size(); ++i) {
+        column.position.push_back(from + along.position[i] * way);
+        column.approach.push_back(
+            static_cast<std::int8_t>(way > 0.0 ? along.approach[i] : -along.approach[i]));
+      }
+    }
+  }
   Evaluation evaluate() const {
     static const Analysis analysis = loaded_analysis(NONIO_BEFORE_AFTER_PLUGIN);
     const Settings none;
@@ -119,6 +137,22 @@ TEST(BeforeAfter, TellsWhatTheTableDidInTwoThousandCampaigns) {
     if (story.more(1.0) != 0.0) continue;  // no share of the error
     EXPECT_GE(inside, 0.94 * campaigns) << story.wanted;
     EXPECT_LE(inside, 0.965 * campaigns) << story.wanted;
+  }
+}
+
+TEST(BeforeAfter, ADiagonalIsALineFromItsFirstCorner) {
+  Shop shop;
+  shop.scatter = 0.01 * um;
+  shop.line("before", error_of), shop.as_diagonal();
+  shop.line("after", [](double x) { return 2.0 * error_of(x); }), shop.as_diagonal();
+  const Evaluation e = shop.evaluate();
+  EXPECT_EQ(answer(e), "wrong-sign");
+  const auto *target = e.points.column("target"), *before = e.points.column("before");
+  ASSERT_TRUE(target != nullptr && before != nullptr);
+  for (std::size_t i = 0; i < stops; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(stops - 1);
+    EXPECT_NEAR(target->values[i], share, 1e-9) << "its length is 1 m";
+    EXPECT_NEAR(before->values[i], error_of(share), 0.05 * um);
   }
 }
 

@@ -138,6 +138,11 @@ TEST(Blindness, FourBodyDiagonalsKnowOneScaleAndThreeSquarenesses) {
     EXPECT_NE(terms.front().first, "C0Y") << "squareness is told";
 }
 
+const Analysis& the_analysis() {
+  static const Analysis analysis = loaded_analysis(NONIO_ISO230_6_PLUGIN);
+  return analysis;
+}
+
 struct Shop {
   Campaign campaign;
   std::vector<Observations> all;
@@ -182,9 +187,9 @@ struct Shop {
     all.push_back(std::move(o));
   }
   Evaluation evaluate(std::size_t i = 0) const {
-    static const Analysis analysis = loaded_analysis(NONIO_ISO230_6_PLUGIN);
-    EXPECT_TRUE(analysis.applies(campaign, campaign.measurements[i]));
-    const auto e = analysis.analyse({campaign, campaign.measurements[i], all[i], settings, &all});
+    EXPECT_TRUE(the_analysis().applies(campaign, campaign.measurements[i]));
+    const auto e =
+        the_analysis().analyse({campaign, campaign.measurements[i], all[i], settings, &all});
     EXPECT_TRUE(e) << (e ? "" : e.error().message);
     return e.value_or(Evaluation{});
   }
@@ -243,6 +248,14 @@ TEST(Iso230_6, FewerDiagonalsFacesAndRuns) {
   ASSERT_NE(finding(of_face, "fewer"), nullptr);
   EXPECT_EQ(finding(of_face, "fewer")->texts[1].second, "PP");
   EXPECT_NEAR(*value(of_face, "R"), 4.0 * std::sqrt(0.3) * um, 1e-10) << "4 s of 1 0 1 0 1";
+  for (auto* ends : {&shop.campaign.measurements[2].from, &shop.campaign.measurements[2].to})
+    (*ends)["Z"] = 0.1;  // stands still: a face all the same
+  const Evaluation at_a_height = shop.evaluate(2);
+  ASSERT_NE(finding(at_a_height, "fewer"), nullptr);
+  EXPECT_EQ(finding(at_a_height, "fewer")->texts[1].second, "PP");
+  EXPECT_EQ(value(at_a_height, "E"), value(of_face, "E"));
+  shop.campaign.measurements[2].to.erase("X");
+  EXPECT_FALSE(the_analysis().applies(shop.campaign, shop.campaign.measurements[2])) << "one axis";
   Shop one;
   one.line(face()[0], slope(4, 1), 2, true);
   EXPECT_NE(finding(one.evaluate(), "one-direction"), nullptr);
