@@ -230,7 +230,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
     return e;
   }
   AxisAnalysis a;
-  a.axis = in.measurement.id;
+  a.axis = "*";  // of the keys that the budget names: all axes expand along a diagonal
   a.test = t->test;
   a.budget = t->budget.budget;
   a.approaches = t->approaches;

@@ -65,7 +65,7 @@ class Mistyped(VerbTest):
 
     def test_what_is_nothing_like_a_verb_gets_the_list(self):
         self.assertIn("there are run, ", self.refused("xyzzyxyzzy"))
-        self.assertIn("expected a verb: triples, program, sign-probe", self.refused("plan"))
+        self.assertIn("expected a verb: triples, program, rotary, table, sign-probe", self.refused("plan"))
         self.assertIn("there is no verb below it", self.refused("help", "run", "x"))
 
     def test_values_that_begin_with_a_dash_are_not_options(self):
@@ -122,7 +122,7 @@ t nonio plan sign-probe c --out ""
                               env={"NONIO": NONIO, "SITE": str(self.site), "PATH": "/usr/bin:/bin"})
         self.assertEqual(done.stderr, "")
         self.assertEqual(done.stdout.splitlines(), [
-            "complete -F _nonio nonio", "run", "triples program sign-probe --help", "--max-points", "prefer",
+            "complete -F _nonio nonio", "run", "triples program rotary table sign-probe --help", "--max-points", "prefer",
             "bash zsh", "c", "c"])
 
     ZSH = r"""

@@ -129,6 +129,7 @@ struct Shop {
   Campaign campaign;
   std::vector<Observations> all;
   double scatter = 0.0;
+  double leaning = 0.0;  ///< of the instrument: error over the way, the same on every line
   std::mt19937 rng{seed};
 
   explicit Shop(Errors e) : errors(std::move(e)) {
@@ -157,7 +158,8 @@ struct Shop {
         for (std::size_t i = 0; i < stops; ++i) {
           o.axes[0].position.push_back(places[i][number(axis)]);
           o.axes[0].approach.push_back(static_cast<std::int8_t>(direction));
-          o.deviation.push_back(mean[i] + scatter * normal(rng));
+          o.deviation.push_back(mean[i] + leaning * (places[i] - places[0]).norm() +
+                                scatter * normal(rng));
           o.run.push_back(run);
         }
     campaign.measurements.push_back(std::move(m));
@@ -288,6 +290,8 @@ TEST(Square, UncertaintiesCoverTheTruth) {
       Shop shop(errors);
       shop.rng.seed(seed + 1000 + static_cast<unsigned>(c));
       shop.scatter = 2 * um;
+      shop.campaign.instrument.U_per_length = 2e-6;
+      shop.leaning = 1e-6 * normal(rng);
       shop.campaign.squares[0].error = 10 * urad, shop.campaign.squares[0].U = U;
       const double g = 10 * urad + U / 2.0 * normal(rng);
       shop.both({'X', 'Y', g, false, some_turn(rng)});

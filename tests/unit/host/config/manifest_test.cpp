@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <tuple>
 
 #include "host/config/secret_files.h"
 
@@ -174,6 +175,30 @@ TEST(Manifest, AReversalIsOfOneOtherMeasurementOfTheLine) {
     EXPECT_NE(with(second, third).find("reversal_of: expected the id of another straightness of Y"),
               std::string::npos)
         << second << third << with(second, third);
+}
+
+TEST(Manifest, ALineOnASquareIsOnceInEachOfItsPositions) {
+  const auto with = [](const std::string& squares, const std::string& lines) {
+    return complaint("[run]\n", squares + lines + "[run]\n");
+  };
+  const auto line = [](const std::string& id, const std::string& rest) {
+    return "[[measurement]]\nkind = \"straightness\"\naxis = \"Y\"\nlateral = \"C\"\nfile = "
+           "\"s.csv\"\nid = \"" +
+           id + "\"\n" + rest;
+  };
+  const std::string Q = "[[square]]\nid = \"Q\"\n", on = "square = \"Q\"\n",
+                    turned = "square_turned = true\n";
+  EXPECT_EQ(with(Q, line("A", on) + line("B", on + turned)), "accepted");
+  for (const auto& [squares, lines, words] :
+       {std::tuple<std::string, std::string, std::string>{
+            "", line("A", on), "square: expected the id of a [[square]], found \"Q\""},
+        {Q + Q, line("A", on), "id: \"Q\" is there twice"},
+        {Q, line("A", on) + line("B", on), "square: expected one line of Y towards C"},
+        {Q, line("A", turned), "square_turned: expected the key square beside it"},
+        {Q, line("A", "") + line("B", on + "reversal_of = \"A\"\n"),
+         "square: stands beside reversal_of"},
+        {Q + "U_urad = 0\n", line("A", on), "U_urad: expected an uncertainty above 0"}})
+    EXPECT_NE(with(squares, lines).find(words), std::string::npos) << words << with(squares, lines);
 }
 
 TEST(Manifest, KeysHaveTheirLines) {
