@@ -463,12 +463,12 @@
       running(null);
       if (e.data.job) view.alarm(e.data.error ? net.program(e.data.error) : say("net.failed"));
     }
-      if (e.type === "progress" && e.data.part) {
+    if (e.type === "progress" && e.data.part) {
       shown.seconds = e.data.seconds || 0;
       if (state && e.data.part === shown.part && !shown.explain) bar.draw(state, shown, steps);
       return;
     }
-    if (e.type === "progress" && e.data.state && e.data.state !== "running")
+    if (e.type === "done" && e.data.state === "done")
       view.speak(e.data.added && e.data.added.length ? say("job.added", {effects: e.data.added.join(", ")}) : say("job.none"));
     clearTimeout(soon);
     soon = setTimeout(() => refresh().catch(complain), 15);

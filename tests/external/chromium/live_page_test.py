@@ -24,6 +24,8 @@ from hindrances import HINDRANCES
 
 TUTORIAL = SOURCE / "samples/tutorial/site/missing-effect"
 
+ENGLISH = tomllib.loads((SOURCE / "templates/words/en/workbench.toml").read_text())
+
 
 def said(verb, folder, *more):
     got = subprocess.run([str(NONIO), verb, str(folder), "--json", *more], capture_output=True, text=True)
@@ -233,6 +235,8 @@ class Page(live_browser.LivePage):
         self.wait(lambda: self.d.find_element(By.ID, "finish").is_enabled())
         model = self.ticks("effects.model")
         self.assertEqual(3, self.js("document.querySelectorAll('.trail li').length"), "each step is shown")
+        self.click("suggest")
+        self.wait(lambda: self.text("said") == ENGLISH["job"]["none"], "that there is nothing more is told")
         auto = self.campaign(name="auto")
         said("explain", auto, "--auto")
         self.assertEqual(tomllib.loads((auto / "campaign.toml").read_text())["model"]["effects"], model)
