@@ -176,7 +176,7 @@ TEST(LiveGuard, ARefusalIsSpelledInTheWordsOfTheSite) {
   EXPECT_EQ(answer.body, R"({"error":"Kein Teil X {part}, {other}, X {part} {","status":404})");
   EXPECT_EQ(sentences(Said{"refused.none"}), "refused.none");
   EXPECT_EQ(sentences.spelled(refusal(422, "as it is")).body,
-            R"({"error":"as it is","status":422})");
+            R"({"error":"as it is","status":422,"lang":"en"})");
 }
 
 TEST(LiveGuard, AHeadIsReadOnlyIfEverybodyReadsTheSame) {
