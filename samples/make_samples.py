@@ -13,6 +13,7 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import by_rules  # noqa: E402 (this folder is no package)
 import for_customers  # noqa: E402 (this folder is no package)
 import in_space  # noqa: E402 (this folder is no package)
 from parts import (GOOD_ROOM, MADE_UP, ROTARY_CALIBRATOR, Noise, axis_measurement, behind, decimal,
@@ -325,6 +326,7 @@ STORIES = {
     "11-missing-and-misread": missing_and_misread,
     "12-straightness": straightness,
     **in_space.STORIES,
+    **by_rules.STORIES,
 }
 
 RECORDS = {"S-0109": """# Constructed, as all samples are: what the house knows of this machine, whoever measures it.

@@ -7,6 +7,7 @@
 #include "expression.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/iso230_2.h"
+#include "nonio/math/positioning.h"
 #include "nonio/math/reversal.h"
 #include "nonio/math/uncertainty.h"
 #include "nonio/math/vdi3441.h"
@@ -137,6 +138,42 @@ void evaluate_vdi(const Case& c, const AxisTest& test, Outcome& out) {
   put(out, "U(U_mean)", U.U_mean, um);
 }
 
+void evaluate_positioning(const Case& c, const AxisTest& test, Outcome& out) {
+  const double um = deviation_unit(c);
+  const AxisStatistics axis = axis_statistics(test);
+  Offset offset = Offset::mean_of_all;
+  if (const auto it = c.options.find("offset"); it != c.options.end())
+    offset = it->second == "first-target" ? Offset::first_target
+             : it->second == "mid-range"  ? Offset::mid_range
+                                          : Offset::mean_of_all;
+  put(out, "offset", offset_of(axis, offset), um);
+  const Slopes slopes = slopes_of(axis);
+  const double slope_unit = unit_of(slope_of(c.rotary())).per_si;
+  put(out, "slope", slopes.least_squares, slope_unit);
+  put(out, "slope_ends", slopes.end_points, slope_unit);
+  const auto of = uncertainty_budget(c.campaign, c.campaign.environment, "X", test);
+  const std::size_t n = approaches_behind_means(test);
+  if (of.budget) put(out, "U(slope)", slope_uncertainty(*of.budget, n), slope_unit);
+  for (const PositioningRule& rule : positioning_rules())
+    for (const RuleValue& v : evaluate_rule(rule, axis, offset)) {
+      const std::string name = std::string(rule.name) + ":" + std::string(v.name);
+      put(out, name, v.value, um);
+      if (of.budget) put(out, "U(" + name + ")", rule_uncertainty(*of.budget, n, v.share), um);
+    }
+}
+
+// A figure of a sheet by another number of standard deviations: R+, R- and nothing else.
+void evaluate_converted(const Case& c, Outcome& out) {
+  const auto number = [&](const char* name) {
+    const auto it = c.options.find(name);
+    return it == c.options.end() ? NAN : Expression::value(it->second).value_or(NAN);
+  };
+  const auto name = c.options.find("name");
+  if (name == c.options.end()) return;
+  if (const auto v = converted(name->second, number("value"), number("from"), number("to")))
+    out.values["converted"] = *v;
+}
+
 const char* kind_name(Reversal::Kind kind) {
   switch (kind) {
     case Reversal::Kind::unknown:
@@ -199,6 +236,8 @@ Outcome evaluate(const Case& c) {
   const AxisTest test = choose_targets(all, leave_out, out.findings);
   if (c.analysis == "iso230-2") evaluate_iso(c, test, out);
   if (c.analysis == "vdi-dgq-3441") evaluate_vdi(c, test, out);
+  if (c.analysis == "positioning") evaluate_positioning(c, test, out);
+  if (c.analysis == "converted") evaluate_converted(c, out);
   if (c.analysis == "reversal") evaluate_reversal(c, test, out);
   if (c.analysis == "findings")
     for (auto& f : axis_findings(test, c.observations, &c.campaign.machine.axes[0]))

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <string>
 
 #include "axis_builder.h"
 #include "nonio/math/iso230_2.h"
+#include "nonio/math/positioning.h"
 #include "nonio/math/reversal.h"
 #include "nonio/math/vdi3441.h"
 
@@ -144,6 +147,119 @@ TEST_P(AxisProperties, VdiAndIsoAgreeWhereTheyMeanTheSame) {
   EXPECT_GE(vdi.P, vdi.Pa);
   EXPECT_LE(vdi.Ps_mean, vdi.Ps_max);
   EXPECT_LE(vdi.Ps_max, std::max(iso.R_plus, iso.R_minus) + 1e-18);
+}
+
+// Every value of every rule, by "rule:symbol".
+using ByName = std::map<std::string, double>;
+ByName by_every_rule(const Observations& o, math::Offset offset = math::Offset::mean_of_all) {
+  ByName out;
+  const math::AxisStatistics axis = math::axis_statistics(AxisTest::arrange(o));
+  for (const auto& rule : math::positioning_rules())
+    for (const auto& v : math::evaluate_rule(rule, axis, offset))
+      out[std::string(rule.name) + ":" + std::string(v.name)] = v.value;
+  return out;
+}
+
+constexpr double nothing = 1e-15;  // m
+
+TEST_P(AxisProperties, RulesAreTiedTogether) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  const ByName v = by_every_rule(s.observations);
+  for (const char* iso : {"iso-1988:", "iso-2006:", "gb-10931:", "b5.54-2005:"}) {
+    const std::string rule = iso;
+    EXPECT_GE(v.at(rule + "R") + nothing, v.at(rule + "B"));
+    EXPECT_GE(v.at(rule + "A") + nothing, v.at(rule + "R"));
+  }
+  for (const char* one : {"R+", "R-"}) {
+    const std::string name = one;
+    EXPECT_NEAR(v.at("iso-1988:" + name), 1.5 * v.at("iso-2014:" + name), nothing);
+    EXPECT_NEAR(*math::converted(name, v.at("iso-1988:" + name), 3.0, 2.0),
+                v.at("iso-2014:" + name), nothing);
+  }
+  EXPECT_GE(v.at("iso-1988:A"), v.at("iso-2014:A"));
+  EXPECT_LE(v.at("iso-1988:A"), 1.5 * v.at("iso-2014:A") + nothing);
+  EXPECT_EQ(v.at("upr:UPR"), std::min(v.at("iso-2014:R+"), v.at("iso-2014:R-")));
+  EXPECT_NEAR(v.at("nmtba:+-repeatability"), v.at("iso-1988:R") / 2.0, nothing);
+  EXPECT_NEAR(v.at("nmtba:+-repeatability+"), v.at("iso-1988:R+") / 2.0, nothing);
+  EXPECT_EQ(v.at("vdi-3441:Pa"), v.at("iso-2014:M"));
+  EXPECT_GE(v.at("vdi-3441:PsU_max") + nothing, v.at("vdi-3441:U_max"));
+  EXPECT_LE(v.at("b5.54-1992:R'"), v.at("b5.54-1992:A'"));
+  EXPECT_LE(v.at("b5.54-1992:R'+"), v.at("b5.54-1992:R'"));
+  EXPECT_LE(v.at("iso-2014:E"), v.at("b5.54-1992:A'") + nothing);  // means lie among readings
+  EXPECT_LE(v.at("jis-6330:accuracy"), v.at("b5.54-1992:A'+"));
+  EXPECT_LE(2.0 * v.at("jis-6330:+-repeatability"),
+            std::max(v.at("b5.54-1992:R'+"), v.at("b5.54-1992:R'-")) + nothing);
+  EXPECT_LE(v.at("jis-6330:lost_motion"), v.at("iso-2014:B"));
+}
+
+// Half of A with 3 s is the least +- accuracy that any constant can give.
+TEST_P(AxisProperties, NoOffsetIsBelowHalfOfA) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  for (const auto offset :
+       {math::Offset::mean_of_all, math::Offset::first_target, math::Offset::mid_range}) {
+    const ByName v = by_every_rule(s.observations, offset);
+    EXPECT_GE(v.at("nmtba-no-offset:+-accuracy") + nothing, v.at("iso-1988:A") / 2.0);
+    EXPECT_GE(v.at("nmtba:+-accuracy") + nothing, v.at("iso-1988:A") / 2.0);
+  }
+}
+
+TEST_P(AxisProperties, AShiftChangesNmtbaWithOffsetAndNothingElse) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  Observations shifted = s.observations;
+  for (double& d : shifted.deviation) d += 0.25;
+  const ByName before = by_every_rule(s.observations), after = by_every_rule(shifted);
+  for (const auto& [name, value] : before)
+    if (name.starts_with("nmtba:+-accuracy"))
+      EXPECT_GT(after.at(name), 0.2) << name;
+    else
+      EXPECT_NEAR(after.at(name), value, 1e-15) << name;
+}
+
+TEST_P(AxisProperties, EveryRuleScalesAndSwaps) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  Observations scaled = s.observations, swapped = s.observations;
+  for (double& d : scaled.deviation) d *= 4.0;  // exact
+  for (auto& approach : swapped.axes[0].approach) approach = static_cast<std::int8_t>(-approach);
+  const ByName before = by_every_rule(s.observations), larger = by_every_rule(scaled),
+               other = by_every_rule(swapped);
+  for (const auto& [name, value] : before) {
+    EXPECT_NEAR(larger.at(name), 4.0 * value, 1e-17) << name;
+    if (name.starts_with("jis-63") && name.ends_with(":accuracy")) continue;  // of the first pass
+    std::string there = name;
+    if (there.back() == '+' || there.back() == '-') there.back() = name.back() == '+' ? '-' : '+';
+    EXPECT_NEAR(other.at(there), name.ends_with("B_mean") ? -value : value, 1e-17) << name;
+  }
+}
+
+TEST_P(AxisProperties, VdiEqualsIso1988WhereBothDirectionsScatterAlike) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  const AxisTest test = AxisTest::arrange(s.observations);
+  Observations alike;
+  for (std::size_t i = 0; i < test.targets.size(); ++i)
+    for (const auto& r : test.plus(i)) {
+      made::add(alike, test.targets[i], 1, r.deviation, r.run);
+      made::add(alike, test.targets[i], -1, r.deviation + 1e-6 * static_cast<double>(i % 5), r.run);
+    }
+  const ByName v = by_every_rule(alike);
+  EXPECT_NEAR(v.at("vdi-3441:P"), v.at("iso-1988:A"), nothing);
+  EXPECT_NEAR(v.at("vdi-3441:PsU_max"), v.at("iso-1988:R"), nothing);
+}
+
+TEST_P(AxisProperties, OneDirectionGivesWhatItCanAndNoMore) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  const Observations& o = s.observations;
+  Observations up;
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (o.axes[0].approach[i] > 0)
+      made::add(up, o.axes[0].position[i], 1, o.deviation[i], o.run[i]);
+  const ByName both = by_every_rule(o);
+  for (const auto& [name, value] : by_every_rule(up)) {
+    const bool of_plus =
+        name.ends_with('+') || (name.starts_with("jis-63") && !name.ends_with("motion"));
+    EXPECT_EQ(std::isfinite(value), of_plus) << name;
+    if (name.ends_with('+') && !name.starts_with("nmtba-no"))
+      EXPECT_EQ(value, both.at(name)) << name;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Random, AxisProperties, testing::Range<std::uint64_t>(1, 101));

@@ -19,44 +19,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "nonio/math/statistics.h"
 
 namespace nonio::math {
 namespace {
 
-// The largest and smallest of what was put in; one NaN makes the whole NaN.
-class Extent {
- public:
-  void put(double value) {
-    known_ = known_ && !std::isnan(value);
-    low_ = std::min(low_, value);
-    high_ = std::max(high_, value);
-  }
-  double range() const { return given() ? high_ - low_ : none; }
-  double largest() const { return given() ? high_ : none; }
-
- private:
-  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  bool given() const { return known_ && high_ >= low_; }
-  bool known_ = true;
-  double low_ = std::numeric_limits<double>::infinity();
-  double high_ = -std::numeric_limits<double>::infinity();
-};
-
-Iso230Point evaluate_target(const AxisTest& test, std::size_t i, double k) {
-  const std::vector<double> plus = deviations(test.plus(i)), minus = deviations(test.minus(i));
+Iso230Point evaluate_target(const AxisStatistics::Target& t, double k) {
   Iso230Point p{};
-  p.target = test.targets[i];
-  p.n_plus = plus.size();
-  p.n_minus = minus.size();
-  p.mean_plus = mean(plus);
-  p.mean_minus = mean(minus);
-  p.mean = (p.mean_plus + p.mean_minus) / 2.0;
-  p.B = p.mean_plus - p.mean_minus;
-  p.s_plus = standard_deviation(plus);
-  p.s_minus = standard_deviation(minus);
+  p.target = t.target;
+  p.n_plus = t.plus.n;
+  p.n_minus = t.minus.n;
+  p.mean_plus = t.plus.mean;
+  p.mean_minus = t.minus.mean;
+  p.mean = t.mean;
+  p.B = t.B;
+  p.s_plus = t.plus.s;
+  p.s_minus = t.minus.s;
   p.R_plus = 2.0 * k * p.s_plus;
   p.R_minus = 2.0 * k * p.s_minus;
   const double both = k * p.s_plus + k * p.s_minus + std::fabs(p.B);
@@ -67,12 +46,16 @@ Iso230Point evaluate_target(const AxisTest& test, std::size_t i, double k) {
 }  // namespace
 
 Iso230Result evaluate_iso230_2(const AxisTest& test, double k) {
+  return evaluate_iso230_2(axis_statistics(test), k);
+}
+
+Iso230Result evaluate_iso230_2(const AxisStatistics& axis, double k) {
   Iso230Result result{};
   result.k = k;
   Extent A, A_plus, A_minus, E, E_plus, E_minus, M, R, R_plus, R_minus, B;
   std::vector<double> B_i;
-  for (std::size_t i = 0; i < test.targets.size(); ++i) {
-    const Iso230Point p = evaluate_target(test, i, k);
+  for (const AxisStatistics::Target& t : axis.targets) {
+    const Iso230Point p = evaluate_target(t, k);
     if (p.n_plus > 0) {
       E_plus.put(p.mean_plus);
       A_plus.put(p.mean_plus + k * p.s_plus);

@@ -33,11 +33,10 @@ constexpr std::array<double, 11> d_n = {
     not_given,      not_given,      1.128379167096, 1.692568750643, 2.058750746008, 2.325928947281,
     2.534412721223, 2.704356751214, 2.847200612091, 2.970026324418, 3.077505461670};
 
-double deviation_of_side(const std::vector<double>& x, StandardDeviation how) {
-  if (how == StandardDeviation::direct) return standard_deviation(x);
-  if (x.size() < 2 || x.size() >= d_n.size()) return not_given;
-  const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  return (*high - *low) / d_n[x.size()];
+double deviation_of_side(const AxisStatistics::Side& side, StandardDeviation how) {
+  if (how == StandardDeviation::direct) return side.s;
+  if (side.n < 2 || side.n >= d_n.size()) return not_given;
+  return (side.high - side.low) / d_n[side.n];
 }
 
 double largest(const std::vector<double>& x) {
@@ -68,22 +67,25 @@ struct Sided {  // one direction: of the targets that were reached in it
 }  // namespace
 
 VdiResult evaluate_vdi3441(const AxisTest& test, StandardDeviation how) {
+  return evaluate_vdi3441(axis_statistics(test), how);
+}
+
+VdiResult evaluate_vdi3441(const AxisStatistics& axis, StandardDeviation how) {
   VdiResult result{};
   Sided one[2];
   std::vector<double> xs, flat, half, U, Ps, PsU;
-  for (std::size_t j = 0; j < test.targets.size(); ++j) {
-    const auto plus = deviations(test.plus(j)), minus = deviations(test.minus(j));
-    const double xm_plus = mean(plus), xm_minus = mean(minus);
+  for (const AxisStatistics::Target& t : axis.targets) {
+    const double xm_plus = t.plus.mean, xm_minus = t.minus.mean;
     VdiPoint p{};
-    p.target = test.targets[j];
-    p.mean = (xm_plus + xm_minus) / 2.0;
-    p.S_plus = deviation_of_side(plus, how);
-    p.S_minus = deviation_of_side(minus, how);
+    p.target = t.target;
+    p.mean = t.mean;
+    p.S_plus = deviation_of_side(t.plus, how);
+    p.S_minus = deviation_of_side(t.minus, how);
     p.S = (p.S_plus + p.S_minus) / 2.0;
     p.U = std::fabs(xm_plus - xm_minus);
     p.Ps = 6.0 * p.S;
-    if (!plus.empty()) one[0].put(xm_plus, p.S_plus);
-    if (!minus.empty()) one[1].put(xm_minus, p.S_minus);
+    if (t.plus.n > 0) one[0].put(xm_plus, p.S_plus);
+    if (t.minus.n > 0) one[1].put(xm_minus, p.S_minus);
     xs.push_back(p.mean);
     flat.push_back(0.0);
     half.push_back((p.U + p.Ps) / 2.0);

@@ -123,6 +123,16 @@ VdiUncertainty vdi3441_uncertainty(const Budget& b, std::size_t n) {
   return {iso.A, iso.M, iso.R_plus, iso.R_plus, iso.B, iso.B};
 }
 
+double rule_uncertainty(const Budget& b, std::size_t n, const RuleShare& share) {
+  const double S = share.systematic ? b.systematic() : 0.0, E_VE = b.U_EVE / of_range;
+  return std::sqrt(S * S + share.means * b.U_EVE * b.U_EVE / static_cast<double>(n) +
+                   share.scatter * share.scatter * b.U_EVE * b.U_EVE + share.band * E_VE * E_VE);
+}
+
+double slope_uncertainty(const Budget& b, std::size_t n) {
+  return root(b.systematic(), b.U_EVE / std::sqrt(static_cast<double>(n))) / b.length;
+}
+
 UncertaintyBudget contributions_of(const Budget& b, const std::string& axis, bool rotary) {
   UncertaintyBudget out;
   if (!rotary) out.length = b.length;

@@ -9,6 +9,7 @@
 #include "certificate.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
+#include "rules.h"
 
 namespace nonio::certificate {
 
@@ -67,6 +68,12 @@ std::string method_of(const Source& source, const Results::Analysed& a) {
   const std::string key =
       (pages::follows_plan(source.in, a) ? "method." : "method_own_plan.") + a.plugin;
   if (source.words.get_or(key, "").empty()) return pages::analysis_title(source, a);
+  if (const Remark* rules = pages::rules_of(a)) {
+    std::string text = source.words.get(key, {{"rules", rules->texts.front().second}});
+    for (const std::string& note : pages::rule_notes(source, a, pages::RuleNotes::sureness))
+      text += " " + note;
+    return text;
+  }
   return source.words.get(key, {{"edition", edition}, {"k", k}});
 }
 

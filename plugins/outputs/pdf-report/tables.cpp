@@ -8,6 +8,7 @@
 #include "nonio/reports/text.h"
 #include "nonio/sdk/format.h"
 #include "report.h"
+#include "rules.h"
 
 namespace nonio::pdf_report {
 
@@ -322,8 +323,8 @@ void add_notes(const Source& source, Blocks& blocks) {
   std::set<std::string> said;
   std::string methods;
   for (const Results::Analysed& a : results.analyses)
-    for (const Remark& note : a.evaluation.notes)
-      if (said.insert(remark(source, note)).second)
+    for (const Remark& note : a.evaluation.notes)  // those of rules stand below their tables
+      if (pages::rules_of(a) == nullptr && said.insert(remark(source, note)).second)
         methods += (methods.empty() ? "" : " ") + remark(source, note);
   add(methods);
   add(meaning_of_numbers(source));

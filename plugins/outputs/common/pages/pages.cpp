@@ -20,6 +20,7 @@ std::string symbol(std::string_view name) {
     out.pop_back();
     out += plus ? "↑" : "↓";
   }
+  if (const std::size_t at = out.find("+-"); at != std::string::npos) out.replace(at, 2, "±");
   std::replace(out.begin(), out.end(), '_', ' ');
   // The standard's U is a span, and no uncertainty.
   if (out == "U max" || out == "U mean" || out == "U") out.insert(1, "(VDI)");

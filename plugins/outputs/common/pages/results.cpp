@@ -8,6 +8,7 @@
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 #include "pages.h"
+#include "rules.h"
 
 namespace nonio::pages {
 
@@ -217,6 +218,7 @@ std::vector<std::string> undecided(const Source& source) {
 /// is said of the second one stands beside it.
 void add_results(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Blocks> parts;
+  Blocks rules;
   // In two languages a column of meanings takes the width.
   const bool wide = source.certificate && source.in.campaign.certificate.languages.size() > 1;
   bool decisions = wide, second_decides = false;
@@ -226,6 +228,14 @@ void add_results(const Source& source, const Measured& m, Blocks& blocks) {
         std::all_of(values.begin(), values.end(),
                     [&](const Value& v) { return left_out(source, v); }))
       continue;
+    if (rules_of(*a) != nullptr) {
+      add_rules(source, *a, rules);
+      Results::Analysed rest = *a;  // what no rule has: slopes
+      std::erase_if(rest.evaluation.values,
+                    [](const Value& v) { return v.name.find(':') != std::string::npos; });
+      if (!rest.evaluation.values.empty()) rules.push_back({value_table(source, rest)});
+      continue;
+    }
     parts.push_back({value_table(source, *a)});
     if (parts.size() == 2) second_decides = shape_of(source, *a).decision;
     if (parts.size() <= 2) decisions |= shape_of(source, *a).decision;
@@ -244,6 +254,7 @@ void add_results(const Source& source, const Measured& m, Blocks& blocks) {
   }
   for (; next < parts.size(); ++next)
     std::move(parts[next].begin(), parts[next].end(), std::back_inserter(blocks));
+  std::move(rules.begin(), rules.end(), std::back_inserter(blocks));
 }
 
 namespace {

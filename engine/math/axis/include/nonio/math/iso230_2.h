@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "nonio/math/axis_test.h"
+#include "nonio/math/axis_statistics.h"
 
 namespace nonio::math {
 
@@ -44,5 +44,6 @@ struct Iso230Result {
 /// k = 3 for the edition of 1988, 2 for those of 1997, 2006 and 2014.
 /// Source: ISO 230-2:2014 clause 2 (symbols), k of 1988 from its forms 6 s and 3 s.
 Iso230Result evaluate_iso230_2(const AxisTest& test, double k);
+Iso230Result evaluate_iso230_2(const AxisStatistics&, double k);
 
 }  // namespace nonio::math

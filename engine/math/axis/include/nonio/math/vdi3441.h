@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "nonio/math/axis_test.h"
+#include "nonio/math/axis_statistics.h"
 
 namespace nonio::math {
 
@@ -37,5 +37,6 @@ struct VdiResult {
 /// range by d_n (n = 2..10; more readings or one give NaN). No errors. The text of the standard was
 /// not available: confidence M in docs/formulas.md.
 VdiResult evaluate_vdi3441(const AxisTest& test, StandardDeviation how);
+VdiResult evaluate_vdi3441(const AxisStatistics&, StandardDeviation how);
 
 }  // namespace nonio::math

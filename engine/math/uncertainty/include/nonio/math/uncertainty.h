@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "nonio/math/axis_test.h"
+#include "nonio/math/positioning.h"
 #include "nonio/sdk/budget.h"
 #include "nonio/sdk/campaign.h"
 
@@ -77,5 +78,15 @@ struct VdiUncertainty {
   double P, Pa, Ps_max, Ps_mean, U_max, U_mean;
 };
 VdiUncertainty vdi3441_uncertainty(const Budget&, std::size_t n);
+
+/// The same for a value of any rule of positioning (positioning.h): derived by the rules of the GUM.
+///
+///     U^2 = S^2 (where systematic) + means U_EVE^2/n + (scatter U_EVE)^2 + band E_VE^2
+///
+/// A difference of two readings is wrong by the range of the environment E_VE = U_EVE/0.6 at most.
+double rule_uncertainty(const Budget&, std::size_t n, const RuleShare&);
+
+/// Of a slope of means over the length: sqrt(S^2 + U_EVE^2/n)/L, an upper bound for least squares.
+double slope_uncertainty(const Budget&, std::size_t n);
 
 }  // namespace nonio::math

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Positioning of an axis by any rule of the trade, several at once: one set of statistics, rows of
+// engine/math/axis/positioning.cpp.
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/math/axis_analysis.h"
+#include "nonio/math/positioning.h"
+#include "nonio/sdk/plugin.h"
+#include "remarks.h"
+
+using namespace nonio;
+using namespace nonio::math;
+using positioning::Rules;
+
+namespace {
+
+bool applies(const Campaign&, const Measurement& m) { return m.kind == "axis"; }
+
+std::string names_of_rules() {
+  std::string out;
+  for (const PositioningRule& r : positioning_rules())
+    out += (out.empty() ? "" : ", ") + std::string(r.name);
+  return out;
+}
+
+Expected<Rules> asked_rules(const Settings& options) {
+  Rules out;
+  const auto refuse = [](std::string message) {
+    Error error{std::move(message)};
+    error.key = "rules";
+    return fail(std::move(error));
+  };
+  for (const std::string& name : options.texts("rules")) {
+    const PositioningRule* rule = positioning_rule(name);
+    if (rule == nullptr)
+      return refuse("rules: expected some of " + names_of_rules() + "; found \"" + name + "\"");
+    if (std::find(out.begin(), out.end(), rule) != out.end())
+      return refuse("rules: \"" + name + "\" stands there twice");
+    out.push_back(rule);
+  }
+  if (out.empty()) return refuse("rules: expected at least one of " + names_of_rules());
+  return out;
+}
+
+constexpr std::pair<const char*, Offset> offsets[] = {{"mean-of-all", Offset::mean_of_all},
+                                                      {"first-target", Offset::first_target},
+                                                      {"mid-range", Offset::mid_range}};
+
+Offset offset_option(const Settings& options) {
+  for (const auto& [name, offset] : offsets)
+    if (options.text("nmtba_offset") == name) return offset;
+  return Offset::mean_of_all;
+}
+
+/// Adds the values of the rules; gives the names of what is absent.
+std::string add_values(Evaluation& e, const AxisAnalysis& a, const AxisStatistics& statistics,
+                       const Rules& rules, Offset offset) {
+  std::string absent;
+  for (const PositioningRule* rule : rules)
+    for (const RuleValue& v : evaluate_rule(*rule, statistics, offset)) {
+      std::string name = std::string(rule->name) + ":" + std::string(v.name);
+      if (!std::isfinite(v.value)) absent += (absent.empty() ? "" : ", ") + name;
+      const double U = rule_uncertainty(a.budget.value_or(Budget{}), a.approaches, v.share);
+      add_value(e, a, std::move(name), v.value, U,
+                v.share.systematic ? Made::of_all : Made::of_environment);
+    }
+  return absent;
+}
+
+void add_slopes(Evaluation& e, const AxisAnalysis& a, const AxisStatistics& statistics) {
+  const Slopes slopes = slopes_of(statistics);
+  for (const auto& [name, value] :
+       {std::pair("slope", slopes.least_squares), {"slope_ends", slopes.end_points}}) {
+    if (!std::isfinite(value)) continue;
+    Value v{name, value, slope_of(a.test.rotary)};
+    if (a.budget && e.budget) {
+      v.U = slope_uncertainty(*a.budget, a.approaches);
+      std::vector<double> parts = shares_of(*a.budget, *v.U * a.budget->length, true);
+      for (double& part : parts) part /= a.budget->length;
+      e.budget->results.push_back({v.name, v.quantity, std::move(parts), 2.0, INFINITY});
+    }
+    e.values.push_back(std::move(v));
+  }
+}
+
+PointTable table(const AxisAnalysis& a, const AxisStatistics& statistics) {
+  const Budget b = a.budget.value_or(Budget{});
+  const auto U_of = [&](const RuleShare& share) {
+    return rule_uncertainty(b, a.approaches, share);
+  };
+  PointTable points;
+  const auto column = [&](const char* name, Quantity quantity, double U, auto value_of) {
+    PointTable::Column c{name, quantity, {}};
+    for (const auto& t : statistics.targets) c.values.push_back(static_cast<double>(value_of(t)));
+    if (a.budget && std::isfinite(U)) c.U = U;
+    points.columns.push_back(std::move(c));
+  };
+  using T = AxisStatistics::Target;
+  const double of_mean = U_of({true, 1.0, 0.0, 0.0}), of_B = U_of({false, 2.0, 0.0, 0.0}),
+               of_s = U_of({false, 0.0, 0.5, 0.0}), of_range = U_of({false, 0.0, 0.0, 1.0});
+  column("target", a.position, NAN, [](const T& t) { return t.target; });
+  column("mean+", a.deviation, of_mean, [](const T& t) { return t.plus.mean; });
+  column("mean-", a.deviation, of_mean, [](const T& t) { return t.minus.mean; });
+  column("mean", a.deviation, of_mean, [](const T& t) { return t.mean; });
+  column("B", a.deviation, of_B, [](const T& t) { return t.B; });
+  column("s+", a.deviation, of_s, [](const T& t) { return t.plus.s; });
+  column("s-", a.deviation, of_s, [](const T& t) { return t.minus.s; });
+  column("range+", a.deviation, of_range, [](const T& t) { return t.plus.high - t.plus.low; });
+  column("range-", a.deviation, of_range, [](const T& t) { return t.minus.high - t.minus.low; });
+  column("n+", Quantity::count, NAN, [](const T& t) { return t.plus.n; });
+  column("n-", Quantity::count, NAN, [](const T& t) { return t.minus.n; });
+  return points;
+}
+
+/// The common findings name the absent values of ISO 230-2; here they are those of the rules.
+void name_absent(std::vector<Finding>& findings, const std::string& absent) {
+  for (Finding& f : findings)
+    for (auto& [name, text] : f.texts)
+      if (name == "absent") text = absent.empty() ? "–" : absent;
+}
+
+/// Rules that ask more approaches than there are, by what they ask.
+void plan(Evaluation& e, const AxisAnalysis& a, const Rules& rules) {
+  for (const std::size_t asked : {5U, 7U}) {
+    std::string titles;
+    for (const PositioningRule* r : rules)
+      if (r->approaches == asked && a.approaches < asked)
+        titles += (titles.empty() ? "" : ", ") + std::string(r->title);
+    if (!titles.empty())
+      e.findings.push_back(
+          {.id = "positioning.approaches",
+           .evidence = {{"approaches", static_cast<double>(a.approaches), Quantity::count},
+                        {"asked", static_cast<double>(asked), Quantity::count}},
+           .texts = {{"rules", titles}}});
+  }
+}
+
+void pass(Evaluation& e, const AxisStatistics& statistics, const Rules& rules) {
+  std::string titles;
+  for (const PositioningRule* r : rules)
+    if (r->form == RuleForm::jis && std::isnan(evaluate_rule(*r, statistics).front().value))
+      titles += (titles.empty() ? "" : ", ") + std::string(r->title);
+  if (!titles.empty())
+    e.findings.push_back({.id = "positioning.no-pass", .texts = {{"rules", titles}}});
+}
+
+Expected<Evaluation> analyse(const AnalysisInput& in) {
+  const auto rules = asked_rules(in.options);
+  if (!rules) return fail(rules.error());
+  auto begun = begin_axis_analysis(in);
+  if (!begun) return fail(begun.error());
+  const AxisStatistics statistics = axis_statistics(begun->test);
+  const Offset offset = offset_option(in.options);
+  Evaluation e;
+  const std::string absent = add_values(e, *begun, statistics, *rules, offset);
+  add_slopes(e, *begun, statistics);
+  e.points = table(*begun, statistics);
+  e.findings = std::move(begun->findings);
+  name_absent(e.findings, absent);
+  plan(e, *begun, *rules);
+  pass(e, statistics, *rules);
+  for (Finding& f : e.findings) f.measurement = in.measurement.id;
+  e.notes = positioning::remarks_on(
+      *rules, {offset_of(statistics, offset), begun->deviation, in.options.text("nmtba_offset")},
+      begun->budget.has_value());
+  return e;
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  Analysis a;
+  a.info = {
+      "positioning",
+      "1.0.0",
+      "Positioning of an axis by any rule of the trade (ISO, VDI, ASME, NMTBA, BS, JIS, GB), "
+      "several at once.",
+      {{"rules", std::vector<std::string>{"iso-2014"}, "", "Any of " + names_of_rules() + ".", {}},
+       {"nmtba_offset",
+        std::string("mean-of-all"),
+        "",
+        "What NMTBA without offset takes off: the mean of all bidirectional means, that of "
+        "the first target, or the middle between the largest and the smallest. The rule "
+        "does not say which.",
+        {"mean-of-all", "first-target", "mid-range"}},
+       incomplete_targets_option()},
+      true};
+  a.applies = applies;
+  a.analyse = analyse;
+  registry.add(std::move(a));
+}
