@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// ISO 230-2 and VDI/DGQ 3441: eleven targets, five runs. The truth is the same evaluation of the
+// ISO 230-2, VDI/DGQ 3441 and the rules that have values of their own: eleven targets, five runs. The truth is the same evaluation of the
 // same approaches, read by a perfect instrument in a perfect shop.
 #include <cmath>
 
@@ -45,10 +45,9 @@ Campaigns axis(const Scenario& s, unsigned seed, double size) {
   return out;
 }
 
-void compare(const Analysis& analysis, const Scenario& s, unsigned seed, double size,
-             Tally& tally) {
+void compare(const Analysis& analysis, const Settings& settings, const Scenario& s, unsigned seed,
+             double size, Tally& tally) {
   const Campaigns c = axis(s, seed, size);
-  const Settings settings = defaults(analysis);
   const Evaluation seen = evaluated(analysis, c.campaign, 0, c.seen, settings),
                    real = evaluated(analysis, c.campaign, 0, c.real, settings);
   for (std::size_t i = 0; i < seen.values.size(); ++i)
@@ -71,16 +70,26 @@ void compare(const Analysis& analysis, const Scenario& s, unsigned seed, double 
 
 void iso(const Scenario& s, unsigned seed, double size, Tally& tally) {
   static const Analysis analysis = loaded_analysis(NONIO_ISO_PLUGIN);
-  compare(analysis, s, seed, size, tally);
+  compare(analysis, defaults(analysis), s, seed, size, tally);
 }
 
 void vdi(const Scenario& s, unsigned seed, double size, Tally& tally) {
   static const Analysis analysis = loaded_analysis(NONIO_VDI_PLUGIN);
-  compare(analysis, s, seed, size, tally);
+  compare(analysis, defaults(analysis), s, seed, size, tally);
+}
+
+/// Of rules with the formulas of these two no more is to be learnt.
+void rules(const Scenario& s, unsigned seed, double size, Tally& tally) {
+  static const Analysis analysis = loaded_analysis(NONIO_POSITIONING_PLUGIN);
+  Settings settings = defaults(analysis);
+  settings.values["rules"] = std::vector<std::string>{"upr",   "vdi-3441",        "b5.54-1992",
+                                                      "nmtba", "nmtba-no-offset", "jis-6330"};
+  compare(analysis, settings, s, seed, size, tally);
 }
 
 }  // namespace
 
-const std::vector<Method> axis_methods{{"ISO 230-2", iso}, {"VDI/DGQ 3441", vdi}};
+const std::vector<Method> axis_methods{
+    {"ISO 230-2", iso}, {"VDI/DGQ 3441", vdi}, {"rules of positioning", rules}};
 
 }  // namespace nonio::coverage

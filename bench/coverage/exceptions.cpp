@@ -43,12 +43,12 @@ const std::vector<Exception>& exceptions() {
        "length, U_fixed and\n"
        "   U_per_length are added, a rectangle has k = 2, and drift counts in two means as if it\n"
        "   did not cancel between neighbouring runs",
-       "ISO 230-2;VDI/DGQ", "*", "*"},
+       "ISO 230-2;VDI/DGQ;rules of", "*", "*"},
       {'b',
        "covers less, form attributed to the standards: U_EVE takes drift for scatter of single "
        "readings within the\n"
        "   range of the drift test; a walk, or settling, moves whole runs",
-       "ISO 230-2;VDI/DGQ", "drift dominates", "*", true},
+       "ISO 230-2;VDI/DGQ;rules of", "drift dominates", "*", true},
       {'c',
        "lines share sensor and temperature, and nobody states it: the larger counts, which is one\n"
        "   for each line in what differs between lines",

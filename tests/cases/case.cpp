@@ -153,7 +153,7 @@ void evaluate_positioning(const Case& c, const AxisTest& test, Outcome& out) {
   put(out, "slope_ends", slopes.end_points, slope_unit);
   const auto of = uncertainty_budget(c.campaign, c.campaign.environment, "X", test);
   const std::size_t n = approaches_behind_means(test);
-  if (of.budget) put(out, "U(slope)", slope_uncertainty(*of.budget, n), slope_unit);
+  if (of.budget) put(out, "U(slope)", slope_uncertainty(slope_budget(*of.budget), n), slope_unit);
   for (const PositioningRule& rule : positioning_rules())
     for (const RuleValue& v : evaluate_rule(rule, axis, offset)) {
       const std::string name = std::string(rule.name) + ":" + std::string(v.name);

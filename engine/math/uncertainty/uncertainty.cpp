@@ -23,6 +23,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/constants.h"
 #include "nonio/math/budget.h"
 
 namespace nonio::math {
@@ -131,6 +132,12 @@ double rule_uncertainty(const Budget& b, std::size_t n, const RuleShare& share) 
 
 double slope_uncertainty(const Budget& b, std::size_t n) {
   return root(b.systematic(), b.U_EVE / std::sqrt(static_cast<double>(n))) / b.length;
+}
+
+Budget slope_budget(const Budget& b) {
+  Budget out = b;
+  out.U_MIS = b.U_MIS / of_range * 2.0 * of_limit;
+  return out;
 }
 
 UncertaintyBudget contributions_of(const Budget& b, const std::string& axis, bool rotary) {

@@ -76,8 +76,9 @@ void add_slopes(Evaluation& e, const AxisAnalysis& a, const AxisStatistics& stat
     if (!std::isfinite(value)) continue;
     Value v{name, value, slope_of(a.test.rotary)};
     if (a.budget && e.budget) {
-      v.U = slope_uncertainty(*a.budget, a.approaches);
-      std::vector<double> parts = shares_of(*a.budget, *v.U * a.budget->length, true);
+      const Budget of_slope = slope_budget(*a.budget);
+      v.U = slope_uncertainty(of_slope, a.approaches);
+      std::vector<double> parts = shares_of(of_slope, *v.U * a.budget->length, true);
       for (double& part : parts) part /= a.budget->length;
       e.budget->results.push_back({v.name, v.quantity, std::move(parts), 2.0, INFINITY});
     }

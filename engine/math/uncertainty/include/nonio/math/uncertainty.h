@@ -86,7 +86,10 @@ VdiUncertainty vdi3441_uncertainty(const Budget&, std::size_t n);
 /// A difference of two readings is wrong by the range of the environment E_VE = U_EVE/0.6 at most.
 double rule_uncertainty(const Budget&, std::size_t n, const RuleShare&);
 
-/// Of a slope of means over the length: sqrt(S^2 + U_EVE^2/n)/L, an upper bound for least squares.
-double slope_uncertainty(const Budget&, std::size_t n);
+/// Of a slope of means over the length: U(M)/L of `slope_budget`, an upper bound for least squares.
+double slope_uncertainty(const Budget& of_slope, std::size_t n);
+/// A beam beside the axis makes every distance short: in a slope its limit counts from one side, 2/sqrt 3
+/// of it in place of 0.6. A range does not follow a slope so far.
+Budget slope_budget(const Budget&);
 
 }  // namespace nonio::math
