@@ -52,6 +52,9 @@ install(CODE "
 
 # Docs, the papers of each plugin, and samples to try it on.
 set(papers ${CMAKE_INSTALL_DATADIR}/doc/nonio)
+# Scripts that users adapt.
+install(PROGRAMS ${PROJECT_SOURCE_DIR}/cmake/package/slurm/nonio-night ${PROJECT_SOURCE_DIR}/cmake/package/slurm/nonio-shard.sbatch
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/nonio/slurm)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${papers} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg)
 foreach(folder IN LISTS NONIO_PLUGIN_FOLDERS)
   install(FILES ${PROJECT_SOURCE_DIR}/plugins/${folder}/README.md DESTINATION ${papers}/plugins/${folder})

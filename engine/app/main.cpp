@@ -52,7 +52,8 @@ int main(int argc, char** argv) try {
       program.verbs.push_back(std::move(verb));
     }
   };
-  add("Every night", {run_verb(common), status_verb(common), morning_verb(common)});
+  add("Every night",
+      {run_verb(common), night_verb(common), status_verb(common), morning_verb(common)});
   add("Campaigns", {apart(new_verb(common)), apart(import_verb(common)), apart(show_verb(common)),
                     open_verb(common), apart(schema_verb(common))});
   add("The machines over the years", {query_verb(common), history_verb(common), event_verb(common),

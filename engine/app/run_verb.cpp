@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
-#include <chrono>
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
+#include <algorithm>
+#include <charconv>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/batch/run.h"
+#include "host/batch/parts.h"
 #include "host/storage/files.h"
 #include "progress.h"
+#include "run_common.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -50,55 +47,55 @@ void print_night_plan(const host::batch::Night& night, bool json) {
   }
 }
 
-void print_summary(const host::batch::Night& night, const fs::path& out, bool json) {
-  std::size_t done = 0, unchanged = 0, attention = 0, failed = 0;
-  for (const host::batch::CampaignState& c : night.campaigns) {
-    if (c.status == host::evaluation::Status::failed)
-      ++failed;
-    else if (c.action == host::batch::CampaignState::Action::done)
-      ++done;
-    else
-      ++unchanged;
-    if (c.status == host::evaluation::Status::attention) ++attention;
-  }
-  if (json)
-    std::cout << Json{{"event", "end"},
-                      {"done", done},
-                      {"unchanged", unchanged},
-                      {"attention", attention},
-                      {"failed", failed},
-                      {"vanished", night.vanished.size()},
-                      {"summary", (out / "summary.json").string()}}
-                     .dump(-1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
-  else
-    std::cout << done << " done, " << unchanged << " unchanged, " << failed << " failed; "
-              << (night.vanished.empty() ? ""
-                                         : std::to_string(night.vanished.size()) + " vanished; ")
-              << attention << (attention == 1 ? " asks" : " ask")
-              << " for attention: " << (out / "summary.txt").string() << "\n";
-}
-
 struct RunWish {
-  std::string site, out;
+  std::string site, out, shard;
   host::batch::RunOptions options;
 };
 
-/// Whoever ends the run, or the terminal that it was started from, leaves a night that the next run
-/// goes on with. Under nohup a lost terminal is nothing to stop for. A reader of the output that
-/// went away, or a limit for the size of files, is no reason to die but an error like others.
-void catch_signals() {
-  struct sigaction stop {};
-  stop.sa_handler = [](int) { host::process::request_stop(); };
-  sigaction(SIGINT, &stop, nullptr);
-  sigaction(SIGTERM, &stop, nullptr);
-  struct sigaction hang_up {};
-  sigaction(SIGHUP, nullptr, &hang_up);
-  if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &stop, nullptr);
-  struct sigaction ignore {};
-  ignore.sa_handler = SIG_IGN;
-  sigaction(SIGPIPE, &ignore, nullptr);
-  sigaction(SIGXFSZ, &ignore, nullptr);
+/// "3/64" into the options; what is wrong with it, empty if nothing is.
+std::string take_shard(RunWish& wish) {
+  host::batch::RunOptions& options = wish.options;
+  if (options.force || options.verify_results || options.dry_run || !options.date.empty() ||
+      !options.only.empty())
+    return "--shard goes with --jobs alone: whether and when campaigns are done is planned "
+           "(nonio night plan --help)";
+  const char* const end = wish.shard.data() + wish.shard.size();
+  const auto number = std::from_chars(wish.shard.data(), end, options.shard);
+  const bool is_number = number.ec == std::errc() && number.ptr != end && *number.ptr == '/';
+  const auto of = is_number ? std::from_chars(number.ptr + 1, end, options.shards)
+                            : std::from_chars_result{number.ptr, std::errc::invalid_argument};
+  if (of.ec != std::errc() || of.ptr != end || options.shard >= options.shards)
+    return "--shard: expected i/S with i = 0 .. S-1, for example 0/4, found \"" + wish.shard + "\"";
+  options.step = host::batch::RunOptions::Step::shard;
+  return {};
+}
+
+/// One shard of a planned night.
+int run_part(const host::batch::RunOptions& options, const Common& common) {
+  const char* const verb = "nonio run --shard";
+  Progress progress(common.quiet, common.json);
+  const host::batch::Night night = host::batch::run_shard(options, progress.events());
+  progress.end();
+  if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
+  const auto left = static_cast<std::size_t>(std::count_if(
+      night.campaigns.begin(), night.campaigns.end(),
+      [](const auto& c) { return c.action == host::batch::CampaignState::Action::todo; }));
+  const std::size_t failed = night.failed(), done = night.campaigns.size() - left - failed;
+  if (common.json)
+    std::cout << Json{{"event", "end"},         {"night", night.night.number},
+                      {"shard", options.shard}, {"shards", options.shards},
+                      {"done", done},           {"failed", failed},
+                      {"left_to_merge", left}}
+                     .dump()
+              << "\n";
+  else if (!common.quiet)
+    std::cout << "shard " << options.shard << " of " << options.shards << ": " << done << " done, "
+              << failed << " failed"
+              << (left == 0 ? ""
+                            : ", " + std::to_string(left) +
+                                  " left to the merge (they need the register or the key)")
+              << "\n";
+  return failed > 0 ? exit_failed : exit_done;
 }
 
 int run_night(RunWish& wish, const Common& common) {
@@ -109,25 +106,16 @@ int run_night(RunWish& wish, const Common& common) {
     return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   if (!options.only.empty() && (options.force || !options.date.empty()))
     return complain(verb, "--only goes with neither --force nor --date");
-  options.site = wish.site;
-  options.out = fs::absolute(wish.out);
-  options.plugin_folders = common.plugin_folders();
-  options.own_plugins = Common::own_plugins();
-  options.template_folders = common.template_folders();
-  options.version = NONIO_VERSION;
-  options.as_root = options.as_root || std::getenv("NONIO_ALLOW_ROOT") != nullptr;
-  catch_signals();
-  if (::geteuid() == 0 && !options.as_root && !common.quiet)
-    std::cerr << "nonio: this runs as root, for whom nothing needs it: expected a user of its own "
-                 "(the package's service runs as nonio), or --root to say that it is meant\n";
+  if (!wish.shard.empty()) {
+    if (const auto wrong = take_shard(wish); !wrong.empty()) return complain(verb, wrong);
+    prepare_run(options, wish.site, wish.out, common);
+    return run_part(options, common);
+  }
+  prepare_run(options, wish.site, wish.out, common);
   Progress progress(common.quiet, common.json);
   const host::batch::Night night = host::batch::run_site(options, progress.events());
   progress.end();
-  if (night.end == host::batch::Night::End::refused) return complain(verb, night.error);
-  if (night.end == host::batch::Night::End::interrupted)
-    return complain(verb, "interrupted; the same command goes on where it stopped",
-                    exit_interrupted);
-  if (!night.error.empty()) return complain(verb, night.error, exit_failed);
+  if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
   // What a night before has already said is said again: a failed campaign is never silent.
   if (!common.json && !options.dry_run) progress.still_failed(night);
   if (options.dry_run)
@@ -153,8 +141,7 @@ Verb run_verb(Common& common) {
            required(takes(Takes::folder,
                           {"--out", &wish->out,
                            "Folder for the results: one folder per campaign, and the summary"})),
-           within(1, 1024,
-                  {"--jobs", &options.jobs, "Campaigns at a time (default: one for each core)"}),
+           jobs_argument(options),
            {"--force", &options.force, "Do every campaign again, changed or not"},
            {"--only", &options.only,
             "One campaign (its folder, or its id) of the last night again, changed or\n"
@@ -166,9 +153,10 @@ Verb run_verb(Common& common) {
             "Date of the night, YYYY-MM-DD, for the summary (default: today; a resumed run keeps\n"
             "its date)"},
            {"--dry-run", &options.dry_run, "Print what would be done and why; do nothing"},
-           {"--root", &options.as_root,
-            "Permit root, even with plugins that other users can change; or set "
-            "NONIO_ALLOW_ROOT"},
+           {"--shard", &wish->shard,
+            "i/S: only part i = 0 .. S-1 of a night that `nonio night plan` has planned for S\n"
+            "parts; on any host that has SITE and DIR, in any order, also several times"},
+           root_argument(options),
            templates_argument(common)},
           common_arguments(common)),
       .footer =

@@ -24,6 +24,7 @@ struct StatusWish {
 const char* to_text(NightStatus::State state) {
   return state == NightStatus::State::complete  ? "complete"
          : state == NightStatus::State::running ? "running"
+         : state == NightStatus::State::planned ? "planned"
                                                 : "cut-short";
 }
 
@@ -41,7 +42,9 @@ std::string hours_text(double hours) {
 std::string trouble(const NightStatus& s, const StatusWish& wish) {
   if (s.state == NightStatus::State::cut_short)
     return night_text(s.night) + " began and did not end";
-  if (!s.last) return s.state == NightStatus::State::running ? "" : "no night is complete";
+  const bool goes_on =
+      s.state == NightStatus::State::running || s.state == NightStatus::State::planned;
+  if (!s.last) return goes_on ? "" : "no night is complete";
   if (s.age < -60.0) return "summary.json is from the future; expected a clock that is right";
   if (wish.max_age > 0.0 && s.age > wish.max_age * 3600.0)
     return "older than " + hours_text(wish.max_age);
@@ -51,6 +54,9 @@ std::string trouble(const NightStatus& s, const StatusWish& wish) {
 std::string line_of(const NightStatus& s, const std::string& wrong) {
   std::string line;
   if (s.state == NightStatus::State::running) line = night_text(s.night) + " is running; ";
+  if (s.state == NightStatus::State::planned)
+    line = night_text(s.night) + " is planned, " + std::to_string(s.reported) + " of " +
+           std::to_string(s.shards) + " shards have reported; ";
   if (s.last)
     line += night_text(s.last->night) + " is complete, " + hours_text(s.age / 3600.0) +
             " ago: " + std::to_string(s.last->seen) +
@@ -72,6 +78,10 @@ int status(const StatusWish& wish, const Common& common) {
                  {"state", to_text(found->state)},
                  {"night", found->night.number},
                  {"date", found->night.date}};
+    if (found->state == NightStatus::State::planned) {
+      json["shards"] = found->shards;
+      json["reported"] = found->reported;
+    }
     if (found->last)
       json["last_complete"] = {{"night", found->last->night.number},
                                {"date", found->last->night.date},
@@ -106,7 +116,8 @@ Verb status_verb(Common& common) {
       .footer =
           "One line: the last night's number, date, age, campaigns. Exit status: 0 the last "
           "night\n"
-          "is complete and recent enough, also while another one is running; 1 a night began "
+          "is complete and recent enough, also while another one is running or planned; 1 a night "
+          "began "
           "and did\n"
           "not end, or the last one is too old; 2 there was none, or it cannot be read.\n"
           "The age is that of OUT/summary.json.\n\n"

@@ -21,6 +21,7 @@ Verb merge_verb(Common& common);
 Verb model_verb(Common& common);
 Verb morning_verb(Common& common);
 Verb new_verb(Common& common);
+Verb night_verb(Common& common);
 Verb open_verb(Common& common);
 Verb plan_verb(Common& common);
 Verb plugin_verb(Common& common);

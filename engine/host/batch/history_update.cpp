@@ -55,10 +55,10 @@ Expected<history::Told> read_told(const RunOptions& options, const reading::Cont
                        context.site.due};
 }
 
-Expected<void> HistoryUpdate::begin() {
+Expected<void> HistoryUpdate::begin(std::optional<std::uint64_t> planned) {
   const auto known = history::known_night(options_.out);
   if (!known) return fail(known.error());
-  known_ = *known;
+  known_ = *known ? *known : planned;
   std::optional<storage::Server> server;
   if (const auto& choice = context_.site.database)
     server =

@@ -22,8 +22,10 @@ class HistoryUpdate {
   HistoryUpdate(const RunOptions& options, const reading::Context& context)
       : options_(options), context_(context) {}
 
-  /// Before the first result is stored.
-  Expected<void> begin();
+  /// Before the first result is stored. `known`: the night that the store knows, where the plan of
+  /// this night has noted it.
+  Expected<void> begin(std::optional<std::uint64_t> known = {});
+  std::optional<std::uint64_t> known() const { return known_; }
   /// When all are: adds these campaigns. `last` is the night whose end the store ought to know,
   /// `night` the one that it knows from now on. Gives what the morning should know. An error leaves
   /// the store as it was, and the next night makes it again.

@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "host/batch/night_plan.h"
 #include "host/batch/read_apart.h"
 #include "host/evaluation/record.h"
 #include "host/storage/files.h"
@@ -158,6 +159,27 @@ Expected<NightState> reopen_night(const RunOptions& options, const std::string& 
   return night;
 }
 
+Expected<NightState> planned_night(const RunOptions& options, const std::string& site,
+                                   std::uint64_t number) {
+  const auto state = read_state(options.out);
+  if (!state) return fail(state.error());
+  if (!*state || known_text(**state, "state") != "running" ||
+      known_count(**state, "night") != number)
+    return fail("night " + std::to_string(number) + " was planned in " + options.out.string() +
+                ", and is not the night that is running there; expected `nonio night cancel OUT`, "
+                "then a new plan");
+  const storage::Json& json = **state;
+  if (auto own = check_site(json, site, options.out); !own) return fail(own.error());
+  NightState night;
+  night.number = number;
+  night.date = known_text(json, "date");
+  night.last = end_in(json, "last");
+  night.force = json.value("force", false);
+  night.site = known_text(json, "site");
+  night.issued_before = known_count(json, "issued_before");
+  return night;
+}
+
 Expected<NightState> begin_night(const RunOptions& options, const std::string& site,
                                  std::optional<std::uint64_t> issued_so_far) {
   NightState night;
@@ -216,6 +238,11 @@ Expected<NightStatus> night_status(const fs::path& out) {
     if (!status.last) status.last = NightEnd{status.night, 0, 0};
   } else {
     status.state = is_running(out) ? NightStatus::State::running : NightStatus::State::cut_short;
+    if (const auto plan = find_plan(out); plan && *plan) {
+      status.state = NightStatus::State::planned;
+      status.shards = (*plan)->shards.size();
+      status.reported = reported(out, **plan);
+    }
     status.last = end_in(json, "last");
   }
   struct stat summary {};
@@ -244,7 +271,17 @@ Expected<void> settle_folders(const fs::path& out, bool hashed, bool dry_run) {
                           {{(out / storage::hashed_mark).filename().string(), "OUT/ab/<id>\n"}});
 }
 
-Expected<OutputLock> OutputLock::take(const fs::path& out) {
+namespace {
+
+std::string planned_words(const fs::path& out) {
+  return "a night is planned in " + out.string() +
+         " and not merged yet; expected its shards and `nonio night merge OUT`, or `nonio night "
+         "cancel OUT` to withdraw the plan";
+}
+
+}  // namespace
+
+Expected<OutputLock> OutputLock::take(const fs::path& out, Use use) {
   std::error_code error;
   fs::create_directories(out / state_folder, error);
   if (error) return fail("cannot use the output folder " + out.string() + ": " + error.message());
@@ -256,14 +293,23 @@ Expected<OutputLock> OutputLock::take(const fs::path& out) {
   constexpr int tries = 50;
   int code = 0;
   for (int i = 0; i < tries; ++i) {
-    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) return OutputLock(fd);
+    if (::flock(fd, (use == Use::shard ? LOCK_SH : LOCK_EX) | LOCK_NB) == 0) {
+      OutputLock lock(fd);
+      if (use != Use::whole) return lock;
+      const auto planned = storage::is_there(out / state_folder / plan_folder / plan_name);
+      if (!planned) return fail(planned.error());
+      if (*planned) return fail(planned_words(out));
+      return lock;
+    }
     code = errno;
     if (code != EWOULDBLOCK && code != EINTR) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   ::close(fd);
   if (code == EWOULDBLOCK || code == EINTR)
-    return fail("another run is using the output folder " + out.string());
+    return fail((use == Use::planned ? "a run, or a shard of one, is using the output folder "
+                                     : "another run is using the output folder ") +
+                out.string());
   return fail("cannot lock " + path.string() + ": " + std::strerror(code) +
               "; expected an output folder on a file system with locks (flock)");
 }

@@ -14,6 +14,9 @@ namespace nonio::host::batch {
 
 /// What a night keeps for itself in the output folder; no campaign can have its name.
 inline constexpr const char* state_folder = ".nonio";
+/// In it: the plan of a night that is done in parts, from the plan to the end of the merge.
+inline constexpr const char* plan_folder = "plan";
+inline constexpr const char* plan_name = "plan.json";
 
 /// Which night it is. A run that was killed or interrupted is the same night when it is resumed, so
 /// that it ends with the same summary as an undisturbed one. Kept in OUT/.nonio.
@@ -40,6 +43,9 @@ Expected<NightState> begin_night(const RunOptions& options, const std::string& s
 /// The last night, which has to be complete, as it was when it began: one campaign of it is done
 /// again. Nothing is written; what is cut short leaves the night complete.
 Expected<NightState> reopen_night(const RunOptions& options, const std::string& site);
+/// The night that was planned, as it was when it began: it is running. Nothing is written.
+Expected<NightState> planned_night(const RunOptions& options, const std::string& site,
+                                   std::uint64_t number);
 /// `night.issued_before` is then what the next one begins with.
 Expected<void> end_night(const std::filesystem::path& out, const NightState& night,
                          const NightEnd& end);
@@ -51,7 +57,12 @@ Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, boo
 /// Held while a run uses an output folder; an error names the trouble if another run does.
 class OutputLock {
  public:
-  static Expected<OutputLock> take(const std::filesystem::path& out);
+  enum class Use {
+    whole,    ///< refused while a night is planned, too
+    planned,  ///< makes, merges or withdraws a plan
+    shard     ///< beside other shards
+  };
+  static Expected<OutputLock> take(const std::filesystem::path& out, Use use = Use::whole);
   OutputLock(OutputLock&& other) noexcept;
   OutputLock& operator=(OutputLock&&) = delete;
   ~OutputLock();

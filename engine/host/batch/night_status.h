@@ -19,10 +19,11 @@ struct NightEnd {
 
 /// How an output folder's nights stand.
 struct NightStatus {
-  enum class State { complete, running, cut_short } state = State::complete;
-  evaluation::NightOf night{};     ///< the last that began
-  std::optional<NightEnd> last{};  ///< the last that is complete
-  double age = 0.0;                ///< s since the last summary was written
+  enum class State { complete, running, cut_short, planned } state = State::complete;
+  evaluation::NightOf night{};             ///< the last that began
+  std::optional<NightEnd> last{};          ///< the last that is complete
+  double age = 0.0;                        ///< s since the last summary was written
+  std::uint64_t shards = 0, reported = 0;  ///< of a night that is planned
 };
 
 /// An error if no night was begun there, or if its files cannot be read.

@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* register_elsewhere = "the register of certificates is on another host";
 constexpr const char* register_locked =
     "the register of certificates: another process keeps it locked since the begin of the night";
 
@@ -50,6 +51,11 @@ evaluation::AssignedNumber number_of(const SiteWork& site, const RegisterState& 
                                      certificates::CampaignFiles& files, bool as_draft,
                                      bool& locked) {
   evaluation::AssignedNumber assigned{std::nullopt, missing, std::nullopt};
+  if (site.elsewhere) {
+    locked = true;
+    assigned.error = Error{register_elsewhere};
+    return assigned;
+  }
   if (!state.unsound.empty()) {
     assigned.error = Error{state.unsound};
   } else if (!state.read) {
@@ -68,6 +74,14 @@ Expected<std::optional<HistorySoFar>> history_of(const SiteWork& site, const Cam
   auto history = morning::history_so_far(site.options.out, basis->second);
   if (!history) return fail(history.error());
   return std::optional(std::move(*history));
+}
+
+bool wants_signature(const evaluation::Evaluated& evaluated) {
+  const auto& outputs = evaluated.results.outputs;
+  return std::any_of(outputs.begin(), outputs.end(), [](const Results::Written& w) {
+    return std::any_of(w.result.artifacts.begin(), w.result.artifacts.end(),
+                       [](const Artifact& a) { return a.sign; });
+  });
 }
 
 /// Read, analysed, numbered, written. `as_draft`: without a number, whatever the rules say.
@@ -99,7 +113,12 @@ Expected<evaluation::Evaluated> certified(const SiteWork& site, const RegisterSt
     evaluation = evaluated_apart(site, state, c, folder, files, true, locked, evaluator);
   if (!evaluation) return evaluation;
   evaluation::Evaluated& evaluated = *evaluation;
+  if (locked && site.elsewhere) return evaluation;
   if (evaluated.status != evaluation::Status::failed) site.numbers.hold_unreleased(evaluated);
+  if (site.elsewhere && evaluated.status != evaluation::Status::failed) {
+    locked = wants_signature(evaluated);
+    return evaluation;
+  }
   stage.set("signing");
   auto done =
       certificates::sign_artifacts(evaluated, files, site.context, site.signer, std::time(nullptr));
@@ -125,7 +144,7 @@ Answer work(const SiteWork& site, const RegisterState& state, std::size_t index,
   if (locked && !state.last_trial) return Answer::waits;
   if (evaluated.status == evaluation::Status::failed && !first) return Answer::again;
   const bool may_pass = evaluated.retry || is_of_the_machine(evaluated);
-  if (evaluated.status == evaluation::Status::failed && !locked &&
+  if (evaluated.status == evaluation::Status::failed && !locked && !site.elsewhere &&
       !evaluated.results.errors.empty())
     site.numbers.note_failure(c.id, evaluated.results.errors.front().message);
   if (site.twins != nullptr && !(evaluated.certificate && evaluated.certificate->issued)) {

@@ -26,6 +26,7 @@ struct SiteWork {
   const reading::Twins* twins;   ///< of the one campaign that is released; null: it is a night
   /// Of campaigns whose documents show their machine's history.
   const std::map<std::string, morning::HistoryBasis>& histories;
+  bool elsewhere = false;  ///< register and key are: what needs them waits
 };
 
 /// The register of certificates, as known when a worker is started.

@@ -12,9 +12,12 @@
 #include "host/batch/mail.h"
 #include "host/batch/morning_update.h"
 #include "host/batch/night_history.h"
+#include "host/batch/night_plan.h"
 #include "host/batch/night_state.h"
 #include "host/batch/one_again.h"
+#include "host/batch/parts.h"
 #include "host/batch/read_apart.h"
+#include "host/batch/refused.h"
 #include "host/batch/runner.h"
 #include "host/batch/set_up.h"
 #include "host/batch/shown_histories.h"
@@ -45,36 +48,6 @@ std::string unfit_output(const fs::path& site, const fs::path& out) {
       return "the output folder lies in the campaign " + folder.string() +
              "; expected another folder";
   return {};
-}
-
-/// What the survey has failed: a good result of a night before stays, else there is one that says
-/// what is wrong. Several campaigns with one id claim one folder.
-void store_refused(const RunOptions& options, const reading::Context& context,
-                   const NightState& night, const RunEvents& events,
-                   std::vector<CampaignState>& campaigns) {
-  const storage::Disk disk(options.out);
-  const CampaignState* before = nullptr;
-  for (CampaignState& c : campaigns) {
-    if (c.action != Action::todo || c.status != evaluation::Status::failed) continue;
-    const auto record = evaluation::read_record(storage::results_folder(options.out, c.id));
-    const bool stays = c.is_campaign && record && record->status != evaluation::Status::failed;
-    if (stays)
-      c.errors.front().message +=
-          "; the results of night " + std::to_string(record->night) + " stay as they are";
-    if (c.is_campaign && !stays && (before == nullptr || before->id != c.id)) {
-      evaluation::Evaluated evaluated;
-      evaluated.campaign.id = c.id;
-      evaluated.status = evaluation::Status::failed;
-      evaluated.results.errors = c.errors;
-      if (const auto stored =
-              store(options.out, evaluated, context, {c.folder, night.of(), c.reason, true}, disk);
-          !stored)
-        c.errors.push_back(stored.error());
-    }
-    before = &c;
-    c.action = Action::done;
-    events.finished(c);
-  }
 }
 
 /// The first look at the site: the name by which the night's record knows it.
@@ -212,7 +185,8 @@ void tell_plan(const Night& night, const RunEvents& events) {
 /// What was found out before the first campaign is done.
 struct Plan {
   Expected<history::Told> told;
-  std::string only;  ///< the campaign of a night that is reopened
+  std::string only;                              ///< the campaign of a night that is reopened
+  std::optional<std::uint64_t> history_known{};  ///< by the store, when this night was planned
 };
 
 /// Surveyed and told. An error: the night ends here; empty if somebody wants to stop.
@@ -240,6 +214,23 @@ void tell_stage(const RunEvents& events, const char* name) {
   if (events.stage) events.stage(name);
 }
 
+/// A night that was planned, as its shards have left it.
+Expected<Plan> planned_night_of(const RunOptions& options, const RunEvents& events,
+                                const SetUp& place, const NightPlan& planned,
+                                const std::optional<Known>& known, Night& night) {
+  const reading::Context& context = place.context;
+  night.may_vanish = context.site.limits.vanished;
+  if (!planned.register_read && known)
+    if (auto fit = check_numbers(options.out, night.campaigns, known->numbers); !fit)
+      return fail(fit.error());
+  if (auto noted = note_failures(options, context, night, place.signer.has_value()); !noted)
+    return fail(noted.error());
+  Plan plan{read_told(options, context), {}, planned.history_known};
+  leave_out_forgotten(night, plan.told);
+  tell_plan(night, events);
+  return plan;
+}
+
 /// Every campaign that is to do, and what the history and the reports know of it. An error: the
 /// night ends here; empty if somebody wants to stop.
 Expected<void> do_planned(const RunOptions& options, const RunEvents& events, SetUp& place,
@@ -247,7 +238,7 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
   const reading::Context& context = place.context;
   tell_stage(events, "campaigns");
   HistoryUpdate history(options, context);
-  if (const auto begun = history.begin(); !begun) return begun;
+  if (const auto begun = history.begin(plan.history_known); !begun) return begun;
   if (std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
     if (const auto begun = ShownHistories(options, context).begin(); !begun) return begun;
   store_refused(options, context, state, events, night.campaigns);
@@ -259,7 +250,10 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
       if (!state.issued_before) state.issued_before = issued_so_far(numbers);
       return check_numbers(options.out, night.campaigns, numbers);
     };
-  bool well = do_campaigns(options, events, context, state, desk, night.campaigns);
+  RunOptions numbered = options;  // numbers in the order of the campaigns
+  if (options.step == RunOptions::Step::merge && context.site.numbering.automatic)
+    numbered.jobs = 1;
+  bool well = do_campaigns(numbered, events, context, state, desk, night.campaigns);
   if (well && !process::is_stop_requested()) {
     std::vector<std::string> done;
     for (const CampaignState& c : night.campaigns)
@@ -292,8 +286,15 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
           settle_folders(options.out, context.site.hashed_folders, options.dry_run);
       !settled)
     return refuse(settled.error().message);
+  std::optional<NightPlan> planned;
+  if (options.step == RunOptions::Step::merge) {
+    auto read = read_plan(options.out);
+    if (!read) return refuse(read.error().message);
+    planned = std::move(*read);
+  }
   auto state =
-      !options.only.empty()
+      planned ? planned_night(options, site_text, planned->night.number)
+      : !options.only.empty()
           ? reopen_night(options, site_text)
           : begin_night(options, site_text,
                         known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
@@ -301,9 +302,24 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
   night.night = state->of();
   if (state->last) night.seen_before = state->last->seen;
   tell_stage(events, "survey");
-  const auto plan = plan_night(options, events, context, *state, known, night);
+  const std::size_t own_notes = night.notes.size();
+  if (planned) {
+    if (auto same = check_made_with(*planned, context); !same) return refuse(same.error().message);
+    if (auto gathered = gather(options, *planned, night); !gathered) {
+      if (process::is_stop_requested()) return refuse({});
+      night.error = gathered.error().message;
+      return;
+    }
+  }
+  const auto plan = planned ? planned_night_of(options, events, place, *planned, known, night)
+                            : plan_night(options, events, context, *state, known, night);
   if (!plan) return refuse(plan.error().message);
   if (options.dry_run) return;
+  if (options.step == RunOptions::Step::plan) {
+    const auto written = plan_shards(options, context, *state, known.has_value(), own_notes, night);
+    if (!written) refuse(written.error().message);
+    return;
+  }
   if (const auto done = do_planned(options, events, place, *plan, known.has_value(), *state, night);
       !done)
     return refuse(done.error().message);
@@ -311,6 +327,9 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
   tell_stage(events, "pages");
   // The campaigns are safe; if this fails the night stays open, and the next run ends it.
   const auto closed = close_night(night, options, events, context, *state);
+  if (closed && planned)
+    if (const auto removed = remove_plan(options.out); !removed)
+      night.error = removed.error().message;
   if (closed) return;
   tidy_root(options.out);
   if (process::is_stop_requested()) return refuse({});
@@ -335,7 +354,9 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
 
   std::optional<OutputLock> lock;
   if (!options.dry_run) {
-    auto taken = OutputLock::take(options.out);
+    const bool whole = options.step == RunOptions::Step::whole;
+    auto taken =
+        OutputLock::take(options.out, whole ? OutputLock::Use::whole : OutputLock::Use::planned);
     if (!taken) return refuse(taken.error().message);
     lock.emplace(std::move(*taken));
   }

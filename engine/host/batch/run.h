@@ -31,6 +31,10 @@ struct RunOptions {
   std::string version;
   bool as_root = false;  ///< root may run it, whoever can write the plugins
   bool confine = true;   ///< false: only to measure what confining plugins costs
+  /// Of a night that is done in parts; `whole`: it is not.
+  enum class Step { whole, plan, shard, merge } step = Step::whole;
+  std::uint64_t shard = 0, shards = 0;  ///< which of how many
+  double patience = 0.0;  ///< s, for results of other hosts to appear here; of a merge
 };
 
 /// One campaign of the night, as it is known so far. Small: there may be very many. What its record
@@ -92,10 +96,13 @@ struct Night {
   std::size_t may_vanish = 0;   ///< so many may, by site.toml
   std::string morning_error{};  ///< why the pages were not made, or the mail not sent
   std::string history_error{};  ///< why OUT/history.sqlite does not know this night
+  /// How many campaigns each shard has; of a night that was planned only.
+  std::vector<std::uint64_t> planned{};
 };
 
 /// The nightly run over a site. Returns when every campaign is done, or after a call of
 /// `request_stop`, or at once with `refused` if the site or the output folder cannot be used.
+/// With the step plan or merge: that part of a night. A plan leaves it open.
 Night run_site(const RunOptions& options, const RunEvents& events);
 
 }  // namespace nonio::host::batch

@@ -62,7 +62,8 @@ class Runner {
               numbers_,
               signer_,
               desk.releasing ? &desk.releasing->twins : nullptr,
-              desk.histories},
+              desk.histories,
+              desk.elsewhere},
         recheck_(desk.recheck),
         register_{.read = recheck_ == nullptr},
         histories_(desk.histories),
@@ -90,7 +91,7 @@ class Runner {
       }
       if (!workers_.empty() || !committer_.pending().empty())
         wait();
-      else if (waiting_.empty())
+      else if (waiting_.empty() || work_.elsewhere)
         return true;
       else
         wait_for_register();
@@ -334,7 +335,7 @@ class Runner {
 
   /// In the register. A share that hangs costs its limit once.
   void note_failure(const std::string& campaign, const std::string& why) {
-    if (register_hangs_) return;
+    if (register_hangs_ || work_.elsewhere) return;
     const auto noted =
         read_apart<bool>("the register of certificates", context_.site.limits.disk_seconds,
                          [&](process::SignsOfLife&) {

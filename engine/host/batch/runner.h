@@ -26,6 +26,8 @@ struct ReleaseDesk {
   PluginHost* plugins = nullptr;                       ///< makes the processes that evaluate
   /// Of campaigns whose documents show their machine's history; the others do without.
   std::map<std::string, morning::HistoryBasis> histories{};
+  /// Register and key are on another host: campaigns that need them stay to do.
+  bool elsewhere = false;
 };
 
 /// Does every campaign that is to do, in workers of its own. False if it was interrupted.

@@ -111,7 +111,9 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   auto machines = config::read_machines(options.site);
   if (!machines) return fail(all_of({machines.error()}));
   context.machines = std::move(*machines);
-  if (context.site.signing && !options.dry_run) {  // before any plugin is in the memory
+  const bool signs =
+      options.step == RunOptions::Step::whole || options.step == RunOptions::Step::merge;
+  if (context.site.signing && !options.dry_run && signs) {  // before any plugin is in the memory
     place->signer.emplace(*context.site.signing, options.site, context.site.limits.disk_seconds);
     note_key(*place, !context.site.signing->time_stamp.empty());
   }

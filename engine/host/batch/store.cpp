@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <utility>
 
@@ -114,7 +115,9 @@ class Move {
   /// What a commit that was cut short has done already is not staged any more.
   Move(fs::path to, std::uint64_t night, const Expected<void>& sound) : folder_(std::move(to)) {
     auto staged = evaluation::staged_record(folder_);
-    if (!staged) {
+    if (storage::has_own_names() && is_stored(night)) {
+      leave_to_other();
+    } else if (!staged) {
       done_ = fail(staged.error());
     } else if (*staged && (*staged)->night == night) {
       record_ = std::move(**staged);
@@ -147,8 +150,19 @@ class Move {
   /// The old record, and files of it that the new results do not have.
   void put_old_aside() {
     std::error_code error;
-    if (fs::exists(fs::symlink_status(folder_ / evaluation::record_name, error)))
-      rename(folder_ / evaluation::record_name, folder_ / evaluation::record_before_name);
+    const bool there = fs::exists(fs::symlink_status(folder_ / evaluation::record_name, error));
+    if (there)
+      rename(folder_ / evaluation::record_name, folder_ / evaluation::record_before_name, [&] {
+        return storage::is_there(folder_ / evaluation::record_before_name).value_or(false);
+      });
+    if (there && done_ && storage::has_own_names()) {
+      const auto moved = evaluation::last_record(folder_);
+      if (moved && *moved && (*moved)->record.night >= record_.night) {
+        // It has taken its place since this process looked.
+        rename(folder_ / evaluation::record_before_name, folder_ / evaluation::record_name);
+        return leave_to_other();
+      }
+    }
     const auto old = evaluation::last_record(folder_);
     if (!old) return give_up(old.error().message);
     const bool may_pass = record_.status == evaluation::Status::failed && record_.retry;
@@ -160,15 +174,19 @@ class Move {
       if (is_result(f.name) && !names_.contains(f.name)) remove(folder_ / f.name);
   }
   void rename_files() {
-    for (const std::string& name : names_)
-      rename(storage::temporary_path(folder_, name), folder_ / name);
+    for (const evaluation::RecordedFile& f : record_.files)
+      rename(storage::temporary_path(folder_, f.name), folder_ / f.name,
+             [&] { return storage::sha256_of_file(folder_ / f.name).value_or("") == f.sha256; });
   }
   void rename_record() {
     // The survey takes a file that is younger than the record for one that was touched.
     ::utimensat(AT_FDCWD, storage::temporary_path(folder_, evaluation::record_name).c_str(),
                 nullptr, 0);
     rename(storage::temporary_path(folder_, evaluation::record_name),
-           folder_ / evaluation::record_name);
+           folder_ / evaluation::record_name, [&] {
+             const auto now = evaluation::read_record(folder_);
+             return now && evaluation::to_json(*now) == evaluation::to_json(record_);
+           });
     if (!done_) return;
     // The new results are complete; what is left of the old ones may as well go later.
     [[maybe_unused]] const auto gone = put_away_record_before(folder_);
@@ -203,6 +221,16 @@ class Move {
     return storage::is_artifact_name(name) || name == evaluation::results_name ||
            name == history::earlier_name;
   }
+  /// Whether the results that are there are of this night, or of a later one that has begun since.
+  bool is_stored(std::uint64_t night) const {
+    const auto record = evaluation::read_record(folder_);
+    return record && record->night >= night;
+  }
+  /// Another process that did the same shard was quicker: what it has stored are the same bytes.
+  void leave_to_other() {
+    storage::remove_leftovers(folder_);
+    moved_ = true;
+  }
   void remove(const fs::path& path) {
     if (std::error_code error; done_ && !fs::remove(path, error) && error)
       give_up("cannot remove " + path.string() + ": " + error.message());
@@ -212,9 +240,13 @@ class Move {
     if (done_) fs::remove_all(path, error);
     if (error) give_up("cannot remove " + path.string() + ": " + error.message());
   }
-  void rename(const fs::path& from, const fs::path& to) {
+  /// `is_there`: asked where the file is said not to be there. On a network file system the answer
+  /// to a request that was done may be lost, and the request that is sent again finds nothing.
+  void rename(const fs::path& from, const fs::path& to,
+              const std::function<bool()>& is_there = {}) {
     std::error_code error;
     if (done_) fs::rename(from, to, error);
+    if (error == std::errc::no_such_file_or_directory && is_there && is_there()) return;
     if (error) give_up("cannot write " + to.string() + ": " + error.message());
   }
   /// The old results as they are, or nothing of them: some may be there already, and where storing

@@ -304,8 +304,22 @@ bool is_artifact_name(std::string_view name) {
   return true;
 }
 
+namespace {
+
+std::string& temporary_suffix() {
+  static std::string suffix(leftover_suffix);
+  return suffix;
+}
+
+}  // namespace
+
+void take_own_names(const std::string& token) {
+  temporary_suffix() = "." + token + std::string(leftover_suffix);
+}
+bool has_own_names() { return temporary_suffix() != leftover_suffix; }
+
 fs::path temporary_path(const fs::path& folder, const std::string& name) {
-  return folder / ("." + name + std::string(leftover_suffix));
+  return folder / ("." + name + temporary_suffix());
 }
 
 Expected<void> rename_temporaries(const fs::path& folder, const std::vector<std::string>& names) {
@@ -391,8 +405,8 @@ Expected<std::vector<std::string>> temporaries(const fs::path& folder) {
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (name.starts_with('.') && name.ends_with(leftover_suffix))
-      names.push_back(name.substr(1, name.size() - 1 - leftover_suffix.size()));
+    if (name.starts_with('.') && name.ends_with(temporary_suffix()))
+      names.push_back(name.substr(1, name.size() - 1 - temporary_suffix().size()));
   }
   if (error && error != std::errc::no_such_file_or_directory)
     return fail("cannot read the folder " + folder.string() + ": " + error.message());

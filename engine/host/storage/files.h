@@ -94,6 +94,11 @@ bool is_artifact_name(std::string_view name);
 /// others. On an error the temporary files are gone. Folders that are missing are made.
 Expected<void> publish(const std::filesystem::path& folder, const std::vector<Artifact>& files);
 
+/// From now on the temporary names of this process, and of those that it makes, are its own: several
+/// processes may write the same files at once, and none sees or removes what another is writing.
+void take_own_names(const std::string& token);
+bool has_own_names();
+
 /// Writes files under their temporary names, not flushed. On an error they are gone. Folders that
 /// are missing are made.
 Expected<void> write_temporaries(const std::filesystem::path& folder,

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "host/batch/night_plan.h"
+#include "host/batch/night_state.h"
+#include "progress.h"
+#include "run_common.h"
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+namespace batch = host::batch;
+
+namespace {
+
+constexpr std::uint64_t most_shards = 100000;
+
+struct NightWish {
+  std::string site, out;
+  batch::RunOptions options;
+};
+
+std::string counted(std::uint64_t n, const std::string& what) {
+  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
+
+void print_plan(const batch::Night& night, const batch::RunOptions& options, bool json) {
+  const auto& shards = night.planned;
+  std::uint64_t in_shards = 0;
+  for (const std::uint64_t n : shards) in_shards += n;
+  const auto to_do = static_cast<std::uint64_t>(
+      std::count_if(night.campaigns.begin(), night.campaigns.end(),
+                    [](const auto& c) { return c.action == batch::CampaignState::Action::todo; }));
+  if (json) {
+    std::cout << Json{{"schema", "nonio-night-plan/1"},
+                      {"night", night.night.number},
+                      {"date", night.night.date},
+                      {"campaigns", night.campaigns.size()},
+                      {"to_do", to_do},
+                      {"left_to_merge", to_do - in_shards},
+                      {"vanished", night.vanished.size()},
+                      {"shards", shards}}
+                     .dump()
+              << "\n";
+    return;
+  }
+  const auto [least, most] = std::minmax_element(shards.begin(), shards.end());
+  std::cout << "night " << night.night.number << " of " << night.night.date
+            << " is planned: " << counted(night.campaigns.size(), "campaign") << ", " << to_do
+            << " to do: " << in_shards << " in " << counted(shards.size(), "shard") << " of "
+            << *least << (*least == *most ? "" : " to " + std::to_string(*most)) << ", "
+            << to_do - in_shards << " left to the merge\n"
+            << "next: nonio run SITE --out OUT --shard i/" << shards.size() << "  for i = 0 .. "
+            << shards.size() - 1 << ", then: nonio night merge " << options.out.string() << "\n";
+}
+
+int plan_night(NightWish& wish, const Common& common) {
+  const char* const verb = "nonio night plan";
+  batch::RunOptions& options = wish.options;
+  if (wish.out.empty()) return complain(verb, "--out is empty; expected a folder");
+  if (!options.date.empty() && !is_day(options.date))
+    return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
+  options.step = batch::RunOptions::Step::plan;
+  prepare_run(options, wish.site, wish.out, common);
+  Progress progress(common.quiet, common.json);
+  const batch::Night night = batch::run_site(options, progress.events());
+  progress.end();
+  if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
+  if (!common.quiet || common.json) print_plan(night, options, common.json);
+  return exit_done;
+}
+
+/// A merge that is asked for again after its end says so, and ends as the night did.
+int already_merged(const batch::NightStatus& status, const Common& common) {
+  const std::uint64_t failed = status.last ? status.last->failed : 0;
+  if (!common.quiet)
+    std::cerr << "nonio: night " << status.night.number
+              << " is complete: there is nothing to merge\n";
+  return failed > 0 ? exit_failed : exit_done;
+}
+
+int merge_night(NightWish& wish, const Common& common) {
+  const char* const verb = "nonio night merge";
+  batch::RunOptions& options = wish.options;
+  const auto plan = batch::find_plan(wish.out);
+  if (!plan) return complain(verb, plan.error().message);
+  if (!*plan) {
+    const auto status = batch::night_status(wish.out);
+    if (status && status->state == batch::NightStatus::State::complete)
+      return already_merged(*status, common);
+    return complain(verb, batch::read_plan(wish.out).error().message);
+  }
+  options.step = batch::RunOptions::Step::merge;
+  const std::string site = wish.site.empty() ? (*plan)->site : wish.site;
+  std::error_code error;
+  if (!fs::is_directory(site, error))
+    return complain(verb, "the site " + site +
+                              ", for which the night was planned, is not on this host; expected "
+                              "--site FOLDER");
+  prepare_run(options, site, wish.out, common);
+  Progress progress(common.quiet, common.json);
+  const batch::Night night = batch::run_site(options, progress.events());
+  progress.end();
+  if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
+  if (!common.json) progress.still_failed(night);
+  if (!common.quiet || common.json) print_summary(night, options.out, common.json);
+  return night.any_failed() ? exit_failed : exit_done;
+}
+
+int cancel_night(const NightWish& wish, const Common& common) {
+  const char* const verb = "nonio night cancel";
+  const auto plan = batch::find_plan(wish.out);
+  if (plan && !*plan) return complain(verb, batch::read_plan(wish.out).error().message);
+  const auto lock = batch::OutputLock::take(wish.out, batch::OutputLock::Use::planned);
+  if (!lock) return complain(verb, lock.error().message);
+  if (const auto removed = batch::remove_plan(wish.out); !removed)
+    return complain(verb, removed.error().message);
+  if (!common.quiet)
+    std::cerr << "nonio: the plan is withdrawn; `nonio run SITE --out OUT` or another plan goes on "
+                 "with the same night, and keeps what its shards have done\n";
+  return exit_done;
+}
+
+Argument out_argument(NightWish& wish) {
+  return required(existing(Argument::Takes::folder,
+                           {"OUT", &wish.out, "Output folder with the planned night"}));
+}
+
+Verb plan_part(Common& common) {
+  auto wish = std::make_shared<NightWish>();
+  batch::RunOptions& options = wish->options;
+  using Takes = Argument::Takes;
+  return {
+      .name = "plan",
+      .summary = "Looks at every campaign in SITE, and divides what is to do into S shards",
+      .arguments = joined(
+          {required(existing(Takes::folder,
+                             {"SITE", &wish->site,
+                              "Folder in which every folder with a campaign.toml is a campaign"})),
+           required(takes(Takes::folder,
+                          {"--out", &wish->out, "Folder for the results, shared by all hosts"})),
+           required(within(1, most_shards,
+                           {"--shards", &options.shards,
+                            "S, the number of shards; 4 to 8 times as many as run at a time"})),
+           {"--force", &options.force, "Do every campaign again, changed or not"},
+           {"--verify-results", &options.verify_results,
+            "Compare the digests of all result files, not only of those that look modified"},
+           {"--date", &options.date,
+            "Date of the night, YYYY-MM-DD, for the summary (default: today; a resumed night\n"
+            "keeps its date)"},
+           root_argument(options),
+           templates_argument(common)},
+          common_arguments(common)),
+      .footer =
+          "Reads the site and the register of numbers; needs no key. The shard of a campaign is "
+          "the\nSHA-256 of its id (first 8 bytes) modulo S. Planning again takes the place of a "
+          "plan that\nwas not merged, and keeps what its shards have done. Until the merge, "
+          "`nonio run` without\n--shard is refused.\n\n"
+          "Example: nonio night plan site --out out --shards 4",
+      .run = [wish, &common] { return plan_night(*wish, common); }};
+}
+
+Verb merge_part(Common& common) {
+  auto wish = std::make_shared<NightWish>();
+  batch::RunOptions& options = wish->options;
+  options.patience = 3.0;
+  Argument wait = within(0, 3600,
+                         {"--wait", &options.patience,
+                          "Seconds for results of other hosts to appear on a shared file system"});
+  wait.shows_default = true;
+  return {
+      .name = "merge",
+      .summary = "Ends a planned night when its shards are done: history, pages, summary",
+      .arguments = joined(
+          {out_argument(*wish),
+           existing(Argument::Takes::folder,
+                    {"--site", &wish->site, "The site, where this host has it in another place"}),
+           jobs_argument(options), wait, root_argument(options), templates_argument(common)},
+          common_arguments(common)),
+      .footer =
+          "Runs on the host that has the key and reaches the register: campaigns with a "
+          "certificate or\na signature are done here, in the order of their ids. Summary, history "
+          "and pages are equal\nbyte for byte to those of a night that was not divided. Exit "
+          "status 1 also if a shard has\nnot reported: the message names it. Run it, then merge "
+          "again. What was merged is not done\ntwice.\n\n"
+          "Example: nonio night merge out",
+      .run = [wish, &common] { return merge_night(*wish, common); }};
+}
+
+Verb cancel_part(Common& common) {
+  auto wish = std::make_shared<NightWish>();
+  return {
+      .name = "cancel",
+      .summary = "Withdraws the plan of a night; what its shards have done stays",
+      .arguments = joined({out_argument(*wish)}, common_arguments(common)),
+      .footer =
+          "Refused while a shard is running. The night stays open: `nonio run` without --shard, "
+          "or\nanother plan, goes on with it.\n\n"
+          "Example: nonio night cancel out",
+      .run = [wish, &common] { return cancel_night(*wish, common); }};
+}
+
+}  // namespace
+
+Verb night_verb(Common& common) {
+  return {.name = "night",
+          .summary = "A night in parts, on one host or many: plan, shards (`run --shard`), merge",
+          .verbs = {plan_part(common), merge_part(common), cancel_part(common)}};
+}
+
+}  // namespace nonio::app

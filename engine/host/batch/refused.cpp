@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/batch/refused.h"
+
+#include "host/batch/store.h"
+#include "host/storage/disk.h"
+#include "host/storage/files.h"
+
+namespace nonio::host::batch {
+using Action = CampaignState::Action;
+
+void store_refused(const RunOptions& options, const reading::Context& context,
+                   const NightState& night, const RunEvents& events,
+                   std::vector<CampaignState>& campaigns) {
+  const storage::Disk disk(options.out);
+  const CampaignState* before = nullptr;
+  for (CampaignState& c : campaigns) {
+    if (c.action != Action::todo || c.status != evaluation::Status::failed) continue;
+    const auto record = evaluation::read_record(storage::results_folder(options.out, c.id));
+    const bool stays = c.is_campaign && record && record->status != evaluation::Status::failed;
+    if (stays)
+      c.errors.front().message +=
+          "; the results of night " + std::to_string(record->night) + " stay as they are";
+    if (c.is_campaign && !stays && (before == nullptr || before->id != c.id)) {
+      evaluation::Evaluated evaluated;
+      evaluated.campaign.id = c.id;
+      evaluated.status = evaluation::Status::failed;
+      evaluated.results.errors = c.errors;
+      if (const auto stored =
+              store(options.out, evaluated, context, {c.folder, night.of(), c.reason, true}, disk);
+          !stored)
+        c.errors.push_back(stored.error());
+    }
+    before = &c;
+    c.action = Action::done;
+    events.finished(c);
+  }
+}
+
+}  // namespace nonio::host::batch

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A night on a real Slurm with two nodes on this host: the scripts that are installed, run as a site runs them.
+
+NONIO_SLURM_LONG=1: also what Slurm does after two minutes of waiting (a task put back, a node lost)."""
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from nightly import NONIO, NightTest, tree
+
+for program in ("slurmctld", "slurmd", "munged", "sbatch"):
+    if shutil.which(program, path=os.environ["PATH"] + ":/usr/sbin:/sbin") is None:
+        print(f"skipped: {program} is not installed (Debian packages slurm-wlm and munge)")
+        sys.exit(77)
+
+SCRIPTS = pathlib.Path(os.environ["NONIO_SLURM_SCRIPTS"])
+LONG = "NONIO_SLURM_LONG" in os.environ
+CONF = """ClusterName=nonio
+SlurmctldHost={host}(127.0.0.1)
+SlurmctldPort={port}
+SlurmUser={user}
+SlurmdUser={user}
+AuthType=auth/munge
+AuthInfo=socket={t}/munge.socket
+CredType=cred/munge
+SlurmctldPidFile={t}/slurmctld.pid
+SlurmdPidFile={t}/slurmd-%n.pid
+SlurmctldLogFile={t}/log/slurmctld.log
+SlurmdLogFile={t}/log/slurmd-%n.log
+StateSaveLocation={t}/state
+SlurmdSpoolDir={t}/spool-%n
+SlurmdTimeout=10
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SwitchType=switch/none
+MpiDefault=none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+SchedulerParameters=batch_sched_delay=0,sched_interval=1,sched_min_interval=0
+AccountingStorageType=accounting_storage/none
+JobAcctGatherType=jobacct_gather/none
+JobCompType=jobcomp/none
+ReturnToService=2
+NodeName=n[1-2] NodeHostname={host} NodeAddr=127.0.0.1 Port=[{first}-{second}] CPUs={cpus} State=UNKNOWN
+PartitionName=night Nodes=n[1-2] Default=YES MaxTime=INFINITE State=UP
+"""
+
+
+def free_ports(n):
+    sockets = [socket.socket() for _ in range(n)]
+    for s in sockets:
+        s.bind(("127.0.0.1", 0))
+    first = sockets[0].getsockname()[1]
+    for s in sockets:
+        s.close()
+    return first
+
+
+class Cluster:
+    def __init__(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="nonio-slurm-"))
+        self.folder.chmod(0o755)
+        for name in ("spool-n1", "spool-n2", "state", "log"):
+            (self.folder / name).mkdir()
+        key = self.folder / "munge.key"
+        key.write_bytes(os.urandom(128))
+        key.chmod(0o400)
+        self.env = dict(os.environ, SLURM_CONF=str(self.folder / "slurm.conf"),
+                        PATH=f"{pathlib.Path(NONIO).parent}:{os.environ['PATH']}:/usr/sbin:/sbin")
+        port = free_ports(1)
+        (self.folder / "slurm.conf").write_text(CONF.format(
+            host=socket.gethostname().split(".")[0], port=port, user=os.environ.get("USER", "root"), t=self.folder,
+            first=port + 1, second=port + 2, cpus=1))
+        self.call("munged", f"--key-file={key}", f"--socket={self.folder}/munge.socket", f"--pid-file={self.folder}/munged.pid",
+                  f"--log-file={self.folder}/log/munged.log", f"--seed-file={self.folder}/munge.seed", "--num-threads=2")
+        self.call("slurmctld", "-f", self.env["SLURM_CONF"])
+        for node in ("n1", "n2"):
+            self.start(node)
+        self.until(lambda: self.call("sinfo", "-h", "-o", "%D %T", check=False).stdout.split()[:2] == ["2", "idle"], 60)
+
+    def start(self, node):
+        self.call("slurmd", "-f", self.env["SLURM_CONF"], "-N", node)
+
+    def call(self, *args, check=True):
+        done = subprocess.run([str(a) for a in args], capture_output=True, text=True, timeout=120, env=self.env)
+        if check and done.returncode != 0:
+            raise AssertionError(f"{args}: {done.returncode}\n{done.stdout}{done.stderr}")
+        return done
+
+    @staticmethod
+    def until(holds, seconds):
+        end = time.monotonic() + seconds
+        while not holds():
+            if time.monotonic() > end:
+                raise AssertionError("it takes too long")
+            time.sleep(0.2)
+
+    def pid(self, name):
+        try:
+            return int((self.folder / name).read_text())
+        except (OSError, ValueError):
+            return None
+
+    def processes_of(self, node):
+        """slurmd of a node, its steps and their children."""
+        found = []
+        for proc in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                if f"SLURMD_NODENAME={node}".encode() in (proc / "environ").read_bytes().split(b"\0") and \
+                        str(self.folder).encode() in (proc / "environ").read_bytes():
+                    found.append(int(proc.name))
+            except OSError:
+                pass
+        return found
+
+    def close(self):
+        pids = [self.pid(f"{name}.pid") for name in ("slurmd-n1", "slurmd-n2", "slurmctld", "munged")]
+        for node in ("n1", "n2"):
+            pids += self.processes_of(node)
+        for pid in filter(None, pids):
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except OSError:
+                pass
+        time.sleep(0.5)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class SlurmTest(NightTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.cluster = Cluster()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.cluster.close()
+
+    def setUp(self):
+        super().setUp()
+        for i in range(8):
+            self.campaign(f"c{i}")
+        self.run_nonio("--date", "2026-11-01", "--jobs", "1", expect=0)
+        self.parts = self.root / "parts"
+        self.log = self.parts / ".nonio" / "log"
+
+    def same(self):
+        one, parts = tree(self.out), {k: v for k, v in tree(self.parts).items() if not k.startswith(".nonio/log/")}
+        self.assertEqual(sorted(k for k in one.keys() | parts.keys() if one.get(k) != parts.get(k)), [])
+
+    def submit(self, *args, **env):
+        """The array alone, of 4 shards."""
+        self.cluster.call(NONIO, "night", "plan", self.site, "--out", self.parts, "--shards", "4", "--date", "2026-11-01")
+        self.log.mkdir(exist_ok=True)
+        more = "".join(f",{k}={v}" for k, v in env.items())
+        return self.again("0-3", more, *args)
+
+    def again(self, array, more="", *args):
+        done = self.cluster.call(
+            "sbatch", "--parsable", f"--array={array}", f"--output={self.log}/shard-%a.log", "--export=ALL,NONIO_SHARD_SITE="
+            f"{self.site},NONIO_SHARD_OUT={self.parts},NONIO_SHARDS=4{more}", *args, SCRIPTS / "nonio-shard.sbatch")
+        return done.stdout.strip()
+
+    def ended(self, job, seconds):
+        self.cluster.until(lambda: not self.cluster.call("squeue", "-h", "-j", job, check=False).stdout.strip(), seconds)
+
+    def merge(self):
+        return self.cluster.call(NONIO, "night", "merge", self.parts, "--wait", "0", check=False)
+
+    def test_an_array_of_four_is_one_run(self):
+        # Its date; nonio-night plans the same night again.
+        self.cluster.call(NONIO, "night", "plan", self.site, "--out", self.parts, "--shards", "4", "--date", "2026-11-01")
+        done = self.cluster.call(SCRIPTS / "nonio-night", self.site, self.parts, "4", check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.same()
+        logs = "".join(p.read_text() for p in self.log.iterdir())
+        self.assertEqual(logs.count("status 0"), 4, logs)
+
+    def test_a_task_that_is_cancelled_is_missing_until_it_is_submitted_again(self):
+        self.cluster.call("scontrol", "update", "PartitionName=night", "State=DOWN")
+        job = self.submit(NONIO_RESTARTS=0)
+        self.cluster.call("scancel", f"{job}_2")
+        self.cluster.call("scontrol", "update", "PartitionName=night", "State=UP")
+        self.ended(job, 120)
+        done = self.merge()
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("shard 2 of 4 has not reported", done.stderr)
+        self.ended(self.again("2"), 60)
+        self.assertEqual(self.merge().returncode, 0)
+        self.same()
+
+    @unittest.skipUnless(LONG, "Slurm waits two minutes: NONIO_SLURM_LONG=1")
+    def test_requeued_by_its_script_after_kill_9(self):
+        site = self.site
+        for i in range(8, 120):
+            self.campaign(f"c{i}")
+        shutil.rmtree(self.out)
+        self.run_nonio("--date", "2026-11-01", expect=0)
+        job = self.submit()
+        victims = []
+
+        def kill_one():
+            for proc in pathlib.Path("/proc").glob("[0-9]*"):
+                try:
+                    if (proc / "cmdline").read_bytes().split(b"\0")[:3] == [b"nonio", b"run", str(site).encode()]:
+                        os.kill(int(proc.name), signal.SIGKILL)
+                        victims.append(int(proc.name))
+                        return True
+                except OSError:
+                    pass
+            return False
+        self.cluster.until(kill_one, 60)
+        self.ended(job, 400)
+        self.assertEqual(self.merge().returncode, 0)
+        self.same()
+        self.assertIn("restart 1: status 0", "".join(p.read_text() for p in self.log.iterdir()))
+
+    @unittest.skipUnless(LONG, "Slurm waits two minutes: NONIO_SLURM_LONG=1")
+    def test_a_node_is_lost(self):
+        for i in range(8, 120):
+            self.campaign(f"c{i}")
+        shutil.rmtree(self.out)
+        self.run_nonio("--date", "2026-11-01", expect=0)
+        job = self.submit()
+        self.cluster.until(lambda: len(self.cluster.processes_of("n2")) > 1, 60)
+        for pid in [self.cluster.pid("slurmd-n2.pid"), *self.cluster.processes_of("n2")]:
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except OSError:
+                pass
+        self.ended(job, 500)
+        self.assertEqual(self.merge().returncode, 0)
+        self.same()
+        self.cluster.start("n2")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
