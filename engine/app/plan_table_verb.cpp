@@ -14,6 +14,7 @@
 #include "host/storage/files.h"
 #include "host/tools/plan.h"
 #include "nonio/sdk/format.h"
+#include "plan_sheet.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -22,7 +23,10 @@ namespace fs = std::filesystem;
 namespace {
 
 struct TableWish {
-  std::string x, y, resolution = "1", max_step = "0", over_travel = "0", sort, out, control;
+  std::string x, y, resolution = "1", resolution_x = "0", resolution_y = "0", max_step = "0",
+                    over_travel = "0", sort, out, control;
+  bool cheapest = false;
+  SheetWish sheet;
   std::int64_t hypotenuse = 299, runs = 5, max_points = 1500;
   double feed = 2000.0, dwell = 5.0, least_cover = 0.9;
   std::vector<std::string> settings;
@@ -42,12 +46,10 @@ std::string right(const std::string& text, std::size_t width) {
   return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
 }
 
-/// X, Y and both diagonals there and back in each run: moves at the feed, dwell at every stop.
+math::MeasuringCost cost_of(const TableWish& w) { return {w.runs, w.feed / 60e3, w.dwell}; }
+
 double minutes_of(const math::TriplePlan& p, const TableWish& w) {
-  const double way = p.length_x + p.length_y + 2.0 * p.length_d,
-               stops = 4.0 * static_cast<double>(p.n + 1),
-               passes = 2.0 * static_cast<double>(w.runs);
-  return passes * (1e3 * way / w.feed + stops * w.dwell / 60.0);
+  return math::measuring_time(p, cost_of(w)) / 60.0;
 }
 
 void print_table_rows(const std::vector<TableRow>& rows, const TableWish& wish) {
@@ -80,6 +82,8 @@ Expected<std::vector<TableRow>> rows_that_fit(const TableWish& wish, math::Tripl
   for (const auto& [option, text, to] : {std::tuple{"--x", &wish.x, &w.x},
                                          {"--y", &wish.y, &w.y},
                                          {"--resolution", &wish.resolution, &w.resolution},
+                                         {"--resolution-x", &wish.resolution_x, &w.resolution_x},
+                                         {"--resolution-y", &wish.resolution_y, &w.resolution_y},
                                          {"--max-step", &wish.max_step, &w.largest_step},
                                          {"--over-travel", &wish.over_travel, &w.over_travel}}) {
     const auto length = length_of(option, *text);
@@ -89,10 +93,17 @@ Expected<std::vector<TableRow>> rows_that_fit(const TableWish& wish, math::Tripl
   w.hypotenuse = wish.hypotenuse;
   w.max_points = wish.max_points;
   w.count = 1000;
+  std::vector<TableRow> rows;
+  if (wish.cheapest) {
+    const auto plans = math::cheapest_plans(w, wish.least_cover, cost_of(wish));
+    if (!plans) return fail(plans.error());
+    for (const math::TriplePlan& p : *plans)
+      rows.push_back({{p.a, p.b, p.c}, p, minutes_of(p, wish)});
+    if (!rows.empty()) return rows;
+  }
   const auto found = math::plan_triples(w);
   if (!found) return fail(found.error());
   if (found->plans.empty()) return fail(host::tools::why_nothing(*found));
-  std::vector<TableRow> rows;
   for (const math::TriplePlan& p : found->plans)
     if (p.worst_cover() >= wish.least_cover)
       rows.push_back({{p.a, p.b, p.c}, p, minutes_of(p, wish)});
@@ -121,9 +132,7 @@ int write_row_programs(const char* verb, const std::vector<TableRow>& rows, cons
   host::loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  Machine machine;
-  machine.axes = {Axis{.name = "X", .travel = std::pair(0.0, w.x)},
-                  Axis{.name = "Y", .travel = std::pair(0.0, w.y)}};
+  const Machine machine = rectangle(w.x, w.y);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::map<std::string, std::string> settings{
         {"plan", "1"}, {"over_travel_mm", wish.over_travel}, {"runs", std::to_string(wish.runs)}};
@@ -144,6 +153,18 @@ int write_row_programs(const char* verb, const std::vector<TableRow>& rows, cons
     if (!common.quiet) std::cerr << folder.string() << ": " << files->size() << " files\n";
   }
   return exit_done;
+}
+
+/// The rows as the sheet takes them: those of the planner, or the triples alone.
+PointTable sheet_rows(const std::vector<TableRow>& rows) {
+  std::vector<math::TriplePlan> plans;
+  for (const TableRow& row : rows) {
+    plans.push_back(row.plan);
+    plans.back().a = row.triple.a, plans.back().b = row.triple.b, plans.back().c = row.triple.c;
+  }
+  PointTable table = math::triple_table(plans);
+  if (!rows.empty() && !rows.front().fits()) table.columns.resize(3);  // a, b, c
+  return table;
 }
 
 int plan_table(const TableWish& wish, const Common& common) {
@@ -183,6 +204,16 @@ int plan_table(const TableWish& wish, const Common& common) {
   } else {
     print_table_rows(rows, wish);
   }
+  if (!wish.sheet.file.empty())
+    if (const int exit =
+            write_sheet(verb, wish.sheet, rectangle(request.x, request.y), sheet_rows(rows),
+                        {{"over_travel_mm", wish.over_travel},
+                         {"runs", std::to_string(wish.runs)},
+                         {"feed_mm_per_min", fixed_text(wish.feed, 6)},
+                         {"dwell_s", fixed_text(wish.dwell, 6)}},
+                        common);
+        exit != exit_done)
+      return exit;
   return wish.out.empty() ? exit_done : write_row_programs(verb, rows, wish, request, common);
 }
 
@@ -204,6 +235,9 @@ Verb plan_table_verb(Common& common) {
                {"--sort", &wish->sort, "Order of the rows (default ratio; with travels minutes)"}),
            {"--resolution", &wish->resolution,
             "Steps are whole multiples of this value, mm (default 1)"},
+           {"--resolution-x", &wish->resolution_x,
+            "Scale factor of X: its steps are whole multiples of this, mm (default --resolution)"},
+           {"--resolution-y", &wish->resolution_y, "The same of Y; --resolution is the diagonal's"},
            {"--max-step", &wish->max_step, "Largest step of either axis, mm (default any)"},
            {"--over-travel", &wish->over_travel,
             "Range kept free at each end of both axes, mm (default 0)"},
@@ -212,6 +246,8 @@ Verb plan_table_verb(Common& common) {
            within(0.0, 1.0,
                   {"--least-cover", &wish->least_cover,
                    "Part of each axis that a plan must cover (default 0.9)"}),
+           {"--cheapest", &wish->cheapest,
+            "Of each triple the plan that takes least time (default: that covers most)"},
            within(1.0, 1e6, {"--feed", &wish->feed, "Feed, mm/min, for the cost (default 2000)"}),
            within(0.0, 1e4,
                   {"--dwell", &wish->dwell, "Dwell at a stop, s, for the cost (default 5)"}),
@@ -221,13 +257,14 @@ Verb plan_table_verb(Common& common) {
            {"--control", &wish->control,
             "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"},
            settings_argument(wish->settings, "NAME=VALUE: an option of that writer")},
-          common_arguments(common)),
+          joined(sheet_arguments(wish->sheet, common), common_arguments(common))),
       .footer =
           "Without travels: every primitive triple with a < b and c up to --hypotenuse, with b/a.\n"
           "With travels: the best plan of each triple, both ways round, and its cost in "
-          "minutes.\n\n"
+          "minutes.\n"
+          "With resolutions of their own, q counts their largest common divisor.\n\n"
           "Exit status: 0; 1 no plan fits (prints which limits to relax); 2 usage.\n\n"
-          "Example: nonio plan table --x 20000 --y 12000 --max-step 500",
+          "Example: nonio plan table --x 20000 --y 12000 --max-step 500 --pdf plans.pdf",
       .run = [wish, &common] { return plan_table(*wish, common); }};
 }
 

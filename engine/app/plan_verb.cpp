@@ -12,6 +12,7 @@
 #include "host/storage/files.h"
 #include "host/tools/plan.h"
 #include "nonio/sdk/format.h"
+#include "plan_sheet.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -21,7 +22,8 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Lengths {
-  std::string x, y, over_travel = "0", resolution = "1", max_step = "0";
+  std::string x, y, over_travel = "0", resolution = "1", resolution_x = "0", resolution_y = "0",
+                    max_step = "0";
   std::vector<std::string> pitch_x, pitch_y;
 };
 
@@ -36,6 +38,7 @@ struct Plan {
   std::string even = "any";
   std::int64_t count = 5, choose = 1;
   Programs programs;
+  SheetWish sheet;
 };
 
 struct ProgramWish {
@@ -55,6 +58,8 @@ Expected<void> settle(Plan& plan) {
   for (const auto& done : {one("--x", plan.mm.x, w.x), one("--y", plan.mm.y, w.y),
                            one("--over-travel", plan.mm.over_travel, w.over_travel),
                            one("--resolution", plan.mm.resolution, w.resolution),
+                           one("--resolution-x", plan.mm.resolution_x, w.resolution_x),
+                           one("--resolution-y", plan.mm.resolution_y, w.resolution_y),
                            one("--max-step", plan.mm.max_step, w.largest_step)})
     if (!done) return done;
   for (const auto& [option, texts, to] : {std::tuple{"--pitch-x", &plan.mm.pitch_x, &w.pitch_x},
@@ -148,15 +153,19 @@ int plan_triples(Plan plan, const Common& common) {
   if (found->plans.empty()) {
     return complain(verb, host::tools::why_nothing(*found), exit_failed);
   }
+  const PointTable rows = math::triple_table(found->plans);
+  const Machine machine = rectangle(plan.wish.x, plan.wish.y);
+  if (!plan.sheet.file.empty())
+    if (const int exit = write_sheet(verb, plan.sheet, machine, rows,
+                                     {{"over_travel_mm", plan.mm.over_travel}}, common);
+        exit != exit_done)
+      return exit;
   if (plan.programs.out.empty() && plan.programs.control.empty()) return exit_done;
   if (plan.choose < 1 || plan.choose > static_cast<std::int64_t>(found->plans.size()))
     return complain(verb, "--choose: expected 1 to " + std::to_string(found->plans.size()) +
                               ", found " + std::to_string(plan.choose));
-  Machine machine;
-  machine.axes = {Axis{.name = "X", .travel = std::pair(0.0, plan.wish.x)},
-                  Axis{.name = "Y", .travel = std::pair(0.0, plan.wish.y)}};
   return write_programs(
-      verb, common, plan.programs, machine, math::triple_table(found->plans),
+      verb, common, plan.programs, machine, rows,
       {{"plan", std::to_string(plan.choose)}, {"over_travel_mm", plan.mm.over_travel}});
 }
 
@@ -230,6 +239,11 @@ Verb triples_verb(Common& common) {
                 "Range kept free at each end of both axes, mm (default 0)"},
                {"--resolution", &plan->mm.resolution,
                 "Steps are whole multiples of this value, mm (default 1)"},
+               {"--resolution-x", &plan->mm.resolution_x,
+                "Scale factor of X: its steps are whole multiples of this, mm (default "
+                "--resolution)"},
+               {"--resolution-y", &plan->mm.resolution_y,
+                "The same of Y; --resolution is the diagonal's"},
                {"--max-step", &plan->mm.max_step, "Largest step of either axis, mm (default any)"},
                {"--max-points", &plan->wish.max_points,
                 "Entries of the control's compensation table (default 1500)"},
@@ -246,7 +260,8 @@ Verb triples_verb(Common& common) {
                      {"--program", &plan->programs.out,
                       "Folder for the part programs of one plan: X, Y and both diagonals"}),
                {"--choose", &plan->choose, "Which plan --program writes (default 1)"}},
-              program_arguments(plan->programs), common_arguments(common)),
+              program_arguments(plan->programs),
+              joined(sheet_arguments(plan->sheet, common), common_arguments(common))),
           .footer =
               "A diagonal whose steps are whole needs a right triangle with whole sides: 3-4-5,\n"
               "5-12-13, ... Step = q (a, b, c) x resolution; n steps cover n q a of X and n q b of "

@@ -100,6 +100,8 @@ storage::Json wish_json(const math::TripleRequest& w) {
                         {"hypotenuse", w.hypotenuse},
                         {"density", w.density},
                         {"even", even}};
+  if (w.resolution_x > 0.0) json["resolution_x_mm"] = in_mm(w.resolution_x);
+  if (w.resolution_y > 0.0) json["resolution_y_mm"] = in_mm(w.resolution_y);
   if (w.largest_step > 0.0) json["max_step_mm"] = in_mm(w.largest_step);
   if (!w.pitch_x.empty()) json["pitch_x_mm"] = all_mm(w.pitch_x);
   if (!w.pitch_y.empty()) json["pitch_y_mm"] = all_mm(w.pitch_y);
@@ -184,7 +186,8 @@ std::string triples_json(const math::TripleRequest& wish, const math::TriplePlan
 
 config::Checked<std::vector<Artifact>> write_programs(
     const loader::Plugins& plugins, const std::string& output, const Machine& machine,
-    const PointTable& rows, const std::map<std::string, std::string>& options) {
+    const PointTable& rows, const std::map<std::string, std::string>& options,
+    const Templates& templates) {
   const auto& all = plugins.outputs();
   const auto found = std::find_if(all.begin(), all.end(), [&](const Output& o) {
     return o.info.name == output || o.info.name == "program-" + output;
@@ -208,7 +211,6 @@ config::Checked<std::vector<Artifact>> write_programs(
   Results results;
   results.analyses.push_back({"plan", "", "", {}});
   results.analyses.back().evaluation.rows = rows;
-  const Templates templates;
   auto written = process::guarded("output " + found->info.name, [&] {
     return found->write({campaign, none, results, *settings, templates});
   });

@@ -24,9 +24,11 @@ std::string why_nothing(const math::TriplePlans& plans);
 std::string triples_json(const math::TripleRequest& wish, const math::TriplePlans& plans);
 
 /// Part programs by the output plugin of that name ("program-" may be left out), with its options
-/// as texts: 2.5, true, axes,diagonals.
+/// as texts: 2.5, true, axes,diagonals. Or the plan as a sheet, by the output plan-sheet, which wants
+/// templates.
 config::Checked<std::vector<Artifact>> write_programs(
     const loader::Plugins& plugins, const std::string& output, const Machine& machine,
-    const PointTable& rows, const std::map<std::string, std::string>& options);
+    const PointTable& rows, const std::map<std::string, std::string>& options,
+    const Templates& templates = {});
 
 }  // namespace nonio::host::tools

@@ -37,7 +37,8 @@ std::string mm(double m) {
 /// The limits in whole numbers.
 struct Search {
   std::int64_t ux = 0, uy = 0, unit = 0;
-  std::int64_t step_x = 0, step_y = 0;  // largest allowed
+  std::int64_t of_x = 1, of_y = 1, of_d = 1;  // units of which the steps are whole multiples
+  std::int64_t step_x = 0, step_y = 0;        // largest allowed
   std::int64_t least_n = fewest_steps, most_n = 0;
   std::vector<std::int64_t> pitch_x, pitch_y;
   bool even = false;
@@ -66,15 +67,19 @@ Search search_of(const TripleRequest& w) {
   const double ux = w.x - 2.0 * w.over_travel, uy = w.y - 2.0 * w.over_travel;
   s.ux = nanometres(ux);
   s.uy = nanometres(uy);
-  s.unit = nanometres(w.resolution);
+  const std::int64_t x = nanometres(w.resolution_x > 0.0 ? w.resolution_x : w.resolution),
+                     y = nanometres(w.resolution_y > 0.0 ? w.resolution_y : w.resolution),
+                     d = nanometres(w.resolution);
+  s.unit = std::gcd(std::gcd(x, y), d);
+  s.of_x = x / s.unit, s.of_y = y / s.unit, s.of_d = d / s.unit;
   s.most_n = w.max_points - 1;
   s.step_x = w.largest_step > 0.0 ? nanometres(w.largest_step) : s.ux;
   s.step_y = w.largest_step > 0.0 ? nanometres(w.largest_step) : s.uy;
   if (w.density) {
-    const Sampling x = sampling_of(ux), y = sampling_of(uy);
-    s.least_n = std::max(x.steps, y.steps);
-    s.step_x = std::min(s.step_x, nanometres(x.largest_step));
-    s.step_y = std::min(s.step_y, nanometres(y.largest_step));
+    const Sampling on_x = sampling_of(ux), on_y = sampling_of(uy);
+    s.least_n = std::max(on_x.steps, on_y.steps);
+    s.step_x = std::min(s.step_x, nanometres(on_x.largest_step));
+    s.step_y = std::min(s.step_y, nanometres(on_y.largest_step));
   }
   for (const double p : w.pitch_x) s.pitch_x.push_back(nanometres(p));
   for (const double p : w.pitch_y) s.pitch_y.push_back(nanometres(p));
@@ -97,16 +102,23 @@ std::int64_t work(const Search& s) {
   return sum;
 }
 
+/// Of what q is a whole multiple, so that each step is one of its own resolution: q leg = 0 mod k.
+std::int64_t multiple_of(const Search& s, const Triple& t) {
+  const auto of = [](std::int64_t k, std::int64_t leg) { return k / std::gcd(k, leg); };
+  return std::lcm(std::lcm(of(s.of_x, t.a), of(s.of_y, t.b)), of(s.of_d, t.c));
+}
+
 bool is_multiple(std::int64_t step, const std::vector<std::int64_t>& pitches) {
   return std::any_of(pitches.begin(), pitches.end(),
                      [&](std::int64_t pitch) { return step % pitch == 0; });
 }
 
-/// The largest step multiple up to `q` that meets no multiple of a pitch; 0 if there is none.
-std::int64_t beside_pitch(const Search& s, const Triple& t, std::int64_t q) {
+/// The largest multiple of `m` up to `q` whose steps meet no multiple of a pitch; 0 if none does.
+std::int64_t beside_pitch(const Search& s, const Triple& t, std::int64_t q, std::int64_t m) {
   // A pitch forbids every q or every m-th, m >= 2: among few neighbours one is free, if any is.
   const std::int64_t tries = 2 * static_cast<std::int64_t>(s.pitch_x.size() + s.pitch_y.size() + 1);
-  for (std::int64_t i = 0; q >= 1 && i <= tries * tries; ++i, --q)
+  q -= q % m;
+  for (std::int64_t i = 0; q >= 1 && i <= tries * tries; ++i, q -= m)
     if (!is_multiple(q * t.a * s.unit, s.pitch_x) && !is_multiple(q * t.b * s.unit, s.pitch_y))
       return q;
   return 0;
@@ -125,9 +137,10 @@ void for_each_plan(const Search& s, const Take& take) {
     const std::int64_t products = most_products(s, t);
     const std::int64_t q_step = std::min(s.step_x / (t.a * s.unit), s.step_y / (t.b * s.unit));
     if (q_step == 0) continue;
+    const std::int64_t multiple = multiple_of(s, t);
     for (std::int64_t n = s.least_n; n <= std::min(s.most_n, products); ++n) {
       if (s.even && n % 2 != 0) continue;
-      const std::int64_t q = beside_pitch(s, t, std::min(products / n, q_step));
+      const std::int64_t q = beside_pitch(s, t, std::min(products / n, q_step), multiple);
       if (q > 0 && take(Found{&t, q, n})) return;
     }
   }
@@ -139,11 +152,11 @@ bool anything(const TripleRequest& wish) {
   return any;
 }
 
-TriplePlan plan_of(const Found& f, const TripleRequest& w) {
+TriplePlan plan_of(const Search& s, const Found& f, const TripleRequest& w) {
   TriplePlan p;
   p.a = f.triple->a, p.b = f.triple->b, p.c = f.triple->c;
   p.q = f.q, p.n = f.n;
-  const double unit = static_cast<double>(nanometres(w.resolution)) / per_metre;
+  const double unit = static_cast<double>(s.unit) / per_metre;
   const auto metres = [&](std::int64_t multiple) { return static_cast<double>(multiple) * unit; };
   p.step_x = metres(p.q * p.a), p.step_y = metres(p.q * p.b), p.step_d = metres(p.q * p.c);
   p.length_x = metres(p.n * p.q * p.a);
@@ -249,14 +262,14 @@ void list(std::vector<TriplePlan>& plans, const TriplePlan& p, TripleReason why,
 std::vector<TriplePlan> chosen(const Search& s, const TripleRequest& w) {
   Leaders leaders(w.count, w.even);
   for_each_plan(s, [&](const Found& f) {
-    leaders.see(plan_of(f, w));
+    leaders.see(plan_of(s, f, w));
     return false;
   });
   if (leaders.list().empty()) return {};
   const TriplePlan best = leaders.list().front();
   std::vector<Best> others = kinds(best, w.even);
   for_each_plan(s, [&](const Found& f) {
-    const TriplePlan p = plan_of(f, w);
+    const TriplePlan p = plan_of(s, f, w);
     for (Best& b : others) b.see(p);
     return false;
   });
@@ -347,6 +360,9 @@ std::string wrong(const TripleRequest& w) {
       wrong_count("points of the table", w.max_points, fewest_steps + 1, most_points),
       wrong_count("largest hypotenuse", w.hypotenuse, 5, largest_hypotenuse),
       wrong_count("number of plans", static_cast<std::int64_t>(w.count), 1, 1000)};
+  for (const auto& [name, r] :
+       {std::pair{"resolution of X", w.resolution_x}, {"resolution of Y", w.resolution_y}})
+    if (r != 0.0) all.push_back(wrong_length(name, r, finest, longest_travel));
   if (w.largest_step != 0.0)
     all.push_back(wrong_length("largest step", w.largest_step, finest, longest_travel));
   for (const double p : w.pitch_x)
@@ -393,18 +409,59 @@ bool stands_before(const TriplePlan& one, const TriplePlan& other, EvenSteps eve
   return key(one) < key(other);
 }
 
-Expected<TriplePlans> plan_triples(const TripleRequest& wish) {
+double measuring_time(const TriplePlan& p, const MeasuringCost& cost) {
+  const double way = p.length_x + p.length_y + 2.0 * p.length_d,
+               stops = 4.0 * static_cast<double>(p.n + 1),
+               passes = 2.0 * static_cast<double>(cost.runs);
+  return passes * (way / cost.feed + stops * cost.dwell);
+}
+
+namespace {
+
+/// The search, if its wish is sound and it is not too long.
+Expected<Search> sound_search(const TripleRequest& wish) {
   if (std::string complaint = wrong(wish); !complaint.empty()) return fail(std::move(complaint));
-  TriplePlans out;
-  const Search search = search_of(wish);
-  out.tried = work(search);
-  if (out.tried > most_tried)
-    return fail("the search would look at " + std::to_string(out.tried) +
-                " plans, expected at most " + std::to_string(most_tried) +
+  Search search = search_of(wish);
+  const std::int64_t tried = work(search);
+  if (tried > most_tried)
+    return fail("the search would look at " + std::to_string(tried) + " plans, expected at most " +
+                std::to_string(most_tried) +
                 ": give a coarser resolution, fewer points or a smaller hypotenuse");
-  out.plans = chosen(search, wish);
+  return search;
+}
+
+}  // namespace
+
+Expected<TriplePlans> plan_triples(const TripleRequest& wish) {
+  const auto search = sound_search(wish);
+  if (!search) return fail(search.error());
+  TriplePlans out;
+  out.tried = work(*search);
+  out.plans = chosen(*search, wish);
   if (out.plans.empty()) explain_nothing(wish, out);
   return out;
+}
+
+Expected<std::vector<TriplePlan>> cheapest_plans(const TripleRequest& wish, double least_cover,
+                                                 const MeasuringCost& cost) {
+  const auto search = sound_search(wish);
+  if (!search) return fail(search.error());
+  std::vector<TriplePlan> plans;
+  const Triple* of = nullptr;
+  for_each_plan(*search, [&](const Found& f) {
+    const TriplePlan p = plan_of(*search, f, wish);
+    if (p.worst_cover() < least_cover) return false;
+    if (of != f.triple) {
+      plans.push_back(p);
+    } else if (const double now = measuring_time(p, cost),
+               best = measuring_time(plans.back(), cost);
+               now < best) {
+      plans.back() = p;
+    }
+    of = f.triple;
+    return false;
+  });
+  return plans;
 }
 
 }  // namespace nonio::math

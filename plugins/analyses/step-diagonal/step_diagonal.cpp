@@ -9,6 +9,7 @@
 #include "nonio/math/step_diagonals.h"
 #include "nonio/sdk/plugin.h"
 #include "passes.h"
+#include "whole_steps.h"
 
 using namespace nonio;
 using namespace nonio::math;
@@ -154,6 +155,7 @@ void put_values(Work& w, const StepSolution& s, const ReadingModel& model) {
   }
   for (const StepCurve& c : s.curves)
     if (!withheld(w, c)) put_curve(w, c, certain ? &budget : nullptr);
+  put_whole_steps(w.passes, s, model, certain ? &budget : nullptr, w.out);
   if (certain && model.missing.empty()) w.out.budget = budget.budget();
 }
 

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import subprocess
 import unittest
 
 from verbs import VerbTest, readings
@@ -149,6 +150,71 @@ class LookUpTable(VerbTest):
         self.assertEqual(folders, [f"{i + 1:02}-{r['a']}-{r['b']}-{r['c']}" for i, r in enumerate(rows)])
         for folder in folders:
             self.assertTrue((out / folder / "program-gcode-D2.ngc").exists(), folder)
+
+    def text_of(self, pdf):
+        return subprocess.run(["pdftotext", "-layout", str(pdf), "-"], capture_output=True, text=True, check=True).stdout
+
+    def test_the_sheet_has_the_table_and_the_stops_of_the_programs(self):
+        for language, title in (("en", "Right triangles"), ("de", "Rechtwinklige"), ("it", "Triangoli")):
+            sheet = self.site / f"{language}.pdf"
+            self.nonio("plan", "table", "--pdf", sheet, "--language", language)
+            text = self.text_of(sheet)
+            self.assertIn(title, text)
+            point = "." if language == "en" else ","
+            numbers = " ".join(text.split())
+            for a, b, c in ((3, 4, 5), (119, 120, 169), (23, 264, 265), (96, 247, 265)):
+                self.assertIn(f"{a} {b} {c} {b / a:.3f}".replace(".", point), numbers)
+        sheet, out = self.site / "plans.pdf", self.site / "programs"
+        self.nonio("plan", "table", "--x", 4000, "--y", 3000, "--max-step", 400, "--least-cover", 0.99, "--over-travel", 10,
+                   "--pdf", sheet, "--stops", 1, "--program", out, "--control", "gcode", "--set", "runs=1")
+        first = sorted(out.iterdir())[0]
+        rows = {}
+        for line in self.text_of(sheet).splitlines():  # two blocks of i, X, Y of D1, Y of D2, D side by side
+            words = line.split()
+            if len(words) in (5, 10) and all(re.fullmatch(r"[\d.]+", w) for w in words):
+                for at in range(0, len(words), 5):
+                    rows[int(words[at])] = [float(w) for w in words[at + 1:at + 5]]
+        self.assertEqual(sorted(rows), list(range(len(rows))))
+        self.assertGreater(len(rows), 5)
+        for name, column in (("D1", 1), ("D2", 2)):
+            stops, at = [], {}
+            for line in (first / f"program-gcode-{name}.ngc").read_text().splitlines():
+                if line.startswith("G1"):
+                    at.update({w[0]: float(w[1:]) for w in line.split()[1:]})
+                elif line.startswith("G4"):
+                    stops.append((at["X"], at["Y"]))
+            self.assertEqual(stops[:len(rows)], [(row[0], row[column]) for _, row in sorted(rows.items())])
+
+    def test_the_cheapest_plan_of_each_triple(self):
+        asked = ["plan", "table", "--x", 2000, "--y", 1500, "--max-step", 300, "--hypotenuse", 60, "--least-cover", 0.93]
+        rows = self.json_of(*asked, "--cheapest")["rows"]
+        best = {}
+        for a in range(1, 60):  # every triple, q and n, not the planner's
+            for b in range(1, 60):
+                c = math.isqrt(a * a + b * b)
+                if c * c != a * a + b * b or c > 60 or math.gcd(a, b) != 1:
+                    continue
+                for n in range(4, 1500):
+                    q = min(2000 // (a * n), 1500 // (b * n), 300 // a, 300 // b)
+                    if q < 1 or min(n * q * a / 2000, n * q * b / 1500) < 0.93:
+                        continue
+                    minutes = 10 * (n * q * (a + b + 2 * c) / 2000 + 4 * (n + 1) * 5 / 60)
+                    best[a, b] = min(best.get((a, b), 1e9), minutes)
+        self.assertEqual({(r["a"], r["b"]): round(r["minutes"], 6) for r in rows},
+                         {key: round(value, 6) for key, value in best.items()})
+        covered = {(r["a"], r["b"]): r["minutes"] for r in self.json_of(*asked)["rows"]}
+        self.assertTrue(any(best[key] < minutes - 1e-6 for key, minutes in covered.items()))
+
+    def test_axes_with_scale_factors_of_their_own(self):
+        rows = self.json_of("plan", "table", "--x", 9000, "--y", 7000, "--max-step", 400, "--resolution-x", 0.4,
+                            "--resolution-y", 0.3, "--resolution", 1)["rows"]
+        self.assertGreater(len(rows), 1)
+        for r in rows:
+            for name, unit in (("step_x_mm", 0.4), ("step_y_mm", 0.3), ("step_d_mm", 1.0)):
+                self.assertAlmostEqual(r[name] / unit, round(r[name] / unit), places=6, msg=r)
+            self.assertAlmostEqual(r["step_x_mm"] ** 2 + r["step_y_mm"] ** 2, r["step_d_mm"] ** 2, places=4)
+        self.assertIn("resolution of X", self.nonio("plan", "triples", "--x", 400, "--y", 300, "--resolution-x=-1",
+                                                   expect=2).stderr)
 
     def test_what_cannot_be(self):
         for args, status, words in ((["--x", 4000], 2, "expected both"), (["--sort", "minutes"], 2, "--x and --y"),

@@ -3,8 +3,10 @@
 // Diagonals as they were read, before and after a compensation, and any line of both states; and the
 // plane as the machine draws it, its errors exaggerated.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "nonio/reports/number.h"
 #include "pages.h"
@@ -73,6 +75,58 @@ Plot diagonals_plot(const Source& source, const Diagonals& d) {
   plot.curves.push_back(curve_of(*d.target, *d.D2, style.minus, Dash::dashed, "D2"));
   plot.curves[plot.curves.size() - 2].marker = Marker::up;
   plot.curves.back().marker = Marker::down;
+  return plot;
+}
+
+/// The columns of step diagonals at whole steps, with how each is drawn.
+struct DrawnPass {
+  const PointTable::Column* column;
+  Colour colour;
+  Dash dash;
+  Marker marker;
+};
+
+std::vector<DrawnPass> passes_of(const Source& source, const Results::Analysed& a) {
+  const Style& style = source.look.style;
+  const std::array<std::tuple<const char*, Colour, Dash, Marker>, 4> four{
+      {{"PPP", style.plus, Dash::solid, Marker::up},
+       {"NPP", style.minus, Dash::dashed, Marker::down},
+       {"PNP", style.good, Dash::dotted, Marker::dot},
+       {"PPN", style.accent, Dash::dash_dot, Marker::ring}}};
+  std::vector<DrawnPass> out;
+  for (const auto& [name, colour, dash, marker] : four)
+    if (const auto* column = a.evaluation.points.column(name))
+      out.push_back({column, colour, dash, marker});
+  return out;
+}
+
+/// The diagonals of a volume at whole steps; those before the compensation pale.
+std::optional<Plot> steps_plot(const Source& source, const Results::Analysed& a) {
+  const PointTable::Column* target = a.evaluation.points.column("target");
+  const auto passes = passes_of(source, a);
+  if (target == nullptr || passes.empty()) return {};
+  Plot plot;
+  plot.title = source.words.get("plot.step_diagonals");
+  plot.x_title = source.words.get("plot.along", {{"unit", unit_text(target->quantity)}});
+  plot.y_title =
+      source.words.get("plot.deviation", {{"unit", unit_text(passes.front().column->quantity)}});
+  plot.language = source.language();
+  plot.empty_text = source.words.get("plot.nothing");
+  for (const Results::Analysed& earlier : source.in.results.analyses) {
+    if (&earlier == &a) break;
+    const PointTable::Column* before = earlier.evaluation.points.column("target");
+    const auto drawn = passes_of(source, earlier);
+    if (before == nullptr || drawn.empty()) continue;
+    for (const DrawnPass& pass : drawn)
+      plot.curves.push_back(curve_of(*before, *pass.column, pale(pass.colour), Dash::dotted,
+                                     pass.column->name + ", " + earlier.measurement));
+    break;  // the first set is what the machine was
+  }
+  for (const DrawnPass& pass : passes) {
+    plot.curves.push_back(
+        curve_of(*target, *pass.column, pass.colour, pass.dash, pass.column->name));
+    plot.curves.back().marker = pass.marker;
+  }
   return plot;
 }
 
@@ -187,6 +241,8 @@ void add_before_after(const Source& source, const Measured& m, std::vector<Plot>
 }
 
 void add_diagonals(const Source& source, const Measured& m, std::vector<Plot>& plots) {
+  for (const auto* a : m.analyses)
+    if (auto plot = steps_plot(source, *a)) plots.push_back(std::move(*plot));
   for (const auto* a : m.analyses)
     if (const auto d = diagonals_of(*a)) {
       plots.push_back(diagonals_plot(source, *d));

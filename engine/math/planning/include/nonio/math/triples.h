@@ -16,6 +16,8 @@
 /// Euclid: every primitive Pythagorean triple is (m^2 - k^2, 2 m k, m^2 + k^2) with m > k > 0
 /// coprime and of opposite parity; both orders of the legs are plans. The legs are coprime, so the
 /// three steps are multiples of the resolution r exactly if step = q (a, b, c) r with q integer.
+/// Where X and Y have resolutions (scale factors) of their own, r is the largest common divisor of
+/// all, k = rx/r, ry/r, rd/r, and q is a multiple of each k / gcd(k, leg).
 ///
 ///     U = travel - 2 over-travel          usable length of an axis, m
 ///     n = steps; n + 1 stops              n q a r <= Ux, n q b r <= Uy
@@ -46,9 +48,11 @@ enum class EvenSteps : std::uint8_t {
 };
 
 struct TripleRequest {
-  double x = 0.0, y = 0.0;    ///< travel, m
-  double over_travel = 0.0;   ///< kept free at each end of both axes, m
-  double resolution = 1e-3;   ///< r, m; steps are whole multiples of it
+  double x = 0.0, y = 0.0;   ///< travel, m
+  double over_travel = 0.0;  ///< kept free at each end of both axes, m
+  double resolution = 1e-3;  ///< r, m; steps are whole multiples of it
+  /// Of the steps of one axis, m; 0: as `resolution`, of which then the diagonal's are multiples.
+  double resolution_x = 0.0, resolution_y = 0.0;
   double largest_step = 0.0;  ///< of either axis, m; 0: any
   std::int64_t max_points = 1500;
   std::vector<double> pitch_x{}, pitch_y{};  ///< of screw, rack, scale: no step is a multiple, m
@@ -114,6 +118,20 @@ struct TriplePlans {
 inline constexpr std::int64_t most_tried = 20'000'000;
 
 Expected<TriplePlans> plan_triples(const TripleRequest& wish);
+
+/// What the time of a measurement depends on.
+struct MeasuringCost {
+  std::int64_t runs = 5;   ///< there and back
+  double feed = 2.0 / 60;  ///< m/s
+  double dwell = 5.0;      ///< at each stop, s
+};
+/// Of X, Y and both diagonals, there and back in each run, s.
+double measuring_time(const TriplePlan&, const MeasuringCost&);
+
+/// The cheapest plan of each triple and order of its legs that covers so much of both axes, each
+/// number of steps with the largest step that fits. Empty: none does.
+Expected<std::vector<TriplePlan>> cheapest_plans(const TripleRequest& wish, double least_cover,
+                                                 const MeasuringCost&);
 
 /// A row a plan, with the names of the contract and the noise gains.
 PointTable triple_table(const std::vector<TriplePlan>& plans);

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan_sheet.h"
+
+#include <filesystem>
+#include <iostream>
+
+#include "campaign_verb.h"
+#include "host/config/template_files.h"
+#include "host/storage/files.h"
+#include "host/tools/plan.h"
+#include "verbs.h"
+
+namespace nonio::app {
+
+std::vector<Argument> sheet_arguments(SheetWish& wish, Common& common) {
+  return {
+      takes(Argument::Takes::file,
+            {"--pdf", &wish.file, "The same as a PDF to take to the machine"}),
+      one_of({"de", "en", "it"}, {"--language", &wish.language, "Language of the PDF"}),
+      within(0, 100,
+             {"--stops", &wish.stops, "So many plans with all their stops in the PDF (default 1)"}),
+      templates_argument(common)};
+}
+
+Machine rectangle(double x, double y) {
+  Machine machine;
+  machine.axes = {Axis{.name = "X", .travel = std::pair(0.0, x)},
+                  Axis{.name = "Y", .travel = std::pair(0.0, y)}};
+  return machine;
+}
+
+int write_sheet(const char* verb, const SheetWish& wish, const Machine& machine,
+                const PointTable& rows, std::map<std::string, std::string> options,
+                const Common& common) {
+  namespace fs = std::filesystem;
+  host::loader::Plugins plugins;
+  plugins.load(common.plugin_folders());
+  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  std::string digest;
+  const auto templates = host::config::read_templates(common.template_folders(), digest);
+  if (!templates) return complain(verb, text_of(templates.error()));
+  options["language"] = wish.language;
+  options["stops"] = std::to_string(wish.stops);
+  auto files =
+      host::tools::write_programs(plugins, "plan-sheet", machine, rows, options, *templates);
+  if (!files) {
+    for (const Error& e : files.error()) complain(verb, text_of(e));
+    return exit_usage;
+  }
+  const fs::path to = fs::absolute(wish.file);
+  for (Artifact& a : *files) a.name = to.filename().string();
+  if (auto done = host::storage::publish(to.parent_path(), *files); !done)
+    return complain(verb, done.error().message, exit_failed);
+  if (!common.quiet) std::cerr << wish.file << "\n";
+  return exit_done;
+}
+
+}  // namespace nonio::app

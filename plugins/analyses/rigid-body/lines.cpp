@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace nonio::rigid_body {
+
+using math::BudgetLine;
+using math::Corner;
+using math::RigidLine;
+
+namespace {
+
+bool linear(const Campaign& c, const std::string& name) {
+  const Axis* axis = c.machine.axis(name);
+  return axis != nullptr && !axis->rotary && coordinate_of(name) < 3;
+}
+
+RigidLine::Kind kind_of(const Measurement& m) {
+  if (m.kind == "straightness") return RigidLine::Kind::across;
+  if (m.kind == "angle") return RigidLine::Kind::angle;
+  return m.kind == "step-diagonal" ? RigidLine::Kind::mirror : RigidLine::Kind::along;
+}
+
+BudgetLine::Kind budget_kind(RigidLine::Kind kind) {
+  if (kind == RigidLine::Kind::across) return BudgetLine::Kind::lateral;
+  return kind == RigidLine::Kind::angle ? BudgetLine::Kind::angle : BudgetLine::Kind::length;
+}
+
+/// Where a reading was; a coordinate that nobody said is NaN.
+Corner place_of(const Observations& o, const Measurement& m, std::size_t row) {
+  Corner at;
+  at.fill(std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [axis, position] : m.at)
+    if (const std::size_t k = coordinate_of(axis); k < 3) at[k] = position;
+  for (const auto& column : o.axes)
+    if (const std::size_t k = coordinate_of(column.axis); k < 3 && !column.rotary)
+      at[k] = column.position[row];
+  return at;
+}
+
+/// +1 or -1 along the line: by the first axis that says from where it came.
+int way_of(const Observations& o, std::size_t row) {
+  for (const auto& column : o.axes)
+    if (column.approach.size() == o.size() && column.approach[row] != 0)
+      return column.approach[row] > 0 ? 1 : -1;
+  return 1;
+}
+
+struct Reader {
+  const AnalysisInput& in;
+  Lines& out;
+
+  std::size_t group_of(const Measurement& m) {
+    const auto found = std::find(out.groups.begin(), out.groups.end(), m.kind);
+    if (found != out.groups.end()) return static_cast<std::size_t>(found - out.groups.begin());
+    out.groups.push_back(m.kind);
+    out.angular.push_back(m.kind == "angle");
+    return out.groups.size() - 1;
+  }
+
+  void take(const Measurement& m, const Observations& o) {
+    const std::vector<double> times = math::reading_times(o);
+    std::vector<std::size_t> order(o.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return times[a] < times[b]; });
+    const std::size_t group = group_of(m), measurement = out.used.size();
+    for (std::uint32_t l = 0; l < o.lines.size(); ++l) {
+      RigidLine line;
+      line.kind = kind_of(m);
+      line.group = group;
+      if (line.kind == RigidLine::Kind::angle)
+        line.of = coordinate_of(m.axis), line.about = coordinate_of(m.lateral);
+      for (const std::size_t row : order)
+        if (o.line_of(row) == l)
+          line.readings.push_back({place_of(o, m, row),
+                                   line.kind == RigidLine::Kind::angle ? Corner{} : o.sense_of(row),
+                                   way_of(o, row), o.deviation[row]});
+      if (line.readings.empty()) continue;
+      out.budget.push_back(budget_line(line, measurement));
+      out.lines.push_back(std::move(line));
+    }
+    out.used.push_back(m.id);
+    out.tables.push_back(&o);
+  }
+
+  BudgetLine budget_line(const RigidLine& line, std::size_t measurement) {
+    BudgetLine b;
+    b.kind = budget_kind(line.kind);
+    b.group = measurement;
+    const auto along = [&](const math::RigidReading& r) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (std::isfinite(r.at[k])) sum += r.at[k] * r.sense[k];
+      return sum;
+    };
+    double zero = std::numeric_limits<double>::infinity();
+    for (const auto& r : line.readings) zero = std::min(zero, along(r));
+    for (const auto& r : line.readings) b.length.push_back(along(r) - zero);
+    std::vector<std::string> axes;
+    std::vector<double> direction;
+    for (const Axis& axis : in.campaign.machine.axes)
+      if (const std::size_t k = coordinate_of(axis.name); !axis.rotary && k < 3)
+        if (const double c = line.readings.front().sense[k]; std::fabs(c) > 1e-9)
+          axes.push_back(axis.name), direction.push_back(c);
+    if (b.kind == BudgetLine::Kind::length) put_expansion(b, in.campaign, axes, direction);
+    return b;
+  }
+};
+
+void find_box(Lines& out) {
+  out.low.fill(std::numeric_limits<double>::infinity());
+  out.high.fill(-std::numeric_limits<double>::infinity());
+  for (const RigidLine& line : out.lines)
+    for (const auto& r : line.readings)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (std::isfinite(r.at[k])) {
+          out.low[k] = std::min(out.low[k], r.at[k]);
+          out.high[k] = std::max(out.high[k], r.at[k]);
+        }
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!(out.low[k] <= out.high[k])) out.low[k] = out.high[k] = 0.0;
+}
+
+/// Places that nobody said are in the middle of the volume.
+void centre(Lines& out, std::vector<std::size_t> measurement_of_line) {
+  for (std::size_t l = 0; l < out.lines.size(); ++l) {
+    bool any = false;
+    for (auto& r : out.lines[l].readings)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (!std::isfinite(r.at[k])) {
+          r.at[k] = (out.low[k] + out.high[k]) / 2.0;
+          any |= out.high[k] > out.low[k] && out.lines[l].kind != RigidLine::Kind::angle;
+        }
+    const std::string& id = out.used[measurement_of_line[l]];
+    if (any && std::find(out.centred.begin(), out.centred.end(), id) == out.centred.end())
+      out.centred.push_back(id);
+  }
+}
+
+}  // namespace
+
+bool is_taken(const Campaign& c, const Measurement& m) {
+  if (m.kind == "diagonal" || m.kind == "step-diagonal")
+    return std::all_of(m.from.begin(), m.from.end(),
+                       [&](const auto& end) { return linear(c, end.first); });
+  if (m.kind == "axis") return linear(c, m.axis);
+  if (m.kind == "straightness")
+    return linear(c, m.axis) && coordinate_of(m.lateral) < 3 && m.reversal_of.empty();
+  return m.kind == "angle" && linear(c, m.axis) && coordinate_of(m.lateral) < 3 && !m.foot;
+}
+
+Lines lines_of(const AnalysisInput& in) {
+  Lines out;
+  Reader reader{in, out};
+  std::vector<std::size_t> measurement_of_line;
+  for (std::size_t i = 0; in.all != nullptr && i < in.all->size(); ++i) {
+    const Measurement& m = in.campaign.measurements[i];
+    if (!state_of(m).empty() && state_of(m) != state_of(in.measurement)) continue;
+    if ((*in.all)[i].size() == 0) continue;
+    if (!is_taken(in.campaign, m)) {
+      out.left_out.push_back(m.id);
+      continue;
+    }
+    reader.take(m, (*in.all)[i]);
+    measurement_of_line.resize(out.lines.size(), out.used.size() - 1);
+  }
+  find_box(out);
+  centre(out, std::move(measurement_of_line));
+  return out;
+}
+
+}  // namespace nonio::rigid_body

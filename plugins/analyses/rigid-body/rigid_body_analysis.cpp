@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The 21 errors of three linear axes together, as far as the readings of a campaign tell them, and
+// the error of the tool point in the whole volume.
+#include <algorithm>
+#include <cmath>
+
+#include "lines.h"
+#include "nonio/sdk/format.h"
+
+using namespace nonio;
+using namespace nonio::math;
+using namespace nonio::rigid_body;
+
+namespace {
+
+constexpr double enough = 5.0;         // standard uncertainties of a largest error
+constexpr double enough_dof = 3.0;     // of a scatter
+constexpr std::size_t most_shown = 6;  // combinations in a sentence
+
+std::string listed_names(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+/// "ECX.1 - 0.889 EYX.2"
+std::string text_of(const Combination& c) {
+  std::string out;
+  for (const auto& [name, size] : c) {
+    const std::string number = short_text(std::fabs(size));
+    out += out.empty() ? (size < 0.0 ? "-" : "") : size < 0.0 ? " - " : " + ";
+    out += (number == "1" ? "" : number + " ") + name;
+  }
+  return out;
+}
+
+Finding finding(const char* id, bool attention, std::vector<Number> evidence,
+                std::vector<std::pair<std::string, std::string>> texts) {
+  return {
+      .id = id, .attention = attention, .evidence = std::move(evidence), .texts = std::move(texts)};
+}
+
+Number count(const char* name, std::size_t n) {
+  return {name, static_cast<double>(n), Quantity::count};
+}
+
+/// What the analysis goes through.
+struct Work {
+  const AnalysisInput& in;
+  Lines lines;
+  ReadingModel model;
+  RigidSolution s;
+  Evaluation out;
+
+  void say(Finding f) { out.findings.push_back(std::move(f)); }
+};
+
+/// The largest scatter of lengths, which the budget prints.
+std::size_t printed_group(const Work& w) {
+  std::size_t best = 0;
+  for (std::size_t g = 0; g < w.s.scatter.size(); ++g)
+    if (!w.lines.angular[g] && (w.lines.angular[best] || w.s.scatter[g] > w.s.scatter[best]))
+      best = g;
+  return best;
+}
+
+void say_separation(Work& w) {
+  const RigidSolution& s = w.s;
+  if (!s.combinations.empty()) {
+    std::string shown;
+    for (std::size_t i = 0; i < std::min(s.combinations.size(), most_shown); ++i)
+      shown += (shown.empty() ? "" : "; ") + text_of(s.combinations[i]);
+    if (s.combinations.size() > most_shown) shown += "; ...";
+    w.say(
+        finding("rigid-body.not-separable", true,
+                {count("combinations", s.combinations.size()),
+                 count("unknowns", s.unknowns),
+                 count("rank", s.rank),
+                 {"open", s.rank < s.singular.size() ? s.singular[s.rank] : 0.0, Quantity::number},
+                 {"told", s.rank > 0 ? s.singular[s.rank - 1] : 0.0, Quantity::number}},
+                {{"which", shown}, {"withheld", listed_names(s.withheld)}}));
+  }
+  if (!s.unseen.empty())
+    w.say(finding("rigid-body.unseen", false, {}, {{"errors", listed_names(s.unseen)}}));
+  if (!s.map.known()) w.say(finding("rigid-body.no-map", true, {}, {}));
+}
+
+void put_notes(Work& w) {
+  const RigidSolution& s = w.s;
+  w.out.notes.push_back(
+      {"rigid-body.fit",
+       {count("readings", s.readings),
+        count("unknowns", s.unknowns),
+        count("rank", s.rank),
+        count("degree", s.degree),
+        {"told", s.rank > 0 ? s.singular[s.rank - 1] : 0.0, Quantity::number}},
+       {{"weakest", text_of(s.weakest)}, {"measurements", listed_names(w.lines.used)}}});
+  const auto asked = w.in.options.texts("errors");
+  if (!asked.empty()) {
+    std::vector<std::string> absent;
+    for (const std::string& name : rigid_errors())
+      if (std::find(asked.begin(), asked.end(), name) == asked.end()) absent.push_back(name);
+    w.out.notes.push_back({"rigid-body.taken-as-absent", {}, {{"errors", listed_names(absent)}}});
+  }
+  if (!w.lines.centred.empty())
+    w.out.notes.push_back(
+        {"rigid-body.centred", {}, {{"measurements", listed_names(w.lines.centred)}}});
+  if (!w.lines.left_out.empty())
+    w.out.notes.push_back(
+        {"rigid-body.left-out", {}, {{"measurements", listed_names(w.lines.left_out)}}});
+}
+
+bool angular(const std::string& error) {
+  return error[0] == 'E' && error[1] >= 'A' && error[1] <= 'C';
+}
+
+void put_map(Work& w, BudgetOf& budget) {
+  const VolumeMap& map = w.s.map;
+  if (!map.known()) return;
+  if (map.size > enough * budget.expand(map.u_size, map.shares_size).u)
+    w.out.values.push_back(
+        budget.value("V_max", map.size, Quantity::deviation, map.u_size, map.shares_size));
+  else
+    w.say(finding("rigid-body.no-largest", false, {{"size", map.size, Quantity::deviation}}, {}));
+  static constexpr std::array<const char*, 3> places{"X", "Y", "Z"}, errors{"e_x", "e_y", "e_z"},
+      uncertainties{"U_x", "U_y", "U_z"};
+  PointTable& rows = w.out.rows;
+  for (std::size_t k = 0; k < 3; ++k) {
+    rows.columns.push_back({places[k], Quantity::length, {}});
+    for (const VolumeNode& n : map.nodes) rows.columns.back().values.push_back(n.at[k]);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    rows.columns.push_back({errors[k], Quantity::deviation, {}});
+    for (const VolumeNode& n : map.nodes) rows.columns.back().values.push_back(n.error[k]);
+  }
+  for (std::size_t k = 0; k < 3 && w.model.missing.empty(); ++k) {
+    rows.columns.push_back({uncertainties[k], Quantity::deviation, {}});
+    for (const VolumeNode& n : map.nodes)
+      rows.columns.back().values.push_back(budget.expand(n.u[k], n.shares[k]).U.value_or(0.0));
+  }
+}
+
+void put_results(Work& w) {
+  const std::size_t group = printed_group(w);
+  const bool known = w.s.dof[group] >= enough_dof;
+  if (!known)
+    w.say(finding(
+        "rigid-body.no-uncertainty", true,
+        {{"dof", w.s.dof[group], Quantity::number}, {"wanted", enough_dof, Quantity::number}}, {}));
+  BudgetOf budget(w.model, w.s.scatter[group], w.s.dof[group], Quantity::deviation);
+  for (const auto& [name, v] : w.s.squareness)
+    if (known)
+      w.out.values.push_back(budget.value(name, v.value, Quantity::small_angle, v.u, v.shares));
+    else
+      w.out.values.push_back({name, v.value, Quantity::small_angle});
+  for (const RigidCurve& c : w.s.curves) {
+    Series series{c.name,
+                  std::string(1, "XYZ"[c.axis]),
+                  Quantity::length,
+                  angular(c.name) ? Quantity::small_angle : Quantity::deviation,
+                  c.position,
+                  c.value,
+                  {}};
+    if (known) budget.put(series, c.u, c.shares);
+    w.out.series.push_back(std::move(series));
+  }
+  if (!known) return;
+  put_map(w, budget);
+  if (w.model.missing.empty()) w.out.budget = budget.budget();
+}
+
+/// The names of the axes stand in the series; X1 of a gantry counts as X.
+Expected<Evaluation> analyse(const AnalysisInput& in) {
+  Work w{in, lines_of(in), {}, {}, {}};
+  w.out.uses = w.lines.used;
+  std::erase(w.out.uses, in.measurement.id);
+  RigidWish wish{w.lines.low, w.lines.high, in.options.texts("errors"),
+                 static_cast<std::size_t>(in.options.integer("degree")),
+                 static_cast<std::size_t>(in.options.integer("parts"))};
+  const HeldLimits limits = limits_held(in.campaign, w.lines.tables);
+  w.model = reading_model(in.campaign, limits.environment, w.lines.budget);
+  auto solution = solve_rigid_body(w.lines.lines, wish, &w.model);
+  if (!solution) return fail(solution.error());
+  w.s = std::move(*solution);
+  say_separation(w);
+  w.out.findings.insert(w.out.findings.end(), limits.findings.begin(), limits.findings.end());
+  if (!w.model.missing.empty()) w.say(missing_finding(w.model.missing));
+  put_results(w);
+  put_notes(w);
+  for (Finding& f : w.out.findings) f.measurement = in.measurement.id;
+  for (Remark& r : w.out.notes) r.measurement = in.measurement.id;
+  return std::move(w.out);
+}
+
+/// The first measurement of a state; of every state where nobody names one.
+bool applies(const Campaign& c, const Measurement& of) {
+  if (!is_taken(c, of)) return false;
+  const bool states = std::any_of(c.measurements.begin(), c.measurements.end(), [&](const auto& m) {
+    return is_taken(c, m) && !state_of(m).empty();
+  });
+  if (states && state_of(of).empty()) return false;
+  for (const Measurement& m : c.measurements)
+    if (is_taken(c, m) && state_of(m) == state_of(of)) return m.id == of.id;
+  return false;
+}
+
+std::vector<Option> options() {
+  return {{"errors", std::vector<std::string>{}, "",
+           "Which of the 21 errors (EXX, EYX, C0Y, EAX, ...); empty: all of the axes that move."},
+          {"degree",
+           std::int64_t{0},
+           "",
+           "Of the polynomials of each error; 0: by Schwarz's criterion, 2 to 8.",
+           {},
+           0.0,
+           12.0},
+          {"parts",
+           std::int64_t{4},
+           "",
+           "Of each axis, between the nodes of the map of the volume.",
+           {},
+           1.0,
+           10.0}};
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  Analysis a;
+  a.info = {"rigid-body", "1.0.0",
+            "The 21 errors of three axes from any mixture of readings, and the volume's map.",
+            options(), true};
+  a.applies = applies;
+  a.analyse = analyse;
+  registry.add(std::move(a));
+}
