@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "circle.h"
 #include "expression.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/iso230_2.h"
@@ -222,6 +223,12 @@ Case begin_case(const std::vector<std::string>& operation) {
 }
 
 std::string give(Case& c, const std::vector<std::string>& words) {
+  if (c.analysis == "circle" && words.size() == 3) {
+    const auto number = Expression::value(words[2]);
+    if (!number) return "expected a number, found " + words[2];
+    c.numbers[words[1]] = *number;
+    return "";
+  }
   if (words.size() < 3) return "expected: given TARGET DIRECTION x x x, or: given KEY VALUE";
   if (const auto target = Expression::value(words[1])) return give_readings(c, words, *target);
   const auto value = Expression::value(words[2]);
@@ -230,6 +237,7 @@ std::string give(Case& c, const std::vector<std::string>& words) {
 }
 
 Outcome evaluate(const Case& c) {
+  if (c.analysis == "circle") return evaluate_circle(c);
   Outcome out;
   const AxisTest all = AxisTest::arrange(c.observations);
   const bool leave_out = c.options.count("leave-out") > 0;

@@ -272,6 +272,26 @@ void read_test(TableReader& reader, Measurement& m) {
   m.compensation = reader.text("compensation");
 }
 
+/// A circle goes from its centre (`from`) to its point at 0 deg (`to`): on the first axis of its
+/// plane.
+void read_circle(TableReader& reader, Measurement& m) {
+  const std::string plane = reader.text("plane");
+  const auto radius = reader.number("radius_mm", mm);
+  NumberTable centre;
+  for (const auto& [axis, position] : reader.number_table("centre", mm)) centre[axis] = position;
+  if (plane.size() != 2 || !radius || !reader.raw().contains("centre")) return;
+  for (const char letter : plane) {
+    const auto at = centre.find(std::string_view(&letter, 1));
+    if (at == centre.end())
+      return reader.error("centre", "expected the axes " + plane.substr(0, 1) + " and " +
+                                        plane.substr(1) + ", found no " + letter);
+    m.from[at->first] = m.to[at->first] = at->second;
+  }
+  m.to[plane.substr(0, 1)] += *radius;
+  for (const auto& [axis, position] : centre)
+    if (!m.from.contains(axis)) m.at[axis] = position;
+}
+
 Measurement read_measurement(TableReader& reader) {
   Measurement m;
   m.id = reader.text("id");
@@ -308,6 +328,7 @@ Measurement read_measurement(TableReader& reader) {
   for (const auto& [axis, position] : reader.number_table("from", mm)) m.from[axis] = position;
   for (const auto& [axis, position] : reader.number_table("to", mm)) m.to[axis] = position;
   for (const auto& [axis, position] : reader.number_table("at", mm)) m.at[axis] = position;
+  if (m.kind == "circle") read_circle(reader, m);
   if (m.at.contains(m.axis))
     reader.error("at", "expected the axes that stood still, found " + m.axis + ", which moves");
   read_test(reader, m);

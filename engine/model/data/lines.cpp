@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <set>
 
@@ -63,6 +64,30 @@ Vector point_of(const Observations& o, std::size_t i) {
   return p;
 }
 
+/// Of a circle: the way round from its point at 0 deg, counter-clockwise.
+void append_angles(Part& part, const Observations& o, const Measurement& m) {
+  double radius = 0.0;
+  std::size_t u = 0, v = 1;
+  for (const auto& [axis, from] : m.from)
+    if (const auto to = m.to.find(axis); to != m.to.end() && to->second != from)
+      radius = to->second - from, u = coordinate_of(axis);
+    else
+      v = coordinate_of(axis);
+  const auto approach = [&](std::size_t k, std::size_t i) {
+    for (const auto& axis : o.axes)
+      if (coordinate_of(axis.axis) == k && i < axis.approach.size())
+        return static_cast<double>(axis.approach[i]);
+    return 0.0;
+  };
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    const Vector& n = o.sense_of(i);
+    const double angle = std::atan2(n[v], n[u]);
+    part.along.push_back(radius * (angle < 0.0 ? angle + 2.0 * std::numbers::pi : angle));
+    part.way.push_back(n[u] * approach(v, i) - n[v] * approach(u, i) > 0.0 ? std::int8_t{1}
+                                                                            : std::int8_t{-1});
+  }
+}
+
 /// Place of each reading along its line, and from which side it was reached: by the one axis that
 /// moves, or along the direction of sensing.
 void append_places(Part& part, const Observations& o, const Measurement& m) {
@@ -74,6 +99,7 @@ void append_places(Part& part, const Observations& o, const Measurement& m) {
     if (const std::size_t k = coordinate_of(axis); k < 3) from[k] = to[k] = at;
   for (const auto& [axis, at] : m.to)
     if (const std::size_t k = coordinate_of(axis); k < 3) to[k] = at;
+  if (m.kind == "circle") return append_angles(part, o, m);
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (moved.size() == 1) {
       part.along.push_back(moved.front()->position[i]);

@@ -30,8 +30,14 @@ std::vector<std::string> lines_that(const Observations& o, bool (*is)(const Spac
   std::vector<std::string> names;
   if (o.angular || of_ball_centres(o)) return names;
   const SpaceReadings s = space_of(o);
-  for (std::size_t line = 0; line < o.lines.size(); ++line)
-    if (is(space_line(o, s, line))) names.push_back(o.lines[line].name);
+  for (std::size_t line = 0; line < o.lines.size(); ++line) {
+    const SpaceLine way = space_line(o, s, line);
+    // A circle's readings are sensed all round.
+    const bool one_sense = std::all_of(way.rows.begin(), way.rows.end(), [&](std::size_t i) {
+      return SpaceLine::dot(o.sense_of(i), way.sense) > 1.0 - 1e-9;
+    });
+    if (one_sense && is(way)) names.push_back(o.lines[line].name);
+  }
   return names;
 }
 

@@ -8,14 +8,15 @@ namespace nonio::host::config::declared {
 
 inline constexpr Words axis_runs[] = {"axis"};
 inline constexpr Choice measurement_kinds[] = {
-    {"axis"},          {"straightness"}, {"angle"},        {"diagonal"},
-    {"step-diagonal"}, {"ball-centres"}, {"observations"}, {"ballbar"}};
+    {"axis"},         {"straightness"}, {"angle"},  {"diagonal"}, {"step-diagonal"},
+    {"ball-centres"}, {"observations"}, {"circle"}, {"ballbar"}};
 inline constexpr Choice on_or_off[] = {{"on"}, {"off"}};
 inline constexpr Choice adjustments[] = {{"before"}, {"after"}};
 inline constexpr Choice listed_orders[] = {{"pendulum"}, {"as-listed"}, {"unknown"}};
+inline constexpr Choice planes[] = {{"XY"}, {"YZ"}, {"ZX"}};
 inline constexpr Choice linear_axes[] = {{"X"}, {"Y"}, {"Z"}};
 inline constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres"};
-inline constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"};
+inline constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"}, circle[] = {"circle"};
 inline constexpr Words diagonals[] = {"diagonal", "step-diagonal"};
 inline constexpr Words an_end = "the axis positions of that end, { X = 0, Y = 0 }";
 inline constexpr Key measurement_keys[] = {
@@ -126,6 +127,31 @@ inline constexpr Key measurement_keys[] = {
      .unit = "mm",
      .needed = {"kind", diagonals},
      .missing = an_end},
+    {.name = "plane",
+     .holds = text,
+     .help = "Plane of a circle. Angles and counter-clockwise motion go from its first axis to its "
+             "second: XY is G17, ZX is G18, YZ is G19.",
+     .only = {"kind", circle},
+     .needed = {"kind", circle},
+     .missing = "the plane of the circle, \"XY\"",
+     .choices = planes},
+    {.name = "radius_mm",
+     .holds = number,
+     .help = "Commanded radius of a circle.",
+     .unit = "mm",
+     .only = {"kind", circle},
+     .needed = {"kind", circle},
+     .wanted = "expected a radius from 1 to 10000 mm",
+     .missing = "the commanded radius of the circle",
+     .least = 1.0,
+     .most = 1e4},
+    {.name = "centre",
+     .holds = number_table,
+     .help = "Commanded axis positions at the centre of a circle, { X = 400, Y = 300 }.",
+     .unit = "mm",
+     .only = {"kind", circle},
+     .needed = {"kind", circle},
+     .missing = "the axis positions at the centre of the circle, { X = 400, Y = 300 }"},
     {.name = "at",
      .holds = number_table,
      .help = "Positions of the axes at rest, { Y = 500 }: the line on which this axis was "

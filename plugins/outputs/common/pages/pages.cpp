@@ -116,6 +116,42 @@ std::string evaluated(const Source& source, const Measured& m) {
 
 }  // namespace
 
+/// "XY": first and second axis of a circle.
+std::string plane_of(const Measurement& m) {
+  std::string first, second;
+  for (const auto& [axis, from] : m.from) {
+    const auto to = m.to.find(axis);
+    (to != m.to.end() && to->second != from ? first : second) += axis;
+  }
+  return first + second;
+}
+
+/// How a circle was run.
+std::string circle_test(const Source& source, const Measured& m) {
+  const Observations& o = m.observations;
+  bool plus = false, minus = false;
+  for (const auto& line : o.lines) {
+    plus |= line.name.find(" +") != std::string::npos;
+    minus |= line.name.find(" -") != std::string::npos;
+  }
+  double radius = 0.0;
+  for (const auto& [axis, to] : m.measurement.to)
+    if (const auto from = m.measurement.from.find(axis); from != m.measurement.from.end())
+      radius = std::max(radius, std::fabs(to - from->second));
+  const auto number = [&](double v) { return localised(short_text(v, 7), source.language()); };
+  std::string directions = plus ? source.words.get("plot.ccw") : "";
+  if (minus) directions += (plus ? ", " : "") + source.words.get("plot.cw");
+  return source.words.get(
+      "measurement.circle_test",
+      {{"count", std::to_string(o.size())},
+       {"radius", number(radius * 1e3)},
+       {"feed", m.measurement.feed
+                    ? source.words.get("measurement.circle_feed",
+                                       {{"feed", number(*m.measurement.feed * 6e4)}})
+                    : ""},
+       {"directions", directions}});
+}
+
 std::string heading_of(const Source& source, const Measured& m) {
   const Wording& words = source.words;
   const Measurement& measurement = m.measurement;
@@ -137,6 +173,10 @@ std::string heading_of(const Source& source, const Measured& m) {
     return words.get("measurement.diagonal", {{"id", measurement.id}});
   if (measurement.kind == "ball-centres")
     return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
+  if (measurement.kind == "circle")
+    return words.get("measurement.of", {{"heading", words.get("measurement.circle",
+                                                              {{"plane", plane_of(measurement)}})},
+                                        {"id", measurement.id}});
   if (measurement.kind == "step-diagonal")
     return words.get("measurement.step_diagonal", {{"id", measurement.id}});
   return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});
@@ -163,6 +203,9 @@ std::string test_of(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
   if (o.axes.empty() || o.size() == 0) return source.words.get("measurement.unread");
   const bool centres = m.measurement.kind == "ball-centres";
+  if (m.measurement.kind == "circle")
+    return circle_test(source, m) + temperatures(source, "measurement.material", o.material) +
+           temperatures(source, "measurement.air", o.air);
   if (!over_one_position(m.measurement))
     return source.words.get(centres ? "measurement.centres" : "measurement.readings",
                             {{"count", std::to_string(centres ? o.size() / 3 : o.size())}}) +

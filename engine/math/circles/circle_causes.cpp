@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The causes behind a circular path. Both directions are read at the same angles: of their mean
+// s = (ccw + cw)/2 and half difference h = (ccw - cw)/2 the causes that do not turn with the
+// direction are in s, those that do in h. Noise of s and h is estimated apart: a form that the model
+// does not have is in s, twice the same, and no noise of h.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "circle_noise.h"
+#include "common/constants.h"
+#include "nonio/math/circle.h"
+
+namespace nonio::math {
+
+namespace {
+
+constexpr double bin_width = full_turn / 360.0;
+constexpr int bins_of_turn = 360;
+constexpr std::size_t at_least = 24;   // bins, and twice the causes
+constexpr double singular = 1e-10;     // least part of a column that is its own, squared
+constexpr double quarter = std::numbers::pi / 2.0;
+
+std::size_t index_of(Cause c) { return static_cast<std::size_t>(c); }
+double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
+
+double within_turn(double t) { return t - full_turn * std::floor(t / full_turn); }
+
+/// How far from the nearest reversal of an axis, rad.
+double from_reversal(double t) { return std::fabs(t - quarter * std::round(t / quarter)); }
+
+/// Means of one degree, of both directions.
+struct Bins {
+  struct Bin {
+    double n = 0.0, deviation = 0.0, angle = 0.0;
+    std::array<double, cause_count> column{};
+  };
+  std::map<int, std::array<Bin, 2>> of;  ///< 0: counter-clockwise
+
+  Bins(std::span<const CircleReading> readings, const CircleModel& model) {
+    for (const CircleReading& r : readings) {
+      if (from_reversal(r.angle) < model.leave_out) continue;
+      const double t = within_turn(r.angle);
+      const int place = static_cast<int>(std::floor(t / bin_width + 1e-6)) % bins_of_turn;
+      Bin& bin = of[place][r.direction > 0 ? 0 : 1];
+      bin.n += 1.0;
+      bin.deviation += r.deviation, bin.angle += t;
+      for (std::size_t c = 0; c < cause_count; ++c)
+        if (model.wanted[c])
+          bin.column[c] += cause_at(static_cast<Cause>(c), model, t, r.direction);
+    }
+    for (auto& entry : of)
+      for (Bin& bin : entry.second) {
+        if (bin.n == 0.0) continue;
+        bin.deviation /= bin.n, bin.angle /= bin.n;
+        for (double& x : bin.column) x /= bin.n;
+      }
+  }
+};
+
+/// Rows of one kind of noise: the mean of both directions, half their difference, or one direction.
+struct Block {
+  std::vector<int> place;
+  Eigen::MatrixXd X;
+  Eigen::VectorXd y;
+  PathNoise noise;
+  double variance = 1.0;
+
+  Block(std::size_t rows, std::size_t columns)
+      : X(at(rows), at(columns)), y(at(rows)) {}
+};
+
+class Fit {
+ public:
+  Fit(std::span<const CircleReading> readings, const CircleModel& model)
+      : model_(model), bins_(readings, model) {
+    for (std::size_t c = 0; c < cause_count; ++c)
+      if (model.wanted[c]) columns_.push_back(c);
+    std::array<std::size_t, 3> count{};  // only ccw, only cw, both
+    for (const auto& [place, bin] : bins_.of) {
+      const bool plus = bin[0].n > 0.0, minus = bin[1].n > 0.0;
+      ++count[plus && minus ? 2 : plus ? 0 : 1];
+    }
+    both_ = count[2] > 0 && 2 * count[2] >= count[0] + count[1];
+    only_ = count[0] >= count[1] ? 0 : 1;
+  }
+
+  Expected<CauseFit> done() {
+    make_blocks();
+    const std::size_t rows = blocks_.empty() ? 0 : blocks_.front().place.size();
+    if (rows < std::max(at_least, 2 * columns_.size() / blocks_.size()))
+      return fail("expected readings at " +
+                  std::to_string(std::max(at_least, 2 * columns_.size())) +
+                  " degrees of the circle or more, found " + std::to_string(rows));
+    for (Block& block : blocks_) weigh(block);
+    solve();
+    return std::move(out_);
+  }
+
+ private:
+  bool usable(const std::array<Bins::Bin, 2>& bin) const {
+    return both_ ? bin[0].n > 0.0 && bin[1].n > 0.0 : bin[only_].n > 0.0;
+  }
+
+  void make_blocks() {
+    for (const auto& entry : bins_.of)
+      if (usable(entry.second)) places_.push_back(entry.first);
+    if (places_.empty()) return;
+    for (int b = 0; b < (both_ ? 2 : 1); ++b) {
+      Block block(places_.size(), columns_.size());
+      block.place = places_;
+      for (std::size_t i = 0; i < places_.size(); ++i) {
+        const auto& bin = bins_.of.at(places_[i]);
+        const auto mixed = [&](double plus, double minus) {
+          if (!both_) return only_ == 0 ? plus : minus;
+          return b == 0 ? (plus + minus) / 2.0 : (plus - minus) / 2.0;
+        };
+        block.y[at(i)] = mixed(bin[0].deviation, bin[1].deviation);
+        for (std::size_t k = 0; k < columns_.size(); ++k)
+          block.X(at(i), at(k)) = mixed(bin[0].column[columns_[k]], bin[1].column[columns_[k]]);
+      }
+      blocks_.push_back(std::move(block));
+    }
+  }
+
+  void weigh(Block& block) {
+    std::vector<Eigen::Index> here;
+    for (Eigen::Index k = 0; k < block.X.cols(); ++k) {
+      double largest = 0.0;
+      for (const Block& other : blocks_) largest = std::max(largest, other.X.col(k).norm());
+      // What two directions at slightly different angles leave of a column is not its own.
+      if (block.X.col(k).norm() > 0.1 * largest) here.push_back(k);
+    }
+    Eigen::MatrixXd X(block.X.rows(), at(here.size()));
+    for (std::size_t k = 0; k < here.size(); ++k)
+      X.col(at(k)) = block.X.col(here[k]) / block.X.col(here[k]).norm();
+    const Eigen::VectorXd scaled = block.y * 1e6;
+    if (model_.correlated) block.noise = path_noise(X, scaled, block.place);
+    Eigen::MatrixXd white(X.rows(), X.cols() + 1);
+    white << X, block.y;
+    whiten(white, block.place, block.noise);
+    const Eigen::MatrixXd W = white.leftCols(X.cols());
+    const Eigen::VectorXd v = white.col(X.cols());
+    const Eigen::VectorXd beta = W.colPivHouseholderQr().solve(v);
+    const double dof = static_cast<double>(std::max<Eigen::Index>(1, X.rows() - X.cols()));
+    block.variance = std::max((v - W * beta).squaredNorm() / dof, 1e-26);
+    const double n = static_cast<double>(X.rows()) / block.noise.slow() -
+                     static_cast<double>(X.cols()) / std::max(1.0, block.noise.slow());
+    const double effective = std::max(1.0, n);
+    out_.dof = out_.dof > 0.0 ? std::min(out_.dof, effective) : effective;
+  }
+
+  void solve() {
+    Eigen::Index rows = 0;
+    for (const Block& b : blocks_) rows += b.X.rows();
+    const Eigen::Index k = at(columns_.size());
+    Eigen::MatrixXd plain(rows, k), white(rows, k);
+    Eigen::VectorXd y(rows);
+    // The inverse of the whitening, applied to unit vectors, gives the derivative by each mean.
+    std::vector<Eigen::MatrixXd> filters;
+    Eigen::Index row = 0;
+    for (const Block& b : blocks_) {
+      const Eigen::Index n = b.X.rows();
+      Eigen::MatrixXd all(n, k + n);
+      all << b.X, Eigen::MatrixXd::Identity(n, n);
+      whiten(all, b.place, b.noise);
+      const double scale = 1.0 / std::sqrt(b.variance);
+      white.middleRows(row, n) = all.leftCols(k) * scale;
+      plain.middleRows(row, n) = b.X;
+      filters.push_back(all.rightCols(n) * scale);
+      y.segment(row, n) = filters.back() * b.y;
+      row += n;
+    }
+    Eigen::VectorXd norm(k);
+    for (Eigen::Index c = 0; c < k; ++c) {
+      norm[c] = white.col(c).norm();
+      white.col(c) /= norm[c];
+    }
+    const Eigen::MatrixXd C = (white.transpose() * white).ldlt().solve(Eigen::MatrixXd::Identity(k, k));
+    const Eigen::MatrixXd G = C * white.transpose();
+    const Eigen::VectorXd beta = (G * y).cwiseQuotient(norm);
+    put(beta, C, G, norm, filters);
+    residuals(beta);
+  }
+
+  void put(const Eigen::VectorXd& beta, const Eigen::MatrixXd& C, const Eigen::MatrixXd& G,
+           const Eigen::VectorXd& norm, const std::vector<Eigen::MatrixXd>& filters) {
+    out_.covariance_of.assign(cause_count * cause_count, 0.0);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      CauseFit::Value& v = out_.of[columns_[i]];
+      v.inflation = C(at(i), at(i));
+      v.fitted = std::isfinite(v.inflation) && v.inflation > 0.0 && v.inflation < 1.0 / singular;
+      v.value = beta[at(i)];
+      v.u = std::sqrt(std::max(0.0, v.inflation)) / norm[at(i)];
+      v.dof = out_.dof;
+      for (std::size_t j = 0; j < columns_.size(); ++j)
+        out_.covariance_of[columns_[i] * cause_count + columns_[j]] =
+            C(at(i), at(j)) / norm[at(i)] / norm[at(j)];
+      by_bins(v, G.row(at(i)) / norm[at(i)], filters);
+    }
+  }
+
+  /// From derivatives by the rows of the blocks to those by the means of each direction: ccw in the
+  /// order of the travel, then cw.
+  void by_bins(CauseFit::Value& v, const Eigen::RowVectorXd& G,
+               const std::vector<Eigen::MatrixXd>& filters) const {
+    const Eigen::Index n = at(places_.size());
+    Eigen::RowVectorXd first = G.head(n) * filters[0];
+    if (!both_) {
+      if (only_ == 1) first.reverseInPlace();
+      v.by_bin.assign(first.data(), first.data() + n);
+      return;
+    }
+    const Eigen::RowVectorXd second = G.tail(n) * filters[1];
+    const Eigen::RowVectorXd plus = (first + second) / 2.0;
+    Eigen::RowVectorXd minus = (first - second) / 2.0;
+    minus.reverseInPlace();
+    v.by_bin.assign(plus.data(), plus.data() + n);
+    v.by_bin.insert(v.by_bin.end(), minus.data(), minus.data() + n);
+  }
+
+  void residuals(const Eigen::VectorXd& beta) {
+    const auto add = [&](int place, std::size_t which) {
+      const Bins::Bin& bin = bins_.of.at(place)[which];
+      double model = 0.0;
+      for (std::size_t k = 0; k < columns_.size(); ++k)
+        model += beta[at(k)] * bin.column[columns_[k]];
+      out_.bins.push_back({bin.angle, bin.deviation, bin.deviation - model, which == 0 ? 1 : -1});
+    };
+    if (both_ || only_ == 0)
+      for (const int place : places_) add(place, 0);
+    if (both_ || only_ == 1)
+      for (auto place = places_.rbegin(); place != places_.rend(); ++place) add(*place, 1);
+    double squares = 0.0, products = 0.0;
+    for (std::size_t i = 0; i < out_.bins.size(); ++i) {
+      squares += out_.bins[i].residual * out_.bins[i].residual;
+      if (i > 0 && out_.bins[i].direction == out_.bins[i - 1].direction)
+        products += out_.bins[i].residual * out_.bins[i - 1].residual;
+    }
+    const double n = static_cast<double>(out_.bins.size());
+    out_.s = std::sqrt(squares / std::max(1.0, n - static_cast<double>(columns_.size())));
+    out_.correlation = squares > 0.0 ? products / squares : 0.0;
+  }
+
+  const CircleModel& model_;
+  Bins bins_;
+  bool both_ = false;
+  std::size_t only_ = 0;
+  std::vector<std::size_t> columns_;
+  std::vector<int> places_;
+  std::vector<Block> blocks_;
+  CauseFit out_;
+};
+
+}  // namespace
+
+void all_causes(CircleModel& m, bool both_directions) {
+  m.wanted.fill(true);
+  const auto leave = [&](Cause c) { m.wanted[index_of(c)] = false; };
+  if (!both_directions) leave(Cause::zero_change), leave(Cause::servo_mismatch);
+  if (!(m.pitch[0] > 0.0)) leave(Cause::cyclic_u_sin), leave(Cause::cyclic_u_cos);
+  if (!(m.pitch[1] > 0.0)) leave(Cause::cyclic_v_sin), leave(Cause::cyclic_v_cos);
+}
+
+double cause_at(Cause cause, const CircleModel& m, double t, int direction) {
+  const double c = std::cos(t), s = std::sin(t), d = direction;
+  const auto phase = [&](std::size_t k, double along) {
+    return full_turn * (m.centre[k] + m.R * along) / m.pitch[k];
+  };
+  switch (cause) {
+    case Cause::centre_u:
+      return c;
+    case Cause::centre_v:
+      return s;
+    case Cause::radius:
+      return 1.0;
+    case Cause::zero_change:
+      return d;
+    case Cause::scale_mismatch:
+      return m.R / 2.0 * (c * c - s * s);
+    case Cause::squareness:
+      return -m.R * s * c;
+    case Cause::servo_mismatch:
+      return d * s * c;
+    case Cause::reversal_u:
+      return -d / 2.0 * sign_of(s) * c;
+    case Cause::reversal_v:
+      return d / 2.0 * sign_of(c) * s;
+    case Cause::lateral_u:
+      return -d / 2.0 * std::fabs(s);
+    case Cause::lateral_v:
+      return d / 2.0 * std::fabs(c);
+    case Cause::bow_u:
+      return c * c * s;
+    case Cause::bow_v:
+      return s * s * c;
+    case Cause::cyclic_u_sin:
+      return std::sin(phase(0, c)) * c;
+    case Cause::cyclic_u_cos:
+      return std::cos(phase(0, c)) * c;
+    case Cause::cyclic_v_sin:
+      return std::sin(phase(1, s)) * s;
+    case Cause::cyclic_v_cos:
+      return std::cos(phase(1, s)) * s;
+    case Cause::count:
+      break;
+  }
+  return 0.0;
+}
+
+double CauseFit::covariance(Cause a, Cause b) const {
+  return covariance_of.empty() ? 0.0 : covariance_of[index_of(a) * cause_count + index_of(b)];
+}
+
+Expected<CauseFit> fit_causes(std::span<const CircleReading> readings, const CircleModel& model) {
+  return Fit(readings, model).done();
+}
+
+std::vector<Spike> reversal_spikes(std::span<const CircleReading> readings,
+                                   const CircleModel& model, const CauseFit& fit) {
+  constexpr double window = 5.0 * bin_width, before = 0.5 * bin_width;
+  std::vector<Spike> out;
+  for (const int direction : {1, -1})
+    for (int q = 0; q < 4; ++q) {
+      std::map<double, std::pair<double, double>> behind;  // residual, count by the way since
+      for (const CircleReading& r : readings) {
+        if (r.direction != direction) continue;
+        const double off = r.angle - q * quarter,
+                     way = direction * (off - full_turn * std::round(off / full_turn));
+        if (way < -before || way > window) continue;
+        double model_says = 0.0;
+        for (std::size_t c = 0; c < cause_count; ++c)
+          if (fit.of[c].fitted)
+            model_says += fit.of[c].value * cause_at(static_cast<Cause>(c), model, r.angle, direction);
+        auto& [sum, n] = behind[std::round(way / 1e-4) * 1e-4];
+        sum += r.deviation - model_says, n += 1.0;
+      }
+      if (behind.size() < 3) continue;
+      Spike spike{q * quarter, direction, q % 2 == 1, 0.0, 0.0, fit.s};
+      for (const auto& [way, of] : behind)
+        if (std::fabs(of.first / of.second) > std::fabs(spike.height))
+          spike.height = of.first / of.second;
+      double first = INFINITY, last = -INFINITY;
+      for (const auto& [way, of] : behind)
+        if (of.first / of.second * sign_of(spike.height) >= 0.5 * std::fabs(spike.height))
+          first = std::min(first, way), last = std::max(last, way);
+      spike.width = last - first;
+      out.push_back(spike);
+    }
+  return out;
+}
+
+}  // namespace nonio::math

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Circular tests (ISO 230-4): deviations of the path, and its causes.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "causes.h"
+
+namespace nonio {
+namespace {
+
+using circle::CauseValue;
+using circle::Circle;
+using math::Cause;
+using math::CircleReading;
+using math::PathCircle;
+
+constexpr std::size_t fewest = 12;  // readings of a path
+constexpr double per_deg = std::numbers::pi / 180.0;
+// docs/constants.md, A12.
+constexpr double share_for_attention = 0.2;
+
+bool applies(const Campaign&, const Measurement& m) { return m.kind == "circle"; }
+
+/// A path and the value that is taken from it: of several runs the largest counts.
+struct Worst {
+  double value = -INFINITY;
+  std::vector<CircleReading> path;
+  PathCircle circle;
+};
+
+struct Work {
+  const AnalysisInput& in;
+  Circle circle;
+  bool minimum_zone, calibrated;
+  math::CircleModel model;
+  math::CauseFit fit;
+  math::ReadingModel readings;
+  std::optional<math::BudgetOf> budget;
+  Evaluation out;
+
+  PathCircle path(const std::vector<CircleReading>& p) const {
+    return minimum_zone ? math::minimum_zone(p, circle.R) : math::least_squares_circle(p, circle.R);
+  }
+  std::set<std::uint32_t> runs() const {
+    std::set<std::uint32_t> out_runs;
+    for (const CircleReading& r : circle.readings) out_runs.insert(r.run);
+    return out_runs;
+  }
+};
+
+/// Errors of the instrument: none of them is a reading's own. An offset is in the radius; a gain, of
+/// U_fixed at the largest deviation, is in everything by its share.
+void device_errors(Work& w) {
+  double largest = 0.0, mean = 0.0;
+  for (const auto& bin : w.fit.bins)
+    mean += bin.deviation / static_cast<double>(w.fit.bins.size());
+  for (const auto& bin : w.fit.bins) largest = std::max(largest, std::fabs(bin.deviation - mean));
+  for (auto& input : w.readings.inputs) {
+    if (input.is.id != "device-fixed") continue;
+    const double u = input.is.u;
+    std::vector<double> offset(w.fit.bins.size(), u), gain;
+    for (const auto& bin : w.fit.bins)
+      gain.push_back(largest > 0.0 ? u * (bin.deviation - mean) / largest : 0.0);
+    input.is.correlation = Correlation::device;
+    input.patterns = {std::move(offset), std::move(gain)};
+  }
+}
+
+void begin_budget(Work& w) {
+  std::vector<math::BudgetLine> lines;
+  for (const int direction : {1, -1}) {
+    math::BudgetLine line;
+    // What all radii have in common is in the result only where the length is known.
+    line.kind = w.calibrated ? math::BudgetLine::Kind::length : math::BudgetLine::Kind::lateral;
+    for (const auto& bin : w.fit.bins)
+      if (bin.direction == direction) line.length.push_back(w.circle.R);
+    const std::array<double, 2> half{std::numbers::sqrt2 / 2.0, std::numbers::sqrt2 / 2.0};
+    math::put_expansion(line, w.in.campaign, w.circle.axis, half);
+    if (!line.length.empty()) lines.push_back(std::move(line));
+  }
+  Environment environment = w.in.campaign.environment;
+  const Observations* const all[] = {&w.in.observations};
+  math::HeldLimits held = math::limits_held(w.in.campaign, all);
+  w.readings = math::reading_model(w.in.campaign, held.environment, std::move(lines));
+  device_errors(w);
+  for (Finding& f : held.findings) w.out.findings.push_back(std::move(f));
+  if (!w.readings.missing.empty())
+    w.out.findings.push_back(math::missing_finding(w.readings.missing));
+  w.budget.emplace(w.readings, w.fit.s, w.fit.dof, Quantity::deviation);
+}
+
+/// Derivative of a radial distance about the least-squares centre by the means of the fit.
+std::vector<double> by_bins(const Work& w, const std::vector<CircleReading>& path, std::size_t outer,
+                            std::optional<std::size_t> inner) {
+  std::vector<double> row(w.fit.bins.size(), 0.0);
+  bool plus = false, minus = false;
+  for (const CircleReading& r : path) (r.direction > 0 ? plus : minus) = true;
+  double n = 0.0;
+  for (const auto& bin : w.fit.bins) n += (bin.direction > 0 ? plus : minus) ? 1.0 : 0.0;
+  const auto add = [&](std::size_t i, double sign) {
+    const CircleReading& r = path[i];
+    std::size_t nearest = 0;
+    double distance = INFINITY;
+    for (std::size_t b = 0; b < w.fit.bins.size(); ++b) {
+      const auto& bin = w.fit.bins[b];
+      const double off = std::fabs(std::remainder(bin.angle - r.angle, 2.0 * std::numbers::pi));
+      if (bin.direction == r.direction && off < distance) nearest = b, distance = off;
+      if (bin.direction > 0 ? plus : minus) row[b] -= sign * 2.0 / n * std::cos(bin.angle - r.angle);
+    }
+    row[nearest] += sign;
+  };
+  add(outer, 1.0);
+  if (inner) add(*inner, -1.0);
+  return row;
+}
+
+void add(Work& w, std::string name, double v, Quantity q, double u, const std::vector<double>& by) {
+  w.out.values.push_back(w.budget->value(std::move(name), v, q, u, w.readings.shares(by)));
+}
+
+/// G of each direction and of both, H: of several runs the largest.
+void path_values(Work& w) {
+  for (const auto& [name, direction] : {std::pair{"G_ccw", 1}, {"G_cw", -1}, {"G_b", 0}}) {
+    if (direction == 0 && !w.circle.both()) continue;
+    Worst worst;
+    for (const std::uint32_t run : w.runs()) {
+      std::vector<CircleReading> path = w.circle.of(direction, run);
+      if (path.size() < fewest) continue;
+      const PathCircle c = w.path(path);
+      if (c.width() > worst.value) worst = {c.width(), std::move(path), c};
+    }
+    if (worst.path.empty()) continue;
+    add(w, name, worst.value, Quantity::deviation, std::numbers::sqrt2 * w.fit.s,
+        by_bins(w, worst.path, worst.circle.outermost, worst.circle.innermost));
+  }
+  std::optional<math::Hysteresis> H;
+  for (const std::uint32_t run : w.runs()) {
+    const auto path = w.circle.of(0, run);
+    if (path.size() < 2 * fewest) continue;
+    const auto h = math::circular_hysteresis(path, w.circle.R, w.path(path).centre, w.circle.step);
+    if (h && (!H || h->H > H->H)) H = h;
+  }
+  if (!H) return;
+  const std::vector<CircleReading> pair{{H->angle, 0.0, 1, 1}, {H->angle, 0.0, -1, 1}};
+  add(w, "H", H->H, Quantity::deviation, std::numbers::sqrt2 * w.fit.s, by_bins(w, pair, 0, 1));
+}
+
+/// Centres, and what asks for a known length.
+void circle_values(Work& w) {
+  const auto ls = math::least_squares_circle(w.circle.readings, w.circle.R),
+             mz = math::minimum_zone(w.circle.readings, w.circle.R);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto& v = w.fit.of[static_cast<std::size_t>(k == 0 ? Cause::centre_u : Cause::centre_v)];
+    add(w, "centre_" + w.circle.axis[k], ls.centre[k], Quantity::deviation, v.u, v.by_bin);
+  }
+  for (std::size_t k = 0; k < 2; ++k)
+    w.out.values.push_back({"centreMZ_" + w.circle.axis[k], mz.centre[k], Quantity::deviation});
+  if (!w.calibrated) {
+    w.out.findings.push_back({.id = "circle.length-not-calibrated", .attention = false});
+    return;
+  }
+  const auto& radius = w.fit.of[static_cast<std::size_t>(Cause::radius)];
+  if (w.circle.both()) add(w, "D", ls.radius, Quantity::deviation, radius.u, radius.by_bin);
+  const bool commanded = w.in.options.text("F_about") == "commanded";
+  const PathCircle F = math::about(w.circle.readings, w.circle.R,
+                                   commanded ? std::array<double, 2>{} : ls.centre);
+  for (const bool outer : {true, false}) {
+    std::vector<double> by =
+        by_bins(w, w.circle.readings, outer ? F.outermost : F.innermost, std::nullopt);
+    add(w, outer ? "F_max" : "F_min", outer ? F.outer : F.inner, Quantity::deviation, w.fit.s, by);
+  }
+}
+
+void spikes(Work& w, double total) {
+  const auto all = math::reversal_spikes(w.circle.readings, w.model, w.fit);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const math::Spike* worst = nullptr;
+    for (const math::Spike& s : all)
+      if (s.of_v == (k == 1) && (worst == nullptr || std::fabs(s.height) > std::fabs(worst->height)))
+        worst = &s;
+    if (worst == nullptr) continue;
+    add(w, "spike_" + w.circle.axis[k], worst->height, Quantity::deviation, worst->u,
+        std::vector<double>(w.fit.bins.size(), 0.0));
+    // The largest of some ten readings is 2 s of noise: twice that is a spike.
+    if (std::fabs(worst->height) < 4.0 * worst->u) continue;
+    const double alone = std::fabs(worst->height), share = alone / (total + alone);
+    w.out.findings.push_back({.id = "circle.spikes",
+                              .attention = share >= share_for_attention,
+                              .evidence = {{"value", worst->height, Quantity::deviation},
+                                           {"alone", alone, Quantity::deviation},
+                                           {"share", share, Quantity::ratio},
+                                           {"at", worst->at, Quantity::angle},
+                                           {"width", worst->width, Quantity::angle}},
+                              .texts = {{"axis", w.circle.axis[k]}}});
+  }
+}
+
+/// The causes that are more than their uncertainty, the largest share first.
+void causes(Work& w, const circle::Wish& wish) {
+  std::vector<Finding> refused;
+  const auto values = circle::cause_values(w.circle, w.model, w.fit, wish, refused);
+  double total = 0.0;
+  for (const CauseValue& v : values) total += v.alone;
+  std::vector<std::pair<double, Finding>> ranked;
+  for (const CauseValue& v : values) {
+    add(w, v.name, v.value, v.quantity, v.u, v.by_bin);
+    const Value& last = w.out.values.back();
+    const double U = last.U.value_or(last.repeatability.value_or(2.0 * v.u));
+    if (!(std::fabs(v.value) > U) || !(total > 0.0)) continue;
+    const double share = v.alone / total;
+    Finding f{.id = v.finding,
+              .attention = share >= share_for_attention,
+              .evidence = {{"value", v.value, v.quantity},
+                           {"U", U, v.quantity},
+                           {"alone", v.alone, Quantity::deviation},
+                           {"share", share, Quantity::ratio}},
+              .texts = {{"name", v.name}, {"first", w.circle.axis[0]}, {"second", w.circle.axis[1]}}};
+    if (!v.axis.empty()) f.texts.emplace_back("axis", v.axis);
+    ranked.emplace_back(share, std::move(f));
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (auto& [share, f] : ranked) w.out.findings.push_back(std::move(f));
+  spikes(w, total);
+  const auto& change = w.fit.of[static_cast<std::size_t>(Cause::zero_change)];
+  if (change.fitted && std::fabs(change.value) > 3.0 * change.u)
+    w.out.findings.push_back({.id = "circle.zero-changed",
+                              .attention = false,
+                              .evidence = {{"change", 2.0 * change.value, Quantity::deviation},
+                                           {"u", 2.0 * change.u, Quantity::deviation}}});
+  for (Finding& f : refused) w.out.findings.push_back(std::move(f));
+}
+
+/// Means of ten degrees of each direction, as read: what a person can follow by hand.
+void points(Work& w) {
+  constexpr std::size_t sectors = 36;
+  std::array<std::array<double, sectors>, 2> sum{}, n{};
+  for (const CircleReading& r : w.circle.readings) {
+    const auto at = static_cast<std::size_t>(r.angle / per_deg / 10.0) % sectors;
+    sum[r.direction > 0 ? 0 : 1][at] += r.deviation;
+    n[r.direction > 0 ? 0 : 1][at] += 1.0;
+  }
+  PointTable::Column target{"target", Quantity::angle, {}}, ccw{"ccw", Quantity::deviation, {}},
+      cw{"cw", Quantity::deviation, {}};
+  for (std::size_t i = 0; i < sectors; ++i) {
+    target.values.push_back((10.0 * static_cast<double>(i) + 5.0) * per_deg);
+    ccw.values.push_back(n[0][i] > 0.0 ? sum[0][i] / n[0][i] : NAN);
+    cw.values.push_back(n[1][i] > 0.0 ? sum[1][i] / n[1][i] : NAN);
+  }
+  w.out.points.columns = {std::move(target), std::move(ccw), std::move(cw)};
+}
+
+math::CircleModel model_of(const Work& w) {
+  math::CircleModel m;
+  m.R = w.circle.R;
+  m.centre = w.circle.centre;
+  for (std::size_t k = 0; k < 2; ++k)
+    if (const Axis* axis = w.in.campaign.machine.axis(w.circle.axis[k]); axis != nullptr)
+      m.pitch[k] = axis->screw_pitch.value_or(0.0);
+  m.leave_out = w.in.options.number("leave_out_deg", 2.0) * per_deg;
+  math::all_causes(m, w.circle.both());
+  return m;
+}
+
+Expected<Evaluation> analyse(const AnalysisInput& in) {
+  auto circle = circle::circle_of(in.measurement, in.observations);
+  if (!circle) return fail(circle.error());
+  Work w{in, std::move(*circle), in.options.text("centre") != "least-squares",
+         in.options.flag("calibrated_length"), {}, {}, {}, {}, {}};
+  w.model = model_of(w);
+  auto fit = math::fit_causes(w.circle.readings, w.model);
+  if (!fit) {
+    w.out.findings.push_back(
+        {.id = "circle.too-few",
+         .attention = true,
+         .evidence = {{"readings", static_cast<double>(in.observations.size()), Quantity::count}}});
+    return std::move(w.out);
+  }
+  w.fit = std::move(*fit);
+  w.out.notes.push_back({w.minimum_zone ? "method.circle-mz" : "method.circle-ls"});
+  begin_budget(w);
+  path_values(w);
+  circle_values(w);
+  causes(w, {.calibrated_length = w.calibrated, .feed = in.measurement.feed});
+  w.out.values.push_back({"s", w.fit.s, Quantity::deviation});
+  points(w);
+  if (w.readings.missing.empty()) w.out.budget = w.budget->budget();
+  return std::move(w.out);
+}
+
+std::vector<Option> options() {
+  return {{"centre", std::string("minimum-zone"), "",
+           "Centre of the two circles of G, G(b) and H.",
+           {"minimum-zone", "least-squares"}},
+          {"F_about", std::string("least-squares"), "",
+           "Centre of F: the least-squares one, or the commanded one if the bar's ball stood there.",
+           {"least-squares", "commanded"}},
+          {"calibrated_length", false, "",
+           "Whether the readings are deviations from the commanded radius (a calibrated bar): "
+           "needed for D and F."},
+          {"leave_out_deg", 2.0, "deg",
+           "Readings left out of the fit on both sides of each reversal.", {}, 0.0, 20.0}};
+}
+
+}  // namespace
+}  // namespace nonio
+
+NONIO_PLUGIN(registry) {
+  nonio::Analysis a;
+  a.info = {"circle", "1.0.0",
+            "Circular tests (ISO 230-4): deviations of the path, and the causes behind them.",
+            nonio::options()};
+  a.applies = nonio::applies;
+  a.analyse = nonio::analyse;
+  registry.add(std::move(a));
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nonio/math/circle.h"
+#include "nonio/sdk/plugin.h"
+
+namespace nonio::circle {
+
+/// A circle of the manifest and its readings.
+struct Circle {
+  std::array<std::string, 2> axis;  ///< first and second of the plane
+  std::array<double, 2> centre{};   ///< commanded, m
+  double R = 0.0;                   ///< commanded radius, m
+  std::vector<math::CircleReading> readings;
+  bool plus = false, minus = false;  ///< directions
+  double step = 0.0;                 ///< widest usual distance of neighbours, rad
+
+  bool both() const { return plus && minus; }
+  std::vector<math::CircleReading> of(int direction, std::uint32_t run) const;
+};
+
+Expected<Circle> circle_of(const Measurement&, const Observations&);
+
+}  // namespace nonio::circle

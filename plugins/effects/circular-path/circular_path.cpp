@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Circles: lines whose readings are sensed along the radius, at P = c + R n. With n = (cos t, sin t)
+// in the plane and d = +1 counter-clockwise, -1 clockwise:
+//     circle-centre    in every model: a n_1 + b n_2, where the instrument stood; a, b: m
+//     servo-mismatch   XY, YZ, ZX: w d sin t cos t; w: m, path lag F/Kv of the first axis less that
+//                      of the second: lag opposes the motion, e = -F/Kv v
+#include <algorithm>
+
+#include "nonio/sdk/space_readings.h"
+
+using namespace nonio;
+
+namespace {
+
+struct Plane {
+  const char* name;
+  std::size_t first, second;
+};
+constexpr Plane planes[] = {{"XY", 0, 1}, {"YZ", 1, 2}, {"ZX", 2, 0}};
+
+std::vector<std::size_t> rows_of(const Observations& o, std::size_t line) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (o.line_of(i) == line) rows.push_back(i);
+  return rows;
+}
+
+/// Whether the readings of a line lie on a circle that they are sensed along the radius of; in which
+/// plane.
+const Plane* circle_plane(const Observations& o, const SpaceReadings& s, std::size_t line) {
+  using V = SpaceLine::Vector;
+  if (o.sense.empty() || o.angular || of_ball_centres(o)) return nullptr;
+  const auto rows = rows_of(o, line);
+  if (rows.size() < 8) return nullptr;
+  const auto between = [](const V& a, const V& b) { return V{a[0] - b[0], a[1] - b[1], a[2] - b[2]}; };
+  const auto place = [&](std::size_t i) { return V{s.lever(0, i), s.lever(1, i), s.lever(2, i)}; };
+  const std::size_t first = rows.front();
+  std::size_t far = first;
+  double widest = 0.0;
+  for (const std::size_t i : rows) {
+    const V off = between(o.sense_of(i), o.sense_of(first));
+    if (const double size = SpaceLine::dot(off, off); size > widest) widest = size, far = i;
+  }
+  if (widest < 0.5) return nullptr;
+  const V turn = between(o.sense_of(far), o.sense_of(first));
+  const double R = SpaceLine::dot(between(place(far), place(first)), turn) / widest;
+  if (!(R > 0.0)) return nullptr;
+  for (const std::size_t i : rows) {
+    const V way = between(place(i), place(first)), n = between(o.sense_of(i), o.sense_of(first));
+    const V off{way[0] - R * n[0], way[1] - R * n[1], way[2] - R * n[2]};
+    if (SpaceLine::dot(off, off) > 1e-6 * R * R) return nullptr;
+  }
+  for (const Plane& plane : planes) {
+    const std::size_t third = 3 - plane.first - plane.second;
+    if (std::all_of(rows.begin(), rows.end(), [&](std::size_t i) {
+          return std::fabs(o.sense_of(i)[third]) < 1e-6;
+        }))
+      return &plane;
+  }
+  return nullptr;
+}
+
+/// +1 counter-clockwise, -1 clockwise, by the axes' approach; 0 where it is not known.
+int turn_of(const Observations& o, const Plane& plane, std::size_t i) {
+  double turn = 0.0;
+  for (const auto& axis : o.axes) {
+    if (axis.rotary || i >= axis.approach.size()) continue;
+    const std::size_t k = coordinate_of(axis.axis);
+    if (k == plane.second) turn += o.sense_of(i)[plane.first] * axis.approach[i];
+    if (k == plane.first) turn -= o.sense_of(i)[plane.second] * axis.approach[i];
+  }
+  return turn > 1e-9 ? 1 : turn < -1e-9 ? -1 : 0;
+}
+
+std::vector<std::string> circles(const Observations& o) {
+  std::vector<std::string> names;
+  if (o.sense.empty()) return names;
+  const SpaceReadings s = space_of(o);
+  for (std::size_t line = 0; line < o.lines.size(); ++line)
+    if (circle_plane(o, s, line) != nullptr) names.push_back(o.lines[line].name);
+  return names;
+}
+
+Expected<Effect::Columns> centre(const Observations& o, const Axis& place,
+                                 const std::vector<double>&) {
+  const SpaceReadings s = space_of(o);
+  Effect::Columns out(2, std::vector<double>(o.size(), 0.0));
+  for (std::size_t line = 0; line < o.lines.size(); ++line) {
+    if (o.lines[line].name != place.name) continue;
+    const Plane* plane = circle_plane(o, s, line);
+    if (plane == nullptr) return fail("circle-centre: no circle " + place.name);
+    for (const std::size_t i : rows_of(o, line)) {
+      out[0][i] = o.sense_of(i)[plane->first];
+      out[1][i] = o.sense_of(i)[plane->second];
+    }
+  }
+  return out;
+}
+
+/// Planes in which circles were run in both directions.
+std::vector<std::string> mismatches(const Observations& o) {
+  std::vector<std::string> names;
+  if (o.sense.empty()) return names;
+  const SpaceReadings s = space_of(o);
+  for (const Plane& plane : planes) {
+    bool plus = false, minus = false;
+    for (std::size_t line = 0; line < o.lines.size(); ++line)
+      if (circle_plane(o, s, line) == &plane)
+        for (const std::size_t i : rows_of(o, line)) {
+          const int turn = turn_of(o, plane, i);
+          plus |= turn > 0, minus |= turn < 0;
+        }
+    if (plus && minus) names.emplace_back(plane.name);
+  }
+  return names;
+}
+
+Expected<Effect::Columns> mismatch(const Observations& o, const Axis& place,
+                                   const std::vector<double>&) {
+  const SpaceReadings s = space_of(o);
+  Effect::Columns out(1, std::vector<double>(o.size(), 0.0));
+  for (std::size_t line = 0; line < o.lines.size(); ++line) {
+    const Plane* plane = circle_plane(o, s, line);
+    if (plane == nullptr || place.name != plane->name) continue;
+    for (const std::size_t i : rows_of(o, line))
+      out[0][i] = turn_of(o, *plane, i) * o.sense_of(i)[plane->first] * o.sense_of(i)[plane->second];
+  }
+  return out;
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  const auto always = [](const Observations&, const Axis&) { return true; };
+  registry.add(Effect{
+      .info = {"circle-centre", "1.0.0", "Where the instrument of a circle stood: in every model"},
+      .linear = {{"a", "shift along the first axis of the plane", Quantity::deviation},
+                 {"b", "shift along the second", Quantity::deviation}},
+      .shapes = {},
+      .applies = always,
+      .columns = centre,
+      .instances = circles,
+      .is_nuisance = true});
+  registry.add(
+      Effect{.info = {"servo-mismatch", "1.0.0", "Two axes that follow their command with different lag"},
+             .linear = {{"w", "path lag of the first axis less that of the second",
+                         Quantity::deviation}},
+             .shapes = {},
+             .applies = always,
+             .columns = mismatch,
+             .instances = mismatches});
+}

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Readings of a circle: radial deviations over the angle, from the first axis of the plane towards
+// the second.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+#include "nonio/sdk/fields.h"
+#include "nonio/sdk/format.h"
+#include "spatial.h"
+#include "table.h"
+
+namespace nonio::csv {
+
+namespace {
+
+constexpr double circle_turn = 2.0 * std::numbers::pi, circle_deg = std::numbers::pi / 180.0;
+
+/// The rows of one run in one direction, in the order of the file.
+using CircleRuns = std::map<std::pair<std::uint32_t, int>, std::vector<std::size_t>>;
+
+struct Circle {
+  std::string first, second;           ///< axes of the plane
+  std::size_t u = 0, v = 0;            ///< their coordinates
+  double centre_u = 0.0, centre_v = 0.0, radius = 0.0;
+};
+
+Expected<Circle> circle_of(const Measurement& m) {
+  Circle c;
+  for (const auto& [axis, from] : m.from) {
+    const auto to = m.to.find(axis);
+    if (to != m.to.end() && to->second != from)
+      c.first = axis, c.centre_u = from, c.radius = to->second - from;
+    else
+      c.second = axis, c.centre_v = from;
+  }
+  c.u = coordinate_of(c.first), c.v = coordinate_of(c.second);
+  if (c.u > 2 || c.v > 2 || !(c.radius > 0.0))
+    return fail("measurement \"" + m.id + "\": expected `plane`, `radius_mm` and `centre` of the circle");
+  return c;
+}
+
+Error wrong_row(const Table& table, std::size_t row, std::string column, std::string message) {
+  Error error{std::move(message)};
+  error.line = table.line[row];
+  error.column = std::move(column);
+  return error;
+}
+
+CircleRuns runs_of(const Table& table) {
+  CircleRuns runs;
+  const auto* run = table.column("run");
+  const auto& direction = *table.column("direction");
+  for (std::size_t row = 0; row < table.size(); ++row)
+    runs[{run == nullptr ? 1 : static_cast<std::uint32_t>((*run)[row]), direction[row] > 0 ? 1 : -1}]
+        .push_back(row);
+  return runs;
+}
+
+/// The rows that count: all of a run of up to a turn; of a longer one, the turn between the arcs that
+/// `over_travel_deg` states. The angles of a run go one way.
+Expected<std::vector<std::size_t>> evaluated(const Table& table, const std::vector<std::size_t>& rows,
+                                             int direction, double over_travel) {
+  constexpr double slack = 1e-9;
+  const auto& angle = *table.column("angle_deg");
+  double least = INFINITY, most = -INFINITY;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    least = std::min(least, angle[rows[i]]), most = std::max(most, angle[rows[i]]);
+    if (i > 0 && (angle[rows[i]] - angle[rows[i - 1]]) * direction < 0.0)
+      return fail(wrong_row(table, rows[i], "angle_deg",
+                            "expected angles that " +
+                                std::string(direction > 0 ? "grow" : "fall") + " in direction " +
+                                (direction > 0 ? "+" : "-") +
+                                ", row by row (beyond 360 or below 0, if the start is not at 0)"));
+  }
+  if (most - least <= 360.0 + slack) return rows;
+  if (!(over_travel > 0.0) || most - least > 360.0 + 2.0 * over_travel + 1.0)
+    return fail(wrong_row(table, rows.front(), "angle_deg",
+                          "expected at most 360 deg in a run, or the angle before and behind it as "
+                          "`over_travel_deg` in the manifest; found " +
+                              fixed_text(most - least, 3) + " deg"));
+  const double middle = 0.5 * (least + most);
+  std::vector<std::size_t> kept;
+  for (const std::size_t row : rows)
+    if (std::fabs(angle[row] - middle) <= 180.0 + slack) kept.push_back(row);
+  return kept;
+}
+
+/// Which way an axis came to where it is: at the end of its travel, still from where it came.
+std::int8_t approach_of(double speed, double before) {
+  constexpr double at_rest = 1e-9;
+  return (std::fabs(speed) > at_rest ? speed : before) > 0.0 ? std::int8_t{1} : std::int8_t{-1};
+}
+
+void put_row(Observations& obs, const Circle& c, double t, int d, double deviation) {
+  const double cosine = std::cos(t), sine = std::sin(t);
+  obs.axes[0].position.push_back(c.centre_u + c.radius * cosine);
+  obs.axes[1].position.push_back(c.centre_v + c.radius * sine);
+  obs.axes[0].approach.push_back(approach_of(-d * sine, cosine));
+  obs.axes[1].approach.push_back(approach_of(d * cosine, sine));
+  std::array<double, 3> sense{};
+  sense[c.u] = cosine, sense[c.v] = sine;
+  obs.sense.push_back(sense);
+  obs.deviation.push_back(deviation);
+}
+
+/// Columns of time and air, as the file has them.
+void put_others(Observations& obs, const Table& table, std::size_t row) {
+  const auto put = [&](const char* name, std::vector<double>& to) {
+    if (const auto* column = table.column(name)) to.push_back((*column)[row]);
+  };
+  put("time_s", obs.time);
+  put("material_c", obs.material);
+  put("air_c", obs.air);
+  put("pressure_hpa", obs.pressure);
+  put("humidity_pct", obs.humidity);
+  obs.source_line.push_back(table.line[row]);
+}
+
+Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle,
+                                    const Table& table) {
+  const Measurement& m = input.measurement;
+  Observations obs;
+  obs.measurement = m.id;
+  if (table.empty_rows > 0)
+    obs.notes.push_back({"csv.empty-rows", {count("rows", table.empty_rows)}});
+  obs.axes = {{circle.first, false, {}, {}}, {circle.second, false, {}, {}}};
+  const auto& deviation = *table.column("deviation_um");
+  std::uint64_t arcs = 0;
+  for (const auto& [key, rows] : runs_of(table)) {
+    const auto [run, direction] = key;
+    const auto kept = evaluated(table, rows, direction, m.over_travel.value_or(0.0) / circle_deg);
+    if (!kept) return fail(kept.error());
+    arcs += rows.size() - kept->size();
+    Observations::Line line{m.id + (direction > 0 ? " +" : " -") +
+                                (run == 1 ? "" : " run " + std::to_string(run)),
+                            {}};
+    for (const std::size_t row : *kept) {
+      if (!std::isfinite(deviation[row])) {
+        ++obs.missing;
+        continue;
+      }
+      put_row(obs, circle, (*table.column("angle_deg"))[row] * circle_deg, direction,
+              deviation[row] * 1e-6);
+      obs.line.push_back(static_cast<std::uint32_t>(obs.lines.size()));
+      obs.run.push_back(run);
+      put_others(obs, table, row);
+    }
+    if (!obs.sense.empty()) line.sense = obs.sense.back();
+    obs.lines.push_back(std::move(line));
+  }
+  if (arcs > 0) obs.notes.push_back({"csv.over-travel", {count("rows", arcs)}});
+  if (obs.size() == 0)
+    return fail("expected readings, found " + std::to_string(obs.missing) +
+                " of which not one was taken");
+  return obs;
+}
+
+}  // namespace
+
+Expected<Observations> read_circle(const ReadInput& input) {
+  using Kind = ColumnSpec::Kind;
+  const auto circle = circle_of(input.measurement);
+  if (!circle) return fail(circle.error());
+  auto table = read_table(input.bytes, {{"direction", Kind::sign, true},
+                                              {"angle_deg", Kind::place, true},
+                                              {"deviation_um", Kind::number, true},
+                                              {"run", Kind::whole},
+                                              {"time_s"},
+                                              {"material_c"},
+                                              {"air_c"},
+                                              {"pressure_hpa"},
+                                              {"humidity_pct"}});
+  auto obs = table ? read_rows_of(input, *circle, *table)
+                   : Expected<Observations>(fail(table.error()));
+  if (!obs) obs.error().file = input.measurement.file;
+  return obs;
+}
+
+}  // namespace nonio::csv

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Circles: a ball bar run both ways, and one way only."""
+import math
+
+from parts import MADE_UP, Noise, linear, manifest
+
+
+class Mill:
+    """Where the tool really is on a commanded circle: exact positions, no formula of the analysis.
+
+    Each axis follows as a first-order lag follows a sine; it comes back late by its play, over one and a half
+    degrees; it sticks at each reversal; Y stands askew; X and Y have scales."""
+    R, feed = 150.0, 1000.0 / 60.0  # mm, mm/s
+    scale = {"X": 24e-6, "Y": -9e-6}
+    squareness = 38e-6              # C0Y
+    play = {"X": 5.6e-3, "Y": 1.8e-3}
+    lag = {"X": 22.00e-3, "Y": 21.60e-3}  # s
+    sticks = {"X": 1.2e-3, "Y": 4.5e-3}
+    pitch_wave = 0.9e-3             # mm, of X, pitch 10 mm
+    zero = (0.0183, -0.0071)        # where the ball of the bar stood
+
+    def axis(self, name, t, d):
+        """Position of one axis of the circle about 0, mm."""
+        w, tau = self.feed / self.R, self.lag[name]
+        behind = t - d * math.atan(w * tau)
+        x = self.R / math.sqrt(1.0 + (w * tau) ** 2) * (math.cos if name == "X" else math.sin)(behind)
+        x *= 1.0 + self.scale[name]
+        # From the last reversal on, play is taken up and friction lets go.
+        turned = 0.0 if name == "X" else math.pi / 2.0
+        way = (d * (behind - turned)) % math.pi
+        outside = math.copysign(1.0, math.cos(behind - d * way - turned))
+        x += outside * self.play[name] * (min(1.0, way / math.radians(1.5)) - 0.5)
+        x += outside * self.sticks[name] * math.exp(-way / math.radians(1.2))
+        if name == "X":
+            x += self.pitch_wave * math.sin(2.0 * math.pi * (x + 400.0) / 10.0)
+        return x
+
+    def radius(self, t, d):
+        """What the bar reads, mm."""
+        x, y = self.axis("X", t, d), self.axis("Y", t, d)
+        x -= self.squareness * y
+        return math.hypot(x - self.zero[0], y - self.zero[1])
+
+
+def rows(machine, noise, directions, step=0.5):
+    out, count = [], round(360.0 / step)
+    for d in directions:
+        wander = 0.0
+        for i in range(count):
+            t = math.radians(step * (i + 0.5))
+            t = t if d > 0 else 2.0 * math.pi - t
+            wander = 0.8 * wander + 0.12 * noise.normal()
+            um = 1e3 * (machine.radius(t, d) - machine.R) + wander + 0.08 * noise.normal() + 2.7
+            out.append("1,%s,%.2f,%.2f" % ("+" if d > 0 else "-", math.degrees(t), um))
+    return out
+
+
+def text(lines, comment):
+    return "\n".join(["# " + comment, "run,direction,angle_deg,deviation_um", *lines]) + "\n"
+
+
+MACHINE = {"maker": "Sample Machines", "model": "VM 8", "serial": "S-0140", "structure": "single-column"}
+BAR = {"maker": '"Sample Metrology"', "model": '"Ball bar 150 mm"', "serial": '"B-007"', "calibrated": "2026-02-03",
+       "certificate": '"SM-2026-0007"', "U_fixed_um": "0.7", "U_per_m_um": "1.0"}
+SHOP = {"drift_um": "0.8"}
+CIRCLE = {"kind": "circle", "plane": "XY", "radius_mm": 150, "centre": {"X": 400.0, "Y": 250.0, "Z": 120.0},
+          "feed_mm_per_min": 1000}
+AXES = {"X": linear(800.0), "Y": linear(500.0)}
+
+
+def both_ways():
+    story = ["A milling machine makes pockets that are oval at 45 degrees. A ball bar, both directions: squareness is the",
+             "same oval in both, servo mismatch turns with the direction, X has lost motion, Y sticks when it reverses."]
+    return {"circle.csv": text(rows(Mill(), Noise(140), (1, -1)), MADE_UP),
+            "campaign.toml": manifest(story, "40-circles", "Esempio Quaranta S.r.l.", "Padova", "2026-06-10", MACHINE,
+                                      AXES, [{"id": "C1", "file": "circle.csv", **CIRCLE}], instrument=BAR,
+                                      environment=SHOP, analyses=["circle"])}
+
+
+def one_way():
+    story = ["The same machine, run counter-clockwise only. Squareness and servo mismatch are then one column: the",
+             "formula of the common report gives a squareness that is neither. Nonio refuses both by name."]
+    return {"circle.csv": text(rows(Mill(), Noise(141), (1,)), MADE_UP),
+            "campaign.toml": manifest(story, "41-circle-one-way", "Esempio Quarantuno S.r.l.", "Padova", "2026-06-10",
+                                      MACHINE, AXES, [{"id": "C1", "file": "circle.csv", **CIRCLE}], instrument=BAR,
+                                      environment=SHOP, analyses=["circle"])}
+
+
+STORIES = {"40-circles": both_ways, "41-circle-one-way": one_way}
