@@ -52,6 +52,7 @@ file = "x.csv"
 
 [run]
 analyses = ["positioning"]
+outputs = ["json", "csv", "pdf-report"]
 
 [options.positioning]
 rules = [

@@ -272,6 +272,24 @@ class Samples(unittest.TestCase):
         self.assertAlmostEqual(program[("square", "QX", "C0Y_LSQ")], -(stands + turned) / 2.0, delta=1e-6)
         self.assertAlmostEqual(program[("square", "QX", "square_error")], (stands - turned) / 2.0, delta=1e-6)
 
+    def test_every_rule(self):
+        found = {name: value for (_, _, name), value in expected("21-every-rule").items()}
+        points = readings("21-every-rule", "x.csv")
+        mean = {(x, d): statistics.fmean(p[d]) for x, p in points.items() for d in "+-"}
+        s = {(x, d): statistics.stdev(p[d]) for x, p in points.items() for d in "+-"}
+        high = {k: max(mean[x, d] + k * s[x, d] for x in points for d in "+-") for k in (2, 3)}
+        low = {k: min(mean[x, d] - k * s[x, d] for x in points for d in "+-") for k in (2, 3)}
+        offset = statistics.fmean(mean.values())
+        every = [x for p in points.values() for d in "+-" for x in p[d]]
+        wanted = {"iso-2014:A": high[2] - low[2], "gb-10931:A": high[3] - low[3],
+                  "upr:UPR": min(max(4 * s[x, d] for x in points) for d in "+-"),
+                  "nmtba:+-accuracy": max(abs(m) + 3 * s[at] for at, m in mean.items()),
+                  "nmtba-no-offset:+-accuracy": max(abs(m - offset) + 3 * s[at] for at, m in mean.items()),
+                  "b5.54-1992:A'": max(every) - min(every),
+                  "jis-6330:accuracy": max(p["+"][0] for p in points.values()) - min(p["+"][0] for p in points.values())}
+        self.expect(found, {name: "%.4f" % value for name, value in wanted.items()}, 4)
+        self.assertEqual(len({name.split(":")[0] for name in found if ":" in name}), 20)
+
     def test_body_diagonals(self):
         """What the program makes of each diagonal is what this file makes of it; the machine's is the largest."""
         program = expected("20-body-diagonals")

@@ -96,7 +96,7 @@ std::vector<RuleTable> tables_of(std::vector<RuleColumn> columns) {
   return out;
 }
 
-std::string joined(const std::vector<std::string>& titles) {
+std::string titles_in_line(const std::vector<std::string>& titles) {
   std::string out;
   for (const std::string& t : titles) out += (out.empty() ? "" : ", ") + t;
   return out;
@@ -113,7 +113,7 @@ Table table_of(const Source& source, const RuleTable& t, std::size_t first, std:
     for (const Named& n : t.columns[c].values) U |= n.value->U.has_value();
   table.columns = {{w.get("results.symbol"), "", false}, {w.get("results.meaning"), "", false}};
   for (std::size_t c = first; c < last; ++c) {
-    table.columns.push_back({joined(t.columns[c].titles), unit, true});
+    table.columns.push_back({titles_in_line(t.columns[c].titles), unit, true});
     if (U) table.columns.push_back({w.get("results.uncertainty"), unit, true});
   }
   for (const std::string& name : t.symbols) {
