@@ -166,14 +166,14 @@ bool is_of_this_version(storage::Database& database) {
 namespace {
 
 /// On a server: all in one transaction, which holds the lock of its schema.
-Expected<void> make_server_tables(storage::Database& database, const std::string& schema) {
+Expected<void> make_server_tables(storage::Database& database, const std::string& place) {
   storage::Database::Transaction transaction(database);
   if (is_of_this_version(database)) return transaction.end();  // somebody else was faster
   if (database.failed()) return database.take_error();
   if (has_tables(database)) return fail("holds other tables, or those of a newer version of Nonio");
-  if (database.first("SELECT count(*) FROM pg_catalog.pg_namespace WHERE nspname = ?", {schema}) ==
+  if (database.first("SELECT count(*) FROM pg_catalog.pg_namespace WHERE nspname = ?", {place}) ==
       "0")
-    database.script("CREATE SCHEMA \"" + schema + "\"");
+    database.script("CREATE SCHEMA \"" + place + "\"");
   database.script(server_schema);
   const std::string id = random_id();
   database.rows("INSERT INTO site VALUES(1, ?)", {id});
