@@ -28,7 +28,7 @@ std::string counted(std::uint64_t n, const std::string& what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
-void print_plan(const batch::Night& night, const batch::RunOptions& options, bool json) {
+void tell_planned(const batch::Night& night, const batch::RunOptions& options, bool json) {
   const auto& shards = night.planned;
   std::uint64_t in_shards = 0;
   for (const std::uint64_t n : shards) in_shards += n;
@@ -70,7 +70,7 @@ int plan_night(NightWish& wish, const Common& common) {
   const batch::Night night = batch::run_site(options, progress.events());
   progress.end();
   if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
-  if (!common.quiet || common.json) print_plan(night, options, common.json);
+  if (!common.quiet || common.json) tell_planned(night, options, common.json);
   return exit_done;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "host/batch/read_apart.h"
-#include "host/certificates/register_place.h"
 
 namespace nonio::host::batch {
 namespace fs = std::filesystem;
@@ -13,10 +12,8 @@ namespace {
 
 /// A register in an output folder below the site would be lost with it.
 Expected<void> check_register_place(const RunOptions& options, const reading::Context& context) {
-  const auto place = certificates::register_place(options.site, context.site.numbering);
-  if (!place) return fail(place.error());
-  if (place->server) return {};
-  const fs::path* const path = &place->file;
+  const auto path = certificates::register_path(options.site, context.site.numbering);
+  if (!path) return fail(path.error());
   std::error_code error;
   const auto is_below = [](const fs::path& one, const fs::path& folder) {
     const fs::path way = one.lexically_relative(folder);
@@ -41,7 +38,7 @@ Expected<std::optional<Known>> known_of(const RunOptions& options,
       [&](process::SignsOfLife& signs)
           -> Expected<std::pair<std::vector<certificates::RegisterEntry>,
                                 std::vector<certificates::WaitingDraft>>> {
-        signs.reading(numbering.register_file);
+        signs.reading((options.site / numbering.register_file).string());
         if (const auto sound = check_register_place(options, context); !sound)
           return fail(sound.error());
         auto numbers = certificates::Register::entries(options.site, numbering, patience);

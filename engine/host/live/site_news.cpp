@@ -8,7 +8,6 @@
 
 #include "host/batch/night_status.h"
 #include "host/certificates/certificate_list.h"
-#include "host/certificates/register_place.h"
 #include "host/config/site_logs.h"
 
 namespace nonio::host::live {
@@ -29,10 +28,9 @@ NightNow night_now(const fs::path& out) {
   const auto status = batch::night_status(out);
   if (!status) return {.state = "none"};
   using State = batch::NightStatus::State;
-  NightNow now{.state = status->state == State::complete ? "complete"
-                        : status->state == State::running || status->state == State::planned
-                            ? "running"
-                            : "cut-short",
+  NightNow now{.state = status->state == State::complete  ? "complete"
+                        : status->state == State::running ? "running"
+                                                          : "cut-short",
                .number = status->night.number,
                .date = status->night.date};
   if (status->last) now.last = status->last->night.number, now.last_date = status->last->night.date;
@@ -42,8 +40,8 @@ NightNow night_now(const fs::path& out) {
 fs::path register_of(const fs::path& site) {
   const auto numbering = certificates::numbering_of(site);
   if (!numbering) return {};
-  const auto place = certificates::register_place(site, *numbering);
-  return place ? place->file : fs::path();
+  const auto path = certificates::register_path(site, *numbering);
+  return path ? *path : fs::path();
 }
 
 }  // namespace
