@@ -75,13 +75,13 @@ std::uint64_t seed_of(const StoredMachine& m, const std::vector<std::size_t>& re
   return hash;
 }
 
-/// As found before as left, on one day.
+/// As found before as left, on one day; within a campaign in the order of its manifest.
 bool before(const StoredMachine& m, std::size_t a, std::size_t b) {
   const auto key = [&](std::size_t i) {
     const StoredResult& r = m.results[i];
     const history::StoredCampaign& c = m.campaigns[r.campaign];
-    return std::tuple<const std::string&, bool, const std::string&, const std::string&>(
-        c.day, r.state == "as-left", c.id, r.measurement);
+    return std::tuple<const std::string&, bool, const std::string&, std::size_t>(
+        c.day, r.state == "as-left", c.id, i);
   };
   return key(a) < key(b);
 }
@@ -123,9 +123,11 @@ class Happenings {
   const std::string& day(std::size_t k) const { return m_.campaigns[result(k).campaign].day; }
 
   /// An adjustment lies between a reading as found and one as left; a table that was on and is off.
+  /// What changed between two measurements of one campaign is the work of those who made it.
   std::string table_between(std::size_t k) const {
     const StoredResult &a = result(k), &b = result(k + 1);
     if (b.state == "as-left") return "as-left";
+    if (a.campaign == b.campaign) return "within the campaign";
     if (a.conditions == b.conditions) return {};
     const std::string one = compensation(parsed(a.conditions)),
                       other = compensation(parsed(b.conditions));

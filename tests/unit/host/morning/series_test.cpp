@@ -70,6 +70,22 @@ TEST(MorningSeries, ATableIsAStepThatIsKnown) {
   EXPECT_EQ(series[0].series.declared[1].kind, Kind::table);
 }
 
+TEST(MorningSeries, WhatChangesWithinACampaignIsItsOwnWork) {
+  MadeMachine m("S-1");
+  m.follow("X", "scale", eight, 0.1);
+  auto& results = m.stored().results;
+  results[4].campaign = results[3].campaign;  // states "start" and "end": in the manifest's order
+  results[3].measurement = "X start", results[4].measurement = "X end";
+  const auto series = m.series();
+  ASSERT_EQ(series.size(), 1U);
+  ASSERT_EQ(series[0].results.size(), 8U);
+  EXPECT_EQ(series[0].results[3], 3U);
+  EXPECT_EQ(series[0].results[4], 4U);
+  ASSERT_EQ(series[0].series.declared.size(), 1U);
+  EXPECT_EQ(series[0].series.declared[0].after, 3U);
+  EXPECT_EQ(series[0].series.declared[0].kind, Kind::table);
+}
+
 TEST(MorningSeries, EventsStandBetweenTheirCampaigns) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);
