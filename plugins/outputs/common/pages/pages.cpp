@@ -144,10 +144,9 @@ std::string circle_test(const Source& source, const Measured& m) {
       "measurement.circle_test",
       {{"count", std::to_string(o.size())},
        {"radius", number(radius * 1e3)},
-       {"feed", m.measurement.feed
-                    ? source.words.get("measurement.circle_feed",
-                                       {{"feed", number(*m.measurement.feed * 6e4)}})
-                    : ""},
+       {"feed", m.measurement.feed ? source.words.get("measurement.circle_feed",
+                                                      {{"feed", number(*m.measurement.feed * 6e4)}})
+                                   : ""},
        {"directions", directions}});
 }
 
@@ -173,9 +172,10 @@ std::string heading_of(const Source& source, const Measured& m) {
   if (measurement.kind == "ball-centres")
     return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
   if (measurement.kind == "circle")
-    return words.get("measurement.of", {{"heading", words.get("measurement.circle",
-                                                              {{"plane", plane_of(measurement)}})},
-                                        {"id", measurement.id}});
+    return words.get(
+        "measurement.of",
+        {{"heading", words.get("measurement.circle", {{"plane", plane_of(measurement)}})},
+         {"id", measurement.id}});
   if (measurement.kind == "step-diagonal")
     return words.get("measurement.step_diagonal", {{"id", measurement.id}});
   return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});

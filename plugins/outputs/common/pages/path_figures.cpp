@@ -67,7 +67,8 @@ Paths paths_of(const Measured& m, const Results::Analysed& a) {
     path.points.emplace_back(std::atan2(n[v], n[u]), r);
   }
   for (auto& [key, path] : paths) {
-    for (auto& [angle, r] : path.points) r -= mean, out.largest = std::max(out.largest, std::fabs(r));
+    for (auto& [angle, r] : path.points)
+      r -= mean, out.largest = std::max(out.largest, std::fabs(r));
     std::sort(path.points.begin(), path.points.end());
     out.all.push_back(std::move(path));
   }
@@ -88,8 +89,7 @@ void add_ring(Plot& plot, double radius, Colour colour, double width, Dash dash)
 Plot polar(const Source& source, const Paths& paths) {
   const Style& style = source.look.style;
   const double division = round_factor(std::max(paths.largest, 0.003) / 3.0 * 2.4999);
-  const std::string text =
-      localised(short_text(division, 3), source.language());
+  const std::string text = localised(short_text(division, 3), source.language());
   Plot plot;
   plot.title = source.words.get("plot.polar", {{"division", text}});
   plot.x_title = source.words.get("plot.polar_scale", {{"division", text}});
@@ -187,7 +187,8 @@ void add_path(const Source& source, const Measured& m, Blocks& blocks) {
   const std::string field = "plots of measurement " + m.measurement.id;
   Columns row;
   row.parts.push_back({{std::move(*plot), field}});
-  if (auto chart = causes(source, *analysis_of(m))) row.parts.push_back({{std::move(*chart), field}});
+  if (auto chart = causes(source, *analysis_of(m)))
+    row.parts.push_back({{std::move(*chart), field}});
   blocks.push_back({Spacer{4}});
   blocks.push_back({std::move(row), field});
 }
