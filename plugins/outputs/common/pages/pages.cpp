@@ -137,7 +137,11 @@ std::string circle_test(const Source& source, const Measured& m) {
   for (const auto& [axis, to] : m.measurement.to)
     if (const auto from = m.measurement.from.find(axis); from != m.measurement.from.end())
       radius = std::max(radius, std::fabs(to - from->second));
-  const auto number = [&](double v) { return localised(short_text(v, 7), source.language()); };
+  const auto number = [&](double v) {
+    std::string shortest;
+    append_shortest(shortest, std::round(v * 1e6) / 1e6);
+    return localised(shortest, source.language());
+  };
   std::string directions = plus ? source.words.get("plot.ccw") : "";
   if (minus) directions += (plus ? ", " : "") + source.words.get("plot.cw");
   return source.words.get(

@@ -212,7 +212,8 @@ TEST(Circle, ACalibratedBarGivesDAndF) {
   EXPECT_NEAR(value(e, "D")->value, 5e-6 + 0.15 * 7.5e-6, 0.6e-6);
   EXPECT_GT(*value(e, "D")->U, *value(e, "G_b")->U * 0.1);
   EXPECT_LT(value(e, "F_min")->value, value(e, "F_max")->value);
-  EXPECT_LE(value(e, "F_max")->value - value(e, "F_min")->value, value(e, "G_b")->value + 0.05e-6);
+  // About the least-squares centre the path is never narrower than its minimum zone.
+  EXPECT_GE(value(e, "F_max")->value - value(e, "F_min")->value, value(e, "G_b")->value - 1e-12);
 }
 
 TEST(Circle, AnArcThatIsTooShortSaysWhatItCannotTell) {
@@ -251,7 +252,8 @@ TEST(Circle, TheZoneIsNeverWiderThanAboutTheLeastSquaresCentre) {
 TEST(Circle, SpikesAreWhereTheAxisSticks) {
   std::mt19937_64 random(8);
   exact::Mill m = mill();
-  m.axis[1].stick = 8e-6, m.axis[0].stick = 0.0;
+  // Play that is taken up over an arc stands out behind the reversal too: X has none here.
+  m.axis[1].stick = 8e-6, m.axis[0].stick = m.axis[0].play = 0.0;
   const auto e = evaluated(test_of(m, exact::circle(m, {0.05e-6, 0.0, 0.0}, random)), options());
   ASSERT_TRUE(finding(e, "circle.spikes"));
   EXPECT_GT(value(e, "spike_Y")->value, 2e-6);
