@@ -130,9 +130,11 @@ def table(rows, comment, rotary=False, extra=(), separator=","):
 
 
 def toml(value):
-    """A text, a yes or no, or a table of positions."""
+    """A text, a number, a yes or no, or a table of positions."""
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, (int, float)):
+        return "%g" % value
     if isinstance(value, dict):
         return "{ %s }" % ", ".join("%s = %g" % item for item in value.items())
     return '"%s"' % value

@@ -73,8 +73,8 @@ void put_fit(const Path& path, const Case& c, Outcome& out) {
   for (const CircleReading& r : readings) (r.direction > 0 ? plus : minus) = true;
   all_causes(model, plus && minus);
   if (c.options.contains("eight"))
-    for (const Cause more : {Cause::zero_change, Cause::lateral_u, Cause::lateral_v, Cause::bow_u,
-                             Cause::bow_v})
+    for (const Cause more :
+         {Cause::zero_change, Cause::lateral_u, Cause::lateral_v, Cause::bow_u, Cause::bow_v})
       model.wanted[static_cast<std::size_t>(more)] = false;
   const auto fit = fit_causes(readings, model);
   if (!fit) return;
@@ -90,8 +90,7 @@ void put_fit(const Path& path, const Case& c, Outcome& out) {
   put("lateral_X", Cause::lateral_u, 1e6), put("bow_X", Cause::bow_u, 1e6);
   double squares = 0.0;
   for (const auto& bin : fit->bins) squares += bin.residual * bin.residual;
-  out.values["residual_nm"] =
-      1e9 * std::sqrt(squares / static_cast<double>(fit->bins.size()));
+  out.values["residual_nm"] = 1e9 * std::sqrt(squares / static_cast<double>(fit->bins.size()));
 }
 
 }  // namespace

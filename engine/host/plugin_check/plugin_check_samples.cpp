@@ -285,6 +285,27 @@ Source step_diagonals(MadeMachine& machine) {
   return s;
 }
 
+/// A circle in both directions, of an askew machine with lost motion.
+Source circle() {
+  Source s{"circle",
+           head("circle") + linear_axis('X') + linear_axis('Y') +
+               measured("C", "circle",
+                        "plane = \"XY\"\nradius_mm = 150\ncentre = { X = 400, Y = 300 }\n"
+                        "feed_mm_per_min = 1000\n"),
+           {}};
+  std::string rows = "run,direction,angle_deg,deviation_um\n";
+  for (const int d : {1, -1})
+    for (int i = 0; i < 180; ++i) {
+      const double degrees = d > 0 ? 2.0 * i + 1.0 : 359.0 - 2.0 * i, t = degrees / deg_per_rad;
+      const double deviation = 3.0 - 2.5 * std::sin(2.0 * t) + 0.2 * std::sin(37.0 * t) +
+                        d * (std::sin(t) > 0.0 ? 3.0 : -3.0) * std::cos(t);
+      rows += std::string("1,") + (d > 0 ? "+," : "-,") + fixed_text(degrees, 1) + "," +
+              fixed_text(deviation, 3) + "\n";
+    }
+  s.files.push_back({"C.csv", rows});
+  return s;
+}
+
 Source balls(MadeMachine& machine) {
   Source s{"ball-centres",
            head("ball-centres") +
@@ -312,6 +333,7 @@ std::vector<Source> made_sources(std::uint64_t seed) {
           angles(m),
           diagonals(m),
           step_diagonals(m),
+          circle(),
           balls(m)};
 }
 

@@ -19,8 +19,8 @@ namespace {
 
 constexpr double bin_width = full_turn / 360.0;
 constexpr int bins_of_turn = 360;
-constexpr std::size_t at_least = 24;   // bins, and twice the causes
-constexpr double singular = 1e-10;     // least part of a column that is its own, squared
+constexpr std::size_t at_least = 24;  // bins, and twice the causes
+constexpr double singular = 1e-10;    // least part of a column that is its own, squared
 constexpr double quarter = std::numbers::pi / 2.0;
 
 std::size_t index_of(Cause c) { return static_cast<std::size_t>(c); }
@@ -68,8 +68,7 @@ struct Block {
   PathNoise noise;
   double variance = 1.0;
 
-  Block(std::size_t rows, std::size_t columns)
-      : X(at(rows), at(columns)), y(at(rows)) {}
+  Block(std::size_t rows, std::size_t columns) : X(at(rows), at(columns)), y(at(rows)) {}
 };
 
 class Fit {
@@ -178,7 +177,8 @@ class Fit {
       norm[c] = white.col(c).norm();
       white.col(c) /= norm[c];
     }
-    const Eigen::MatrixXd C = (white.transpose() * white).ldlt().solve(Eigen::MatrixXd::Identity(k, k));
+    const Eigen::MatrixXd C =
+        (white.transpose() * white).ldlt().solve(Eigen::MatrixXd::Identity(k, k));
     const Eigen::MatrixXd G = C * white.transpose();
     const Eigen::VectorXd beta = (G * y).cwiseQuotient(norm);
     put(beta, C, G, norm, filters);
@@ -333,7 +333,8 @@ std::vector<Spike> reversal_spikes(std::span<const CircleReading> readings,
         double model_says = 0.0;
         for (std::size_t c = 0; c < cause_count; ++c)
           if (fit.of[c].fitted)
-            model_says += fit.of[c].value * cause_at(static_cast<Cause>(c), model, r.angle, direction);
+            model_says +=
+                fit.of[c].value * cause_at(static_cast<Cause>(c), model, r.angle, direction);
         auto& [sum, n] = behind[std::round(way / 1e-4) * 1e-4];
         sum += r.deviation - model_says, n += 1.0;
       }

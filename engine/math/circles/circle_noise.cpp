@@ -10,8 +10,8 @@ double whiten(Eigen::MatrixXd& columns, const std::vector<int>& place, const Pat
   double variance = noise.w, determinant = 0.0;
   for (Eigen::Index i = 0; i < columns.rows(); ++i) {
     if (i > 0) {
-      const double phi = std::pow(noise.rho, place[static_cast<std::size_t>(i)] -
-                                                 place[static_cast<std::size_t>(i) - 1]);
+      const double phi = std::pow(
+          noise.rho, place[static_cast<std::size_t>(i)] - place[static_cast<std::size_t>(i) - 1]);
       state *= phi;
       variance = phi * phi * variance + noise.w * (1.0 - phi * phi);
     }

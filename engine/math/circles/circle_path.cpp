@@ -29,7 +29,8 @@ double radial(const CircleReading& r, double R, const Centre& c) {
 /// is convex but for terms of second order.
 class Few {
  public:
-  Few(Readings all, const std::vector<std::size_t>& which, double R) : all_(all), which_(which), R_(R) {}
+  Few(Readings all, const std::vector<std::size_t>& which, double R)
+      : all_(all), which_(which), R_(R) {}
 
   Centre best(Centre from, double reach) const {
     const double a = golden(from[0] - reach, from[0] + reach, [&](double x) {
@@ -115,7 +116,8 @@ PathCircle minimum_zone(Readings readings, double R) {
     std::size_t i_low = 0, i_high = 0;
     bool any = false;
     for (std::size_t i = 0; i < readings.size(); ++i) {
-      const double within = readings[i].angle - full_turn * std::floor(readings[i].angle / full_turn);
+      const double within =
+          readings[i].angle - full_turn * std::floor(readings[i].angle / full_turn);
       if (static_cast<int>(within / full_turn * 8.0) % 8 != q) continue;
       const double x = radial(readings[i], R, best.centre);
       any = true;

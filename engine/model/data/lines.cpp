@@ -84,7 +84,7 @@ void append_angles(Part& part, const Observations& o, const Measurement& m) {
     const double angle = std::atan2(n[v], n[u]);
     part.along.push_back(radius * (angle < 0.0 ? angle + 2.0 * std::numbers::pi : angle));
     part.way.push_back(n[u] * approach(v, i) - n[v] * approach(u, i) > 0.0 ? std::int8_t{1}
-                                                                            : std::int8_t{-1});
+                                                                           : std::int8_t{-1});
   }
 }
 

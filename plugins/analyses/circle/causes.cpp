@@ -17,7 +17,7 @@ using math::Cause;
 using math::CauseFit;
 using math::CircleModel;
 
-constexpr double level = 0.01;         // of a cyclic error
+constexpr double level = 0.01;          // of a cyclic error
 constexpr double most_inflation = 1e4;  // of the variance: beyond it the columns are one
 
 const CauseFit::Value& of(const CauseFit& fit, Cause c) {
@@ -38,7 +38,8 @@ double alone_of(const CircleModel& model, std::initializer_list<std::pair<Cause,
   }
   double low = INFINITY, high = -INFINITY;
   for (int i = 0; i < points; ++i) {
-    const double x = r[static_cast<std::size_t>(i)] - a * std::cos(angle(i)) - b * std::sin(angle(i));
+    const double x =
+        r[static_cast<std::size_t>(i)] - a * std::cos(angle(i)) - b * std::sin(angle(i));
     low = std::min(low, x), high = std::max(high, x);
   }
   return high - low;
@@ -59,7 +60,8 @@ class Values {
       const auto& reversal = of(fit_, u ? Cause::reversal_u : Cause::reversal_v);
       plain(u ? Cause::reversal_u : Cause::reversal_v, "B_" + axis,
             reversal.value > 0.0 ? "circle.over-compensated" : "circle.lost-motion", axis);
-      plain(u ? Cause::lateral_u : Cause::lateral_v, "lateral_" + axis, "circle.lateral-play", axis);
+      plain(u ? Cause::lateral_u : Cause::lateral_v, "lateral_" + axis, "circle.lateral-play",
+            axis);
     }
     for (std::size_t k = 0; k < 2; ++k)
       plain(k == 0 ? Cause::bow_u : Cause::bow_v,
@@ -69,7 +71,8 @@ class Values {
     if (!inseparable_.empty()) {
       std::string names;
       for (const std::string& name : inseparable_) names += (names.empty() ? "" : ", ") + name;
-      refused_.push_back({.id = "circle.inseparable", .attention = true, .texts = {{"names", names}}});
+      refused_.push_back(
+          {.id = "circle.inseparable", .attention = true, .texts = {{"names", names}}});
     }
     return std::move(out_);
   }
@@ -86,8 +89,10 @@ class Values {
   void put(Cause c, std::string name, std::string finding, std::string axis, double factor,
            Quantity quantity) {
     const auto& v = of(fit_, c);
-    CauseValue out{std::move(name), std::move(finding), std::move(axis), v.value * factor, quantity,
-                   v.u * std::fabs(factor), v.by_bin, alone_of(model_, {{c, v.value}})};
+    CauseValue out{std::move(name), std::move(finding),
+                   std::move(axis), v.value * factor,
+                   quantity,        v.u * std::fabs(factor),
+                   v.by_bin,        alone_of(model_, {{c, v.value}})};
     for (double& d : out.by_bin) d *= factor;
     out_.push_back(std::move(out));
   }
@@ -106,7 +111,8 @@ class Values {
   void squareness_and_servo() {
     const auto [name, sign] = squareness_of(circle_);
     if (!circle_.both()) {
-      refused_.push_back({.id = "circle.one-direction", .attention = true, .texts = {{"name", name}}});
+      refused_.push_back(
+          {.id = "circle.one-direction", .attention = true, .texts = {{"name", name}}});
       return;
     }
     if (separable(Cause::squareness, name))

@@ -55,8 +55,7 @@ struct Work {
 /// U_fixed at the largest deviation, is in everything by its share.
 void device_errors(Work& w) {
   double largest = 0.0, mean = 0.0;
-  for (const auto& bin : w.fit.bins)
-    mean += bin.deviation / static_cast<double>(w.fit.bins.size());
+  for (const auto& bin : w.fit.bins) mean += bin.deviation / static_cast<double>(w.fit.bins.size());
   for (const auto& bin : w.fit.bins) largest = std::max(largest, std::fabs(bin.deviation - mean));
   for (auto& input : w.readings.inputs) {
     if (input.is.id != "device-fixed") continue;
@@ -93,8 +92,8 @@ void begin_budget(Work& w) {
 }
 
 /// Derivative of a radial distance about the least-squares centre by the means of the fit.
-std::vector<double> by_bins(const Work& w, const std::vector<CircleReading>& path, std::size_t outer,
-                            std::optional<std::size_t> inner) {
+std::vector<double> by_bins(const Work& w, const std::vector<CircleReading>& path,
+                            std::size_t outer, std::optional<std::size_t> inner) {
   std::vector<double> row(w.fit.bins.size(), 0.0);
   bool plus = false, minus = false;
   for (const CircleReading& r : path) (r.direction > 0 ? plus : minus) = true;
@@ -108,7 +107,8 @@ std::vector<double> by_bins(const Work& w, const std::vector<CircleReading>& pat
       const auto& bin = w.fit.bins[b];
       const double off = std::fabs(std::remainder(bin.angle - r.angle, 2.0 * std::numbers::pi));
       if (bin.direction == r.direction && off < distance) nearest = b, distance = off;
-      if (bin.direction > 0 ? plus : minus) row[b] -= sign * 2.0 / n * std::cos(bin.angle - r.angle);
+      if (bin.direction > 0 ? plus : minus)
+        row[b] -= sign * 2.0 / n * std::cos(bin.angle - r.angle);
     }
     row[nearest] += sign;
   };
@@ -165,8 +165,8 @@ void circle_values(Work& w) {
   const auto& radius = w.fit.of[static_cast<std::size_t>(Cause::radius)];
   if (w.circle.both()) add(w, "D", ls.radius, Quantity::deviation, radius.u, radius.by_bin);
   const bool commanded = w.in.options.text("F_about") == "commanded";
-  const PathCircle F = math::about(w.circle.readings, w.circle.R,
-                                   commanded ? std::array<double, 2>{} : ls.centre);
+  const PathCircle F =
+      math::about(w.circle.readings, w.circle.R, commanded ? std::array<double, 2>{} : ls.centre);
   for (const bool outer : {true, false}) {
     std::vector<double> by =
         by_bins(w, w.circle.readings, outer ? F.outermost : F.innermost, std::nullopt);
@@ -179,7 +179,8 @@ void spikes(Work& w, double total) {
   for (std::size_t k = 0; k < 2; ++k) {
     const math::Spike* worst = nullptr;
     for (const math::Spike& s : all)
-      if (s.of_v == (k == 1) && (worst == nullptr || std::fabs(s.height) > std::fabs(worst->height)))
+      if (s.of_v == (k == 1) &&
+          (worst == nullptr || std::fabs(s.height) > std::fabs(worst->height)))
         worst = &s;
     if (worst == nullptr) continue;
     add(w, "spike_" + w.circle.axis[k], worst->height, Quantity::deviation, worst->u,
@@ -211,13 +212,14 @@ void causes(Work& w, const circle::Wish& wish) {
     const double U = last.U.value_or(last.repeatability.value_or(2.0 * v.u));
     if (!(std::fabs(v.value) > U) || !(total > 0.0)) continue;
     const double share = v.alone / total;
-    Finding f{.id = v.finding,
-              .attention = share >= share_for_attention,
-              .evidence = {{"value", v.value, v.quantity},
-                           {"U", U, v.quantity},
-                           {"alone", v.alone, Quantity::deviation},
-                           {"share", share, Quantity::ratio}},
-              .texts = {{"name", v.name}, {"first", w.circle.axis[0]}, {"second", w.circle.axis[1]}}};
+    Finding f{
+        .id = v.finding,
+        .attention = share >= share_for_attention,
+        .evidence = {{"value", v.value, v.quantity},
+                     {"U", U, v.quantity},
+                     {"alone", v.alone, Quantity::deviation},
+                     {"share", share, Quantity::ratio}},
+        .texts = {{"name", v.name}, {"first", w.circle.axis[0]}, {"second", w.circle.axis[1]}}};
     if (!v.axis.empty()) f.texts.emplace_back("axis", v.axis);
     ranked.emplace_back(share, std::move(f));
   }
@@ -268,8 +270,15 @@ math::CircleModel model_of(const Work& w) {
 Expected<Evaluation> analyse(const AnalysisInput& in) {
   auto circle = circle::circle_of(in.measurement, in.observations);
   if (!circle) return fail(circle.error());
-  Work w{in, std::move(*circle), in.options.text("centre") != "least-squares",
-         in.options.flag("calibrated_length"), {}, {}, {}, {}, {}};
+  Work w{in,
+         std::move(*circle),
+         in.options.text("centre") != "least-squares",
+         in.options.flag("calibrated_length"),
+         {},
+         {},
+         {},
+         {},
+         {}};
   w.model = model_of(w);
   auto fit = math::fit_causes(w.circle.readings, w.model);
   if (!fit) {
@@ -292,17 +301,27 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 }
 
 std::vector<Option> options() {
-  return {{"centre", std::string("minimum-zone"), "",
-           "Centre of the two circles of G, G(b) and H.",
-           {"minimum-zone", "least-squares"}},
-          {"F_about", std::string("least-squares"), "",
-           "Centre of F: the least-squares one, or the commanded one if the bar's ball stood there.",
-           {"least-squares", "commanded"}},
-          {"calibrated_length", false, "",
-           "Whether the readings are deviations from the commanded radius (a calibrated bar): "
-           "needed for D and F."},
-          {"leave_out_deg", 2.0, "deg",
-           "Readings left out of the fit on both sides of each reversal.", {}, 0.0, 20.0}};
+  return {
+      {"centre",
+       std::string("minimum-zone"),
+       "",
+       "Centre of the two circles of G, G(b) and H.",
+       {"minimum-zone", "least-squares"}},
+      {"F_about",
+       std::string("least-squares"),
+       "",
+       "Centre of F: the least-squares one, or the commanded one if the bar's ball stood there.",
+       {"least-squares", "commanded"}},
+      {"calibrated_length", false, "",
+       "Whether the readings are deviations from the commanded radius (a calibrated bar): "
+       "needed for D and F."},
+      {"leave_out_deg",
+       2.0,
+       "deg",
+       "Readings left out of the fit on both sides of each reversal.",
+       {},
+       0.0,
+       20.0}};
 }
 
 }  // namespace

@@ -32,7 +32,9 @@ const Plane* circle_plane(const Observations& o, const SpaceReadings& s, std::si
   if (o.sense.empty() || o.angular || of_ball_centres(o)) return nullptr;
   const auto rows = rows_of(o, line);
   if (rows.size() < 8) return nullptr;
-  const auto between = [](const V& a, const V& b) { return V{a[0] - b[0], a[1] - b[1], a[2] - b[2]}; };
+  const auto between = [](const V& a, const V& b) {
+    return V{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+  };
   const auto place = [&](std::size_t i) { return V{s.lever(0, i), s.lever(1, i), s.lever(2, i)}; };
   const std::size_t first = rows.front();
   std::size_t far = first;
@@ -52,9 +54,8 @@ const Plane* circle_plane(const Observations& o, const SpaceReadings& s, std::si
   }
   for (const Plane& plane : planes) {
     const std::size_t third = 3 - plane.first - plane.second;
-    if (std::all_of(rows.begin(), rows.end(), [&](std::size_t i) {
-          return std::fabs(o.sense_of(i)[third]) < 1e-6;
-        }))
+    if (std::all_of(rows.begin(), rows.end(),
+                    [&](std::size_t i) { return std::fabs(o.sense_of(i)[third]) < 1e-6; }))
       return &plane;
   }
   return nullptr;
@@ -123,7 +124,8 @@ Expected<Effect::Columns> mismatch(const Observations& o, const Axis& place,
     const Plane* plane = circle_plane(o, s, line);
     if (plane == nullptr || place.name != plane->name) continue;
     for (const std::size_t i : rows_of(o, line))
-      out[0][i] = turn_of(o, *plane, i) * o.sense_of(i)[plane->first] * o.sense_of(i)[plane->second];
+      out[0][i] =
+          turn_of(o, *plane, i) * o.sense_of(i)[plane->first] * o.sense_of(i)[plane->second];
   }
   return out;
 }
@@ -141,12 +143,11 @@ NONIO_PLUGIN(registry) {
       .columns = centre,
       .instances = circles,
       .is_nuisance = true});
-  registry.add(
-      Effect{.info = {"servo-mismatch", "1.0.0", "Two axes that follow their command with different lag"},
-             .linear = {{"w", "path lag of the first axis less that of the second",
-                         Quantity::deviation}},
-             .shapes = {},
-             .applies = always,
-             .columns = mismatch,
-             .instances = mismatches});
+  registry.add(Effect{
+      .info = {"servo-mismatch", "1.0.0", "Two axes that follow their command with different lag"},
+      .linear = {{"w", "path lag of the first axis less that of the second", Quantity::deviation}},
+      .shapes = {},
+      .applies = always,
+      .columns = mismatch,
+      .instances = mismatches});
 }

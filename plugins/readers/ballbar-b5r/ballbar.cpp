@@ -158,6 +158,16 @@ Expected<Observations> read_file(const ReadInput& input) {
 }
 
 Expected<Observations> read(const ReadInput& input) {
+  if (input.measurement.kind == "circle") {
+    Error error{
+        "expected the path of the circle; where it lies in a file of Ballbar 20 (.b5r) is not "
+        "known. "
+        "Export the path as text with direction, angle_deg and deviation_um, or list the results "
+        "of "
+        "this file as kind = \"ballbar\""};
+    error.file = input.measurement.file;
+    return fail(std::move(error));
+  }
   auto obs = read_file(input);
   if (!obs) obs.error().file = input.measurement.file;
   return obs;
@@ -179,7 +189,7 @@ Reader reader() {
   r.info = {"ballbar-b5r", "1.0",
             "Header and results of Renishaw's Ballbar 20 (.b5r), as notes; no readings."};
   r.recognises = recognises;
-  r.reads = [](std::string_view kind) { return kind == "ballbar"; };
+  r.reads = [](std::string_view kind) { return kind == "ballbar" || kind == "circle"; };
   r.read = read;
   return r;
 }

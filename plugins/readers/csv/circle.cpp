@@ -23,8 +23,8 @@ constexpr double circle_turn = 2.0 * std::numbers::pi, circle_deg = std::numbers
 using CircleRuns = std::map<std::pair<std::uint32_t, int>, std::vector<std::size_t>>;
 
 struct Circle {
-  std::string first, second;           ///< axes of the plane
-  std::size_t u = 0, v = 0;            ///< their coordinates
+  std::string first, second;  ///< axes of the plane
+  std::size_t u = 0, v = 0;   ///< their coordinates
   double centre_u = 0.0, centre_v = 0.0, radius = 0.0;
 };
 
@@ -39,7 +39,8 @@ Expected<Circle> circle_of(const Measurement& m) {
   }
   c.u = coordinate_of(c.first), c.v = coordinate_of(c.second);
   if (c.u > 2 || c.v > 2 || !(c.radius > 0.0))
-    return fail("measurement \"" + m.id + "\": expected `plane`, `radius_mm` and `centre` of the circle");
+    return fail("measurement \"" + m.id +
+                "\": expected `plane`, `radius_mm` and `centre` of the circle");
   return c;
 }
 
@@ -55,15 +56,17 @@ CircleRuns runs_of(const Table& table) {
   const auto* run = table.column("run");
   const auto& direction = *table.column("direction");
   for (std::size_t row = 0; row < table.size(); ++row)
-    runs[{run == nullptr ? 1 : static_cast<std::uint32_t>((*run)[row]), direction[row] > 0 ? 1 : -1}]
+    runs[{run == nullptr ? 1 : static_cast<std::uint32_t>((*run)[row]),
+          direction[row] > 0 ? 1 : -1}]
         .push_back(row);
   return runs;
 }
 
 /// The rows that count: all of a run of up to a turn; of a longer one, the turn between the arcs that
 /// `over_travel_deg` states. The angles of a run go one way.
-Expected<std::vector<std::size_t>> evaluated(const Table& table, const std::vector<std::size_t>& rows,
-                                             int direction, double over_travel) {
+Expected<std::vector<std::size_t>> evaluated(const Table& table,
+                                             const std::vector<std::size_t>& rows, int direction,
+                                             double over_travel) {
   constexpr double slack = 1e-9;
   const auto& angle = *table.column("angle_deg");
   double least = INFINITY, most = -INFINITY;
@@ -71,9 +74,8 @@ Expected<std::vector<std::size_t>> evaluated(const Table& table, const std::vect
     least = std::min(least, angle[rows[i]]), most = std::max(most, angle[rows[i]]);
     if (i > 0 && (angle[rows[i]] - angle[rows[i - 1]]) * direction < 0.0)
       return fail(wrong_row(table, rows[i], "angle_deg",
-                            "expected angles that " +
-                                std::string(direction > 0 ? "grow" : "fall") + " in direction " +
-                                (direction > 0 ? "+" : "-") +
+                            "expected angles that " + std::string(direction > 0 ? "grow" : "fall") +
+                                " in direction " + (direction > 0 ? "+" : "-") +
                                 ", row by row (beyond 360 or below 0, if the start is not at 0)"));
   }
   if (most - least <= 360.0 + slack) return rows;
@@ -135,9 +137,8 @@ Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle
     const auto kept = evaluated(table, rows, direction, m.over_travel.value_or(0.0) / circle_deg);
     if (!kept) return fail(kept.error());
     arcs += rows.size() - kept->size();
-    Observations::Line line{m.id + (direction > 0 ? " +" : " -") +
-                                (run == 1 ? "" : " run " + std::to_string(run)),
-                            {}};
+    Observations::Line line{
+        m.id + (direction > 0 ? " +" : " -") + (run == 1 ? "" : " run " + std::to_string(run)), {}};
     for (const std::size_t row : *kept) {
       if (!std::isfinite(deviation[row])) {
         ++obs.missing;
@@ -166,16 +167,16 @@ Expected<Observations> read_circle(const ReadInput& input) {
   const auto circle = circle_of(input.measurement);
   if (!circle) return fail(circle.error());
   auto table = read_table(input.bytes, {{"direction", Kind::sign, true},
-                                              {"angle_deg", Kind::place, true},
-                                              {"deviation_um", Kind::number, true},
-                                              {"run", Kind::whole},
-                                              {"time_s"},
-                                              {"material_c"},
-                                              {"air_c"},
-                                              {"pressure_hpa"},
-                                              {"humidity_pct"}});
-  auto obs = table ? read_rows_of(input, *circle, *table)
-                   : Expected<Observations>(fail(table.error()));
+                                        {"angle_deg", Kind::place, true},
+                                        {"deviation_um", Kind::number, true},
+                                        {"run", Kind::whole},
+                                        {"time_s"},
+                                        {"material_c"},
+                                        {"air_c"},
+                                        {"pressure_hpa"},
+                                        {"humidity_pct"}});
+  auto obs =
+      table ? read_rows_of(input, *circle, *table) : Expected<Observations>(fail(table.error()));
   if (!obs) obs.error().file = input.measurement.file;
   return obs;
 }

@@ -80,9 +80,9 @@ void check_spatial(const nonio::Observations& obs, std::string_view bytes) {
 
 struct World {
   static constexpr std::array spatial_kinds{"diagonal", "step-diagonal", "ball-centres",
-                                            "observations"};
-  static constexpr std::array<std::pair<std::string_view, std::size_t>, 4> spatial_by_words{
-      {{"#diagonal", 0}, {"moved", 1}, {"angle", 2}, {"nx", 3}}};
+                                            "observations", "circle"};
+  static constexpr std::array<std::pair<std::string_view, std::size_t>, 5> spatial_by_words{
+      {{"#diagonal", 0}, {"moved", 1}, {"angle", 2}, {"nx", 3}, {"#circle", 4}}};
 
   nonio::Campaign campaign;
   nonio::Measurement linear, rotary, straightness;
@@ -106,6 +106,10 @@ struct World {
       m.axis = "C";
       m.from = {{"X", 0.0}, {"Y", 0.0}, {"Z", 1.0}};
       m.to = {{"X", 0.8}, {"Y", 0.6}, {"Z", m.kind == "diagonal" ? 1.0 : 1.6}};
+      if (m.kind == "circle") {
+        m.from = {{"X", 0.4}, {"Y", 0.2}};
+        m.to = {{"X", 0.5}, {"Y", 0.2}};
+      }
       spatial.push_back(m);
     }
   }

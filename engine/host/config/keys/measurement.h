@@ -16,7 +16,8 @@ inline constexpr Choice listed_orders[] = {{"pendulum"}, {"as-listed"}, {"unknow
 inline constexpr Choice planes[] = {{"XY"}, {"YZ"}, {"ZX"}};
 inline constexpr Choice linear_axes[] = {{"X"}, {"Y"}, {"Z"}};
 inline constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres"};
-inline constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"}, circle[] = {"circle"};
+inline constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"},
+                       circle[] = {"circle"};
 inline constexpr Words diagonals[] = {"diagonal", "step-diagonal"};
 inline constexpr Words an_end = "the axis positions of that end, { X = 0, Y = 0 }";
 inline constexpr Key measurement_keys[] = {
@@ -141,8 +142,8 @@ inline constexpr Key measurement_keys[] = {
      .unit = "mm",
      .only = {"kind", circle},
      .needed = {"kind", circle},
-     .wanted = "expected a radius from 1 to 10000 mm",
      .missing = "the commanded radius of the circle",
+     .wanted = "expected a radius from 1 to 10000 mm",
      .least = 1.0,
      .most = 1e4},
     {.name = "centre",

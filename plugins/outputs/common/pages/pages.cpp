@@ -138,17 +138,20 @@ std::string circle_test(const Source& source, const Measured& m) {
   for (const auto& [axis, to] : m.measurement.to)
     if (const auto from = m.measurement.from.find(axis); from != m.measurement.from.end())
       radius = std::max(radius, std::fabs(to - from->second));
-  const auto number = [&](double v) { return localised(short_text(v, 7), source.language()); };
+  const auto number = [&](double v) {
+    std::string shortest;
+    append_shortest(shortest, std::round(v * 1e6) / 1e6);
+    return localised(shortest, source.language());
+  };
   std::string directions = plus ? source.words.get("plot.ccw") : "";
   if (minus) directions += (plus ? ", " : "") + source.words.get("plot.cw");
   return source.words.get(
       "measurement.circle_test",
       {{"count", std::to_string(o.size())},
        {"radius", number(radius * 1e3)},
-       {"feed", m.measurement.feed
-                    ? source.words.get("measurement.circle_feed",
-                                       {{"feed", number(*m.measurement.feed * 6e4)}})
-                    : ""},
+       {"feed", m.measurement.feed ? source.words.get("measurement.circle_feed",
+                                                      {{"feed", number(*m.measurement.feed * 6e4)}})
+                                   : ""},
        {"directions", directions}});
 }
 
@@ -174,9 +177,10 @@ std::string heading_of(const Source& source, const Measured& m) {
   if (measurement.kind == "ball-centres")
     return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
   if (measurement.kind == "circle")
-    return words.get("measurement.of", {{"heading", words.get("measurement.circle",
-                                                              {{"plane", plane_of(measurement)}})},
-                                        {"id", measurement.id}});
+    return words.get(
+        "measurement.of",
+        {{"heading", words.get("measurement.circle", {{"plane", plane_of(measurement)}})},
+         {"id", measurement.id}});
   if (measurement.kind == "step-diagonal")
     return words.get("measurement.step_diagonal", {{"id", measurement.id}});
   return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});

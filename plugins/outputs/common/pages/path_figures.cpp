@@ -67,7 +67,8 @@ Paths paths_of(const Measured& m, const Results::Analysed& a) {
     path.points.emplace_back(std::atan2(n[v], n[u]), r);
   }
   for (auto& [key, path] : paths) {
-    for (auto& [angle, r] : path.points) r -= mean, out.largest = std::max(out.largest, std::fabs(r));
+    for (auto& [angle, r] : path.points)
+      r -= mean, out.largest = std::max(out.largest, std::fabs(r));
     std::sort(path.points.begin(), path.points.end());
     out.all.push_back(std::move(path));
   }
@@ -88,8 +89,9 @@ void add_ring(Plot& plot, double radius, Colour colour, double width, Dash dash)
 Plot polar(const Source& source, const Paths& paths) {
   const Style& style = source.look.style;
   const double division = round_factor(std::max(paths.largest, 0.003) / 3.0 * 2.4999);
-  const std::string text =
-      localised(short_text(division, 3), source.language());
+  std::string text;
+  append_shortest(text, std::round(division * 1e6) / 1e6);
+  text = localised(text, source.language());
   Plot plot;
   plot.title = source.words.get("plot.polar", {{"division", text}});
   plot.x_title = source.words.get("plot.polar_scale", {{"division", text}});
@@ -162,7 +164,7 @@ std::optional<BarChart> causes(const Source& source, const Results::Analysed& a)
   chart.title = source.words.get("plot.causes");
   chart.x_title = source.words.get("plot.causes_axis");
   chart.language = source.language();
-  chart.series = {{"", source.look.style.plus}};
+  chart.series = {{source.words.get("plot.causes_axis"), source.look.style.plus}};
   for (auto& [um, row] : rows) {
     row.bars[0].text = localised(fixed_text(um, um < 10.0 ? 1 : 0), source.language()) + "  (" +
                        fixed_text(100.0 * um / total, 0) + " %)";
@@ -187,7 +189,8 @@ void add_path(const Source& source, const Measured& m, Blocks& blocks) {
   const std::string field = "plots of measurement " + m.measurement.id;
   Columns row;
   row.parts.push_back({{std::move(*plot), field}});
-  if (auto chart = causes(source, *analysis_of(m))) row.parts.push_back({{std::move(*chart), field}});
+  if (auto chart = causes(source, *analysis_of(m)))
+    row.parts.push_back({{std::move(*chart), field}});
   blocks.push_back({Spacer{4}});
   blocks.push_back({std::move(row), field});
 }

@@ -41,6 +41,65 @@ Expected<Observations> read_text(const std::string& text, const std::string& kin
   return read_text(text, measurement(kind));
 }
 
+Measurement circle_of(const std::string& plane) {
+  Measurement m;
+  m.id = "C1", m.kind = "circle", m.file = "c1.csv";
+  m.from = {{plane.substr(0, 1), 0.4}, {plane.substr(1), 0.2}};
+  m.to = {{plane.substr(0, 1), 0.5}, {plane.substr(1), 0.2}};
+  return m;
+}
+
+TEST(Circle, AnglesGoFromTheFirstAxisToTheSecond) {
+  const std::string rows =
+      "direction,angle_deg,deviation_um\n+,0,1\n+,30,2\n+,90,nan\n+,200,4\n-,300,5\n-,0,6\n";
+  for (const std::string plane : {"XY", "YZ", "ZX"}) {
+    const auto obs = read_text(rows, circle_of(plane));
+    ASSERT_TRUE(obs) << obs.error().message;
+    const auto *u = obs->axis(plane.substr(0, 1)), *v = obs->axis(plane.substr(1));
+    ASSERT_NE(u, nullptr), ASSERT_NE(v, nullptr);
+    ASSERT_EQ(obs->size(), 5U);
+    EXPECT_EQ(obs->missing, 1U);
+    EXPECT_DOUBLE_EQ(u->position[0], 0.5);
+    EXPECT_NEAR(u->position[1], 0.4 + 0.1 * std::cos(std::numbers::pi / 6.0), 1e-15);
+    EXPECT_NEAR(v->position[1], 0.25, 1e-15);
+    // At 0 deg the first axis is at its end: it came there towards +, then goes back.
+    EXPECT_EQ(u->approach, (std::vector<std::int8_t>{1, -1, 1, -1, 1}));
+    EXPECT_EQ(v->approach, (std::vector<std::int8_t>{1, 1, -1, -1, -1}));
+    ASSERT_EQ(obs->lines.size(), 2U);
+    EXPECT_EQ(obs->lines[0].name, "C1 +");
+    EXPECT_EQ(obs->lines[1].name, "C1 -");
+    EXPECT_NEAR(obs->sense[1][coordinate_of(plane.substr(1))], 0.5, 1e-15);
+  }
+}
+
+TEST(Circle, RowsThatDoNotTurnAreRefused) {
+  const std::string head = "direction,angle_deg,deviation_um\n";
+  for (const std::string wrong : {"+,0,1\n+,20,1\n+,10,1\n", "-,0,1\n-,10,1\n", "+,,1\n", "x,0,1\n",
+                                  "+,0,one\n", "+,0,nan\n", ""})
+    EXPECT_FALSE(read_text(head + wrong, circle_of("XY"))) << wrong;
+  const auto error = read_text(head + "+,0,1\n+,20,1\n+,10,1\n", circle_of("XY")).error();
+  EXPECT_EQ(error.line, 4U);
+  EXPECT_EQ(error.column, "angle_deg");
+  Measurement none;
+  none.id = "C1", none.kind = "circle";
+  EXPECT_FALSE(read_text(head + "+,0,1\n", none));
+}
+
+TEST(Circle, ArcsBeforeAndBehindTheTurnAreNotEvaluated) {
+  std::string rows = "direction,angle_deg,deviation_um\n";
+  for (int i = -30; i <= 390; i += 10) rows += "+," + std::to_string(i) + ",1\n";
+  Measurement m = circle_of("XY");
+  EXPECT_FALSE(read_text(rows, m));  // more than a turn, and nobody said why
+  m.over_travel = 30.0 * std::numbers::pi / 180.0;
+  const auto obs = read_text(rows, m);
+  ASSERT_TRUE(obs) << obs.error().message;
+  EXPECT_EQ(obs->size(), 37U);  // 0 to 360
+  ASSERT_EQ(obs->notes.size(), 1U);
+  EXPECT_EQ(obs->notes[0].id, "csv.over-travel");
+  m.over_travel = 10.0 * std::numbers::pi / 180.0;
+  EXPECT_FALSE(read_text(rows, m));
+}
+
 TEST(Diagonal, DistancesBecomePositionsOfBothAxes) {
   const auto obs =
       read_text("run,direction,target_mm,deviation_um\n1,+,500,-1.5\n1,-,15000,2\n", "diagonal");

@@ -41,8 +41,8 @@ struct CircleReading {
 /// About one centre: m from the commanded one; radii less R.
 struct PathCircle {
   std::array<double, 2> centre{};
-  double radius = 0.0;            ///< of the least-squares circle, less R
-  double inner = 0.0, outer = 0.0;  ///< least and largest distance, less R
+  double radius = 0.0;                       ///< of the least-squares circle, less R
+  double inner = 0.0, outer = 0.0;           ///< least and largest distance, less R
   std::size_t innermost = 0, outermost = 0;  ///< readings
   double width() const { return outer - inner; }
 };
@@ -85,12 +85,12 @@ enum class Cause : std::uint8_t {
 constexpr std::size_t cause_count = static_cast<std::size_t>(Cause::count);
 
 struct CircleModel {
-  double R = 0.0;                         ///< m
-  std::array<double, 2> centre{};         ///< of the circle, machine coordinates, m
-  std::array<double, 2> pitch{};          ///< of the drives, m; 0: not known
+  double R = 0.0;                          ///< m
+  std::array<double, 2> centre{};          ///< of the circle, machine coordinates, m
+  std::array<double, 2> pitch{};           ///< of the drives, m; 0: not known
   std::array<bool, cause_count> wanted{};  ///< set by `all_causes`
-  double leave_out = 0.0;                 ///< rad, on both sides of each reversal
-  bool correlated = true;                 ///< false: as if each mean had noise of its own only
+  double leave_out = 0.0;                  ///< rad, on both sides of each reversal
+  bool correlated = true;                  ///< false: as if each mean had noise of its own only
 };
 /// What readings of these directions and pitches can be asked for.
 void all_causes(CircleModel&, bool both_directions);
@@ -102,7 +102,7 @@ struct CauseFit {
   struct Value {
     bool fitted = false;
     double value = 0.0, u = 0.0, dof = 0.0;
-    double inflation = 1.0;       ///< variance against that of the column alone
+    double inflation = 1.0;        ///< variance against that of the column alone
     std::vector<double> by_bin{};  ///< derivative by the mean of each bin
   };
   std::array<Value, cause_count> of;
@@ -113,9 +113,9 @@ struct CauseFit {
     int direction = 1;
   };
   std::vector<Bin> bins;
-  double s = 0.0;          ///< standard deviation of a bin's residual
+  double s = 0.0;            ///< standard deviation of a bin's residual
   double correlation = 0.0;  ///< of neighbouring bins (1 deg apart)
-  double dof = 0.0;        ///< effective, the least of all causes
+  double dof = 0.0;          ///< effective, the least of all causes
   double covariance(Cause a, Cause b) const;
   std::vector<double> covariance_of{};  ///< cause_count x cause_count; 0 where not fitted
 };
@@ -130,7 +130,7 @@ Expected<CauseFit> fit_causes(std::span<const CircleReading>, const CircleModel&
 struct Spike {
   double at = 0.0;  ///< angle of the reversal, rad
   int direction = 1;
-  bool of_v = false;  ///< the second axis reverses there
+  bool of_v = false;                 ///< the second axis reverses there
   double height = 0.0, width = 0.0;  ///< m, rad
   double u = 0.0;                    ///< of the height
 };

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "nonio/math/circle.h"
+
+/// Circles of a machine that knows no formula of the decomposition: two axes that follow a command
+/// as first-order lags follow a sine, come back late by their play over an arc, stick at a reversal,
+/// travel on an arc, stand askew and have scales and waves of their drives. What is read is the
+/// distance of the point from where the bar stood.
+namespace exact {
+
+constexpr double pi = std::numbers::pi, deg = pi / 180.0;
+
+struct Mill {
+  double R = 0.15, F = 1.0 / 60.0, pitch = 0.01;  // m, m/s, m
+  double squareness = 0.0;                        // C0Y
+  struct Axis {
+    double scale = 0.0, lag = 2e-3, play = 0.0, lateral = 0.0, stick = 0.0, wave = 0.0, phase = 0.0,
+           sagitta = 0.0, zero = 0.0;
+  };
+  std::array<Axis, 2> axis;
+  std::array<double, 2> centre{0.4, 0.25};
+};
+
+struct Noise {
+  double white = 0.0, slow = 0.0, rho = 0.0;  // m, m, correlation of readings half a degree apart
+};
+
+/// A machine with everything, of the sizes of workshops.
+inline Mill any_mill(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  Mill m;
+  m.squareness = 40e-6 * u(random);
+  for (auto& a : m.axis) {
+    a.scale = 20e-6 * u(random), a.lag = 2e-3 + 0.4e-3 * u(random);
+    a.play = 4e-6 * u(random), a.lateral = 2e-6 * u(random);
+    a.stick = 3e-6 * std::fabs(u(random)), a.sagitta = 2e-6 * u(random);
+    a.wave = 1.5e-6 * (0.6 + 0.4 * u(random)), a.phase = pi * u(random);
+    a.zero = 20e-6 * u(random);
+  }
+  return m;
+}
+
+/// Where one axis is, from the centre of the circle, and +1 .. -1: which way it presses.
+inline std::pair<double, double> place(const Mill& m, std::size_t k, double t, int d) {
+  const Mill::Axis& a = m.axis[k];
+  const double w = m.F / m.R, behind = t - d * std::atan(w * a.lag), turned = k == 0 ? 0.0 : pi / 2.0;
+  double x = m.R / std::sqrt(1.0 + w * w * a.lag * a.lag) *
+             (k == 0 ? std::cos(behind) : std::sin(behind));
+  double way = d * (behind - turned);
+  way -= pi * std::floor(way / pi);
+  const double outside = std::cos(behind - d * way - turned) > 0.0 ? 1.0 : -1.0;
+  const double taken = std::min(1.0, way / (1.5 * deg));
+  x += a.scale * x + outside * a.play * (taken - 0.5) +
+       outside * a.stick * std::exp(-way / (0.35 * deg)) +
+       a.wave * std::sin(2.0 * pi * (x + m.centre[k]) / m.pitch + a.phase);
+  return {x, outside * (1.0 - 2.0 * taken)};
+}
+
+inline double radius(const Mill& m, double t, int d) {
+  const auto [x, way_x] = place(m, 0, t, d);
+  const auto [y, way_y] = place(m, 1, t, d);
+  const double X = x - m.squareness * y + m.axis[1].lateral / 2.0 * way_y +
+                   m.axis[1].sagitta * y * y / (m.R * m.R),
+               Y = y + m.axis[0].lateral / 2.0 * way_x + m.axis[0].sagitta * x * x / (m.R * m.R);
+  return std::hypot(X - m.axis[0].zero, Y - m.axis[1].zero);
+}
+
+/// One run in each direction of `directions`, a reading every half degree.
+inline std::vector<nonio::math::CircleReading> circle(const Mill& m, const Noise& noise,
+                                                      std::mt19937_64& random,
+                                                      std::vector<int> directions = {1, -1}) {
+  constexpr int readings = 720;
+  std::normal_distribution<double> g;
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  std::vector<nonio::math::CircleReading> out;
+  for (const int d : directions) {
+    const double grown = noise.white > 0.0 ? 0.5e-6 * u(random) : 0.0;
+    double slow = g(random);
+    for (int i = 0; i < readings; ++i) {
+      const double s = 2.0 * pi * (i + 0.5) / readings, t = d > 0 ? s : 2.0 * pi - s;
+      slow = noise.rho * slow + std::sqrt(1.0 - noise.rho * noise.rho) * g(random);
+      out.push_back({t, radius(m, t, d) - m.R + grown + noise.white * g(random) + noise.slow * slow,
+                     d, 1});
+    }
+  }
+  return out;
+}
+
+/// What the decomposition should say, by cause; NaN where it says nothing.
+inline std::vector<std::pair<nonio::math::Cause, double>> truth(const Mill& m) {
+  using nonio::math::Cause;
+  const auto &x = m.axis[0], &y = m.axis[1];
+  return {{Cause::scale_mismatch, x.scale - y.scale}, {Cause::squareness, m.squareness},
+          {Cause::servo_mismatch, m.F * (x.lag - y.lag)}, {Cause::reversal_u, -x.play},
+          {Cause::reversal_v, -y.play},  {Cause::lateral_u, x.lateral},
+          {Cause::lateral_v, y.lateral}, {Cause::bow_u, x.sagitta}, {Cause::bow_v, y.sagitta}};
+}
+
+inline nonio::math::CircleModel model(const Mill& m, bool both = true) {
+  nonio::math::CircleModel out;
+  out.R = m.R, out.centre = m.centre, out.pitch = {m.pitch, m.pitch};
+  out.leave_out = 2.0 * deg;
+  nonio::math::all_causes(out, both);
+  return out;
+}
+
+/// Shares of causes within 2 u of the truth.
+struct Coverage {
+  int within = 0, all = 0;
+  double share() const { return 100.0 * within / all; }
+};
+
+/// Of so many circles, by cause; the amplitude of the wave of X last.
+inline std::vector<Coverage> coverage(int circles, const Noise& noise, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<Coverage> out(truth({}).size() + 1);
+  for (int i = 0; i < circles; ++i) {
+    const Mill m = any_mill(random);
+    const auto fit = nonio::math::fit_causes(circle(m, noise, random), model(m));
+    if (!fit) return {};
+    const auto count = [&](std::size_t k, double found, double u, double wanted) {
+      ++out[k].all, out[k].within += std::fabs(found - wanted) <= 2.0 * u ? 1 : 0;
+    };
+    const auto wanted = truth(m);
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      const auto& v = fit->of[static_cast<std::size_t>(wanted[k].first)];
+      count(k, v.value, v.u, wanted[k].second);
+    }
+    using nonio::math::Cause;
+    const auto &a = fit->of[static_cast<std::size_t>(Cause::cyclic_u_sin)],
+               &b = fit->of[static_cast<std::size_t>(Cause::cyclic_u_cos)];
+    const double c = std::hypot(a.value, b.value);
+    count(wanted.size(), c, std::hypot(a.value * a.u, b.value * b.u) / c, m.axis[0].wave);
+  }
+  return out;
+}
+
+/// The scenarios that the documents state.
+struct Scenario {
+  const char* name;
+  Noise noise;
+};
+constexpr Scenario scenarios[] = {{"white", {0.2e-6, 0.0, 0.0}},
+                                  {"correlated over 5 deg", {0.05e-6, 0.3e-6, 0.9}},
+                                  {"both", {0.15e-6, 0.15e-6, 0.9}}};
+
+}  // namespace exact
