@@ -96,7 +96,7 @@ std::vector<RuleTable> tables_of(std::vector<RuleColumn> columns) {
   return out;
 }
 
-/// A title is not broken within itself.
+/// A title is not broken at its spaces.
 std::string titles_in_line(const std::vector<std::string>& titles) {
   std::string out;
   for (const std::string& title : titles) {
@@ -104,8 +104,6 @@ std::string titles_in_line(const std::vector<std::string>& titles) {
     for (const char c : title)
       if (c == ' ')
         out += "\u00a0";
-      else if (c == '-')
-        out += "\u2011";
       else
         out += c;
   }
