@@ -13,6 +13,7 @@
 #include <ctime>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "axis_builder.h"
@@ -48,7 +49,10 @@ Campaign campaign() {
   Environment& e = c.environment;
   e.misalignment = 5e-4, e.temperature_range = 0.2, e.temperature_difference = 0.5;
   e.expansion_range = 1e-6, e.drift = 5e-7;
-  c.measurements.push_back({.id = "X", .kind = "axis", .axis = "X"});
+  Measurement m;
+  m.id = m.axis = "X";
+  m.kind = "axis";
+  c.measurements.push_back(std::move(m));
   return c;
 }
 

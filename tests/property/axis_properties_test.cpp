@@ -207,12 +207,13 @@ TEST_P(AxisProperties, AShiftChangesNmtbaWithOffsetAndNothingElse) {
   SCOPED_TRACE("seed " + std::to_string(GetParam()));
   Observations shifted = s.observations;
   for (double& d : shifted.deviation) d += 0.25;
-  const ByName before = by_every_rule(s.observations), after = by_every_rule(shifted);
-  for (const auto& [name, value] : before)
-    if (name.starts_with("nmtba:+-accuracy"))
+  const ByName first = by_every_rule(s.observations), after = by_every_rule(shifted);
+  for (const auto& [name, value] : first)
+    if (name.starts_with("nmtba:+-accuracy")) {
       EXPECT_GT(after.at(name), 0.2) << name;
-    else
+    } else {
       EXPECT_NEAR(after.at(name), value, 1e-15) << name;
+    }
 }
 
 TEST_P(AxisProperties, EveryRuleScalesAndSwaps) {
@@ -220,9 +221,9 @@ TEST_P(AxisProperties, EveryRuleScalesAndSwaps) {
   Observations scaled = s.observations, swapped = s.observations;
   for (double& d : scaled.deviation) d *= 4.0;  // exact
   for (auto& approach : swapped.axes[0].approach) approach = static_cast<std::int8_t>(-approach);
-  const ByName before = by_every_rule(s.observations), larger = by_every_rule(scaled),
+  const ByName first = by_every_rule(s.observations), larger = by_every_rule(scaled),
                other = by_every_rule(swapped);
-  for (const auto& [name, value] : before) {
+  for (const auto& [name, value] : first) {
     EXPECT_NEAR(larger.at(name), 4.0 * value, 1e-17) << name;
     if (name.starts_with("jis-63") && name.ends_with(":accuracy")) continue;  // of the first pass
     std::string there = name;
@@ -257,8 +258,9 @@ TEST_P(AxisProperties, OneDirectionGivesWhatItCanAndNoMore) {
     const bool of_plus =
         name.ends_with('+') || (name.starts_with("jis-63") && !name.ends_with("motion"));
     EXPECT_EQ(std::isfinite(value), of_plus) << name;
-    if (name.ends_with('+') && !name.starts_with("nmtba-no"))
+    if (name.ends_with('+') && !name.starts_with("nmtba-no")) {
       EXPECT_EQ(value, both.at(name)) << name;
+    }
   }
 }
 

@@ -31,7 +31,7 @@ namespace nonio::math {
 namespace {
 
 using Form = RuleForm;
-using C = Confidence;
+using Sure = Confidence;
 
 /// Ranges of mean +- k s; E and M came with k = 2.
 constexpr PositioningRule ranges(double k, std::string_view name, std::string_view title,
@@ -40,33 +40,34 @@ constexpr PositioningRule ranges(double k, std::string_view name, std::string_vi
 }
 constexpr PositioningRule of_nmtba(std::string_view name, std::string_view title,
                                    bool without_offset) {
-  return {name, title, Form::nmtba, 3.0, false, without_offset, 0, C::inferred};
+  return {name, title, Form::nmtba, 3.0, false, without_offset, 0, Sure::inferred};
 }
 constexpr PositioningRule one_pass(std::string_view name, std::string_view title) {
-  return {name, title, Form::jis, 0.0, false, false, 7, C::inferred};
+  return {name, title, Form::jis, 0.0, false, false, 7, Sure::inferred};
 }
 
 const std::array rules = {
-    ranges(3.0, "iso-1988", "ISO 230-2:1988", 5, C::proved),
-    ranges(2.0, "iso-1997", "ISO 230-2:1997", 5, C::known),
-    ranges(2.0, "iso-2006", "ISO 230-2:2006", 5, C::proved),
-    ranges(2.0, "iso-2014", "ISO 230-2:2014", 5, C::proved),
-    PositioningRule{"upr", "UPR (ISO 230-2:2014)", Form::upr, 2.0, false, false, 5, C::proved},
-    PositioningRule{"vdi-3441", "VDI/DGQ 3441:1977", Form::vdi, 3.0, false, false, 5, C::known},
-    PositioningRule{"b5.54-1992", "ASME B5.54-1992", Form::raw, 0.0, false, false, 0, C::inferred},
-    ranges(2.0, "b5.54-2005", "ASME B5.54-2005", 5, C::known),
-    ranges(2.0, "b5.57-2012", "ASME B5.57-2012", 5, C::known),
+    ranges(3.0, "iso-1988", "ISO 230-2:1988", 5, Sure::proved),
+    ranges(2.0, "iso-1997", "ISO 230-2:1997", 5, Sure::known),
+    ranges(2.0, "iso-2006", "ISO 230-2:2006", 5, Sure::proved),
+    ranges(2.0, "iso-2014", "ISO 230-2:2014", 5, Sure::proved),
+    PositioningRule{"upr", "UPR (ISO 230-2:2014)", Form::upr, 2.0, false, false, 5, Sure::proved},
+    PositioningRule{"vdi-3441", "VDI/DGQ 3441:1977", Form::vdi, 3.0, false, false, 5, Sure::known},
+    PositioningRule{"b5.54-1992", "ASME B5.54-1992", Form::raw, 0.0, false, false, 0,
+                    Sure::inferred},
+    ranges(2.0, "b5.54-2005", "ASME B5.54-2005", 5, Sure::known),
+    ranges(2.0, "b5.57-2012", "ASME B5.57-2012", 5, Sure::known),
     of_nmtba("nmtba", "NMTBA 1972", false),
     of_nmtba("nmtba-no-offset", "NMTBA 1972 (w/o offset)", true),
-    ranges(3.0, "bs-3800", "BS 3800-2:1991", 5, C::known),
-    ranges(3.0, "bs-4656-16", "BS 4656-16:1985", 0, C::inferred),
+    ranges(3.0, "bs-3800", "BS 3800-2:1991", 5, Sure::known),
+    ranges(3.0, "bs-4656-16", "BS 4656-16:1985", 0, Sure::inferred),
     one_pass("jis-6330", "JIS B 6330-1980"),
     one_pass("jis-6336-1980", "JIS B 6336-1980"),
     one_pass("jis-6336-1986", "JIS B 6336-1986"),
-    ranges(2.0, "jis-6190-2", "JIS B 6190-2 (ISO 230-2:2014)", 5, C::known),
-    ranges(3.0, "gb-10931", "GB 10931-89", 5, C::known),
-    ranges(2.0, "gb-17421.2-2000", "GB/T 17421.2-2000", 5, C::known),
-    ranges(2.0, "gb-17421.2-2016", "GB/T 17421.2-2016", 5, C::known),
+    ranges(2.0, "jis-6190-2", "JIS B 6190-2 (ISO 230-2:2014)", 5, Sure::known),
+    ranges(3.0, "gb-10931", "GB 10931-89", 5, Sure::known),
+    ranges(2.0, "gb-17421.2-2000", "GB/T 17421.2-2000", 5, Sure::known),
+    ranges(2.0, "gb-17421.2-2016", "GB/T 17421.2-2016", 5, Sure::known),
 };
 
 // Of a difference of two readings the environment can make as much as its whole range.

@@ -75,7 +75,8 @@ std::string meanings(const Source& source, const std::vector<Shown>& all) {
   std::string text;
   std::set<std::string> said;
   for (const Shown& s : all) {
-    const std::string meaning = source.words.get_or("value." + s.value->name, "");
+    const std::string meaning =
+        source.words.get_or("value." + pages::without_rule(s.value->name), "");
     if (meaning.empty() || !said.insert(s.value->name).second) continue;
     text += (text.empty() ? "" : "; ") + pages::symbol(s.value->name) + ": " + meaning;
   }
@@ -124,7 +125,7 @@ void add_conformity(const Source& source, Blocks& blocks) {
     const Value& v = *s.value;
     const Printed shown = printed_result(v.value, v.U, v.quantity, source.language());
     std::vector<Table::Cell> row = {{s.measured->measurement.id}, {pages::symbol(v.name), true}};
-    if (!brief) row.push_back({w.get_or("value." + v.name, "")});
+    if (!brief) row.push_back({w.get_or("value." + pages::without_rule(v.name), "")});
     row.push_back({shown.value});
     row.push_back({shown.U});
     if (factors)

@@ -70,8 +70,7 @@ std::string method_of(const Source& source, const Results::Analysed& a) {
   if (source.words.get_or(key, "").empty()) return pages::analysis_title(source, a);
   if (const Remark* rules = pages::rules_of(a)) {
     std::string text = source.words.get(key, {{"rules", rules->texts.front().second}});
-    for (const std::string& note : pages::rule_notes(source, a, pages::RuleNotes::sureness))
-      text += " " + note;
+    for (const std::string& note : pages::sureness_of(source, a)) text += " " + note;
     return text;
   }
   return source.words.get(key, {{"edition", edition}, {"k", k}});

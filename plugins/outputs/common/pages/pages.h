@@ -40,6 +40,9 @@ std::vector<Measured> measured(const OutputInput&);
 /// "A+" as the standards print it: "A↑".
 std::string symbol(std::string_view name);
 
+/// "A" of "iso-1988:A", a value of a rule.
+std::string without_rule(const std::string& name);
+
 /// A given number, tolerance or uncertainty: as short as it is, "20" and not "20.00".
 std::string plain_number(const Source&, double si, Quantity);
 

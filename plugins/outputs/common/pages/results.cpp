@@ -214,6 +214,24 @@ std::vector<std::string> undecided(const Source& source) {
   return sentences;
 }
 
+namespace {
+
+/// What no rule has (slopes) stands below their tables.
+void add_by_rules(const Source& source, const Results::Analysed& a, Blocks& blocks) {
+  add_rule_tables(source, a, blocks);
+  Results::Analysed rest = a;
+  std::erase_if(rest.evaluation.values,
+                [](const Value& v) { return v.name.find(':') != std::string::npos; });
+  if (!rest.evaluation.values.empty()) {
+    Block block = value_table(source, rest);
+    std::get<Table>(block.what).title.clear();
+    blocks.push_back(std::move(block));
+  }
+  add_rule_notes(source, a, blocks);
+}
+
+}  // namespace
+
 /// Two tables stand side by side; with tolerances and decisions they need the whole width, and what
 /// is said of the second one stands beside it.
 void add_results(const Source& source, const Measured& m, Blocks& blocks) {
@@ -229,11 +247,7 @@ void add_results(const Source& source, const Measured& m, Blocks& blocks) {
                     [&](const Value& v) { return left_out(source, v); }))
       continue;
     if (rules_of(*a) != nullptr) {
-      add_rules(source, *a, rules);
-      Results::Analysed rest = *a;  // what no rule has: slopes
-      std::erase_if(rest.evaluation.values,
-                    [](const Value& v) { return v.name.find(':') != std::string::npos; });
-      if (!rest.evaluation.values.empty()) rules.push_back({value_table(source, rest)});
+      add_by_rules(source, *a, rules);
       continue;
     }
     parts.push_back({value_table(source, *a)});

@@ -96,9 +96,17 @@ std::vector<RuleTable> tables_of(std::vector<RuleColumn> columns) {
   return out;
 }
 
+/// A title is not broken at its spaces.
 std::string titles_in_line(const std::vector<std::string>& titles) {
   std::string out;
-  for (const std::string& t : titles) out += (out.empty() ? "" : ", ") + t;
+  for (const std::string& title : titles) {
+    out += out.empty() ? "" : ", ";
+    for (const char c : title)
+      if (c == ' ')
+        out += "\u00a0";
+      else
+        out += c;
+  }
   return out;
 }
 
@@ -155,7 +163,18 @@ void add_decisions(const Source& source, const Results::Analysed& a, Blocks& blo
   if (!table.rows.empty()) blocks.push_back({std::move(table), "decisions on rules"});
 }
 
+/// How sure a formula is.
+bool is_sureness(const Remark& note) {
+  return note.id == "rules.known" || note.id.ends_with("inferred");
+}
+
+std::string rule_note(const Source& source, const Remark& note) {
+  return typeset(remark_text(source.in.templates, source.language(), note));
+}
+
 }  // namespace
+
+std::string without_rule(const std::string& name) { return name.substr(name.find(':') + 1); }
 
 const Remark* rules_of(const Results::Analysed& a) {
   for (const Remark& note : a.evaluation.notes)
@@ -163,18 +182,14 @@ const Remark* rules_of(const Results::Analysed& a) {
   return nullptr;
 }
 
-std::vector<std::string> rule_notes(const Source& source, const Results::Analysed& a,
-                                    RuleNotes which) {
+std::vector<std::string> sureness_of(const Source& source, const Results::Analysed& a) {
   std::vector<std::string> out;
-  for (const Remark& note : a.evaluation.notes) {
-    const bool sureness = note.id == "rules.known" || note.id.ends_with("inferred");
-    if (note.id == "rules.evaluated" || sureness != (which == RuleNotes::sureness)) continue;
-    out.push_back(typeset(remark_text(source.in.templates, source.language(), note)));
-  }
+  for (const Remark& note : a.evaluation.notes)
+    if (is_sureness(note)) out.push_back(rule_note(source, note));
   return out;
 }
 
-void add_rules(const Source& source, const Results::Analysed& a, Blocks& blocks) {
+void add_rule_tables(const Source& source, const Results::Analysed& a, Blocks& blocks) {
   const std::string field = "results of " + a.plugin + ", measurement " + a.measurement;
   const bool two_languages =
       source.certificate && source.in.campaign.certificate.languages.size() > 1;
@@ -186,14 +201,25 @@ void add_rules(const Source& source, const Results::Analysed& a, Blocks& blocks)
       table.title = std::exchange(title, {});
       blocks.push_back({std::move(table), field});
     }
+}
+
+void add_rule_notes(const Source& source, const Results::Analysed& a, Blocks& blocks) {
+  const std::string field = "results of " + a.plugin + ", measurement " + a.measurement;
   if (!source.certificate) add_decisions(source, a, blocks);
-  for (const RuleNotes which : {RuleNotes::others, RuleNotes::sureness}) {
-    if (source.certificate && which == RuleNotes::sureness) continue;  // the method says it
-    std::string all;
-    for (const std::string& text : rule_notes(source, a, which))
-      all += (all.empty() ? "" : " ") + text;
-    if (!all.empty()) blocks.push_back({Paragraph{std::move(all), Paragraph::Look::small}, field});
+  std::vector<std::string> paragraphs;
+  bool differ = false;  // the reasons why they differ stand together
+  for (const Remark& note : a.evaluation.notes) {
+    if (note.id == "rules.evaluated" || (source.certificate && is_sureness(note)))
+      continue;  // the table says it, or the method
+    const std::string text = rule_note(source, note);
+    const bool reason = note.id.starts_with("rules.differ");
+    if (reason && std::exchange(differ, true))
+      paragraphs.back() += " " + text;
+    else
+      paragraphs.push_back(text);
   }
+  for (std::string& text : paragraphs)
+    blocks.push_back({Paragraph{std::move(text), Paragraph::Look::small}, field});
 }
 
 }  // namespace nonio::pages

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "pages.h"
 
@@ -11,12 +12,12 @@ namespace nonio::pages {
 /// The note that names the rules and their titles; null if the values are of one method.
 const Remark* rules_of(const Results::Analysed&);
 
-/// Its notes in sentences; formulas: how sure they are, or everything else.
-enum class RuleNotes { sureness, others };
-std::vector<std::string> rule_notes(const Source&, const Results::Analysed&, RuleNotes);
+/// How sure their formulas are, in sentences.
+std::vector<std::string> sureness_of(const Source&, const Results::Analysed&);
 
 /// A column for each rule, a row for each symbol; rules that give the same values share a column.
-/// Then what each rule does, and why they differ.
-void add_rules(const Source&, const Results::Analysed&, Blocks&);
+void add_rule_tables(const Source&, const Results::Analysed&, Blocks&);
+/// Decisions, what each rule does, and why they differ.
+void add_rule_notes(const Source&, const Results::Analysed&, Blocks&);
 
 }  // namespace nonio::pages
