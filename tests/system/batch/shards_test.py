@@ -50,7 +50,7 @@ class Shards(NightTest):
         for i in range(n):
             self.campaign(f"c{i}", extra="[instrument]\nmaker = \"L\"\nserial = \"9\"\nU_fixed_um = 0.2\nU_per_m_um = 0.5\n")
         self.campaign("twin", seed="c1")
-        (self.campaign("wrong") / "x.csv").write_text("run,direction,target_mm,deviation_um\n1,+,a,b\n")
+        (self.campaign("wrong") / "x.csv").write_text("run,direction,target_mm,deviation_um\n1,+,1O8.9,1.0\n")
 
     def test_number_and_order_of_the_shards_do_not_matter(self):
         """Three nights: first, with changes, forced."""
@@ -241,7 +241,7 @@ class Shards(NightTest):
         os.mkdir(folder)
         for name, text in (("campaign.toml", None), ("x.csv", readings(1))):
             with open(os.path.join(folder, name.encode()), "w", encoding="utf-8") as file:
-                file.write(text or 'format = 1\n[campaign]\ndate = 2026-11-03\n[machine]\nmodel = "M"\n[machine.axes.X]\nkind = '
+                file.write(text or 'format = 1\n[campaign]\nid = "a"\ndate = 2026-11-03\n[machine]\nmodel = "M"\n[machine.axes.X]\nkind = '
                            '"linear"\n[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n')
         self.run_nonio("--date", "2026-11-01", expect=0)
         self.night(2, "--date", "2026-11-01", out=self.root / "parts")
