@@ -68,7 +68,7 @@ struct Reader {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return times[a] < times[b]; });
-    const std::size_t group = group_of(m), measurement = out.used.size();
+    const std::size_t group = group_of(m);
     for (std::uint32_t l = 0; l < o.lines.size(); ++l) {
       RigidLine line;
       line.kind = kind_of(m);
@@ -81,17 +81,17 @@ struct Reader {
                                    line.kind == RigidLine::Kind::angle ? Corner{} : o.sense_of(row),
                                    way_of(o, row), o.deviation[row]});
       if (line.readings.empty()) continue;
-      out.budget.push_back(budget_line(line, measurement));
+      out.budget.push_back(budget_line(line));
       out.lines.push_back(std::move(line));
     }
     out.used.push_back(m.id);
     out.tables.push_back(&o);
   }
 
-  BudgetLine budget_line(const RigidLine& line, std::size_t measurement) {
+  BudgetLine budget_line(const RigidLine& line) {
     BudgetLine b;
     b.kind = budget_kind(line.kind);
-    b.group = measurement;
+    b.group = out.lines.size();  // each line is set up anew
     const auto along = [&](const math::RigidReading& r) {
       double sum = 0.0;
       for (std::size_t k = 0; k < 3; ++k)

@@ -4,6 +4,7 @@
 // the error of the tool point in the whole volume.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "lines.h"
 #include "nonio/sdk/format.h"
@@ -14,6 +15,8 @@ using namespace nonio::rigid_body;
 
 namespace {
 
+// Results have names of their own: tables of controls are made from those of each method.
+const std::string of_all = "_all";
 constexpr double enough = 5.0;         // standard uncertainties of a largest error
 constexpr double enough_dof = 3.0;     // of a scatter
 constexpr std::size_t most_shown = 6;  // combinations in a sentence
@@ -151,11 +154,12 @@ void put_results(Work& w) {
   BudgetOf budget(w.model, w.s.scatter[group], w.s.dof[group], Quantity::deviation);
   for (const auto& [name, v] : w.s.squareness)
     if (known)
-      w.out.values.push_back(budget.value(name, v.value, Quantity::small_angle, v.u, v.shares));
+      w.out.values.push_back(
+          budget.value(name + of_all, v.value, Quantity::small_angle, v.u, v.shares));
     else
-      w.out.values.push_back({name, v.value, Quantity::small_angle});
+      w.out.values.push_back({name + of_all, v.value, Quantity::small_angle});
   for (const RigidCurve& c : w.s.curves) {
-    Series series{c.name,
+    Series series{c.name + of_all,
                   std::string(1, "XYZ"[c.axis]),
                   Quantity::length,
                   angular(c.name) ? Quantity::small_angle : Quantity::deviation,
@@ -173,6 +177,9 @@ void put_results(Work& w) {
 /// The names of the axes stand in the series; X1 of a gantry counts as X.
 Expected<Evaluation> analyse(const AnalysisInput& in) {
   Work w{in, lines_of(in), {}, {}, {}};
+  std::size_t moving = 0;
+  for (std::size_t k = 0; k < 3; ++k) moving += w.lines.high[k] > w.lines.low[k] ? 1 : 0;
+  if (w.lines.lines.empty() || moving == 0) return std::move(w.out);
   w.out.uses = w.lines.used;
   std::erase(w.out.uses, in.measurement.id);
   RigidWish wish{w.lines.low, w.lines.high, in.options.texts("errors"),
@@ -193,9 +200,22 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   return std::move(w.out);
 }
 
+/// How many axes the measurements of a state move.
+std::size_t axes_of(const Campaign& c, const std::string& state) {
+  std::set<std::size_t> moved;
+  for (const Measurement& m : c.measurements) {
+    if (!is_taken(c, m) || (!state_of(m).empty() && state_of(m) != state)) continue;
+    if (!m.axis.empty()) moved.insert(coordinate_of(m.axis));
+    for (const auto& [axis, from] : m.from)
+      if (const auto to = m.to.find(axis); to != m.to.end() && to->second != from)
+        moved.insert(coordinate_of(axis));
+  }
+  return moved.size();
+}
+
 /// The first measurement of a state; of every state where nobody names one.
 bool applies(const Campaign& c, const Measurement& of) {
-  if (!is_taken(c, of)) return false;
+  if (!is_taken(c, of) || axes_of(c, state_of(of)) < 2) return false;
   const bool states = std::any_of(c.measurements.begin(), c.measurements.end(), [&](const auto& m) {
     return is_taken(c, m) && !state_of(m).empty();
   });
