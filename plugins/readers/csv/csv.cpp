@@ -381,7 +381,8 @@ bool recognises(std::string_view head) {
 
 bool reads(std::string_view kind) {
   return kind == "axis" || kind == "straightness" || kind == "angle" || kind == "diagonal" ||
-         kind == "step-diagonal" || kind == "ball-centres" || kind == "observations";
+         kind == "step-diagonal" || kind == "ball-centres" || kind == "rtcp" ||
+         kind == "observations";
 }
 
 Expected<Observations> read(const ReadInput& input) {
@@ -389,6 +390,7 @@ Expected<Observations> read(const ReadInput& input) {
   if (kind == "diagonal") return read_diagonal(input);
   if (kind == "step-diagonal") return read_step_diagonal(input);
   if (kind == "ball-centres") return read_ball_centres(input);
+  if (kind == "rtcp") return read_tool_centre(input);
   if (kind == "observations") return read_general(input);
   return read_runs(input);
 }

@@ -7,14 +7,14 @@
 namespace nonio::host::config::declared {
 
 inline constexpr Words axis_runs[] = {"axis"};
-inline constexpr Choice measurement_kinds[] = {
-    {"axis"},          {"straightness"}, {"angle"},        {"diagonal"},
-    {"step-diagonal"}, {"ball-centres"}, {"observations"}, {"ballbar"}};
+inline constexpr Choice measurement_kinds[] = {{"axis"},     {"straightness"},  {"angle"},
+                                               {"diagonal"}, {"step-diagonal"}, {"ball-centres"},
+                                               {"rtcp"},     {"observations"},  {"ballbar"}};
 inline constexpr Choice on_or_off[] = {{"on"}, {"off"}};
 inline constexpr Choice adjustments[] = {{"before"}, {"after"}};
 inline constexpr Choice listed_orders[] = {{"pendulum"}, {"as-listed"}, {"unknown"}};
 inline constexpr Choice linear_axes[] = {{"X"}, {"Y"}, {"Z"}};
-inline constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres"};
+inline constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres", "rtcp"};
 inline constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"};
 inline constexpr Words diagonals[] = {"diagonal", "step-diagonal"};
 inline constexpr Words an_end = "the axis positions of that end, { X = 0, Y = 0 }";

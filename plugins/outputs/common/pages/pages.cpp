@@ -136,6 +136,8 @@ std::string heading_of(const Source& source, const Measured& m) {
     return words.get("measurement.diagonal", {{"id", measurement.id}});
   if (measurement.kind == "ball-centres")
     return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
+  if (measurement.kind == "rtcp")
+    return ids(words.get("measurement.rtcp", {{"axis", measurement.axis}}));
   if (measurement.kind == "step-diagonal")
     return words.get("measurement.step_diagonal", {{"id", measurement.id}});
   return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});

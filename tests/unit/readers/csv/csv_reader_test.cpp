@@ -527,7 +527,7 @@ TEST(Csv, RecognisesItsHeader) {
 
 TEST(Csv, ReadsItsKinds) {
   for (const char* kind : {"axis", "straightness", "angle", "diagonal", "step-diagonal",
-                           "ball-centres", "observations"})
+                           "ball-centres", "rtcp", "observations"})
     EXPECT_TRUE(reads(kind)) << kind;
   for (const char* kind : {"", "Axis", "circular"}) EXPECT_FALSE(reads(kind)) << kind;
 }
