@@ -114,14 +114,15 @@ void add_curves(const Checked& c, const Observations& o, Evaluation& out) {
   }
 }
 
-/// Whether something is left that U does not explain.
+/// Whether something is left that U does not explain: beyond three standard uncertainties, so that of
+/// four good values one in a hundred campaigns says so.
 void tell_left(const Checked& c, Evaluation& out) {
   std::string names;
   bool any = false;
   for (const Value& v : out.values) {
     if (!v.U) continue;
     any = true;
-    if (std::fabs(v.value) > *v.U) names += (names.empty() ? "" : ", ") + v.name;
+    if (std::fabs(v.value) > 3.0 / v.k * *v.U) names += (names.empty() ? "" : ", ") + v.name;
   }
   if (!any) return;
   out.findings.push_back({.id = names.empty() ? "rtcp.nothing-left" : "rtcp.left",
