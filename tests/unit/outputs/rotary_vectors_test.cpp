@@ -192,14 +192,15 @@ TEST(RotaryVectors, SiemensAndFanucVectorsAreTheAxes) {
                     fanuc = file(out, "rotary-vectors-fanuc.txt");
   EXPECT_EQ(siemens.find("TC_CARR7 "), std::string::npos) << "the sign of V1 is not shown";
   EXPECT_TRUE(says(out, "vectors.sign-not-shown"));
+  constexpr int new_one = 2;  // behind "not stated"
   Vec first{}, second{}, closing{};
   for (std::size_t k = 0; k < 3; ++k) {
-    first[k] = number(siemens, "$TC_CARR" + std::to_string(4 + k), 1) * mm;
-    second[k] = number(siemens, "$TC_CARR" + std::to_string(15 + k), 1) * mm;
-    closing[k] = number(siemens, "$TC_CARR" + std::to_string(18 + k), 1) * mm;
+    first[k] = number(siemens, "$TC_CARR" + std::to_string(4 + k), new_one) * mm;
+    second[k] = number(siemens, "$TC_CARR" + std::to_string(15 + k), new_one) * mm;
+    closing[k] = number(siemens, "$TC_CARR" + std::to_string(18 + k), new_one) * mm;
     EXPECT_NEAR(first[k] + second[k] + closing[k], 0.0, 0.3e-6);
-    EXPECT_NEAR(number(fanuc, std::to_string(19700 + k), 1) * mm, first[k], 1e-9);
-    EXPECT_NEAR(number(fanuc, std::to_string(19703 + k), 1) * mm, second[k], 1e-9);
+    EXPECT_NEAR(number(fanuc, std::to_string(19700 + k), new_one) * mm, first[k], 1e-9);
+    EXPECT_NEAR(number(fanuc, std::to_string(19703 + k), new_one) * mm, second[k], 1e-9);
   }
   const Vec meeting{first[0] + second[0], first[1] + second[1], first[2] + second[2]};
   for (const double angle : {25.0, 110.0}) {
@@ -213,7 +214,7 @@ TEST(RotaryVectors, SiemensAndFanucVectorsAreTheAxes) {
       EXPECT_NEAR(by_b[k], real_b[k], 0.3e-6);
     }
   }
-  EXPECT_EQ(number(fanuc, "19684", 1), 0.0);
+  EXPECT_EQ(number(fanuc, "19684", new_one), 0.0);
 }
 
 TEST(RotaryVectors, ChangesHaveALimitAndALog) {
