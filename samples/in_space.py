@@ -2,7 +2,7 @@
 """Stories in space: diagonals of a gantry, a rotary table, step diagonals of a volume."""
 import math
 
-from parts import (GOOD_ROOM, MADE_UP, PROBE, Noise, axis_measurement, decimal, drawn, even,
+from parts import (GAUGE, GOOD_ROOM, MADE_UP, PROBE, Noise, axis_measurement, decimal, drawn, even,
                    linear, manifest, standard_cycle, table, targets, toml)
 
 
@@ -253,11 +253,66 @@ analyses = ["rotary-kinematics"]
 [options.rotary-kinematics]
 same_reference = ["C", "B"]
 linear_axes_urad = 5.0
+
+[options.rotary-vectors]
+sign_shown = ["heidenhain"]      # a move of the machine has shown them
+
+[options.rotary-vectors.before.fanuc]  # what is in the control, mm: the change is limited and logged
+19700 = 412.300
+19701 = 305.100
+19702 = -310.000
+19703 = 0.0
+19704 = 0.0
+19705 = 0.0
 """
     made = [MADE_UP]
     return {"campaign.toml": text,
             "c.csv": ball_centres(noise, *c_line, c_start, range(0, 360, 45), 1.0, made),
             "b.csv": ball_centres(noise, *b_line, b_start, range(-60, 91, 15), 1.0, made)}
+
+
+# Before and after new parameters: each gauge of a table that turns, with its ball and its zero (um).
+RTCP_GAUGES = (("low", 0.0, (1, 0, 0), 4.0), ("high", 220.0, (1, 0, 0), -6.5), ("along", 0.0, (0, 0, 1), 1.5))
+
+
+def tool_centre(noise, true_axis, control, comment):
+    """A ball in the spindle against gauges on the table, which turn with it: the file of one check."""
+    (centre, direction), (meant, about) = true_axis, control
+    direction, about = unit(direction), unit(about)
+    lines = ["# " + line for line in comment] + ["run,angle_deg,x_mm,y_mm,z_mm,tx,ty,tz,deviation_um,line"]
+    for name, height, sense, zero in RTCP_GAUGES:
+        ball = [meant[0] + 180.0, meant[1], -60.0 + height]
+        placed = [b + 0.001 * offset for b, offset in zip(ball, (25.0, -14.0, 9.0))]  # not where the control has it
+        for run in (1, 2):
+            for angle in range(0, 360, 30):
+                commanded = turned(ball, meant, about, angle)
+                there = turned(placed, centre, direction, angle)
+                senses = turned(sense, (0, 0, 0), about, angle)
+                deviation = 1000.0 * sum(s * (c - t) for s, c, t in zip(senses, commanded, there)) + zero
+                lines.append(f"{run},{angle}," + ",".join(f"{x:.3f}" for x in commanded) +
+                             ",%d,%d,%d,%.2f,%s" % (*sense, deviation + 0.6 * noise.normal(), name))
+    return "\n".join(lines) + "\n"
+
+
+def rtcp():
+    noise = Noise(121)
+    true_axis = ([350.0241, 249.9832, 0.0], [0.00011, -0.00006, 1.0])
+    old, new = ([350.0, 250.0, 0.0], [0.0, 0.0, 1.0]), ([350.024, 249.983, 0.0], [0.00011, -0.00006, 1.0])
+    story = ["A rotary table C with its tool centre point control on: a ball in the spindle against dial gauges on the table,",
+             "two along the radius (low and high) and one along the axis. Before: the control has the axis 24 and -17 um beside",
+             "where it is, and upright. After: new parameters. Constructed: the table turns exactly about the axis as it is,",
+             "the linear axes about the one that the control has; noise 0.6 um."]
+    return {"campaign.toml": manifest(
+        story, "21-rtcp", "Esempio Ventuno S.r.l.", "Udine", "2026-05-27",
+        {"maker": "Sample Machines", "model": "UM 5", "serial": "S-0121", "structure": "bridge"},
+        {"C": {"kind": '"rotary"', "travel": "[0.0, 360.0]"},
+         **{axis: {"kind": '"linear"', "expansion_um_per_m_K": "11.5"} for axis in "XYZ"}},
+        [axis_measurement("C", "rtcp", "C " + when, adjustment=when, file="c-%s.csv" % when)
+         for when in ("before", "after")],
+        GAUGE, {"drift_um": "0.6"}, analyses=["rtcp"],
+        options={"rtcp": {"tables": '["C"]', "linear_axes_urad": "3.0"}}),
+            "c-before.csv": tool_centre(noise, true_axis, old, [MADE_UP]),
+            "c-after.csv": tool_centre(noise, true_axis, new, [MADE_UP])}
 
 
 # Step diagonals: the signs with which the axes go, and the order of their moves.
@@ -492,4 +547,5 @@ STORIES = {
     "18-one-column": one_column,
     "19-square-turned-over": square_turned_over,
     "20-body-diagonals": body_diagonals,
+    "21-rtcp": rtcp,
 }

@@ -180,6 +180,8 @@ ROTARY_CALIBRATOR = {"maker": '"Sample Optics"', "model": '"Rotary calibrator"',
 PROBE = {"maker": '"Sample Optics"', "model": '"Touch probe and ball"', "serial": '"P-001"',
          "calibrated": "2026-01-12", "certificate": '"SO-2026-0003"', "U_fixed_um": "2.0", "U_per_m_um": "1.0",
          "sphere_um": "0.5", "probe_um": "1.0"}
+GAUGE = {"maker": '"Sample Optics"', "model": '"Dial gauge 1 um"', "serial": '"G-004"', "calibrated": "2026-01-15",
+         "certificate": '"SO-2026-0009"', "U_fixed_um": "1.0", "U_per_m_um": "0.0"}
 GOOD_ROOM = {"misalignment_mm": "0.5", "temperature_range_K": "0.2",
              "temperature_difference_K": "0.8", "expansion_range_um_per_m_K": "1.0",
              "drift_um": "0.6"}

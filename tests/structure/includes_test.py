@@ -40,7 +40,7 @@ ROOMS["morning"] = ROOMS["history"] | {"history"}
 ROOMS |= {room: set(ROOMS) for room in ("batch", "plugin_check", "tools")}
 ROOMS["live"] = ROOMS["batch"] | {"batch"}
 # What a room takes of the other parts, beside sdk and math.
-PARTS_OF_ROOMS = {"reading": {"model"}, "modelling": {"model"}, "evaluation": {"model"}, "plugin_check": {"model"},
+PARTS_OF_ROOMS = {"reading": {"model"}, "modelling": {"model"}, "evaluation": {"model"}, "plugin_check": {"model"}, "tools": {"model"},
                   "certificates": {"sign"}, "batch": {"sign", "reports"}, "morning": {"history", "reports"}, "live": {"model", "reports", "sign", "workbench"}}
 # Folders that know each other only through these.
 SHARED = {"common"}

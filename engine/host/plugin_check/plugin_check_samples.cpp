@@ -117,6 +117,24 @@ class MadeMachine {
     return out;
   }
 
+  /// A gauge on a table, along its radius and along its axis, which the control has 20 um beside
+  /// where it is.
+  std::string tool_centre(int n) {
+    std::string out = "angle_deg,x_mm,y_mm,z_mm,tx,ty,tz,deviation_um,line\n";
+    for (const bool along : {false, true})
+      for (int i = 0; i < n; ++i) {
+        const double a = 360.0 * i / n, c = std::cos(a / deg_per_rad),
+                     s = std::sin(a / deg_per_rad),
+                     off = along ? 40.0 * (1.0 - c) : 20.0 * (1.0 - c);
+        out += fixed_text(a, 3);
+        for (const double x : {400.0 + 150.0 * c, 300.0 + 150.0 * s, -80.0})
+          out += "," + fixed_text(x, 4);
+        out += std::string(along ? ",0,0,1," : ",1,0,0,") +
+               fixed_text(off + 0.5 * random_.normal(), 3) + (along ? ",axial\n" : ",radial\n");
+      }
+    return out;
+  }
+
  private:
   Vector error(const Vector& p) const {
     Vector e{};
@@ -319,6 +337,15 @@ Source balls(MadeMachine& machine) {
   return s;
 }
 
+Source tool_centre(MadeMachine& machine) {
+  Source s{"rtcp",
+           head("rtcp") + "[machine.axes.C]\nkind = \"rotary\"\ntravel = [0.0, 360.0]\n" +
+               "[options.rtcp]\ntables = [\"C\"]\n" + measured("C", "rtcp", "axis = \"C\"\n"),
+           {}};
+  s.files.push_back({"C.csv", machine.tool_centre(12)});
+  return s;
+}
+
 }  // namespace
 
 std::vector<Source> made_sources(std::uint64_t seed) {
@@ -334,7 +361,8 @@ std::vector<Source> made_sources(std::uint64_t seed) {
           diagonals(m),
           step_diagonals(m),
           circle(),
-          balls(m)};
+          balls(m),
+          tool_centre(m)};
 }
 
 }  // namespace nonio::host::plugin_check::kit

@@ -2,14 +2,13 @@
 #include "host/tools/simulate.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "host/storage/random.h"
-#include "host/tools/simulate_spec.h"
+#include "host/tools/simulate_rows.h"
+#include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::host::tools {
@@ -37,62 +36,51 @@ std::vector<double> shifted_targets(const CycleSpec& c, storage::Random random) 
   return targets;
 }
 
-double material(const CycleSpec::Course& c, double t) {
-  const double swing = c.swing * std::sin(2.0 * std::numbers::pi * t / c.period);
-  return std::round((c.start + c.drift * t + swing) * 100.0) / 100.0;
-}
-
-/// Rows of one measurement; what its file will not tell, the effects do not know either. Appended
-/// to the table of its axis.
-void take_readings(const CycleSpec& c, const std::vector<double>& targets, Observations& o) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  const auto line = static_cast<std::uint32_t>(o.lines.size());
-  o.lines.push_back({c.measurement.id, {c.axis.rotary ? 0.0 : 1.0, 0.0, 0.0}});
-  double t = 0.0;
-  bool first = true;
-  double last = 0.0;
-  const auto sweep = [&](std::uint32_t run, double direction) {
-    for (std::size_t k = 0; k < targets.size(); ++k) {
-      const double at = targets[direction > 0.0 ? k : targets.size() - 1 - k];
-      if (!first) t += std::fabs(at - last) / c.feed + c.dwell;
-      first = false;
-      last = at;
-      o.axes[0].position.push_back(at);
-      o.axes[0].approach.push_back(direction > 0.0 ? std::int8_t{1} : std::int8_t{-1});
-      o.run.push_back(run);
-      o.line.push_back(line);
-      o.time.push_back(c.timed ? std::round(t * 10.0) / 10.0 : unknown);
-      o.material.push_back(c.temperature ? material(*c.temperature, t) : unknown);
-      o.deviation.push_back(0.0);
-    }
-  };
-  for (std::uint32_t run = 1; run <= c.runs; ++run) {
-    if (run > 1) t += c.pause;
-    sweep(run, c.direction);
-    if (c.pendulum) sweep(run, -c.direction);
-  }
-}
-
-/// The measurements of one axis: together, because effects see the whole measured stretch.
-struct AxisTable {
-  Axis axis;
-  std::vector<std::size_t> cycles;  ///< of the specification
+/// Readings of the campaign that an effect sees together, and where they come from.
+struct Seen {
   Observations table;
+  std::vector<std::pair<std::size_t, std::size_t>> from;  ///< cycle and row, of each reading
+  const model::Part* part = nullptr;                      ///< none: of a rotary axis
+  double sign = 1.0;                                      ///< of what the effects say
 };
 
-std::vector<AxisTable> tables_of(const Specification& s) {
-  std::vector<AxisTable> all;
+/// The effect as it is of these readings: its place, or nothing if they do not show it.
+std::optional<Axis> place_in(const Seen& seen, const EffectSpec& e, const Machine& machine) {
+  Effect effect = e.effect;
+  if (seen.part != nullptr) {
+    effect.is_nuisance = false;  // how a straightedge stood may be said too
+    const auto terms = model::terms_of(*seen.part, machine, {e.name}, {effect});
+    if (!terms || terms->empty()) return std::nullopt;
+    return terms->front().axis;
+  }
+  const std::string of = e.name.substr(e.name.find(':') + 1);
+  if (!effect.instances || effect.is_nuisance) return std::nullopt;
+  const auto names = effect.instances(seen.table);
+  if (std::find(names.begin(), names.end(), of) == names.end()) return std::nullopt;
+  Axis place;
+  place.name = of;
+  return place;
+}
+
+/// What the effects see: parts as `explain` has them, and each measurement of a rotary axis.
+std::vector<Seen> seen_of(const Specification& s, const std::vector<Observations>& rows,
+                          const std::vector<model::Part>& parts) {
+  std::vector<Seen> all;
+  std::map<std::string, std::size_t> cycle;
+  for (std::size_t k = 0; k < s.cycles.size(); ++k) cycle[s.cycles[k].measurement.id] = k;
+  for (const model::Part& part : parts) {
+    Seen seen{part.table, {}, &part, 1.0};
+    for (std::size_t i = 0; i < part.row.size(); ++i)
+      seen.from.emplace_back(cycle.at(part.measurements[part.measurement[i]]), part.row[i]);
+    all.push_back(std::move(seen));
+  }
   for (std::size_t k = 0; k < s.cycles.size(); ++k) {
     const CycleSpec& c = s.cycles[k];
-    auto at = std::find_if(all.begin(), all.end(),
-                           [&](const AxisTable& a) { return a.axis.name == c.axis.name; });
-    if (at == all.end()) {
-      at = all.insert(all.end(), AxisTable{c.axis, {}, {}});
-      at->table.angular = c.axis.rotary;
-      at->table.axes.push_back({c.axis.name, c.axis.rotary, {}, {}});
-    }
-    at->cycles.push_back(k);
-    take_readings(c, shifted_targets(c, stream_of(s, k, offsets)), at->table);
+    if (!c.is("ball-centres") && !c.is("rtcp")) continue;
+    // The axes read a ball at P - e where they are at P; commanded to P they are at P + e.
+    Seen seen{rows[k], {}, nullptr, c.is("rtcp") ? -1.0 : 1.0};
+    for (std::size_t i = 0; i < rows[k].size(); ++i) seen.from.emplace_back(k, i);
+    all.push_back(std::move(seen));
   }
   return all;
 }
@@ -103,15 +91,25 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// The columns as one: those of a curve are mixed at random and brought to their RMS.
+/// The columns as one: those of a curve are mixed at random and brought to their RMS. In space, where
+/// not every reading senses it, the functions of a curve are orthogonal over the places, rms 1.
 std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Columns& columns,
                                          storage::Random random) {
-  std::vector<double> sum(columns.empty() ? 0 : columns[0].size(), 0.0);
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    const double factor = e.effect.curve ? random.normal() : e.linear[k];
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * columns[k][i];
-  }
+  std::vector<double> factor = e.linear, sum(columns.empty() ? 0 : columns[0].size(), 0.0);
+  const bool places = e.effect.curve && e.effect.instances;
   if (e.effect.curve) {
+    factor.clear();
+    double square = 0.0;
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      factor.push_back(random.normal());
+      square += factor.back() * factor.back();
+    }
+    if (places)
+      for (double& f : factor) f *= e.linear[0] / std::sqrt(square);
+  }
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor[k] * columns[k][i];
+  if (e.effect.curve && !places) {
     const double size = rms(sum);
     for (double& v : sum) v *= size > 0.0 ? e.linear[0] / size : 0.0;
   }
@@ -119,7 +117,8 @@ std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Colu
 }
 
 /// The shape as written, or the one that the readings and the manifest leave.
-Expected<std::vector<double>> shape_of(const EffectSpec& e, const Observations& o) {
+Expected<std::vector<double>> shape_of(const EffectSpec& e, const Observations& o,
+                                       const Axis& place) {
   std::vector<double> shape;
   for (std::size_t k = 0; k < e.shape.size(); ++k) {
     if (e.shape[k]) {
@@ -127,7 +126,7 @@ Expected<std::vector<double>> shape_of(const EffectSpec& e, const Observations& 
       continue;
     }
     const Effect::Shape& searched = e.effect.shapes[k];
-    const std::vector<double> grid = searched.grid(o, e.axis);
+    const std::vector<double> grid = searched.grid(o, place);
     if (grid.size() != 1 && searched.usual) {
       shape.push_back(*searched.usual);
       continue;
@@ -152,71 +151,98 @@ Json quantity_json(double value, bool rotary) {
           {"unit", unit_of(deviation_of(rotary)).symbol}};
 }
 
-Expected<Json> add_effect(const EffectSpec& e, Observations& o, storage::Random random) {
-  if (!e.effect.applies(o, e.axis))
-    return fail(e.name + " does not apply to these readings: " + e.effect.info.summary);
-  const auto shape = shape_of(e, o);
-  if (!shape) return fail(shape.error());
-  const auto columns = e.effect.columns(o, e.axis, *shape);
-  if (!columns) return fail(e.name + ": " + columns.error().message);
-  if (!e.effect.curve && columns->size() != e.linear.size())
-    return fail(e.name + ": its plugin gives " + std::to_string(columns->size()) + " columns for " +
-                std::to_string(e.linear.size()) + " parameters");
-  const std::vector<double> part = deviation_of_columns(e, *columns, random);
-  for (std::size_t i = 0; i < part.size(); ++i) {
-    if (!std::isfinite(part[i])) return fail(e.name + " gives no finite deviation");
-    o.deviation[i] += part[i];
+/// Adds the effect to the rows that show it, and tells it in `truth`.
+Expected<void> add_effect(const EffectSpec& e, const Specification& s, const std::vector<Seen>& all,
+                          std::vector<Observations>& rows, Json& truth, storage::Random random) {
+  std::vector<double> whole;
+  std::vector<double> shape;
+  for (const Seen& seen : all) {
+    const auto place = place_in(seen, e, s.campaign.machine);
+    if (!place) continue;
+    if (!e.effect.applies(seen.table, *place))
+      return fail(e.name + " does not apply to these readings: " + e.effect.info.summary);
+    const auto found = shape_of(e, seen.table, *place);
+    if (!found) return fail(found.error());
+    shape = *found;
+    const auto columns = e.effect.columns(seen.table, *place, shape);
+    if (!columns) return fail(e.name + ": " + columns.error().message);
+    if (!e.effect.curve && columns->size() != e.linear.size())
+      return fail(e.name + ": its plugin gives " + std::to_string(columns->size()) +
+                  " columns for " + std::to_string(e.linear.size()) + " parameters");
+    const std::vector<double> part = deviation_of_columns(e, *columns, random);
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      if (!std::isfinite(part[i])) return fail(e.name + " gives no finite deviation");
+      rows[seen.from[i].first].deviation[seen.from[i].second] += seen.sign * part[i];
+    }
+    whole.insert(whole.end(), part.begin(), part.end());
   }
+  if (whole.empty())
+    return fail(e.name + ": no measurement shows it" +
+                (e.effect.instances ? "" : ", none moves axis " + e.axis.name));
   Json parameters = Json::array();
   for (std::size_t k = 0; k < e.linear.size(); ++k)
     parameters.push_back(parameter_json(e, e.effect.linear[k], e.linear[k]));
-  for (std::size_t k = 0; k < shape->size(); ++k)
-    parameters.push_back(parameter_json(e, e.effect.shapes[k].parameter, (*shape)[k]));
-  return Json{{"effect", e.name},
-              {"parameters", std::move(parameters)},
-              {"rms", quantity_json(rms(part), e.axis.rotary)}};
+  for (std::size_t k = 0; k < shape.size(); ++k)
+    parameters.push_back(parameter_json(e, e.effect.shapes[k].parameter, shape[k]));
+  truth["effects"].push_back({{"effect", e.name},
+                              {"parameters", std::move(parameters)},
+                              {"rms", quantity_json(rms(whole), e.axis.rotary)}});
+  return {};
 }
 
-std::string shortest(double value) {
-  std::array<char, 64> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+/// The display of a step diagonal is 0 where it begins.
+void preset(const CycleSpec& c, Observations& o) {
+  if (!c.is("step-diagonal")) return;
+  const std::size_t each = 3 * c.steps + 1;
+  for (std::size_t i = o.size(); i-- > 0;) o.deviation[i] -= o.deviation[i - i % each];
 }
 
 /// The file of one measurement; tells in `truth` what was misread.
-std::string readings(const Specification& s, std::size_t k, std::uint32_t line,
-                     const Observations& o, Json& truth) {
+std::string readings(const Specification& s, std::size_t k, const Observations& o, Json& truth) {
   const CycleSpec& c = s.cycles[k];
-  const bool rotary = c.axis.rotary;
+  const bool rotary = o.angular;
   storage::Random noise_of = stream_of(s, k, noise), wrong = stream_of(s, k, misreadings);
-  std::string text = std::string(simulated_mark) + "\nrun,direction," +
-                     (rotary ? "target_deg,deviation_arcsec" : "target_mm,deviation_um");
-  text += c.timed ? ",time_s" : "";
-  text += c.temperature ? ",material_c\n" : "\n";
+  std::string text = std::string(simulated_mark) + "\n" + header_of(c);
   std::size_t file_line = 2;
   Json misread = Json::array();
-  for (std::size_t i = 0; i < o.deviation.size(); ++i) {
-    if (o.line[i] != line) continue;
+  const std::size_t each = readings_in_row(c);
+  std::vector<double> read(each);
+  for (std::size_t i = 0; i < o.size(); i += each) {
+    if (c.is("step-diagonal") && i % (3 * c.steps + 1) == 0) continue;
     ++file_line;
-    double e = o.deviation[i] + c.noise * noise_of.normal();
-    const bool off = wrong.uniform() < c.misread;
-    const double by = (wrong.uniform() < 0.5 ? -1.0 : 1.0) * c.noise *
-                      wrong.uniform(c.misread_size.first, c.misread_size.second);
-    if (off) {
+    for (std::size_t n = 0; n < each; ++n) {
+      double& e = read[n] = o.deviation[i + n] + c.noise * noise_of.normal();
+      const bool off = wrong.uniform() < c.misread;
+      const double by = (wrong.uniform() < 0.5 ? -1.0 : 1.0) * c.noise *
+                        wrong.uniform(c.misread_size.first, c.misread_size.second);
+      if (!off) continue;
       e += by;
       misread.push_back({{"line", file_line}, {"by", quantity_json(by, rotary)}});
     }
-    text += std::to_string(o.run[i]) + (o.axes[0].approach[i] > 0 ? ",+," : ",-,") +
-            shortest(printed(o.axes[0].position[i], position_of(rotary))) + "," +
-            fixed_text(printed(e, nonio::deviation_of(rotary)), 3);
-    if (c.timed) text += "," + fixed_text(o.time[i], 1);
-    if (c.temperature) text += "," + fixed_text(o.material[i], 2);
-    text += "\n";
+    text += row_of(c, o, i, read);
   }
   truth["measurements"].push_back({{"id", c.measurement.id},
                                    {"file", c.measurement.file},
                                    {"noise", quantity_json(c.noise, rotary)},
                                    {"misread", std::move(misread)}});
   return text;
+}
+
+/// Rotary axes and squares as they were, mm, urad.
+void tell_things(const Specification& s, Json& truth) {
+  const auto mm = [](const std::array<double, 3>& v) {
+    return Json{printed(v[0], Quantity::length), printed(v[1], Quantity::length),
+                printed(v[2], Quantity::length)};
+  };
+  for (const RotarySpec& r : s.rotaries) {
+    Json one = {{"axis", r.axis}, {"centre_mm", mm(r.centre)}, {"direction", r.direction}};
+    if (r.control_centre) one["control_centre_mm"] = mm(*r.control_centre);
+    if (r.control_direction) one["control_direction"] = *r.control_direction;
+    truth["rotary"].push_back(std::move(one));
+  }
+  for (const SquareSpec& q : s.squares)
+    truth["squares"].push_back(
+        {{"name", q.name}, {"error_urad", q.error * 1e6}, {"set_up_urad", q.set_up * 1e6}});
 }
 
 /// The specification's own lines, with no more than one empty line in a row.
@@ -240,27 +266,31 @@ config::Checked<Simulated> simulate(std::string_view specification, const std::s
                 {"seed", s->seed},
                 {"effects", Json::array()},
                 {"measurements", Json::array()}};
-  std::vector<AxisTable> tables = tables_of(*s);
-  for (std::size_t k = 0; k < s->effects.size(); ++k) {
-    const EffectSpec& e = s->effects[k];
-    for (AxisTable& a : tables) {
-      if (a.axis.name != e.axis.name) continue;
-      auto said = add_effect(e, a.table, storage::Random(s->seed, k));
-      if (said)
-        truth["effects"].push_back(std::move(*said));
-      else
-        errors.push_back(Error{said.error().message, file, e.line});
-    }
+  std::vector<Observations> rows;
+  for (std::size_t k = 0; k < s->cycles.size(); ++k) {
+    const CycleSpec& c = s->cycles[k];
+    auto made = rows_of(*s, c, shifted_targets(c, stream_of(*s, k, offsets)));
+    if (!made) errors.push_back(Error{made.error().message, file, c.line});
+    rows.push_back(made ? std::move(*made) : Observations{});
   }
   if (!errors.empty()) return tl::unexpected(std::move(errors));
+  std::vector<Observations> linear = rows;  // the others have effects of their own
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (s->cycles[k].is("ball-centres") || s->cycles[k].is("rtcp")) linear[k] = {};
+  const std::vector<model::Part> parts = model::parts_of(s->campaign, linear);
+  const std::vector<Seen> seen = seen_of(*s, rows, parts);
+  for (std::size_t k = 0; k < s->effects.size(); ++k) {
+    const EffectSpec& e = s->effects[k];
+    if (auto done = add_effect(e, *s, seen, rows, truth, storage::Random(s->seed, k)); !done)
+      errors.push_back(Error{done.error().message, file, e.line});
+  }
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  tell_things(*s, truth);
   Simulated out;
-  for (std::size_t k = 0; k < s->cycles.size(); ++k)
-    for (const AxisTable& a : tables)
-      for (std::size_t line = 0; line < a.cycles.size(); ++line)
-        if (a.cycles[line] == k)
-          out.campaign.push_back(
-              {s->cycles[k].measurement.file,
-               readings(*s, k, static_cast<std::uint32_t>(line), a.table, truth)});
+  for (std::size_t k = 0; k < s->cycles.size(); ++k) {
+    preset(s->cycles[k], rows[k]);
+    out.campaign.push_back({s->cycles[k].measurement.file, readings(*s, k, rows[k], truth)});
+  }
   out.campaign.push_back({"campaign.toml", manifest_text(s->manifest)});
   out.truth = truth.dump(1) + "\n";
   return out;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "host/config/toml_reader.h"
@@ -21,13 +22,25 @@ class CycleReader {
   CycleSpec read(const Campaign& campaign) {
     if (!find_measurement(campaign)) return c_;
     unit_ = c_.axis.rotary ? 1.0 / deg_per_rad : 1e-3;
-    reader_.settle(config::cycle_axis, c_.axis.rotary ? "rotary" : "linear");
-    read_targets();
-    read_order();
+    const bool angular = c_.is("axis") && c_.axis.rotary;
+    reader_.settle(config::cycle_axis, c_.is("axis")            ? (angular ? "rotary" : "linear")
+                                       : c_.is("straightness")  ? "straightness"
+                                       : c_.is("diagonal")      ? "diagonal"
+                                       : c_.is("step-diagonal") ? "step-diagonal"
+                                       : c_.is("ball-centres")  ? "ball-centres"
+                                                                : "rtcp");
+    read_steps();
+    if (!c_.is("step-diagonal")) {
+      read_targets();
+      read_order();
+    }
+    if (const auto runs = reader_.integer("runs")) c_.runs = static_cast<std::uint32_t>(*runs);
     read_times();
-    c_.noise = (c_.axis.rotary ? reader_.number("noise_arcsec", 1.0 / arcsec_per_rad)
-                               : reader_.number("noise_um", 1e-6))
+    c_.noise = (angular ? reader_.number("noise_arcsec", 1.0 / arcsec_per_rad)
+                        : reader_.number("noise_um", 1e-6))
                    .value_or(0.0);
+    if (c_.is("straightness")) c_.set_up = reader_.number("set_up_urad", 1e-6).value_or(0.0);
+    read_balls();
     read_misreadings();
     read_temperature();
     reader_.finish();
@@ -48,12 +61,24 @@ class CycleReader {
                                          storage::suggestion(id, ids));
       return false;
     }
-    if (c_.measurement.kind != "axis")
+    static constexpr std::array made{"axis",          "straightness", "diagonal",
+                                     "step-diagonal", "ball-centres", "rtcp"};
+    if (std::find(made.begin(), made.end(), c_.measurement.kind) == made.end()) {
       reader_.error("measurement",
-                    "expected a measurement of kind axis, found " + c_.measurement.kind);
+                    "expected a measurement of kind axis, straightness, diagonal, step-diagonal, "
+                    "ball-centres or rtcp, found " +
+                        c_.measurement.kind);
+      return false;
+    }
     if (!storage::is_artifact_name(c_.measurement.file))
       reader_.error("measurement", "its file is not a plain name: " + c_.measurement.file);
     if (const Axis* axis = campaign.machine.axis(c_.measurement.axis)) c_.axis = *axis;
+    if ((c_.is("ball-centres") || c_.is("rtcp")) != c_.axis.rotary && !c_.is("axis")) {
+      reader_.error("measurement", "expected a " +
+                                       std::string(c_.axis.rotary ? "linear" : "rotary") +
+                                       " axis for kind " + c_.measurement.kind);
+      return false;
+    }
     return true;
   }
 
@@ -66,7 +91,11 @@ class CycleReader {
                distance = reader_.number(step);
     const double share = reader_.number("random_offset_pct", 0.01).value_or(0.0);
     if (share > 0.45) reader_.error("random_offset_pct", "expected at most 45, targets keep order");
-    if (given) {
+    if (c_.steps > 0) {
+      if (given || first || last || distance) reader_.error("steps", "stands beside targets");
+      const double whole = length_of(c_.measurement) / unit_;
+      for (std::uint32_t i = 0; i <= c_.steps; ++i) c_.targets.push_back(whole * i / c_.steps);
+    } else if (given) {
       if (first || last || distance) reader_.error(list, "stands beside a range");
       c_.targets = *given;
     } else if (first && last && distance && *distance > 0.0 && *last > *first &&
@@ -92,6 +121,44 @@ class CycleReader {
       least = std::min(least, c_.targets[i] - c_.targets[i - 1]);
     c_.offset = share * least * unit_;
     for (double& target : c_.targets) target *= unit_;
+  }
+
+  static double length_of(const Measurement& m) {
+    double square = 0.0;
+    for (const auto& [axis, from] : m.from)
+      if (const auto to = m.to.find(axis); to != m.to.end())
+        square += (to->second - from) * (to->second - from);
+    return std::sqrt(square);
+  }
+
+  void read_steps() {
+    if (!c_.is("diagonal") && !c_.is("step-diagonal")) return;
+    if (const auto steps = reader_.integer("steps")) c_.steps = static_cast<std::uint32_t>(*steps);
+    if (c_.is("step-diagonal") && c_.steps == 0)
+      reader_.error("steps", "is missing: the moves of each axis");
+  }
+
+  void read_balls() {
+    if (!c_.is("ball-centres") && !c_.is("rtcp")) return;
+    c_.balls = vectors_at(reader_, "ball_mm", 1e-3);
+    if (c_.balls.empty()) reader_.error("ball_mm", "is missing: where the ball is, [X, Y, Z]");
+    if (c_.is("ball-centres")) {
+      if (c_.balls.size() > 1) reader_.error("ball_mm", "expected one ball");
+      return;
+    }
+    c_.sensor = reader_.text("sensor");
+    c_.senses = vectors_at(reader_, "sense", 1.0);
+    for (auto& sense : c_.senses) {
+      const double size = std::hypot(sense[0], sense[1], sense[2]);
+      if (!(size > 0.0)) reader_.error("sense", "expected a direction, found 0, 0, 0");
+      for (double& x : sense) x /= size > 0.0 ? size : 1.0;
+    }
+    if (const auto offset = vectors_at(reader_, "ball_offset_um", 1e-6); !offset.empty())
+      c_.ball_offset = offset.front();
+    if (c_.sensor.empty()) reader_.error("sensor", "is missing: turns, stands or probe");
+    if (c_.sensor == "probe" ? !c_.senses.empty() : c_.senses.empty())
+      reader_.error("sense", c_.sensor == "probe" ? "stands beside a probe, which senses all"
+                                                  : "is missing: where the gauge points");
   }
 
   void read_temperature() {
@@ -126,7 +193,6 @@ class CycleReader {
     if (!direction.empty() && c_.pendulum)
       reader_.error("direction", "stands only beside order = \"unidirectional\"");
     c_.direction = direction == "-" ? -1.0 : 1.0;
-    if (const auto runs = reader_.integer("runs")) c_.runs = static_cast<std::uint32_t>(*runs);
   }
 
   void read_times() {

@@ -81,12 +81,6 @@ class EffectReader {
 
   void read(config::TableReader& top) {
     for (config::TableReader& reader : top.tables("effect")) read_effect(reader);
-    for (const EffectSpec& e : s_.effects) {
-      const bool measured =
-          std::any_of(s_.cycles.begin(), s_.cycles.end(),
-                      [&](const CycleSpec& c) { return c.axis.name == e.axis.name; });
-      if (!measured) complain(e.line, e.name + ": no measurement moves axis " + e.axis.name);
-    }
   }
 
  private:
@@ -112,6 +106,8 @@ class EffectReader {
     else if (found == nullptr)
       reader.error("name",
                    "no effect is called \"" + kind + "\"" + storage::suggestion(kind, kinds));
+    else if (found->instances)
+      return found;  // of a place of its own, which the readings must show: straightness:EYX
     else if (machine.axis(on) == nullptr)
       reader.error("name",
                    "the machine has no axis \"" + on + "\"" + storage::suggestion(on, axes));
@@ -162,6 +158,7 @@ std::vector<Formula> read_simulation(config::TableReader& top, Specification& s)
     reader->error("seed", "expected a whole number: the same seed gives the same readings");
   s.seed = static_cast<std::uint64_t>(seed.value_or(1));
   std::vector<Formula> hidden = config::read_formulas(*reader, s.campaign.machine);
+  read_things(*reader, s);
   reader->finish();
   return hidden;
 }

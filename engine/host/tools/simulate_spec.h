@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -34,6 +35,27 @@ struct CycleSpec {
     double start = 20.0, drift = 0.0, swing = 0.0, period = 3600.0;  ///< degC, K/s, K, s
   };
   std::optional<Course> temperature;
+  std::uint32_t steps = 0;                    ///< of a diagonal or step diagonal; 0: targets
+  double set_up = 0.0;                        ///< of a straightedge against the axis, rad
+  std::vector<std::array<double, 3>> balls;   ///< with the rotary axis at 0, m
+  std::vector<std::array<double, 3>> senses;  ///< of gauges, unit vectors
+  std::string sensor;                         ///< of rtcp: turns, stands, probe
+  std::array<double, 3> ball_offset{};        ///< from where the control takes the ball to be, m
+  bool is(std::string_view kind) const { return measurement.kind == kind; }
+};
+
+/// A rotary axis as it is, and as the control has it. m, unit vectors.
+struct RotarySpec {
+  std::string axis;
+  std::array<double, 3> centre{}, direction{};
+  std::optional<std::array<double, 3>> control_centre{}, control_direction{};
+  std::string carries;  ///< table, head
+};
+
+/// A square as it is, rad.
+struct SquareSpec {
+  std::string name;
+  double error = 0.0, set_up = 0.0;
 };
 
 /// One [[effect]], its parameters as written.
@@ -53,6 +75,14 @@ struct Specification {
   std::vector<Effect> catalogue;  ///< the plugins' effects, and formulas
   std::vector<CycleSpec> cycles;  ///< in the order of the measurements
   std::vector<EffectSpec> effects;
+  std::vector<RotarySpec> rotaries;
+  std::vector<SquareSpec> squares;
+
+  const RotarySpec* rotary(std::string_view axis) const {
+    for (const RotarySpec& r : rotaries)
+      if (r.axis == axis) return &r;
+    return nullptr;
+  }
 };
 
 config::Checked<Specification> read_specification(std::string_view text, const std::string& file,
@@ -61,6 +91,12 @@ config::Checked<Specification> read_specification(std::string_view text, const s
 /// The [[cycle]]s, one for each measurement, in their order.
 std::vector<CycleSpec> read_cycles(config::TableReader& top, const Campaign& campaign,
                                    std::vector<Error>& errors);
+
+/// [[simulation.rotary]] and [[simulation.square]].
+void read_things(config::TableReader& simulation, Specification& s);
+/// Three numbers at a time, times `scale`; an error for another number of them.
+std::vector<std::array<double, 3>> vectors_at(config::TableReader& reader, std::string_view key,
+                                              double scale);
 
 /// Quantity of a parameter on this kind of axis, and its key: "b_um", "a_um_per_m".
 Quantity quantity_on(const Effect::Parameter& parameter, bool rotary);

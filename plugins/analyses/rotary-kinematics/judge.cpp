@@ -21,6 +21,7 @@ constexpr double surely = 1e-3;           // residuals against a stated sigma
 constexpr double no_circle_share = 1e-3;  // of the radius, where no sigma is known
 constexpr double half_turn = std::numbers::pi, full_turn = 2.0 * std::numbers::pi;
 constexpr double opposite = 1e-3;     // rad, of half a turn between two places
+constexpr double least_sine = 0.5;    // of half the angle between them: 60 deg
 constexpr double few = 7;             // degrees of freedom below which Student's factor is large
 constexpr double shear_unit = 10e-6;  // rad, in which the sensitivity of an arc is told
 
@@ -222,32 +223,55 @@ class Judge {
     if (wish_.use_angles) tell_angles();
   }
 
-  /// The classic method: the middle of two places half a turn apart, the axis taken as parallel to
-  /// an axis of the machine. What it would have said of these readings.
+  /// The classic method: two places and the angle between them, the axis taken as parallel to an
+  /// axis m of the machine. What it would have said of these readings.
+  ///
+  ///     c = (p + q)/2 + cot(t/2)/2 m x (q - p)      u = s/2 sqrt(1/w_p + 1/w_q)/|sin(t/2)|
+  ///
+  /// t: from p to q by the encoder. Half a turn apart it is the middle. An error dt of the angle
+  /// moves c by radius dt/(2 sin(t/2)).
   void tell_two_points() {
     const RotaryFit& fit = out_.fit;
     const auto& all = out_.centres;
-    if (all.size() < 3) return;
-    for (std::size_t a = 0; a < all.size(); ++a)
-      for (std::size_t b = a + 1; b < all.size(); ++b) {
-        const double apart = std::remainder(all[b].angle - all[a].angle, full_turn);
-        if (std::fabs(std::fabs(apart) - half_turn) > opposite) continue;
-        math::Vector3 off{};
-        double along = 0.0, size = 0.0, steepest = 0.0;
-        for (std::size_t k = 0; k < 3; ++k) {
-          off[k] = (all[a].at[k] + all[b].at[k]) / 2.0 - fit.centre[k];
-          along += off[k] * fit.direction[k];
-          steepest = std::max(steepest, std::fabs(fit.direction[k]));
-        }
-        for (std::size_t k = 0; k < 3; ++k) size += std::pow(off[k] - along * fit.direction[k], 2);
-        const double u = out_.sigma / 2.0 * std::sqrt(1.0 / all[a].weight + 1.0 / all[b].weight);
-        out_.findings.push_back(finding(
-            "rotary.two-points", false,
-            {deg("from", all[a].angle), deg("to", all[b].angle), um("difference", std::sqrt(size)),
-             um("U_two", out_.k * u), um("U", U_centre()),
-             urad("tilt", std::acos(std::min(1.0, steepest))), urad("U_tilt", U_direction())}));
-        return;
-      }
+    std::size_t a = 0, b = 0;
+    double sine = least_sine;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t k = i + 1; k < all.size(); ++k)
+        if (const double s = std::fabs(std::sin((all[k].angle - all[i].angle) / 2.0));
+            s > sine + 1e-6)
+          a = i, b = k, sine = s;
+    if (all.size() < 3 || b == 0) return;
+    const double apart = std::remainder(all[b].angle - all[a].angle, full_turn);
+    const bool half = std::fabs(std::fabs(apart) - half_turn) <= opposite;
+    std::size_t along = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+      if (std::fabs(fit.direction[k]) > std::fabs(fit.direction[along])) along = k;
+    math::Vector3 off{};
+    const std::size_t i = (along + 1) % 3, k = (along + 2) % 3;
+    const double turned =
+        half ? 0.0 : 0.5 * std::copysign(1.0 / std::tan(apart / 2.0), fit.direction[along] * apart);
+    for (std::size_t c = 0; c < 3; ++c)
+      off[c] = (all[a].at[c] + all[b].at[c]) / 2.0 - fit.centre[c];
+    off[i] -= turned * (all[b].at[k] - all[a].at[k]);
+    off[k] += turned * (all[b].at[i] - all[a].at[i]);
+    double height = 0.0, size = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) height += off[c] * fit.direction[c];
+    for (std::size_t c = 0; c < 3; ++c) size += std::pow(off[c] - height * fit.direction[c], 2);
+    const double u = out_.sigma / 2.0 * std::sqrt(1.0 / all[a].weight + 1.0 / all[b].weight) / sine;
+    const double steepest = std::fabs(fit.direction[along]);
+    std::vector<Number> evidence{deg("from", all[a].angle),
+                                 deg("to", all[b].angle),
+                                 um("difference", std::sqrt(size)),
+                                 um("U_two", out_.k * u),
+                                 um("U", U_centre()),
+                                 urad("tilt", std::acos(std::min(1.0, steepest))),
+                                 urad("U_tilt", U_direction())};
+    if (!half) {
+      evidence.push_back(urad("angle", shear_unit));
+      evidence.push_back(um("shift", fit.radius * shear_unit / (2.0 * sine)));
+    }
+    out_.findings.push_back(finding(half ? "rotary.two-points" : "rotary.two-points-angle", false,
+                                    std::move(evidence)));
   }
 
   /// Encoder against circle: larger than the rest, the angles do not deserve their trust.

@@ -3,6 +3,7 @@
 // Kinematic parameters under the names that controls have for them.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "vectors.h"
 
@@ -27,6 +28,12 @@ std::array<double, 3> point_at(const Line& line, std::size_t coordinate, double 
 bool along(const Line& line, std::size_t coordinate) {
   constexpr double near = 0.999;  // 2.6 deg: what leans more is another kind of machine
   return line.direction[coordinate].value > near;
+}
+
+/// The same, whichever way positive angles turn.
+bool parallel(const Line& line, std::size_t coordinate) {
+  constexpr double near = 0.999;
+  return std::fabs(line.direction[coordinate].value) > near;
 }
 
 bool compared(const Line& a, const Line& b) {
@@ -60,12 +67,88 @@ void meet(TiltingTable& t) {
   t.c_point = point_at(*t.c, 2, t.tilt_point[2]);
 }
 
-std::string linuxcnc(const TiltingTable& t, const std::string& campaign) {
+/// A parameter of a control with what is known of it.
+struct Field {
+  std::string name;  ///< as the control has it
+  double value = 0.0;
+  bool length = true;      ///< mm, else a plain number
+  bool documented = true;  ///< else inferred, and `why` says from what
+  const char* why = "";
+};
+
+/// The parameters of one control, what the control had before, and how far they may change.
+struct Change {
+  std::string control;
+  std::vector<Field> fields;
+};
+
+std::string text_of(const Field& f, double value) {
+  return f.length ? millimetres(value) : component(value);
+}
+
+/// What was there before, from the options; none if nobody said it.
+std::optional<double> before(const Wish& wish, const Change& c, const Field& f) {
+  const auto table = wish.before.find(c.control);
+  if (table == wish.before.end()) return std::nullopt;
+  const auto value = table->second.find(f.name);
+  if (value == table->second.end()) return std::nullopt;
+  return f.length ? value->second * 1e-3 : value->second;
+}
+
+/// Whether every length changes by no more than the limit, and every stated name is one of these.
+bool within_limits(const Wish& wish, const Change& c, OutputResult& result) {
+  bool good = true;
+  for (const Field& f : c.fields)
+    if (const auto was = before(wish, c, f);
+        f.length && was && std::fabs(f.value - *was) > wish.limit) {
+      result.findings.push_back({.id = "vectors.change-too-large",
+                                 .attention = true,
+                                 .evidence = {{"change", f.value - *was, Quantity::length},
+                                              {"limit", wish.limit, Quantity::length}},
+                                 .texts = {{"control", c.control}, {"name", f.name}}});
+      good = false;
+    }
+  if (const auto table = wish.before.find(c.control); table != wish.before.end())
+    for (const auto& [name, value] : table->second)
+      if (std::none_of(c.fields.begin(), c.fields.end(),
+                       [&](const Field& f) { return f.name == name; })) {
+        result.findings.push_back({.id = "vectors.unknown-name",
+                                   .attention = true,
+                                   .texts = {{"control", c.control}, {"name", name}}});
+        good = false;
+      }
+  return good;
+}
+
+/// name, before, new, change, and how sure the meaning of the field is.
+std::string rows_of(const Wish& wish, const Change& c, const char* comment) {
+  std::size_t wide = 0;
+  for (const Field& f : c.fields) wide = std::max(wide, f.name.size());
+  std::string out = std::string(comment) + " name" + std::string(wide > 4 ? wide - 4 : 0, ' ') +
+                    padded("before", 13) + padded("new", 13) + padded("change", 13) + "\n";
+  for (const Field& f : c.fields) {
+    const auto was = before(wish, c, f);
+    out += "  " + f.name + std::string(wide - f.name.size(), ' ') +
+           padded(was ? text_of(f, *was) : "not stated", 13) + padded(text_of(f, f.value), 13) +
+           padded(was ? text_of(f, f.value - *was) : "-", 13) +
+           (f.documented ? "  documented" : std::string("  INFERRED: ") + f.why) + "\n";
+  }
+  return out;
+}
+
+Change linuxcnc_fields(const TiltingTable& t) {
+  const bool a = t.about == 0;
+  return {"linuxcnc",
+          {{"x-rot-point", t.c_point[0]},
+           {"y-rot-point", t.c_point[1]},
+           {"z-rot-point", t.tilt_point[2]},
+           {a ? "y-offset" : "x-offset", t.tilt_point[t.across] - t.c_point[t.across]},
+           {"z-offset", 0.0}}};
+}
+
+std::string linuxcnc(const TiltingTable& t, const std::string& campaign, const Change& c) {
   const bool a = t.about == 0;
   const std::string module = a ? "xyzac-trt-kins" : "xyzbc-trt-kins";
-  const auto set = [&](const std::string& pin, double si) {
-    return "setp " + module + "." + pin + " " + millimetres(si) + "\n";
-  };
   std::string out = "# " + campaign + ": offsets for " + module + ", mm (machine units: mm)\n";
   out += "# Documented by its source: C passes through x-rot-point, y-rot-point with ";
   out += t.tilt->axis + " at 0;\n# " + t.tilt->axis + " through " + (a ? "y" : "x") +
@@ -78,14 +161,13 @@ std::string linuxcnc(const TiltingTable& t, const std::string& campaign) {
   const double lean_t = std::hypot(t.tilt->direction[t.across].value, t.tilt->direction[2].value);
   out += "# C " + component(lean_c * 1e3) + " mm/m, " + t.tilt->axis + " " +
          component(lean_t * 1e3) + " mm/m. tool-offset belongs to the tool.\n";
-  out += set("x-rot-point", t.c_point[0]) + set("y-rot-point", t.c_point[1]) +
-         set("z-rot-point", t.tilt_point[2]);
-  out += set(a ? "y-offset" : "x-offset", t.tilt_point[t.across] - t.c_point[t.across]);
-  return out + set("z-offset", 0.0);
+  for (const Field& f : c.fields)
+    out += "setp " + module + "." + f.name + " " + millimetres(f.value) + "\n";
+  return out;
 }
 
 /// From the machine's base to the tilting axis, and from there to C, as rows of the table.
-std::string heidenhain(const TiltingTable& t, const std::string& campaign) {
+std::string heidenhain(const TiltingTable& t, const std::string& campaign, const Change& c) {
   std::string out = "; " + campaign + ": values for a kinematics table (iTNC 530), mm\n";
   out += "; Documented: the columns KEY, AXIS, COORD and the keys Trans, MachAxis.\n";
   out +=
@@ -96,18 +178,89 @@ std::string heidenhain(const TiltingTable& t, const std::string& campaign) {
     out += std::string(key) + std::string(10 - std::string_view(key).size(), ' ') + axis +
            (coord.empty() ? "" : "     " + coord) + "\n";
   };
-  for (std::size_t k = 0; k < 3; ++k) row("Trans", "XYZ"[k], millimetres(t.tilt_point[k]));
+  for (std::size_t k = 0; k < 3; ++k) row("Trans", "XYZ"[k], millimetres(c.fields[k].value));
   row("MachAxis", t.tilt->axis[0], "");
-  for (std::size_t k = 0; k < 3; ++k)
-    row("Trans", "XYZ"[k], millimetres(t.c_point[k] - t.tilt_point[k]));
+  for (std::size_t k = 0; k < 3; ++k) row("Trans", "XYZ"[k], millimetres(c.fields[3 + k].value));
   row("MachAxis", 'C', "");
   return out;
+}
+
+/// `first`: names of the vector to the tilting axis; `second`: from there to C.
+void put_vectors(const TiltingTable& t, Change& c, const std::array<const char*, 3>& first,
+                 const std::array<const char*, 3>& second, bool documented, const char* why) {
+  for (std::size_t k = 0; k < 3; ++k)
+    c.fields.push_back({first[k], t.tilt_point[k], true, documented, why});
+  for (std::size_t k = 0; k < 3; ++k)
+    c.fields.push_back({second[k], t.c_point[k] - t.tilt_point[k], true, documented, why});
+}
+
+/// Swivel table: I2 from the machine's reference point to the first rotary axis, I3 from there to
+/// the second one, I4 = -(I2 + I3); V1, V2: the rotary axes, with the other sign where they move
+/// the workpiece (SINUMERIK Operate, Commissioning Manual 12/2017, swivelling).
+Change siemens_fields(const TiltingTable& t, bool sign_shown) {
+  Change c{"siemens", {}};
+  put_vectors(t, c, {"$TC_CARR4", "$TC_CARR5", "$TC_CARR6"},
+              {"$TC_CARR15", "$TC_CARR16", "$TC_CARR17"}, true, "");
+  static constexpr const char* closing[] = {"$TC_CARR18", "$TC_CARR19", "$TC_CARR20"};
+  for (std::size_t k = 0; k < 3; ++k) c.fields.push_back({closing[k], -t.c_point[k]});
+  if (!sign_shown) return c;
+  static constexpr const char* why =
+      "which sign of a vector turns the table as it does; shown on the machine (sign_shown)";
+  static constexpr const char* vectors[] = {"$TC_CARR7",  "$TC_CARR8",  "$TC_CARR9",
+                                            "$TC_CARR10", "$TC_CARR11", "$TC_CARR12"};
+  for (std::size_t k = 0; k < 3; ++k)
+    c.fields.push_back({vectors[k], t.tilt->direction[k].value, false, false, why});
+  for (std::size_t k = 0; k < 3; ++k)
+    c.fields.push_back({vectors[3 + k], t.c->direction[k].value, false, false, why});
+  return c;
+}
+
+/// Table rotation type (No. 19680 = 12), first axis the tilting one (FANUC A-79348E: 19700 to 19705,
+/// 19684).
+Change fanuc_fields(const TiltingTable& t) {
+  Change c{"fanuc", {}};
+  put_vectors(t, c, {"19700", "19701", "19702"}, {"19703", "19704", "19705"}, true, "");
+  const auto turns = [](const Line& line, std::size_t k) {
+    return line.direction[k].value > 0.0 ? 0.0 : 1.0;
+  };
+  c.fields.push_back({"19684", turns(*t.tilt, t.about), false});
+  c.fields.push_back(
+      {"19689", turns(*t.c, 2), false, false, "number by the order of 19686 to 19690"});
+  return c;
+}
+
+Change heidenhain_fields(const TiltingTable& t) {
+  Change c{"heidenhain", {}};
+  put_vectors(t, c, {"first_X", "first_Y", "first_Z"}, {"second_X", "second_Y", "second_Z"}, false,
+              "order of rows, signs and the machine's base");
+  return c;
+}
+
+std::string values_file(const TiltingTable& t, const std::string& campaign, const Wish& wish,
+                        const Change& c, const char* what) {
+  std::string out = "; " + campaign + ": " + what + ", mm\n";
+  out += "; first rotary axis " + t.tilt->axis + ", second C; both measured with the other at 0\n";
+  out += "; INFERRED: centres in machine coordinates without tool length\n";
+  out += "; write down what the control has before you change it\n";
+  return out + rows_of(wish, c, ";");
+}
+
+bool contains(const std::vector<std::string>& list, const char* name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// Of every control for which it was stated, what it had before, has now, and the change.
+std::string log_of(const std::string& campaign, const Wish& wish, const std::vector<Change>& all) {
+  std::string out;
+  for (const Change& c : all)
+    if (wish.before.contains(c.control)) out += "\n" + c.control + "\n" + rows_of(wish, c, " ");
+  return out.empty() ? out : "Changes of kinematic parameters, " + campaign + ", mm\n" + out;
 }
 
 }  // namespace
 
 void write_controllers(const std::vector<Line>& lines, const std::string& campaign,
-                       OutputResult& result) {
+                       const Wish& wish, OutputResult& result) {
   TiltingTable t = tilting_table(lines);
   if (t.c == nullptr) return;
   const std::vector<std::pair<std::string, std::string>> names = {{"one", t.c->measurement},
@@ -116,15 +269,48 @@ void write_controllers(const std::vector<Line>& lines, const std::string& campai
     result.findings.push_back({.id = "vectors.no-reference", .texts = names});
     return;
   }
-  if (!along(*t.c, 2) || !along(*t.tilt, t.about)) {
+  if (!parallel(*t.c, 2) || !parallel(*t.tilt, t.about)) {
     result.findings.push_back({.id = "vectors.other-sense", .attention = true, .texts = names});
     return;
   }
   meet(t);
-  result.artifacts.push_back({"rotary-vectors-linuxcnc.hal", linuxcnc(t, campaign)});
-  result.artifacts.push_back({"rotary-vectors-heidenhain.txt", heidenhain(t, campaign)});
-  result.notes.push_back({.id = "vectors.linuxcnc-inferred", .texts = {{"axis", t.tilt->axis}}});
-  result.notes.push_back({.id = "vectors.heidenhain-inferred"});
+  std::vector<Change> written;
+  const auto put = [&](Change c, const char* file, const auto& text) {
+    if (!within_limits(wish, c, result)) return;
+    result.artifacts.push_back({file, text(c)});
+    written.push_back(std::move(c));
+  };
+  const bool right_handed = along(*t.c, 2) && along(*t.tilt, t.about);
+  if (right_handed)
+    put(linuxcnc_fields(t), "rotary-vectors-linuxcnc.hal",
+        [&](const Change& c) { return linuxcnc(t, campaign, c); });
+  else
+    result.findings.push_back({.id = "vectors.other-sense", .attention = true, .texts = names});
+  if (right_handed && contains(wish.sign_shown, "heidenhain"))
+    put(heidenhain_fields(t), "rotary-vectors-heidenhain.txt",
+        [&](const Change& c) { return heidenhain(t, campaign, c); });
+  else if (right_handed)
+    result.findings.push_back(
+        {.id = "vectors.sign-not-shown", .texts = {{"control", "heidenhain"}}});
+  const bool siemens_sign = contains(wish.sign_shown, "siemens");
+  put(siemens_fields(t, siemens_sign), "rotary-vectors-siemens.txt", [&](const Change& c) {
+    return values_file(
+        t, campaign, wish, c,
+        "swivel data record of a swivel table ($TC_CARR23 = \"P\"): I2, I3, I4, V1, V2");
+  });
+  if (!siemens_sign)
+    result.findings.push_back({.id = "vectors.sign-not-shown", .texts = {{"control", "siemens"}}});
+  put(fanuc_fields(t), "rotary-vectors-fanuc.txt", [&](const Change& c) {
+    return values_file(t, campaign, wish, c,
+                       "parameters of tool center point control, table rotation type (19680 = 12)");
+  });
+  if (std::string log = log_of(campaign, wish, written); !log.empty())
+    result.artifacts.push_back({"rotary-vectors-changes.txt", std::move(log)});
+  if (right_handed)
+    result.notes.push_back({.id = "vectors.linuxcnc-inferred", .texts = {{"axis", t.tilt->axis}}});
+  if (right_handed && contains(wish.sign_shown, "heidenhain"))
+    result.notes.push_back({.id = "vectors.heidenhain-inferred"});
+  result.notes.push_back({.id = "vectors.controls-inferred"});
 }
 
 }  // namespace nonio::vectors

@@ -18,6 +18,9 @@ namespace vectors {
 
 std::string millimetres(double si) { return fixed_text(printed(si, Quantity::length), 4); }
 std::string component(double value) { return fixed_text(value, 7); }
+std::string padded(std::string text, std::size_t width) {
+  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
+}
 
 std::vector<Line> lines_of(const Campaign& campaign, const Results& results) {
   std::vector<Line> lines;
@@ -88,10 +91,6 @@ std::string csv(const std::vector<Line>& lines) {
   return out;
 }
 
-std::string padded(std::string text, std::size_t width) {
-  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
-}
-
 std::string text(const Campaign& campaign, const std::vector<Line>& lines) {
   std::string out = "Rotary axes of " + campaign.id + "\n";
   out += "mm, in the coordinates of the linear axes that read the ball; U: expanded, k = 2\n";
@@ -141,14 +140,30 @@ Expected<OutputResult> write(const OutputInput& in) {
                       {"rotary-vectors.json", json(in.campaign, lines)},
                       {"rotary-vectors.csv", csv(lines)}};
   const std::string doubts = doubts_of(in.results);
+  const Wish wish{in.options.number("limit_mm") * 1e-3, in.options.texts("sign_shown"),
+                  in.options.tables("before")};
   if (doubts.empty())
-    write_controllers(lines, in.campaign.id, result);
+    write_controllers(lines, in.campaign.id, wish, result);
   else
     result.findings.push_back({.id = "table.withheld",
                                .attention = true,
                                .texts = {{"output", "rotary-vectors"}, {"findings", doubts}}});
   result.notes.push_back({.id = "vectors.frame"});
   return result;
+}
+
+std::vector<Option> options() {
+  return {{"limit_mm",
+           0.2,
+           "mm",
+           "Largest change of a parameter against what is stated in `before`; beyond it no file.",
+           {},
+           1e-3,
+           1e3},
+          {"sign_shown", std::vector<std::string>{}, "",
+           "Controls on which a move has shown the signs: heidenhain, siemens."},
+          {"before", NumberTables{}, "",
+           "What each control has now, mm: [options.rotary-vectors.before.fanuc] 19700 = 412.3"}};
 }
 
 }  // namespace
@@ -158,7 +173,8 @@ Expected<OutputResult> write(const OutputInput& in) {
 NONIO_PLUGIN(registry) {
   nonio::Output output;
   output.info = {"rotary-vectors", "1.0.0",
-                 "Centre and direction of rotary axes as text, JSON, CSV, and for controls."};
+                 "Centre and direction of rotary axes as text, JSON, CSV, and for controls.",
+                 nonio::vectors::options()};
   output.applies = nonio::vectors::applies;
   output.write = nonio::vectors::write;
   registry.add(std::move(output));

@@ -22,8 +22,18 @@ std::vector<Line> lines_of(const Campaign&, const Results&);
 /// In mm, or without a unit: as many digits as stand for 0.1 um and 0.1 urad.
 std::string millimetres(double si);
 std::string component(double value);
+/// With spaces before it.
+std::string padded(std::string text, std::size_t width);
+
+/// What the user knows of the controls.
+struct Wish {
+  double limit = 2e-4;                  ///< largest change of a length, m
+  std::vector<std::string> sign_shown;  ///< controls on which a move has shown the signs
+  NumberTables before;                  ///< by control: what it has, mm
+};
 
 /// Files for controls whose parameters have known names, for a table C on a tilting axis A or B.
-void write_controllers(const std::vector<Line>&, const std::string& campaign, OutputResult&);
+void write_controllers(const std::vector<Line>&, const std::string& campaign, const Wish&,
+                       OutputResult&);
 
 }  // namespace nonio::vectors

@@ -381,8 +381,8 @@ bool recognises(std::string_view head) {
 
 bool reads(std::string_view kind) {
   return kind == "axis" || kind == "straightness" || kind == "angle" || kind == "diagonal" ||
-         kind == "step-diagonal" || kind == "ball-centres" || kind == "observations" ||
-         kind == "circle";
+         kind == "step-diagonal" || kind == "ball-centres" || kind == "rtcp" ||
+         kind == "observations" || kind == "circle";
 }
 
 Expected<Observations> read(const ReadInput& input) {
@@ -391,6 +391,7 @@ Expected<Observations> read(const ReadInput& input) {
   if (kind == "step-diagonal") return read_step_diagonal(input);
   if (kind == "ball-centres") return read_ball_centres(input);
   if (kind == "circle") return read_circle(input);
+  if (kind == "rtcp") return read_tool_centre(input);
   if (kind == "observations") return read_general(input);
   return read_runs(input);
 }

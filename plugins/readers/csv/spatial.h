@@ -36,6 +36,7 @@ void spread(Observations& observations, const Span& span);
 Expected<Observations> read_step_diagonal(const ReadInput& input);
 Expected<Observations> read_ball_centres(const ReadInput& input);
 Expected<Observations> read_circle(const ReadInput& input);
+Expected<Observations> read_tool_centre(const ReadInput& input);
 Expected<Observations> read_general(const ReadInput& input);
 
 /// Names of columns that only these kinds have, for recognising a file.

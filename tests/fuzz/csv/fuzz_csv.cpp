@@ -80,9 +80,9 @@ void check_spatial(const nonio::Observations& obs, std::string_view bytes) {
 
 struct World {
   static constexpr std::array spatial_kinds{"diagonal", "step-diagonal", "ball-centres",
-                                            "observations", "circle"};
-  static constexpr std::array<std::pair<std::string_view, std::size_t>, 5> spatial_by_words{
-      {{"#diagonal", 0}, {"moved", 1}, {"angle", 2}, {"nx", 3}, {"#circle", 4}}};
+                                            "observations", "circle", "rtcp"};
+  static constexpr std::array<std::pair<std::string_view, std::size_t>, 6> spatial_by_words{
+      {{"#diagonal", 0}, {"moved", 1}, {"angle", 2}, {"nx", 3}, {"#circle", 4}, {"tx", 5}}};
 
   nonio::Campaign campaign;
   nonio::Measurement linear, rotary, straightness;

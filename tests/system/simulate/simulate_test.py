@@ -139,5 +139,82 @@ P_mm = 730.0
             self.assertIn(word, done.stdout)
 
 
+class EveryKind(unittest.TestCase):
+    """A machine with every kind of measurement: what the truth holds comes out, within U."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.root = pathlib.Path(cls.folder.name)
+        spec = SAMPLE.with_name("machining-centre.toml")
+        done = nonio("simulate", spec, "--out", cls.root / "site" / "all")
+        assert done.returncode == 0, done.stderr
+        cls.run_ = nonio("run", cls.root / "site", "--out", cls.root / "out")
+        cls.results = json.loads((cls.root / "out" / "machining-centre" / "results.json").read_text("utf-8"))
+        cls.truth = json.loads((cls.root / "site" / "all.truth.json").read_text("utf-8"))
+
+    def values(self, plugin, measurement):
+        found = [a["values"] for a in self.results["analyses"]
+                 if (a["plugin"], a["measurement"]) == (plugin, measurement)]
+        self.assertEqual(len(found), 1, [(a["plugin"], a["measurement"]) for a in self.results["analyses"]])
+        return found[0]
+
+    def near(self, value, truth, delta):
+        self.assertAlmostEqual(value["value"], truth, delta=delta)
+
+    def test_nothing_failed(self):
+        self.assertEqual(self.run_.returncode, 0, self.run_.stderr)
+        self.assertEqual(self.results["errors"], [])
+        self.assertEqual({m["id"] for m in self.truth["measurements"]},
+                         {"X", "EYX", "S1", "S2", "D1", "D2", "SD", "C", "RTCP", "RTCP-probe"})
+
+    def test_ball_centres(self):
+        v = self.values("rotary-kinematics", "C")
+        self.near(v["centre_x"], 400.018 + 80.0 * 0.00008, 0.003)  # at the height of the ball
+        self.near(v["centre_y"], 299.991 - 80.0 * 0.00005, 0.003)
+        self.near(v["direction_i"], 0.00008, 1.5e-5)
+
+    def test_tool_centre_point_control(self):
+        for measurement, height in (("RTCP", 180.0), ("RTCP-probe", 80.0)):
+            v = self.values("rtcp", measurement)
+            self.near(v["centre_error_x"], 18.0 + height * 0.08, 2.0)
+            self.near(v["centre_error_y"], -9.0 - height * 0.05, 2.0)
+            self.near(v["direction_error_i"], 80.0, 12.0)
+            self.near(v["direction_error_j"], -50.0, 12.0)
+
+    def test_square(self):
+        # The least-squares slope of the bent X is in it; the set-up is not, the error is.
+        self.near(self.values("square", "S1")["C0Y_LSQ"], 12.0, 25.0)
+
+    def test_step_diagonals_show_the_squareness(self):
+        self.near(self.values("step-diagonal", "SD")["C0Y"], 12.0, 20.0)
+
+    def test_diagonals(self):
+        d1, d2 = ([line.split(",") for line in (self.root / "site" / "all" / name).read_text("utf-8").splitlines()[2:]]
+                  for name in ("d1.csv", "d2.csv"))
+        ends = [sum(float(r[3]) for r in d if r[2] == "1000" and r[1] == "+") / 3 -
+                sum(float(r[3]) for r in d if r[2] == "0" and r[1] == "+") / 3 for d in (d1, d2)]
+        # D1 - D2 = -2 Lx Ly C0Y / L, and the ends of the bent X.
+        self.assertAlmostEqual((ends[0] - ends[1]) * 1e-3 / (-2 * 0.8 * 0.6) * 1e3, 12.0, delta=25.0)
+
+    def test_refusals_name_line_and_key(self):
+        spec = self.root / "spec.toml"
+        text = SAMPLE.with_name("machining-centre.toml").read_text("utf-8")
+        for old, new, says in (('sensor = "probe"', "", "sensor: is missing"),
+                               ('ball_mm = [550.0, 300.0, 80.0]\nnoise_um = 1.0', "noise_um = 1.0", "ball_mm: is missing"),
+                               ('"squareness:XY"', '"squareness:YZ"', "no measurement shows it"),
+                               ("steps = 10\nruns = 1", "runs = 1", "steps: is missing"),
+                               ('carries = "table"', "", "carries is missing"),
+                               ('kind = "straightness"\naxis = "X"', 'kind = "angle"\nabout = "Z"\naxis = "X"', "found angle")):
+            self.assertIn(old, text)
+            spec.write_text(text.replace(old, new, 1), "utf-8")
+            done = nonio("simulate", spec, "--out", self.root / "site" / "none")
+            self.assertEqual(done.returncode, 2, says)
+            self.assertIn(says, done.stderr)
+            self.assertRegex(done.stderr, r"line \d+")
+        self.assertFalse((self.root / "site" / "none").exists())
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -29,8 +29,7 @@ inline Output the_output() {
 
 inline Expected<OutputResult> written(const Campaign& campaign,
                                       const std::vector<Observations>& observations,
-                                      const Results& results) {
-  const Settings options;
+                                      const Results& results, const Settings& options = {}) {
   const Templates templates;
   return the_output().write({campaign, observations, results, options, templates});
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <sstream>
 
 #include "one_output.h"
 
@@ -38,10 +40,12 @@ Campaign campaign(const std::vector<std::string>& axes) {
   return c;
 }
 
-OutputResult write(const Campaign& c, std::vector<Results::Analysed> analyses) {
+OutputResult write(const Campaign& c, std::vector<Results::Analysed> analyses,
+                   std::map<std::string, Setting, std::less<>> options = {}) {
   Results results;
   results.analyses = std::move(analyses);
-  auto out = written(c, {}, results);
+  options.emplace("limit_mm", 0.2);
+  auto out = written(c, {}, results, {std::move(options)});
   EXPECT_TRUE(out);
   return out ? *out : OutputResult{};
 }
@@ -95,7 +99,12 @@ TEST(RotaryVectors, OffsetsOnlyWithOneReference) {
   const auto wrong =
       write(campaign({"C", "B"}), {axis("C", c, {0, 0, -1}), axis("B", b, {0, 1, 0}, {"C"})});
   EXPECT_TRUE(says(wrong, "vectors.other-sense"));
-  EXPECT_EQ(wrong.artifacts.size(), 3U);
+  EXPECT_EQ(wrong.artifacts.size(), 5U);  // SINUMERIK and Fanuc take either sense
+  EXPECT_NE(file(wrong, "rotary-vectors-fanuc.txt").find("19689"), std::string::npos);
+  const auto across =
+      write(campaign({"C", "B"}), {axis("C", c, {0, 1, 1}), axis("B", b, {0, 1, 0}, {"C"})});
+  EXPECT_TRUE(says(across, "vectors.other-sense"));
+  EXPECT_EQ(across.artifacts.size(), 3U);
   // An axis that was measured twice is not chosen from.
   auto twice = campaign({"C", "B"});
   twice.measurements.push_back(twice.measurements[0]);
@@ -144,15 +153,89 @@ TEST(RotaryVectors, LinuxCncGoesWhereTheTableGoes) {
   }
 }
 
-TEST(RotaryVectors, HeidenhainMarksWhatIsInferred) {
-  const auto out = write(campaign({"C", "B"}), {axis("C", {0.1, 0.2, -0.1}, {0, 0, 1}),
-                                                axis("B", {0.11, 0, -0.3}, {0, 1, 0}, {"C"})});
+TEST(RotaryVectors, HeidenhainMarksWhatIsInferredOnceItsSignsWereShown) {
+  const auto lines = [] {
+    return std::vector<Results::Analysed>{axis("C", {0.1, 0.2, -0.1}, {0, 0, 1}),
+                                          axis("B", {0.11, 0, -0.3}, {0, 1, 0}, {"C"})};
+  };
+  const auto hidden = write(campaign({"C", "B"}), lines());
+  EXPECT_TRUE(says(hidden, "vectors.sign-not-shown"));
+  EXPECT_TRUE(file(hidden, "rotary-vectors-heidenhain.txt").empty());
+  const auto out = write(campaign({"C", "B"}), lines(),
+                         {{"sign_shown", std::vector<std::string>{"heidenhain"}}});
   const std::string table = file(out, "rotary-vectors-heidenhain.txt");
   EXPECT_NE(table.find("INFERRED"), std::string::npos);
   EXPECT_NE(table.find("Trans     X     110.0000\nTrans     Y     200.0000\n"
                        "Trans     Z     -300.0000\nMachAxis  B\nTrans     X     -10.0000\n"),
             std::string::npos)
       << table;
+}
+
+/// Value of a row "  name before new change", by its column.
+double number(const std::string& text, const std::string& name, int column) {
+  const std::size_t at = text.find("  " + name + " ");
+  EXPECT_NE(at, std::string::npos) << name << "\n" << text;
+  if (at == std::string::npos) return NAN;
+  std::istringstream row(text.substr(at + 2 + name.size()));
+  std::string word;
+  for (int i = 0; i <= column; ++i) row >> word;
+  return std::stod(word);
+}
+
+/// I2 + I3 + I4 = 0, and the axes pass through I2 and I2 + I3: an exactly turned point goes where
+/// these vectors take it.
+TEST(RotaryVectors, SiemensAndFanucVectorsAreTheAxes) {
+  const Vec c{0.4123, 0.30512, -0.1}, tilt{0.41226, 0.1, -0.310045};
+  const auto out =
+      write(campaign({"C", "B"}), {axis("C", c, {0, 0, 1}), axis("B", tilt, {0, 1, 0}, {"C"})});
+  const std::string siemens = file(out, "rotary-vectors-siemens.txt"),
+                    fanuc = file(out, "rotary-vectors-fanuc.txt");
+  EXPECT_EQ(siemens.find("TC_CARR7 "), std::string::npos) << "the sign of V1 is not shown";
+  EXPECT_TRUE(says(out, "vectors.sign-not-shown"));
+  constexpr int new_one = 2;  // behind "not stated"
+  Vec first{}, second{}, closing{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    first[k] = number(siemens, "$TC_CARR" + std::to_string(4 + k), new_one) * mm;
+    second[k] = number(siemens, "$TC_CARR" + std::to_string(15 + k), new_one) * mm;
+    closing[k] = number(siemens, "$TC_CARR" + std::to_string(18 + k), new_one) * mm;
+    EXPECT_NEAR(first[k] + second[k] + closing[k], 0.0, 0.3e-6);
+    EXPECT_NEAR(number(fanuc, std::to_string(19700 + k), new_one) * mm, first[k], 1e-9);
+    EXPECT_NEAR(number(fanuc, std::to_string(19703 + k), new_one) * mm, second[k], 1e-9);
+  }
+  const Vec meeting{first[0] + second[0], first[1] + second[1], first[2] + second[2]};
+  for (const double angle : {25.0, 110.0}) {
+    const Vec point{0.5, 0.25, -0.02};
+    const Vec by_c = turned(point, meeting, 2, angle * deg),
+              real_c = turned(point, c, 2, angle * deg);
+    const Vec by_b = turned(point, first, 1, angle * deg),
+              real_b = turned(point, tilt, 1, angle * deg);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(by_c[k], real_c[k], 0.3e-6);
+      EXPECT_NEAR(by_b[k], real_b[k], 0.3e-6);
+    }
+  }
+  EXPECT_EQ(number(fanuc, "19684", new_one), 0.0);
+}
+
+TEST(RotaryVectors, ChangesHaveALimitAndALog) {
+  const auto lines = [] {
+    return std::vector<Results::Analysed>{axis("C", {0.1, 0.2, -0.1}, {0, 0, 1}),
+                                          axis("B", {0.11, 0, -0.3}, {0, 1, 0}, {"C"})};
+  };
+  const auto with = [&](double was, const char* name = "19700") {
+    return write(campaign({"C", "B"}), lines(),
+                 {{"before", NumberTables{{"fanuc", {{name, was}}}}}});
+  };
+  const auto good = with(109.95);
+  const std::string log = file(good, "rotary-vectors-changes.txt");
+  EXPECT_DOUBLE_EQ(number(log, "19700", 0), 109.95);
+  EXPECT_DOUBLE_EQ(number(log, "19700", 1), 110.0);
+  EXPECT_DOUBLE_EQ(number(log, "19700", 2), 0.05);
+  const auto large = with(109.5);
+  EXPECT_TRUE(says(large, "vectors.change-too-large"));
+  EXPECT_TRUE(file(large, "rotary-vectors-fanuc.txt").empty());
+  EXPECT_FALSE(file(large, "rotary-vectors-siemens.txt").empty());
+  EXPECT_TRUE(says(with(110.0, "19707"), "vectors.unknown-name"));
 }
 
 }  // namespace

@@ -8,14 +8,14 @@ namespace nonio::host::config::declared {
 
 inline constexpr Words axis_runs[] = {"axis"};
 inline constexpr Choice measurement_kinds[] = {
-    {"axis"},         {"straightness"}, {"angle"},  {"diagonal"}, {"step-diagonal"},
-    {"ball-centres"}, {"observations"}, {"circle"}, {"ballbar"}};
+    {"axis"},         {"straightness"}, {"angle"},        {"diagonal"}, {"step-diagonal"},
+    {"ball-centres"}, {"rtcp"},         {"observations"}, {"circle"},   {"ballbar"}};
 inline constexpr Choice on_or_off[] = {{"on"}, {"off"}};
 inline constexpr Choice adjustments[] = {{"before"}, {"after"}};
 inline constexpr Choice listed_orders[] = {{"pendulum"}, {"as-listed"}, {"unknown"}};
 inline constexpr Choice planes[] = {{"XY"}, {"YZ"}, {"ZX"}};
 inline constexpr Choice linear_axes[] = {{"X"}, {"Y"}, {"Z"}};
-inline constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres"};
+inline constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres", "rtcp"};
 inline constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"},
                        circle[] = {"circle"};
 inline constexpr Words diagonals[] = {"diagonal", "step-diagonal"};

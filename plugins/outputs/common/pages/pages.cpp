@@ -181,6 +181,8 @@ std::string heading_of(const Source& source, const Measured& m) {
         "measurement.of",
         {{"heading", words.get("measurement.circle", {{"plane", plane_of(measurement)}})},
          {"id", measurement.id}});
+  if (measurement.kind == "rtcp")
+    return ids(words.get("measurement.rtcp", {{"axis", measurement.axis}}));
   if (measurement.kind == "step-diagonal")
     return words.get("measurement.step_diagonal", {{"id", measurement.id}});
   return words.get("measurement.other", {{"id", measurement.id}, {"kind", measurement.kind}});

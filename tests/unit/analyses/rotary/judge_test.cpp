@@ -120,7 +120,7 @@ void expect_refused(const Evaluation& e, std::string_view id) {
 /// The manifest has no budget here, and a good measurement has nothing else to say.
 bool nothing_else(const Evaluation& e) {
   return std::all_of(e.findings.begin(), e.findings.end(), [](const Finding& f) {
-    return f.id == "uncertainty.no-data" || f.id == "rotary.two-points";
+    return f.id == "uncertainty.no-data" || f.id.starts_with("rotary.two-points");
   });
 }
 
@@ -171,6 +171,36 @@ TEST(RotaryJudge, SaysWhatTwoPointsWouldHaveSaid) {
       found(Workshop().measured("C", noisy(t, full_turn(5), 1 * um)).last(), "rotary.two-points"),
       nullptr)
       << "five places have no pair";
+}
+
+/// Two places and the angle between them: exact on an exact axis along a machine axis, whichever
+/// way it turns; U covers its error as that of half a turn, times 1/sin of half the angle.
+TEST(RotaryJudge, SaysWhatTwoPointsAndAnAngleWouldHaveSaid) {
+  for (const double sense : {1.0, -1.0}) {
+    Table t;
+    t.direction = Eigen::Vector3d(0.0, 0.0, sense);
+    const auto centres = t.at(turntable::arc(-1.0, 1.0, 5));
+    const Evaluation e = Workshop().with("sigma_um", 10.0).measured("C", centres).last();
+    const Finding* f = found(e, "rotary.two-points-angle");
+    ASSERT_NE(f, nullptr) << ids(e);
+    EXPECT_NEAR(evidence(*f, "difference"), 0.0, 1e-10);
+    EXPECT_NEAR(evidence(*f, "U_two"), 2.0 * 10 * um / std::sqrt(2.0) / std::sin(1.0), 1e-9);
+    EXPECT_NEAR(evidence(*f, "shift"), 10e-6 * t.radius / (2.0 * std::sin(1.0)), 1e-12);
+  }
+  int covered = 0;
+  constexpr int trials = 2000;
+  for (unsigned seed = 0; seed < trials; ++seed) {
+    Table t;
+    t.direction = Eigen::Vector3d::UnitZ();
+    Noise noise(seed);
+    const auto two = noise.on(t.at({-1.0, 1.0}), 10 * um);
+    const double x =
+        (two[0].at[0] + two[1].at[0]) / 2.0 - 0.5 / std::tan(1.0) * (two[1].at[1] - two[0].at[1]);
+    covered += std::fabs(x - t.centre[0]) <= 2.0 * 10 * um / std::sqrt(2.0) / std::sin(1.0);
+  }
+  RecordProperty("covered", covered);
+  EXPECT_GT(covered, 0.935 * trials);
+  EXPECT_LT(covered, 0.97 * trials);
 }
 
 TEST(RotaryJudge, AGoodTableHasCentreAndDirectionAndNoFinding) {

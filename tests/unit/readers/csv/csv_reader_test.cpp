@@ -527,7 +527,7 @@ TEST(Csv, RecognisesItsHeader) {
 
 TEST(Csv, ReadsItsKinds) {
   for (const char* kind : {"axis", "straightness", "angle", "diagonal", "step-diagonal",
-                           "ball-centres", "observations", "circle"})
+                           "ball-centres", "rtcp", "observations", "circle"})
     EXPECT_TRUE(reads(kind)) << kind;
   for (const char* kind : {"", "Axis", "circular"}) EXPECT_FALSE(reads(kind)) << kind;
 }

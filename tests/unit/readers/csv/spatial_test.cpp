@@ -15,7 +15,7 @@ Measurement measurement(const std::string& kind) {
   Measurement m;
   m.id = "D1";
   m.kind = kind;
-  m.axis = kind == "ball-centres" ? "C" : "";
+  m.axis = kind == "ball-centres" || kind == "rtcp" ? "C" : "";
   m.file = "d1.csv";
   m.from = {{"X", 0.0}, {"Y", 9.0}};
   m.to = {{"X", 12.0}, {"Y", 0.0}};
@@ -201,6 +201,49 @@ TEST(BallCentres, EachCentreIsThreeReadings) {
   EXPECT_FALSE(read_text("angle_deg,x_mm,y_mm,z_mm\n0,1,2,3\n", m));
   EXPECT_FALSE(read_text("angle_deg,x_mm,y_mm,z_mm\n,1,2,3\n", "ball-centres"));
   EXPECT_FALSE(read_text("angle_deg;x_mm;y_mm;z_mm\n0;1,5;2.5;3\n", "ball-centres"));
+}
+
+/// Places that go round left-handed: a gauge that turns points with them.
+TEST(ToolCentre, AGaugeThatTurnsIsTurnedWithTheAxis) {
+  const auto obs = read_text(
+      "angle_deg,x_mm,y_mm,z_mm,tx,ty,tz,deviation_um,line\n"
+      "0,110,20,5,1,0,0,1.5,a\n90,10,-80,5,1,0,0,-2,a\n180,-90,20,5,1,0,0,nan,a\n"
+      "270,10,120,5,1,0,0,3,a\n",
+      "rtcp");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->size(), 3U);
+  EXPECT_EQ(obs->missing, 1U);
+  EXPECT_DOUBLE_EQ(obs->deviation[1], -2e-6);
+  EXPECT_DOUBLE_EQ(obs->axes[2].position[1], -0.08);
+  const double senses[][2] = {{1, 0}, {0, -1}, {0, 1}};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 2; ++k)
+      EXPECT_NEAR(obs->sense_of(i)[k], senses[i][k], 1e-12) << i << " " << k;
+}
+
+TEST(ToolCentre, AProbeIsThreeReadingsOfTheTool) {
+  const auto obs = read_text(
+      "run,direction,angle_deg,x_mm,y_mm,z_mm,dx_um,dy_um,dz_um\n1,+,0,1,2,3,4,5,-6\n", "rtcp");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->size(), 3U);
+  EXPECT_EQ(obs->lines[2].name, "D1 found z");
+  EXPECT_EQ(obs->lines[2].sense[2], 1.0);
+  EXPECT_DOUBLE_EQ(obs->deviation[2], 6e-6);  // found below: the tool is above
+  EXPECT_EQ(obs->axes[0].approach[0], 1);
+}
+
+TEST(ToolCentre, RefusesWhatItCannotRead) {
+  const std::string places = "angle_deg,x_mm,y_mm,z_mm,";
+  for (const auto& [text, says] :
+       {std::pair<std::string, const char*>{places + "deviation_um\n0,1,2,3,4\n", "nx, ny, nz"},
+        {places + "nx,ny,nz,dx_um,dy_um,dz_um\n0,1,2,3,1,0,0,1,1,1\n", "dx_um"},
+        {places + "nx,ny,nz,deviation_um\n0,1,2,3,1,1,0,4\n", "length"},
+        {places + "tx,ty,tz,deviation_um\n0,1,2,3,1,0,0,4\n90,1,2,3,1,0,0,4\n", "go round"}}) {
+    const auto obs = read_text(text, "rtcp");
+    ASSERT_FALSE(obs) << text;
+    EXPECT_NE(obs.error().message.find(says), std::string::npos) << obs.error().message;
+    EXPECT_EQ(obs.error().file, "d1.csv");
+  }
 }
 
 TEST(General, LinesAndSenses) {
