@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the history of an output folder takes: bench_history rebuild|update OUT [CAMPAIGN]..., bench_history morning OUT TEMPLATES.
+// What the history of an output folder costs: bench_history rebuild|update OUT [CAMPAIGN]..., bench_history morning OUT TEMPLATES,
+// bench_history server OUT URL (the store is on that server from now on, in schema bench).
+#include <sys/resource.h>
+
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -7,6 +10,7 @@
 
 #include "host/batch/morning_update.h"
 #include "host/config/template_files.h"
+#include "host/history/place.h"
 #include "host/history/store.h"
 
 namespace {
@@ -18,14 +22,40 @@ int complain(const nonio::Error& error) {
   return 1;
 }
 
+/// Wall clock, and processor time of this process and those that it has waited for.
+class Clock {
+ public:
+  std::string text() const {
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin_;
+    char out[64];
+    std::snprintf(out, sizeof out, "%.2f s, %.2f s of CPU", took.count(), used() - used_);
+    return out;
+  }
+
+ private:
+  static double used() {
+    double seconds = 0.0;
+    for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+      struct rusage of {};
+      ::getrusage(who, &of);
+      for (const timeval& t : {of.ru_utime, of.ru_stime})
+        seconds += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    }
+    return seconds;
+  }
+
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double used_ = used();
+};
+
 int update(const std::string& what, const char* out, const std::vector<std::string>& campaigns) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Clock clock;
   const auto done = what == "rebuild" ? history::rebuild(out, {}, [] {})
                                       : history::update(out, false, campaigns, {}, [] {});
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  const std::string took = clock.text();
   if (!done) return complain(done.error());
-  std::printf("%s: %llu evaluations in %.2f s%s, %zu left out\n", what.c_str(),
-              static_cast<unsigned long long>(done->evaluations), took.count(),
+  std::printf("%s: %llu evaluations in %s%s, %zu left out\n", what.c_str(),
+              static_cast<unsigned long long>(done->evaluations), took.c_str(),
               done->rebuilt ? ", made again" : "", done->left_out.size());
   return done->left_out.empty() ? 0 : 1;
 }
@@ -40,11 +70,11 @@ int morning(const char* out, const char* templates) {
   options.out = out;
   nonio::host::morning::Tonight tonight;
   tonight.night = 2, tonight.date = "2026-03-20", tonight.campaigns = 100'000;
-  const auto begin = std::chrono::steady_clock::now();
+  const Clock clock;
   const auto made = nonio::host::batch::make_morning(options, context, tonight);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  const std::string took = clock.text();
   if (!made) return complain(made.error());
-  std::printf("morning: %.2f s, %zu characters of lines\n", took.count(), made->json.size());
+  std::printf("morning: %s, %zu characters of lines\n", took.c_str(), made->json.size());
   return 0;
 }
 
@@ -53,6 +83,11 @@ int morning(const char* out, const char* templates) {
 int main(int argc, char** argv) {
   if (argc < 3) return 2;
   const std::string what = argv[1];
+  if (what == "server")
+    return argc == 4 &&
+                   history::note_place(argv[2], nonio::host::storage::Server{argv[3], "bench", {}})
+               ? 0
+               : 2;
   if (what == "morning") return argc == 4 ? morning(argv[2], argv[3]) : 2;
   return update(what, argv[2], {argv + 3, argv + argc});
 }

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The history of many campaigns and the morning after: made again from nothing, and brought up to date after 100 new ones.
 
-    python3 bench/history_store.py build/ci [CAMPAIGNS] [FOLDER]
+    python3 bench/history_store.py build/ci [CAMPAIGNS] [FOLDER] [postgresql://...]
 
-Writes results.json and run.json of 100,000 made-up campaigns (two axes, 44 numbers with covariance each) and lets bench_history do the rest.
+Writes results.json and run.json of 100,000 made-up campaigns (3000 machines or, of fewer campaigns, one for 33 of them; two axes, 44 numbers with
+covariance each) and lets bench_history do the rest. With an address the store is on that server, in a schema bench.
 """
 import hashlib
 import json
@@ -43,11 +44,11 @@ def results(rng, campaign, machine, day):
             "outputs": []}
 
 
-def write(out, campaign, night, rng, kinds):
+def write(out, campaign, night, rng, kinds, machines):
     folder = out / campaign
     folder.mkdir()
     day = f"{2021 + rng.randrange(5)}-{1 + rng.randrange(12):02}-{1 + rng.randrange(28):02}"
-    text = kinds[rng.randrange(len(kinds))].replace("CAMPAIGN", campaign).replace("MACHINE", f"S-{rng.randrange(3000):04}").replace("DAY", day)
+    text = kinds[rng.randrange(len(kinds))].replace("CAMPAIGN", campaign).replace("MACHINE", f"S-{rng.randrange(machines):04}").replace("DAY", day)
     (folder / "results.json").write_text(text)
     (folder / "run.json").write_text(json.dumps({
         "schema": "nonio-run/2", "folder": campaign, "night": night, "date": "2026-03-02", "reason": "", "status": "ok", "retry": False,
@@ -59,6 +60,7 @@ def write(out, campaign, night, rng, kinds):
 def main():
     build = pathlib.Path(sys.argv[1])
     count = int(sys.argv[2]) if len(sys.argv) > 2 else 100_000
+    machines = max(1, min(3000, count // 33))
     above = pathlib.Path(tempfile.mkdtemp(prefix="nonio-history-", dir=sys.argv[3] if len(sys.argv) > 3 else None))
     out = above / "out"
     try:
@@ -66,17 +68,22 @@ def main():
         (out / ".nonio").mkdir(parents=True)
         kinds = [json.dumps(results(rng, "CAMPAIGN", "MACHINE", "DAY"), indent=1) + "\n" for _ in range(200)]
         for i in range(count):
-            write(out, f"c{i:06}", 1, rng, kinds)
+            write(out, f"c{i:06}", 1, rng, kinds, machines)
         print(f"seed {SEED}, {count} campaigns", flush=True)
         program = next(p for p in build.rglob("bench_history") if p.is_file())
+        if len(sys.argv) > 4:
+            subprocess.run([program, "server", out, sys.argv[4]], check=True)
         subprocess.run([program, "rebuild", out], check=True)
         subprocess.run([program, "morning", out, TEMPLATES], check=True)
         new = [f"n{i:03}" for i in range(100)]
         for campaign in new:
-            write(out, campaign, 2, rng, kinds)
+            write(out, campaign, 2, rng, kinds, machines)
         subprocess.run([program, "update", out, *new], check=True)
         subprocess.run([program, "morning", out, TEMPLATES], check=True)
-        print(f"{(out / 'history.sqlite').stat().st_size / 1e6:.0f} MB")
+        subprocess.run([program, "morning", out, TEMPLATES], check=True)
+        for name in ("history.sqlite", "index.html", ".nonio/machines", ".nonio/trends"):
+            if (out / name).exists():
+                print(f"{name}: {(out / name).stat().st_size / 1e6:.1f} MB")
     finally:
         shutil.rmtree(above)
 

@@ -168,7 +168,8 @@ class Trending {
         noise(i) = r * std::cos(angle), noise(i + 1) = r * std::sin(angle);
       }
       beyond += (places.direction.transpose() * noise.head(w_.y.size())).cwiseAbs2().maxCoeff() > G;
-      if (draw % batch == 0 && is_surely_more(beyond, draw))
+      if ((draw % batch == 0 && is_surely_more(beyond, draw)) ||
+          (draw < batch && is_surely_more(beyond, batch)))  // as it will be then
         return std::min(bound, (beyond + 1.0) / (draw + 1.0));
     }
     return std::min(bound, (beyond + 1.0) / (draws + 1.0));

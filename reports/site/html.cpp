@@ -37,9 +37,13 @@ std::string navigation(const Page& page) {
 std::string html(std::string_view text) { return escaped_markup(text, Markup::attribute); }
 
 std::string element(std::string_view name, std::string_view inner, std::string_view more) {
-  std::string out = "<" + std::string(name);
-  if (!more.empty()) out += " " + std::string(more);
-  return out + ">" + std::string(inner) + "</" + std::string(name) + ">\n";
+  constexpr std::size_t brackets = 8;
+  std::string out;
+  out.reserve(2 * name.size() + inner.size() + more.size() + brackets);
+  ((out += '<') += name);
+  if (!more.empty()) ((out += ' ') += more);
+  ((((out += '>') += inner) += "</") += name) += ">\n";
+  return out;
 }
 
 std::string link(std::string_view to, std::string_view text_as_html) {

@@ -99,9 +99,17 @@ const Key& specification_file();
 inline constexpr std::string_view cycle_axis = "(axis)";
 
 /// What the nightly run writes beside the folders of the campaigns.
-inline constexpr std::string_view files_of_a_night[] = {
-    "summary.json", "summary.txt", "history.sqlite",   "history.json", "index.html",
-    "due.html",     "due.ics",     "instruments.html", "compare.html", "machines"};
+inline constexpr std::string_view files_of_a_night[] = {"summary.json",
+                                                        "summary.txt",
+                                                        "history.sqlite",
+                                                        "history.json",
+                                                        "index.html",
+                                                        "due.html",
+                                                        "due.ics",
+                                                        "instruments.html",
+                                                        "compare.html",
+                                                        "machines",
+                                                        "history.sqlite-journal"};
 /// Its record is the file of that name in SITE/machines.
 inline constexpr TextRule asset_rule{.not_letters = "/\\\n\t", .not_first = ". ", .longest = 100};
 /// Folders of results are named by it.

@@ -37,7 +37,15 @@ SELECT c.campaign, c.day, c.customer, c.purpose, e.status, c.instrument_maker, c
   e.place, e.control
 FROM campaign c
 JOIN evaluation e ON e.campaign = c.campaign AND e.campaign_sha256 = c.campaign_sha256
-WHERE (c.machine = ? OR c.machine IN (SELECT alias FROM machine_alias WHERE machine = ?))
+WHERE (c.machine = ? OR c.machine IN (SELECT alias FROM machine_alias WHERE machine = ?)) AND e.status <> 'failed' AND c.day <= ?
+  AND NOT EXISTS (SELECT 1 FROM evaluation n WHERE n.supersedes = e.evaluation)
+ORDER BY c.day, c.campaign
+)sql";
+
+constexpr const char* later_sql = R"sql(
+SELECT c.campaign, c.day FROM campaign c
+JOIN evaluation e ON e.campaign = c.campaign AND e.campaign_sha256 = c.campaign_sha256
+WHERE (c.machine = ? OR c.machine IN (SELECT alias FROM machine_alias WHERE machine = ?)) AND e.status <> 'failed' AND c.day > ?
   AND NOT EXISTS (SELECT 1 FROM evaluation n WHERE n.supersedes = e.evaluation)
 ORDER BY c.day, c.campaign
 )sql";
@@ -64,7 +72,7 @@ GROUP BY COALESCE(a.machine, c.machine) ORDER BY name
 )sql";
 
 constexpr const char* evaluations_sql = R"sql(
-SELECT COALESCE(a.machine, c.machine), e.campaign, e.evaluation_sha256, e.night, n.evaluation
+SELECT COALESCE(a.machine, c.machine), e.campaign, e.evaluation_sha256, c.day, e.night, n.evaluation
 FROM evaluation e
 JOIN campaign c ON c.campaign = e.campaign AND c.campaign_sha256 = e.campaign_sha256
 LEFT JOIN machine_alias a ON a.alias = c.machine
@@ -144,9 +152,11 @@ Expected<std::vector<MachineState>> StoreReader::machines() {
   return out;
 }
 
-Expected<StoredMachine> StoreReader::machine(const std::string& name) {
+Expected<StoredMachine> StoreReader::machine(const std::string& name, const std::string& until) {
   StoredMachine out;
-  for (Database::Row& r : database_.rows(campaigns_sql, {name, name}))
+  for (Database::Row& r : database_.rows(later_sql, {name, name, until}))
+    out.later.push_back({std::move(r[0]), std::move(r[1])});
+  for (Database::Row& r : database_.rows(campaigns_sql, {name, name, until}))
     out.campaigns.push_back({.id = std::move(r[0]),
                              .day = std::move(r[1]),
                              .customer = std::move(r[2]),
@@ -180,8 +190,11 @@ Expected<StoredMachine> StoreReader::machine(const std::string& name) {
 Expected<StoredLogs> StoreReader::logs() {
   StoredLogs out;
   for (Database::Row& r : database_.rows(
-           "SELECT day, machine, axis, kind, note, said_by, line FROM event ORDER BY day, item"))
+           "SELECT day, machine, axis, kind, note, said_by, line, source FROM event ORDER BY "
+           "day, item")) {
     out.events.push_back({r[0], r[1], r[2], r[3], r[4], r[5], whole_of<std::uint64_t>(r[6])});
+    if (r[7] != config::events_name) out.recorded.insert(r[1]);
+  }
   for (Database::Row& r : database_.rows(
            "SELECT day, finding, machine, axis, quantity, until, value, expanded, said_by, why, "
            "line FROM acknowledgement ORDER BY item"))
@@ -194,6 +207,11 @@ Expected<StoredLogs> StoreReader::logs() {
     out.aliases[r[0]] = r[1];
   for (Database::Row& r : database_.rows("SELECT machine, months FROM due_rule"))
     out.due[r[0]] = whole_of<int>(r[1]);
+  for (const auto& [alias, machine] : out.aliases)  // a rule may name a machine as campaigns do
+    if (const auto rule = out.due.find(alias); rule != out.due.end()) {
+      out.due.try_emplace(machine, rule->second);
+      out.due.erase(rule);
+    }
   if (auto well = database_.take_error(); !well) return fail(well.error());
   return out;
 }
@@ -211,8 +229,8 @@ Expected<std::map<std::string, std::string>> StoreReader::machine_of_campaigns()
 Expected<std::vector<StoredEvaluation>> StoreReader::evaluations() {
   std::vector<StoredEvaluation> out;
   for (Database::Row& r : database_.rows(evaluations_sql))
-    out.push_back({std::move(r[0]), std::move(r[1]), std::move(r[2]), whole_of<std::uint64_t>(r[3]),
-                   r[4].empty()});
+    out.push_back({std::move(r[0]), std::move(r[1]), std::move(r[2]), std::move(r[3]),
+                   whole_of<std::uint64_t>(r[4]), r[5].empty()});
   if (auto well = database_.take_error(); !well) return fail(well.error());
   return out;
 }

@@ -39,13 +39,17 @@ struct StoredResult {
   std::vector<CommonPart> common{};
 };
 
-/// All that the store says of one machine.
+/// All that the store says of one machine. A campaign that failed measured nothing: it is not here.
 struct StoredMachine {
   std::vector<StoredCampaign> campaigns;  ///< by day, then by id
   std::vector<StoredResult> results;      ///< in the order of their campaigns
   std::vector<StoredResult> predicted{};  ///< by tables: the same order
   /// Severity by finding of the last evaluation of each campaign.
   std::vector<std::map<std::string, std::string>> findings;
+  struct Later {
+    std::string campaign, day;
+  };
+  std::vector<Later> later{};  ///< campaigns dated after the day that was asked for: not here
 };
 
 /// A machine, with aliases joined.
@@ -58,7 +62,7 @@ struct MachineState {
 /// An evaluation, whether another supersedes it or not.
 struct StoredEvaluation {
   std::string machine;  ///< aliases joined; empty: of none
-  std::string campaign, sha256;
+  std::string campaign, sha256, day;
   std::uint64_t night = 0;
   bool counts = true;  ///< no other supersedes it
 };
@@ -76,6 +80,7 @@ struct StoredLogs {
   std::vector<config::Forgotten> forgotten;
   std::map<std::string, std::string> aliases;  ///< machine by alias
   std::map<std::string, int> due;              ///< months by machine; "": of all others
+  std::set<std::string> recorded{};            ///< machines that have records with events
 };
 
 /// Reads a store; evaluations that another supersedes are never seen.
@@ -86,7 +91,8 @@ class StoreReader {
 
   /// With aliases joined, by name; machines without a name are left out.
   Expected<std::vector<MachineState>> machines();
-  Expected<StoredMachine> machine(const std::string& name);
+  /// `until`: what is dated after this day is not measured yet.
+  Expected<StoredMachine> machine(const std::string& name, const std::string& until = "9999-12-31");
   Expected<StoredLogs> logs();
   /// The machine of each campaign, aliases joined.
   Expected<std::map<std::string, std::string>> machine_of_campaigns();

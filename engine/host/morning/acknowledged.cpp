@@ -27,7 +27,8 @@ std::optional<Knew> known_on(const AssessedMachine& m, const MorningLine& l,
                              const std::string& day) {
   std::optional<Knew> out;
   for (const history::StoredResult& r : m.stored.results) {
-    if (r.axis != l.axis || r.quantity != l.quantity || m.stored.campaigns[r.campaign].day > day)
+    if (r.axis != l.axis || r.quantity != l.quantity || quantity_of_unit(r.unit) != l.unit ||
+        m.stored.campaigns[r.campaign].day > day)
       continue;
     const double u =
         r.followed ? r.u_repeat.value_or(0.0) : r.expanded.value_or(0.0) / r.k.value_or(2.0);

@@ -115,6 +115,7 @@ class Assessment::State {
     keep_trends();
     KeptMachines now;
     now.nights = std::move(before_.nights);
+    now.bytes = before_.bytes;
     for (Assessed& m : machines_) now.machines.emplace(m.state.machine.name, std::move(m.kept));
     now.keep_in(out_);
   }
@@ -169,13 +170,15 @@ class Assessment::State {
     for (const auto& e : *evaluations) of_machine[e.machine].push_back(&e);
     std::set<std::string> forgotten;
     for (const config::Forgotten& f : logs_.forgotten) forgotten.insert(f.campaign);
+    const MachineEvents events(*states, logs_);
+    note_unknown(*states, events);
     for (const history::MachineState& state : *states) {
       alive_();
-      Assessed m{state, events_of(state, *states, logs_), {}, {}};
+      Assessed m{state, events.of(state.machine.name), {}, {}};
       ByteWriter rows;
       put_identity(rows, m);
       for (const history::StoredEvaluation* e : of_machine[state.machine.name]) {
-        rows(e->campaign, e->sha256, e->night, e->counts);
+        rows(e->campaign, e->sha256, e->night, e->counts, e->day > until_);
         if (!e->counts) continue;
         m.campaigns.push_back(e->campaign);
         if (const auto n = numbers->find(e->campaign); n != numbers->end()) rows(n->second);
@@ -191,6 +194,27 @@ class Assessment::State {
       machines_.push_back(std::move(m));
     }
     return {};
+  }
+
+  /// Names that no campaign has. Records of machines may be there before their campaigns.
+  void note_unknown(const std::vector<history::MachineState>& states, const MachineEvents& events) {
+    std::set<std::string> names;
+    for (const history::MachineState& state : states) names.insert(state.machine.name);
+    for (const config::Event& e : events.of_none())
+      if (!logs_.recorded.contains(e.machine)) put_unknown(e.machine, config::events_name, e.line);
+    for (const config::Acknowledgement& a : logs_.acknowledged) {
+      const auto alias = logs_.aliases.find(a.machine);
+      const std::string& name = alias == logs_.aliases.end() ? a.machine : alias->second;
+      if (!name.empty() && !names.contains(name) && a.until >= tonight_.date)
+        put_unknown(a.machine, config::acknowledged_name, a.line);
+    }
+    for (const auto& [machine, months] : logs_.due)
+      if (!machine.empty() && !names.contains(machine))
+        unknown_.push_back(machine + " (site.toml [[due]])");
+  }
+
+  void put_unknown(const std::string& machine, const char* file, std::uint64_t line) {
+    unknown_.push_back(machine + " (" + file + ":" + std::to_string(line) + ")");
   }
 
   static void put_identity(ByteWriter& rows, const Assessed& m) {
@@ -228,7 +252,7 @@ class Assessment::State {
   }
 
   Expected<void> read(Assessed& m) {
-    auto stored = store_.machine(m.state.machine.name);
+    auto stored = store_.machine(m.state.machine.name, until_);
     if (!stored) return fail(stored.error());
     AssessedMachine read{m.state, std::move(*stored), m.events, {}, {}};
     read.followed = followed_series(read.stored, read.events);
@@ -333,7 +357,7 @@ class Assessment::State {
     for (const config::Acknowledgement* a : acknowledgements_of(m.state.machine.name, logs_))
       w(a->date, a->finding, a->machine, a->axis, a->quantity, a->until, a->value, a->U, a->by,
         a->why);
-    for (const std::string& campaign : m.campaigns) w(link_of(out_, campaign));
+    for (const std::string& campaign : m.campaigns) w(links_.of(campaign));
     // What came tonight is told as what came tonight.
     if (m.state.night >= tonight_.night) w(tonight_.night);
     return storage::sha256(w.take());
@@ -358,7 +382,10 @@ class Assessment::State {
   }
 
   Expected<void> put_together() {
-    const auto machine_of_campaign = store_.machine_of_campaigns();
+    // Only what is lost or failed asks whose it is.
+    Expected<std::map<std::string, std::string>> machine_of_campaign;
+    if (!tonight_.vanished.empty() || !tonight_.failed.empty())
+      machine_of_campaign = store_.machine_of_campaigns();
     if (!machine_of_campaign) return fail(machine_of_campaign.error());
     const auto spellings = history::spellings_in(out_);
     if (!spellings) return fail(spellings.error());
@@ -382,7 +409,8 @@ class Assessment::State {
       site.machines[i].proposal = std::move(proposals[i]);
     site.judged = std::any_of(standings.begin(), standings.end(),
                               [](const Standing* s) { return s->judged; });
-    site.lines = lines_of({tonight_, standings, *machine_of_campaign, *spellings, learned_.of});
+    site.lines =
+        lines_of({tonight_, standings, *machine_of_campaign, *spellings, learned_.of, unknown_});
     for (const reports::MorningLine& l : site.lines) lines_[l.machine].push_back(l);
     site.instruments = joined(instruments);
     site.comparisons = comparisons_of(site.machines);
@@ -413,6 +441,10 @@ class Assessment::State {
   Fits fits_;
   Learned learned_{};
   std::vector<Assessed> machines_{};
+  std::vector<std::string> unknown_{};
+  const Links links_{out_};
+  /// What is dated later is not measured yet.
+  const std::string until_ = tonight_.date.empty() ? "9999-12-31" : tonight_.date;
   std::map<std::string, std::vector<reports::MorningLine>> lines_{};  ///< by machine
 };
 

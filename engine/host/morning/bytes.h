@@ -34,6 +34,8 @@ class ByteWriter {
     for (const T& value : all) one(value);
   }
   std::string take() { return std::move(out_); }
+  void put_raw(std::string_view bytes) { out_ += bytes; }
+  void reserve(std::size_t bytes) { out_.reserve(bytes); }
 
   template <class... T>
   void operator()(const T&... values) {

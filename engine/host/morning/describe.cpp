@@ -83,7 +83,8 @@ class Describing {
       ahead_ = day_number(m.stored.campaigns.back().day);
       if (ahead_) *ahead_ += *interval;
     }
-    for (const StoredCampaign& c : m.stored.campaigns) links_.push_back(link_of(out, c.id));
+    const Links links(out);
+    for (const StoredCampaign& c : m.stored.campaigns) links_.push_back(links.of(c.id));
   }
 
   HistorySeries of(const FollowedSeries& s) const {
@@ -115,6 +116,8 @@ class Describing {
   HistorySeries of(const ShownSeries& s) const {
     const Quantity q = quantity_of_unit(s.unit);
     HistorySeries out{.axis = s.axis, .quantity = s.quantity, .unit = q, .points = {}, .model = ""};
+    out.ended = s.ended;
+    out.ended = s.ended;
     // Definitions of A, E and R changed with the editions of the standard.
     const StoredResult& last = m_.stored.results[s.results.back()];
     for (const std::size_t i : s.results) {
@@ -226,11 +229,19 @@ Quantity quantity_of_unit(const std::string& symbol) {
 
 double si(double shown, Quantity quantity) { return shown / unit_of(quantity).per_si; }
 
+Links::Links(const fs::path& out)
+    : root_((out / "").native()), hashed_(storage::results_folder(out, "a") != out / "a") {}
+
+std::string Links::of(const std::string& campaign) const {
+  std::string folder = campaign + "/";
+  if (hashed_)
+    folder = storage::results_folder(root_, campaign).native().substr(root_.size()) + "/";
+  const bool report = ::access((root_ + folder + "report.pdf").c_str(), F_OK) == 0;
+  return folder + (report ? "report.pdf" : evaluation::results_name);
+}
+
 std::string link_of(const fs::path& out, const std::string& campaign) {
-  const std::string folder = storage::results_folder(out, campaign).string() + "/";
-  const bool report = ::access((folder + "report.pdf").c_str(), F_OK) == 0;
-  return folder.substr((out / "").native().size()) +
-         (report ? "report.pdf" : evaluation::results_name);
+  return Links(out).of(campaign);
 }
 
 std::optional<std::int64_t> usual_interval(const std::vector<StoredCampaign>& campaigns) {

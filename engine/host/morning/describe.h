@@ -17,8 +17,18 @@ Quantity quantity_of_unit(const std::string& symbol);
 /// From the printed unit to SI, so that `printed` gives the number back.
 double si(double shown, Quantity quantity);
 
-/// Where the results of a campaign are, relative to the output folder: its report, else its
-/// folder's results.json.
+/// Where the results of campaigns are, relative to the output folder: the report, else the folder's
+/// results.json.
+class Links {
+ public:
+  explicit Links(const std::filesystem::path& out);
+  std::string of(const std::string& campaign) const;
+
+ private:
+  std::string root_;
+  bool hashed_;
+};
+/// Of one.
 std::string link_of(const std::filesystem::path& out, const std::string& campaign);
 
 /// Days; half of the gaps between campaign days are longer than this; none of one day.

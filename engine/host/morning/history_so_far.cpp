@@ -31,12 +31,12 @@ std::string digest_of_basis(const HistoryBasis& b) {
 class BasisMachine {
  public:
   BasisMachine(const std::vector<history::MachineState>& machines, const std::string& name,
-               const history::StoredLogs& logs) {
+               const history::StoredLogs& logs, const MachineEvents& events) {
     const auto at = std::find_if(machines.begin(), machines.end(),
                                  [&](const auto& m) { return m.machine.name == name; });
     if (at == machines.end()) return;
     basis_.machine = at->machine;
-    events_ = events_of(*at, machines, logs);
+    events_ = events.of(name);
     for (const auto& [alias, machine] : logs.aliases)
       if (machine == name) basis_.aliases.push_back(alias);
     auto rule = logs.due.find(name);
@@ -77,6 +77,7 @@ Expected<std::vector<HistoryBasis>> history_bases(const fs::path& out,
   const auto counted = store->counted_campaigns();
   if (!counted) return fail(counted.error());
   const std::set<std::string> wanted(campaigns.begin(), campaigns.end());
+  const MachineEvents events(*machines, *logs);
   std::map<std::string, std::vector<const history::CountedCampaign*>> by_machine;
   for (const history::CountedCampaign& c : *counted) by_machine[c.machine].push_back(&c);
   std::vector<HistoryBasis> bases;
@@ -84,7 +85,7 @@ Expected<std::vector<HistoryBasis>> history_bases(const fs::path& out,
     if (std::none_of(of_machine.begin(), of_machine.end(),
                      [&](const auto* c) { return wanted.contains(c->campaign); }))
       continue;
-    const BasisMachine machine(*machines, name, *logs);
+    const BasisMachine machine(*machines, name, *logs, events);
     for (const history::CountedCampaign* c : of_machine)
       if (wanted.contains(c->campaign)) bases.push_back(machine.basis(*c, of_machine));
   }

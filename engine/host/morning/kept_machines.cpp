@@ -77,7 +77,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Another program may find out something else.
-constexpr std::string_view machines_magic = "nonio-machines/2 " NONIO_VERSION "\n";
+constexpr std::string_view machines_magic = "nonio-machines/3 " NONIO_VERSION "\n";
 constexpr const char* machines_folder = ".nonio";
 constexpr const char* machines_name = "machines";
 constexpr std::size_t digest_size = 64;
@@ -102,7 +102,9 @@ void fields(Io& io, T& t) { io(t.night, t.has_model, t.changes); }
 
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, IntervalFacts>
-void fields(Io& io, T& f) { io(f.maker, f.model, f.days, f.months, f.found, f.chart, f.refusal); }
+void fields(Io& io, T& f) {
+  io(f.maker, f.model, f.days, f.months, f.tested, f.found, f.chart, f.refusal);
+}
 
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, Standing>
@@ -135,6 +137,7 @@ KeptMachines KeptMachines::in(const fs::path& out) {
     return {};
   ByteReader r(body.substr(machines_magic.size()));
   KeptMachines kept;
+  kept.bytes = file->size();
   r.each([&] {
     auto& [made_from, asked] = kept.nights[r.get<std::uint64_t>()];
     r(made_from, asked);
@@ -149,11 +152,13 @@ KeptMachines KeptMachines::in(const fs::path& out) {
 
 void KeptMachines::keep_in(const fs::path& out) const {
   ByteWriter w;
+  w.reserve(bytes + bytes / 8);
+  w.put_raw(machines_magic);
   w.put(static_cast<std::uint64_t>(nights.size()));
   for (const auto& [number, night] : nights) w(number, night.made_from, night.asked);
   w.put(static_cast<std::uint64_t>(machines.size()));
   for (const auto& [name, machine] : machines) w(name, machine);
-  std::string body = std::string(machines_magic) + w.take();
+  std::string body = w.take();
   body += storage::sha256(body);
   [[maybe_unused]] const auto kept =
       storage::publish(out / machines_folder, {{machines_name, std::move(body)}});

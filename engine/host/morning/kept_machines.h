@@ -43,6 +43,7 @@ struct KeptMachines {
     std::uint64_t asked = 0;
   };
   std::map<std::uint64_t, Night> nights{};
+  std::size_t bytes = 0;  ///< that they took when they were read
 
   static KeptMachines in(const std::filesystem::path& out);
   /// Not being able to is no error.

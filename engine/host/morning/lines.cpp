@@ -117,10 +117,23 @@ void conforming(const Known& known, std::vector<MorningLine>& out) {
   put_count(out.back(), "reversal", lost_motion);
 }
 
+/// What is said of a machine that nobody has measured is said of no machine: a slip of a letter.
+void unknown(const Known& known, std::vector<MorningLine>& out) {
+  const std::size_t count = known.unknown.size();
+  if (count == 0) return;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(count, most_machines); ++i)
+    names += (names.empty() ? "" : ", ") + known.unknown[i];
+  out.push_back(line_of(Kind::information, "morning.unknown-machine", "site"));
+  put_count(out.back(), "count", count);
+  put_text(out.back(), "where", names + (count > most_machines ? ", ..." : ""));
+}
+
 std::vector<MorningLine> of_site(const Known& known) {
   std::vector<MorningLine> out;
   not_judged(known, out);
   conforming(known, out);
+  unknown(known, out);
   for (const history::Spelling& s : known.spellings) {
     out.push_back(line_of(Kind::information, "morning.spelling", s.one + "|" + s.other));
     out.back().machine = s.one;
@@ -144,19 +157,21 @@ std::vector<MorningLine> of_site(const Known& known) {
   return out;
 }
 
-/// Where U decides, the same is to be done about all: a better measurement.
-void fold_undecided(std::vector<MorningLine>& lines) {
-  const auto is_one = [](const MorningLine& l) {
-    return l.kind == Kind::undecided && l.state == MorningLine::State::fresh;
+/// Where U decides, the same is to be done about all: a better measurement. Where many days lie
+/// ahead of the night, its own is wrong.
+void fold(std::vector<MorningLine>& lines, const char* finding, const char* several) {
+  const auto is_one = [&](const MorningLine& l) {
+    return l.finding.id == finding && l.state == MorningLine::State::fresh;
   };
   const auto count = static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), is_one));
   if (count <= most_alike) return;
-  MorningLine all = line_of(Kind::undecided, "morning.undecided-several", "site");
+  MorningLine all = line_of(Kind::undecided, several, "site");
   std::string names;
   std::size_t named = 0;
   for (const MorningLine& l : lines)
     if (is_one(l) && named++ < most_machines)
-      names += (names.empty() ? "" : ", ") + l.machine + " " + l.axis;
+      names +=
+          (names.empty() ? "" : ", ") + l.machine + " " + (l.axis.empty() ? l.campaign : l.axis);
   put_count(all, "count", count);
   put_text(all, "where", names + (count > most_machines ? ", ..." : ""));
   std::erase_if(lines, is_one);
@@ -210,7 +225,8 @@ std::vector<MorningLine> lines_of(const Known& known) {
   add(lost(known));
   add(failed(known));
   for (const Standing* m : known.machines) add(m->lines);
-  fold_undecided(out);
+  fold(out, "morning.undecided", "morning.undecided-several");
+  fold(out, "morning.later", "morning.later-several");
   add(of_site(known));
   std::stable_sort(out.begin(), out.end(), comes_before);
   return out;

@@ -20,6 +20,8 @@ struct Known {
   const std::map<std::string, std::string>& machine_of_campaign;
   const std::vector<history::Spelling>& spellings;
   const std::map<std::string, OfQuantity>& learned;
+  /// Names of machines that people use and no campaign has, each with where it stands.
+  const std::vector<std::string>& unknown;
 };
 
 /// What asks for a decision this morning, one line each: in the order of what ignoring it costs,

@@ -50,6 +50,7 @@ class OfMachine {
     tables();
     soon();
     overdue();
+    later();
     instruments();
     return std::move(out_);
   }
@@ -84,11 +85,12 @@ class OfMachine {
                          [](const auto& a, const auto& b) { return a.size() > b.size(); });
   }
 
-  /// Somebody has said that this axis was repaired or compensated after that campaign.
+  /// Somebody has said that this axis was repaired or compensated after that campaign. What is
+  /// planned has mended nothing yet.
   bool is_repaired(const std::string& axis, const std::string& after) const {
     return std::any_of(m_.events.begin(), m_.events.end(), [&](const config::Event& e) {
       return (e.kind == "repair" || e.kind == "compensation") && e.date > after &&
-             (e.axis.empty() || axis.empty() || e.axis == axis);
+             e.date <= tonight_.date && (e.axis.empty() || axis.empty() || e.axis == axis);
     });
   }
 
@@ -155,25 +157,37 @@ class OfMachine {
 
   /// Of each axis: the worst of what does not conform, or what cannot be decided.
   void judged() {
-    std::map<std::string, std::vector<const ShownSeries*>> out, open, good;
+    std::map<std::string, std::vector<const ShownSeries*>> out, open, good, anew;
     for (const ShownSeries& s : m_.shown) {
       const history::StoredResult& last = m_.stored.results[s.judged.back()];
-      if (!last.tolerance) continue;
+      if (!last.tolerance || s.ended) continue;
       if (last.decision == does_not_conform)
         out[s.axis].push_back(&s);
       else if (!last.decision.empty() && last.decision != conforms)
         open[s.axis].push_back(&s);
       else if (is_fixed(s))
-        good[s.axis].push_back(&s);
+        (is_judged_alike(s) ? good : anew)[s.axis].push_back(&s);
     }
     for (auto& [axis, all] : out) add(beyond(axis, all));
     for (auto& [axis, all] : open)
       if (!out.contains(axis)) add(limit_line(Kind::undecided, "morning.undecided", all));
-    for (auto& [axis, all] : good) {
-      if (out.contains(axis)) continue;
-      add(limit_line(Kind::out, "morning.fixed", all));
-      out_.back().state = MorningLine::State::fixed;
-    }
+    for (auto& [axis, all] : good)
+      if (!out.contains(axis)) add_fixed("morning.fixed", all);
+    for (auto& [axis, all] : anew)
+      if (!out.contains(axis) && !good.contains(axis)) add_fixed("morning.judged-anew", all);
+  }
+
+  void add_fixed(const char* finding, std::vector<const ShownSeries*>& all) {
+    add(limit_line(Kind::out, finding, all));
+    out_.back().state = MorningLine::State::fixed;
+  }
+
+  /// By the same definition, against no wider limit: then it is the machine that is better.
+  bool is_judged_alike(const ShownSeries& s) const {
+    const auto& last = m_.stored.results[s.judged.back()];
+    const auto& before = m_.stored.results[s.judged[s.judged.size() - 2]];
+    return last.source == before.source && last.conditions == before.conditions &&
+           last.tolerance <= before.tolerance;
   }
 
   bool is_fixed(const ShownSeries& s) const {
@@ -299,6 +313,18 @@ class OfMachine {
     put_text(l, "due", d_.due);
     put_text(l, "rule", d_.why_due);
     add(std::move(l));
+  }
+
+  /// Nobody has measured yet what is dated after the night.
+  void later() {
+    for (const history::StoredMachine::Later& c : m_.stored.later) {
+      MorningLine l = line(Kind::undecided, "morning.later", c.campaign);
+      l.campaign = c.campaign;
+      l.since = c.day;
+      put_text(l, "campaign", c.campaign);
+      put_text(l, "day", c.day);
+      add(std::move(l));
+    }
   }
 
   /// What moved with another instrument and came tonight.

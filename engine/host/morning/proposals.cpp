@@ -40,10 +40,16 @@ void propose(IntervalProposal& p, double months) {
   p.months = std::max(1, static_cast<int>(std::floor(months + rounding)));
 }
 
-/// What each axis was when it was last found: the worst of all that has a limit.
-std::optional<Found> last_found(const AssessedMachine& m) {
-  std::optional<Found> worst;
+/// Of its interval a machine was left alone for less than this: what was found says nothing of it.
+constexpr double early_below = 0.75;
+
+bool is_early(const IntervalFacts& m) { return m.tested < early_below * m.months; }
+
+/// What each axis was when it was last found: the worst of all that has a limit, and its campaign.
+std::optional<std::pair<Found, std::size_t>> last_found(const AssessedMachine& m) {
+  std::optional<std::pair<Found, std::size_t>> worst;
   for (const ShownSeries& s : m.shown) {
+    if (s.ended) continue;
     const history::StoredResult* last = nullptr;
     for (const std::size_t i : s.results)
       if (m.stored.results[i].state == "as-found" && !m.stored.results[i].decision.empty())
@@ -52,7 +58,8 @@ std::optional<Found> last_found(const AssessedMachine& m) {
     const Found found = last->decision == "conforms"           ? Found::conforms
                         : last->decision == "does not conform" ? Found::fails
                                                                : Found::undecided;
-    worst = worst ? std::max(*worst, found) : found;
+    const std::pair of(found, last->campaign);
+    worst = worst ? std::max(*worst, of) : of;
   }
   return worst;
 }
@@ -68,11 +75,30 @@ std::optional<Fleet> fleet_of(const IntervalFacts& m) {
   return Fleet(m.maker, m.model, m.months);
 }
 
+/// Months between a campaign and the last day before it on which the machine was measured.
+double tested_until(const AssessedMachine& m, std::size_t campaign) {
+  const auto day = day_number(m.stored.campaigns[campaign].day);
+  std::optional<std::int64_t> before;
+  for (const history::StoredCampaign& c : m.stored.campaigns)
+    if (const auto other = day_number(c.day); other && day && *other < *day)
+      before = std::max(before.value_or(*other), *other);
+  return before ? static_cast<double>(*day - *before) / days_a_month : 0.0;
+}
+
 IntervalProposal staircase(const IntervalFacts& m) {
-  const kernel::Proposal p = kernel::staircase(m.months, *m.found, reliability_target);
+  if (is_early(m) && *m.found == Found::conforms) {
+    IntervalProposal out = because(staircase_name, "early");
+    propose(out, m.months);
+    put(out, "interval", m.months);
+    put(out, "tested", std::round(m.tested));
+    return out;
+  }
+  const bool early = is_early(m) && m.tested > 0.0;
+  const double tested = early ? std::max(1.0, std::round(m.tested)) : m.months;
+  const kernel::Proposal p = kernel::staircase(tested, *m.found, reliability_target);
   IntervalProposal out = because(staircase_name, p.why);
-  propose(out, p.months.value_or(m.months));
-  put(out, "interval", m.months);
+  propose(out, *m.found == Found::undecided ? m.months : p.months.value_or(tested));
+  put(out, "interval", tested);
   return out;
 }
 
@@ -158,7 +184,10 @@ IntervalFacts interval_facts(const AssessedMachine& machine, std::optional<int> 
     out.months = *rule;
   else if (const auto usual = usual_interval(machine.stored.campaigns))
     out.months = std::round(static_cast<double>(*usual) / days_a_month);
-  out.found = last_found(machine);
+  if (const auto found = last_found(machine)) {
+    out.found = found->first;
+    out.tested = tested_until(machine, found->second);
+  }
   out.chart = chart(machine, out.refusal);
   return out;
 }
@@ -167,7 +196,7 @@ std::vector<IntervalProposal> proposals_of(const std::vector<const IntervalFacts
   std::map<Fleet, Counted> fleets;
   for (const IntervalFacts* m : machines) {
     const auto one = fleet_of(*m);
-    if (!one || !m->found || *m->found == Found::undecided) continue;
+    if (!one || !m->found || *m->found == Found::undecided || is_early(*m)) continue;
     Counted& counted = fleets[*one];
     ++counted.machines;
     counted.passed += *m->found == Found::conforms;

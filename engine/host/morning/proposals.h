@@ -22,6 +22,7 @@ struct IntervalFacts {
   std::string maker, model;
   std::uint64_t days = 0;  ///< on which it was measured
   double months = 0.0;     ///< its interval; 0: none
+  double tested = 0.0;     ///< months that lay before what was found last
   /// What each axis was when it was last found: the worst of all that has a limit.
   std::optional<nonio::history::Found> found{};
   std::optional<reports::IntervalProposal> chart{};    ///< the shortest of its own readings
@@ -33,7 +34,8 @@ IntervalFacts interval_facts(const AssessedMachine& machine, std::optional<int> 
 
 /// When to measure each machine next, in whole months; nothing is changed by it. What many machines
 /// of its model show (A3), else what its last calibration as found showed (staircase); after a
-/// failure not more than the staircase; never longer than the control chart of what has a limit.
+/// failure not more than the staircase; never longer than the control chart of what has a limit. A
+/// machine that was measured well before its interval was over has not shown that it is good for it.
 /// Refused by name where there are fewer than two campaigns, no limit or no interval, and where the
 /// last change has fewer than two campaigns behind it.
 std::vector<reports::IntervalProposal> proposals_of(

@@ -178,7 +178,7 @@ class Joining {
       for (std::size_t h = 0; h < groups_.size(); ++h) {
         if (h == g) continue;
         const bool earlier = last_day(groups_[h]) < first_day(groups_[g]);
-        if (earlier)
+        if (earlier && m_.results[groups_[h].results.front()].unit == s.unit)
           for (const std::size_t i : groups_[h].results)
             s.apart.push_back({i, difference(groups_[g].conditions, groups_[h].conditions)});
         if (first_day(groups_[h]) > last_day(groups_[g])) s.ended = true;
@@ -320,27 +320,42 @@ std::vector<ShownSeries> shown_series(const StoredMachine& machine) {
   for (auto& [key, results] : by_quantity(machine, false)) {
     std::sort(results.begin(), results.end(),
               [&](std::size_t a, std::size_t b) { return before(machine, a, b); });
-    out.push_back({key.first, key.second, machine.results[results.front()].unit, results,
-                   deciding(machine, results)});
+    // An axis that turned and is linear now: um and arcsec are no values of one series.
+    std::map<std::string, std::vector<std::size_t>> of_unit;
+    for (const std::size_t i : results) of_unit[machine.results[i].unit].push_back(i);
+    const std::string& last = machine.results[results.back()].unit;
+    for (auto& [unit, own] : of_unit) {
+      ShownSeries s{key.first, key.second, unit, own, deciding(machine, own)};
+      s.ended = unit != last;
+      out.push_back(std::move(s));
+    }
   }
   return out;
 }
 
-std::vector<config::Event> events_of(const history::MachineState& machine,
-                                     const std::vector<history::MachineState>& all,
-                                     const history::StoredLogs& logs) {
-  const auto own = [&](const std::string& serial) {
-    return machine.serials.contains(serial) &&
-           std::count_if(all.begin(), all.end(),
-                         [&](const auto& m) { return m.serials.contains(serial); }) == 1;
-  };
-  std::vector<config::Event> out;
+MachineEvents::MachineEvents(const std::vector<history::MachineState>& all,
+                             const history::StoredLogs& logs) {
+  std::map<std::string, const std::string*> named;  // machine by name or serial; none: of several
+  for (const history::MachineState& m : all)
+    for (const std::string& serial : m.serials) {
+      const auto [at, is_new] = named.try_emplace(serial, &m.machine.name);
+      if (!is_new) at->second = nullptr;
+    }
+  for (const history::MachineState& m : all) named[m.machine.name] = &m.machine.name;
   for (const config::Event& e : logs.events) {
     const auto alias = logs.aliases.find(e.machine);
-    const std::string& name = alias == logs.aliases.end() ? e.machine : alias->second;
-    if (name == machine.machine.name || own(name)) out.push_back(e);
+    const auto machine = named.find(alias == logs.aliases.end() ? e.machine : alias->second);
+    if (machine == named.end() || machine->second == nullptr)
+      of_none_.push_back(e);
+    else
+      by_machine_[*machine->second].push_back(e);
   }
-  return out;
+}
+
+const std::vector<config::Event>& MachineEvents::of(const std::string& machine) const {
+  static const std::vector<config::Event> none;
+  const auto found = by_machine_.find(machine);
+  return found == by_machine_.end() ? none : found->second;
 }
 
 }  // namespace nonio::host::morning

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,6 +45,7 @@ struct ShownSeries {
   /// Of each campaign the one that decides: what was left, not what was found; the worst of several
   /// lines of the axis.
   std::vector<std::size_t> judged{};
+  bool ended = false;  ///< later campaigns have it in another unit: the axis is another
 };
 
 /// All that is followed of a machine, by axis and quantity. `events`: those of this machine.
@@ -61,10 +63,18 @@ struct AssessedMachine {
   std::vector<ShownSeries> shown;
 };
 
-/// Events of one machine, by day: said under its name, an alias, or a serial number that no other
-/// machine has.
-std::vector<config::Event> events_of(const history::MachineState& machine,
-                                     const std::vector<history::MachineState>& all,
-                                     const history::StoredLogs& logs);
+/// Events by machine, each list by day: said under its name, an alias, or a serial number that no
+/// other machine has and that is no machine's name. Looked up once for all machines.
+class MachineEvents {
+ public:
+  MachineEvents(const std::vector<history::MachineState>& all, const history::StoredLogs& logs);
+  const std::vector<config::Event>& of(const std::string& machine) const;
+  /// Those that name no machine of which there is a campaign.
+  const std::vector<config::Event>& of_none() const { return of_none_; }
+
+ private:
+  std::map<std::string, std::vector<config::Event>> by_machine_{};
+  std::vector<config::Event> of_none_{};
+};
 
 }  // namespace nonio::host::morning

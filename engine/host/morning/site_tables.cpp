@@ -80,13 +80,14 @@ std::vector<MonthOfMachine> months_of(const AssessedMachine& m,
 std::vector<reports::InstrumentUse> instruments_of(const AssessedMachine& m,
                                                    const std::filesystem::path& out) {
   std::map<UseKey, reports::InstrumentUse> all;
+  const Links links(out);
   for (const history::StoredCampaign& c : m.stored.campaigns) {
     const std::string name = name_of(c.instrument);
     if (name.empty()) continue;
     reports::InstrumentUse& use = all[{name, c.instrument.certificate, c.instrument.valid_until}];
     use.name = name, use.certificate = c.instrument.certificate;
     use.valid_until = c.instrument.valid_until;
-    use.results.push_back({c.id, c.day, m.state.machine.name, c.number, link_of(out, c.id)});
+    use.results.push_back({c.id, c.day, m.state.machine.name, c.number, links.of(c.id)});
   }
   std::vector<reports::InstrumentUse> list;
   for (auto& [key, use] : all) list.push_back(std::move(use));

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "host/morning/acknowledged.h"
+#include "host/morning/days.h"
 #include "host/morning/lines_of_machine.h"
 #include "host/morning/site_tables.h"
 
@@ -31,10 +32,16 @@ reports::MachineHistory as_compared(const reports::MachineHistory& whole) {
   return out;
 }
 
-/// Overdue begins after the due date, and a line of what comes soon names no day that has passed.
-std::string same_until(const reports::MachineHistory& described,
+/// Overdue begins after the due date, what an event does on its own day, and a line of what comes
+/// soon names no day that has passed.
+std::string same_until(const AssessedMachine& m, const reports::MachineHistory& described,
                        const std::vector<MorningLine>& lines, const std::string& date) {
   std::string until = for_ever;
+  const auto before = [&](const std::string& day) {
+    if (const auto number = day_number(day); number && day > date)
+      until = std::min(until, day_text(*number - 1));
+  };
+  for (const config::Event& e : m.events) before(e.date);
   if (!described.due.empty() && described.due >= date) until = described.due;
   for (const MorningLine& l : lines)
     for (const auto& [name, text] : l.finding.texts)
@@ -61,7 +68,7 @@ Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& de
   Standing s{.shown = as_compared(described)};
   s.lines = lines_of_machine(m, described, tonight);
   s.until = acknowledgements_of(described.id, logs).empty()
-                ? same_until(described, s.lines, tonight.date)
+                ? same_until(m, described, s.lines, tonight.date)
                 : tonight.date;
   for (MorningLine& l : s.lines) acknowledge(l, m, logs, tonight.date);
   s.months = months_of(m, described);
@@ -69,6 +76,7 @@ Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& de
   s.has_results = !m.stored.results.empty();
   s.conforms = true;
   for (const ShownSeries& shown : m.shown) {
+    if (shown.ended) continue;
     const history::StoredResult& last = m.stored.results[shown.judged.back()];
     s.judged = s.judged || last.tolerance.has_value();
     s.conforms = s.conforms && (last.decision.empty() || last.decision == "conforms");

@@ -184,7 +184,11 @@ Expected<void> read_parts(const fs::path& path, const std::function<void(std::st
 }
 
 Expected<std::string> read_file(const fs::path& path) {
+  constexpr std::uintmax_t most_at_once = 1 << 28;
   std::string bytes;
+  std::error_code error;
+  if (const std::uintmax_t size = fs::file_size(path, error); !error)
+    bytes.reserve(static_cast<std::size_t>(std::min(size, most_at_once)));
   const auto read = read_parts(path, [&](std::string_view part) { bytes += part; });
   if (!read) return fail(read.error());
   return bytes;

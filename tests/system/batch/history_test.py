@@ -112,6 +112,20 @@ class HistoryTest(NightTest):
         self.run_nonio()
         self.assertEqual(self.rows(), before)
 
+    def test_a_campaign_is_not_named_as_what_a_night_writes(self):
+        self.campaign("a")
+        for k, name in enumerate(("machines", "index.html", "history.sqlite", "history.sqlite-journal")):
+            self.campaign(f"wrong{k}", name)
+        done = self.run_nonio(expect=1)
+        for k, name in enumerate(("machines", "index.html", "history.sqlite", "history.sqlite-journal")):
+            self.assertRegex(done.stderr, rf'wrong{k}: .*campaign\.toml:3.*found "{name}"')
+        self.assertFalse((self.out / "machines" / "results.json").exists())
+        for name in ("index.html", "history.sqlite"):
+            self.assertTrue((self.out / name).is_file())
+        self.assertEqual(self.ask("SELECT campaign FROM evaluation WHERE status <> 'failed'"), [("a",)])
+        self.run_nonio()
+        self.assertEqual(self.rows(), self.made_again())
+
     def test_killed_nights(self):
         """At any moment: the night after it leaves the rows of a store that is made from nothing."""
         def check(what):

@@ -33,6 +33,7 @@ struct Laboratory {
   std::vector<MadeMachine> machines{};
   std::map<std::string, std::string> machine_of_campaign{};
   std::vector<history::Spelling> spellings{};
+  std::vector<std::string> unknown{};
   std::string due{};
   std::map<std::uint64_t, std::uint64_t> asked{};
 
@@ -48,7 +49,7 @@ struct Laboratory {
                                                logs, tonight, "out"));
     std::vector<const morning::Standing*> all;
     for (const auto& s : standings) all.push_back(&s);
-    return morning::lines_of({tonight, all, machine_of_campaign, spellings, learned});
+    return morning::lines_of({tonight, all, machine_of_campaign, spellings, learned, unknown});
   }
 };
 
@@ -206,6 +207,90 @@ TEST(MorningLines, WhatConformsAgainTonightIsFixed) {
   EXPECT_EQ(lines[0].state, State::fixed);
   lab.tonight.night = 6;  // told once
   EXPECT_TRUE(lab.lines().empty());
+}
+
+TEST(MorningLines, ARepairThatIsPlannedHasMendedNothing) {
+  Laboratory lab;
+  lab.machines.push_back(hit(6.0, -5.5));
+  lab.machines[0].events() = {{"2024-06-02", "S-42", "X", "repair", "nut is ordered", "", 1}};
+  ASSERT_EQ(lab.lines().size(), 1U);
+  EXPECT_EQ(lab.lines()[0].kind, Kind::changed);
+  lab.tonight.date = "2024-06-02";
+  EXPECT_TRUE(lab.lines().empty());
+}
+
+TEST(MorningLines, ACampaignDatedAfterTheNightIsNamed) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("X", "B", {5, 5, 5, 5, 5, 5, 5, 5});
+  m.stored().later = {{"S-42-9", "2042-06-01"}};  // meant is 2024
+  lab.machines.push_back(m);
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].id, "morning.later:S-42:S-42-9");
+  EXPECT_EQ(lines[0].kind, Kind::undecided);
+  EXPECT_EQ(text_of(lines[0], "day"), "2042-06-01");
+  for (int k = 0; k < 3; ++k) lab.machines.push_back(m);  // the clock was set back
+  lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "morning.later-several");
+}
+
+TEST(MorningLines, AnotherDefinitionOrAWiderLimitMendsNothing) {
+  const auto told = [](auto change) {
+    Laboratory lab;
+    MadeMachine m("S-42");
+    m.judge("X", "A", {9, 9, 9, 9, 9, 9, 9, 5});
+    m.stored().campaigns[7].night = 5;
+    change(m.stored().results);
+    lab.machines.push_back(std::move(m));
+    const auto lines = lab.lines();
+    return lines.size() == 1 ? lines[0].finding.id : std::to_string(lines.size()) + " lines";
+  };
+  EXPECT_EQ(told([](auto&) {}), "morning.fixed");
+  EXPECT_EQ(told([](auto& r) { r[7].tolerance = 7.0; }), "morning.fixed");
+  EXPECT_EQ(told([](auto& r) { r[7].tolerance = 12.0; }), "morning.judged-anew");
+  EXPECT_EQ(told([](auto& r) {
+              for (std::size_t i = 0; i < 7; ++i) r[i].conditions = R"({"edition":1988})";
+            }),
+            "morning.judged-anew");
+}
+
+TEST(MorningLines, MicrometresAreNoArcseconds) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("C", "B", {9, 9, 9, 9, 9, 9, 5, 5});  // as a linear axis it did not conform
+  m.follow("C", "B_mean", {-9, -9.1, -9, -8.9, -9, -9, -5, -5.1}, 0.1);
+  for (auto& r : m.stored().results)
+    if (r.campaign > 5) r.unit = "arcsec";
+  lab.machines.push_back(std::move(m));
+  EXPECT_TRUE(lab.lines().empty());
+  const auto shown = morning::describe(lab.machines[0].assessed(), "out", "", "");
+  ASSERT_EQ(shown.series.size(), 4U);
+  for (const reports::HistorySeries& s : shown.series) {
+    const bool turns = s.unit == Quantity::angular_deviation;
+    EXPECT_EQ(s.ended, !turns) << s.quantity;
+    EXPECT_EQ(s.points.size(), turns ? 2U : 6U) << s.quantity;
+  }
+  // What was said of the one is nothing of the other.
+  auto& results = lab.machines[0].stored().results;
+  for (std::size_t i = 6; i < 8; ++i)
+    results[i].value = 9.1, results[i].decision = "does not conform";
+  lab.logs.acknowledged = {acknowledged("morning.out", "2022-08-01")};
+  lab.logs.acknowledged[0].axis = "C";
+  ASSERT_EQ(lab.lines().size(), 1U);
+  EXPECT_EQ(lab.lines()[0].unit, Quantity::angular_deviation);
+  EXPECT_EQ(lab.lines()[0].state, State::known);
+}
+
+TEST(MorningLines, NamesThatNoCampaignHasAreSaid) {
+  Laboratory lab;
+  EXPECT_TRUE(lab.lines().empty());
+  lab.unknown = {"S-4Z (events.toml:7)"};
+  ASSERT_EQ(lab.lines().size(), 1U);
+  EXPECT_EQ(lab.lines()[0].finding.id, "morning.unknown-machine");
+  EXPECT_EQ(text_of(lab.lines()[0], "where"), "S-4Z (events.toml:7)");
+  EXPECT_FALSE(reports::asks(lab.lines()[0]));
 }
 
 /// As found and as left on 2023-07-15 with a table between them, which promised E = 0.8 um.
@@ -394,6 +479,7 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
   lab.tonight.failed = {{"bad", "bad", "wrong", ""}};
   lab.tonight.history_error = "disk full";
   lab.spellings = {{"S-42", "S-4Z", "spelled alike"}};
+  lab.unknown = {"S-4Z (events.toml:7)"};
   lab.machines = {hit(), MadeMachine("S-43"), MadeMachine("S-44"), MadeMachine("S-45"),
                   MadeMachine("S-46")};
   lab.machines[1].follow("X", "B_mean", flat(-1.0, -3.0), 0.1);
@@ -406,6 +492,9 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
   lab.machines[4].judge("Y", "B", {5, 5, 5, 5, 5, 5, 9, 5});
   lab.machines[4].stored().campaigns[7].night = 5;
   lab.machines[4].stored().findings.back() = {{"reversal.lost-motion", "attention"}};
+  lab.machines.emplace_back("S-47", 1);
+  lab.machines[5].judge("X", "B", {5});
+  lab.machines[5].stored().later = {{"S-47-2", "2042-03-01"}};
   lab.due = "2024-03-01";
   const auto lines = lab.lines();
   std::set<std::string> ids;
@@ -427,7 +516,7 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
        {"morning.lost", "morning.lost-several", "morning.failed", "morning.history",
         "morning.out-changed", "morning.changed", "morning.changed-event", "morning.soon",
         "morning.overdue", "morning.undecided", "morning.fixed", "morning.conforms",
-        "morning.not-judged", "morning.spelling"})
+        "morning.not-judged", "morning.spelling", "morning.later", "morning.unknown-machine"})
     EXPECT_TRUE(ids.contains(id)) << id;
 }
 

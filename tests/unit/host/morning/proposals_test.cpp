@@ -62,9 +62,27 @@ TEST(Proposals, HalfAfterAFailureALittleMoreAfterASuccess) {
 }
 
 TEST(Proposals, BeginWithTheRuleOfTheSite) {
-  const std::vector<MadeMachine> one{yearly("S-1", {5, 5, 5})};
+  MadeMachine m("S-1", 0);
+  for (const char* day : {"2018-01-15", "2020-11-15", "2023-11-15"}) m.add_campaign(day, 1);
+  m.judge("X", "B", {5, 5, 5});
+  const std::vector<MadeMachine> one{m};
   EXPECT_EQ(proposed(one, {{"", 36}})[0].months, 37);  // 36 * 2^(0.05/0.95) = 37.34
   EXPECT_EQ(proposed(one, {{"", 36}, {"S-1", 24}})[0].months, 24);
+}
+
+TEST(Proposals, AMachineThatWasMeasuredEarlyHasNotShownItsInterval) {
+  const auto p = proposed(
+      {yearly("S-1", {5, 5, 5}), yearly("S-2", {5, 5, 9}), yearly("S-3", {5, 5, 8})}, {{"", 36}});
+  EXPECT_EQ(why(p[0]), "interval.early");
+  EXPECT_EQ(p[0].months, 36);
+  EXPECT_EQ(number(p[0], "tested"), 12.0);
+  EXPECT_EQ(why(p[1]), "interval.failed");  // after 12 months, whatever the rule is
+  EXPECT_EQ(p[1].months, 6);
+  EXPECT_EQ(number(p[1], "interval"), 12.0);
+  EXPECT_EQ(why(p[2]), "interval.undecided");
+  EXPECT_EQ(p[2].months, 36);
+  // 12 of 15 months are nearly its interval.
+  EXPECT_EQ(why(proposed({yearly("S-1", {5, 5, 5})}, {{"", 15}})[0]), "interval.passed");
 }
 
 TEST(Proposals, WhatWasLeftIsNoReason) {

@@ -128,10 +128,20 @@ TEST(MorningSeries, AnEventMayNameTheSerialNumberOfOneMachine) {
                  {"2021-03-02", "old", "X", "crash", "vice", "", 1}};
   logs.aliases = {{"old", "M 417"}};
   std::vector<history::MachineState> all{state("M 417", "417"), state("M 418", "418")};
-  EXPECT_EQ(morning::events_of(all[0], all, logs).size(), 2U);
+  const auto count = [&](const char* machine) {
+    return morning::MachineEvents(all, logs).of(machine).size();
+  };
+  EXPECT_EQ(count("M 417"), 2U);
+  EXPECT_EQ(count("M 418"), 0U);
+  EXPECT_TRUE(morning::MachineEvents(all, logs).of_none().empty());
   all[1].serials.insert("417");  // now it may be either
-  EXPECT_EQ(morning::events_of(all[0], all, logs).size(), 1U);
-  EXPECT_TRUE(morning::events_of(all[1], all, logs).empty());
+  EXPECT_EQ(count("M 417"), 1U);
+  EXPECT_EQ(count("M 418"), 0U);
+  EXPECT_EQ(morning::MachineEvents(all, logs).of_none().size(), 1U);
+  all.push_back(state("417", "900"));  // the name of a machine is that machine's alone
+  all[1].serials.erase("417");
+  EXPECT_EQ(count("M 417"), 1U);
+  EXPECT_EQ(count("417"), 1U);
 }
 
 }  // namespace
