@@ -49,12 +49,13 @@ void insert_campaign(Database& database, const Entry& e) {
 
 void insert_result(Database& database, std::int64_t evaluation, std::int64_t item,
                    const ResultRow& r) {
-  database.add("result",
+  database.put("INSERT INTO result VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                {evaluation, item, r.measurement, r.axis, r.quantity, r.source, r.unit, r.state,
                 r.value, value_of(r.u_repeat), value_of(together(r.common)), value_of(r.expanded),
                 value_of(r.k), value_of(r.tolerance), r.decision, r.conditions, r.not_stated});
   for (std::size_t i = 0; i < r.common.size(); ++i)
-    database.add("common_part", {evaluation, item, number(i), r.common[i].source, r.common[i].u});
+    database.put("INSERT INTO common_part VALUES (?, ?, ?, ?, ?)",
+                 {evaluation, item, number(i), r.common[i].source, r.common[i].u});
 }
 
 const char* why(const Known& known, const Before& before) {
@@ -70,7 +71,7 @@ void insert(Database& database, std::int64_t evaluation, const Known& known, con
   insert_campaign(database, e);
   const Database::Value supersedes = before.evaluation == 0 ? Database::Value(Database::Null{})
                                                             : Database::Value(before.evaluation);
-  database.add("evaluation",
+  database.put("INSERT INTO evaluation VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                {evaluation, known.since.sha256, e.campaign, e.campaign_sha256,
                 static_cast<std::int64_t>(known.since.night.number), known.since.night.date,
                 known.since.version, e.status, e.message, supersedes,
@@ -79,12 +80,13 @@ void insert(Database& database, std::int64_t evaluation, const Known& known, con
     insert_result(database, evaluation, number(i), e.results[i]);
   for (const CovarianceRow& c : e.covariance) {
     const std::string upper = bytes_of(c.upper);
-    database.add("covariance",
+    database.put("INSERT INTO covariance VALUES (?, ?, ?, ?)",
                  {evaluation, number(c.first), number(c.count), Database::Blob{upper}});
   }
   for (std::size_t i = 0; i < e.findings.size(); ++i) {
     const FindingRow& f = e.findings[i];
-    database.add("finding", {evaluation, number(i), f.measurement, f.source, f.id, f.severity});
+    database.put("INSERT INTO finding VALUES (?, ?, ?, ?, ?, ?)",
+                 {evaluation, number(i), f.measurement, f.source, f.id, f.severity});
   }
 }
 

@@ -23,8 +23,6 @@ class Connection {
                            std::vector<Database::Row>& rows) = 0;
   /// The error may come with a later call.
   virtual std::string put(const char* sql, std::span<const Database::Value> values) = 0;
-  /// The error may come with a later call.
-  virtual std::string add(const char* table, std::span<const Database::Value> values) = 0;
   virtual std::string script(const std::string& sql) = 0;
   virtual std::string begin() = 0;
   virtual std::string commit() = 0;

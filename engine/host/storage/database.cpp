@@ -50,10 +50,6 @@ void Database::put(const char* sql, std::initializer_list<Value> values) {
   if (!failed()) error_ = connection_->put(sql, {values.begin(), values.size()});
 }
 
-void Database::add(const char* table, std::initializer_list<Value> values) {
-  if (!failed()) error_ = connection_->add(table, {values.begin(), values.size()});
-}
-
 void Database::script(const std::string& sql) {
   if (!failed()) error_ = connection_->script(sql);
 }

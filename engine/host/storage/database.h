@@ -60,9 +60,6 @@ class Database {
   /// A statement without rows. A server gets many of them in one go, so that an error may show
   /// only with a later call, at the latest with `rows` or the end of the transaction.
   void put(const char* sql, std::initializer_list<Value> values = {});
-  /// A row of a table, its columns in their order. A server gets many of them in one go, after what
-  /// was `put` before: what refers to other rows goes by this, what others refer to by `put`.
-  void add(const char* table, std::initializer_list<Value> values);
   /// Statements one after the other, without values and rows.
   void script(const std::string& sql);
   bool failed() const { return !error_.empty(); }

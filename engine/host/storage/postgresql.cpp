@@ -2,7 +2,6 @@
 #include <libpq-fe.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdio>
@@ -29,8 +28,6 @@ constexpr const char* connect_seconds = "10";
 /// Statements that are under way at once. Their answers fit into the buffers between server and
 /// program, so that none of the two waits for the other.
 constexpr int most_under_way = 200;
-/// Of rows that wait to be copied into their tables.
-constexpr std::size_t most_waiting = 4'000'000;
 constexpr Oid type_of_bytes = 17, type_of_doubles = 701;
 
 std::string in_one_line(std::string text) {
@@ -85,38 +82,6 @@ class Bound {
   bool has_zero_ = false;
 };
 
-/// A row as COPY reads it. False: a text with a character 0 in it.
-bool put_row(std::span<const Value> values, std::string& to) {
-  bool well = true;
-  const auto put_text = [&](std::string_view text) {
-    for (const char c : text) {
-      well = well && c != '\0';
-      if (c == '\\' || c == '\t' || c == '\n' || c == '\r') to += '\\';
-      to += c == '\t' ? 't' : c == '\n' ? 'n' : c == '\r' ? 'r' : c;
-    }
-  };
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) to += '\t';
-    const Value& value = values[i];
-    if (const auto* number = std::get_if<std::int64_t>(&value)) {
-      to += std::to_string(*number);
-    } else if (const auto* real = std::get_if<double>(&value)) {
-      to += shortest(*real);
-    } else if (const auto* text = std::get_if<std::string_view>(&value)) {
-      put_text(*text);
-    } else if (const auto* bytes = std::get_if<Database::Blob>(&value)) {
-      to += "\\\\x";
-      for (const char c : bytes->bytes)
-        for (const int shift : {4, 0})
-          to += "0123456789abcdef"[static_cast<unsigned char>(c) >> shift & 0xF];
-    } else {
-      to += "\\N";
-    }
-  }
-  to += '\n';
-  return well;
-}
-
 std::string server_cell(const PGresult* result, int row, int column) {
   if (::PQgetisnull(result, row, column) != 0) return {};
   const char* text = ::PQgetvalue(result, row, column);
@@ -143,7 +108,7 @@ class Postgresql final : public Connection {
 
   std::string rows(const char* sql, std::span<const Value> values,
                    std::vector<Database::Row>& rows) override {
-    if (std::string trouble = flush(); !trouble.empty()) return trouble;
+    if (std::string trouble = settle(); !trouble.empty()) return trouble;
     const Bound bound(values);
     if (bound.has_zero()) return zero_words();
     if (std::string trouble = prepare(sql); !trouble.empty()) return trouble;
@@ -173,16 +138,8 @@ class Postgresql final : public Connection {
     return under_way_ < most_under_way ? std::string() : settle();
   }
 
-  std::string add(const char* table, std::span<const Value> values) override {
-    std::string& rows = waiting_[table];
-    const std::size_t before = rows.size();
-    if (!put_row(values, rows)) return zero_words();
-    waiting_bytes_ += rows.size() - before;
-    return waiting_bytes_ < most_waiting ? std::string() : flush();
-  }
-
   std::string script(const std::string& sql) override {
-    if (std::string trouble = flush(); !trouble.empty()) return trouble;
+    if (std::string trouble = settle(); !trouble.empty()) return trouble;
     return error_of(Result(::PQexec(server_.get(), sql.c_str())).get());
   }
 
@@ -197,7 +154,7 @@ class Postgresql final : public Connection {
                 none);
   }
   std::string commit() override {
-    if (std::string trouble = flush(); !trouble.empty()) return trouble;
+    if (std::string trouble = settle(); !trouble.empty()) return trouble;
     const Result result(::PQexec(server_.get(), "COMMIT"));
     if (std::string trouble = error_of(result.get()); !trouble.empty()) return trouble;
     // A transaction that failed is "committed" by taking it back.
@@ -205,7 +162,6 @@ class Postgresql final : public Connection {
     return name_ + ": the transaction was taken back";
   }
   void rollback() override {
-    waiting_.clear(), waiting_bytes_ = 0;
     settle();
     const PGTransactionStatusType status = ::PQtransactionStatus(server_.get());
     if (status == PQTRANS_INTRANS || status == PQTRANS_INERROR) script("ROLLBACK");
@@ -251,34 +207,6 @@ class Postgresql final : public Connection {
     return message == nullptr ? own_error() : name_ + ": " + in_one_line(message);
   }
 
-  /// All that was put and added so far.
-  std::string flush() {
-    if (std::string trouble = settle(); !trouble.empty()) return trouble;
-    for (auto& [table, rows] : waiting_) {
-      if (rows.empty()) continue;
-      if (std::string trouble = copy(table, rows); !trouble.empty()) return trouble;
-      rows.clear();
-    }
-    waiting_bytes_ = 0;
-    return {};
-  }
-
-  std::string copy(const std::string& table, const std::string& rows) {
-    const Result begun(::PQexec(server_.get(), ("COPY " + table + " FROM STDIN").c_str()));
-    if (::PQresultStatus(begun.get()) != PGRES_COPY_IN) return error_of(begun.get());
-    // In parts: what is sent at once is an int long.
-    constexpr std::size_t part = 1'000'000;
-    for (std::size_t at = 0; at < rows.size(); at += part)
-      if (::PQputCopyData(server_.get(), rows.data() + at,
-                          static_cast<int>(std::min(part, rows.size() - at))) != 1)
-        return own_error();
-    if (::PQputCopyEnd(server_.get(), nullptr) != 1) return own_error();
-    std::string trouble;
-    while (const Result result{::PQgetResult(server_.get())})
-      if (trouble.empty()) trouble = error_of(result.get());
-    return trouble;
-  }
-
   /// Waits for all that is under way; the first trouble of it.
   std::string settle() {
     if (under_way_ == 0) return {};
@@ -311,9 +239,7 @@ class Postgresql final : public Connection {
   }
 
   std::unique_ptr<PGconn, Finish> server_;
-  std::map<std::string, std::string, std::less<>> names_;    ///< of prepared statements, by SQL
-  std::map<std::string, std::string, std::less<>> waiting_;  ///< rows by table
-  std::size_t waiting_bytes_ = 0;
+  std::map<std::string, std::string, std::less<>> names_;  ///< of prepared statements, by SQL
   std::string schema_, name_;
   int under_way_ = 0;
 };

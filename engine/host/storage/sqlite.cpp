@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <sqlite3.h>
 
-#include <map>
 #include <unordered_map>
 #include <utility>
 
@@ -65,16 +64,6 @@ class Sqlite final : public Connection {
     return rows(sql, values, none);
   }
 
-  std::string add(const char* table, std::span<const Value> values) override {
-    std::string& sql = inserts_[table];
-    if (sql.empty()) {
-      sql = "INSERT INTO " + std::string(table) + " VALUES (?";
-      for (std::size_t i = 1; i < values.size(); ++i) sql += ", ?";
-      sql += ')';
-    }
-    return put(sql.c_str(), values);
-  }
-
   std::string script(const std::string& sql) override {
     const bool well =
         ::sqlite3_exec(file_.get(), sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK;
@@ -115,7 +104,6 @@ class Sqlite final : public Connection {
 
   std::unique_ptr<sqlite3, Close> file_;
   std::unordered_map<std::string, std::unique_ptr<sqlite3_stmt, Finalize>> statements_;
-  std::map<std::string, std::string, std::less<>> inserts_;  ///< by table
   std::string path_;
 };
 

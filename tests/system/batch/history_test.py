@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The laboratory's memory grows with the nights: the same rows as made again, whatever ends a night."""
-import json
 import os
 import shutil
 import sqlite3
 import subprocess
 import unittest
 
-from nightly import NONIO, NightTest, manifest
+from nightly import NONIO, NightTest
 
 TABLES = ("machine", "campaign", "evaluation", "result", "common_part", "covariance", "finding", "certificate",
           "machine_alias", "event", "acknowledgement", "forgotten", "due_rule", "store")
@@ -120,27 +119,12 @@ class HistoryTest(NightTest):
         done = self.run_nonio(expect=1)
         for k, name in enumerate(("machines", "index.html", "history.sqlite", "history.sqlite-journal")):
             self.assertRegex(done.stderr, rf'wrong{k}: .*campaign\.toml:3.*found "{name}"')
-        self.assertTrue((self.out / "machines").is_dir())
+        self.assertFalse((self.out / "machines" / "results.json").exists())
         for name in ("index.html", "history.sqlite"):
             self.assertTrue((self.out / name).is_file())
         self.assertEqual(self.ask("SELECT campaign FROM evaluation WHERE status <> 'failed'"), [("a",)])
         self.run_nonio()
         self.assertEqual(self.rows(), self.made_again())
-
-    def test_a_campaign_that_fails_measures_nothing(self):
-        """It is in the store as failed; the machine is due as if it had not been there."""
-        text = manifest("{0}").replace("2026-11-03", "{1}").replace('model = "M"', 'asset = "S-1"')
-        (self.site / "site.toml").write_text("[[due]]\nmonths = 6\n")
-        for name, day in (("a", "2025-01-10"), ("b", "2025-07-10")):
-            self.campaign(name, text=text.format(name, day))
-        self.run_nonio("--date", "2025-07-11")
-        self.campaign("c", text=text.format("c", "2026-01-20"))
-        (self.site / "c" / "x.csv").write_text("run,direction,target_mm,deviation_um\n1,+,0,zz\n")
-        self.run_nonio("--date", "2026-01-21", expect=1)
-        history = json.loads(subprocess.run([NONIO, "history", self.out, "--json"], capture_output=True, check=True).stdout)
-        self.assertEqual([m["next_due"] for m in history["machines"]], ["2026-01-10"])
-        morning = json.loads(subprocess.run([NONIO, "morning", self.out, "--json"], capture_output=True).stdout)
-        self.assertIn("overdue", [line["kind"] for line in morning["lines"]])
 
     def test_killed_nights(self):
         """At any moment: the night after it leaves the rows of a store that is made from nothing."""
