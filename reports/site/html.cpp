@@ -98,7 +98,9 @@ std::string value_text(const Page& page, double value, std::optional<double> u, 
 }
 
 std::string short_number(const Page& page, double value, Quantity q) {
-  return localised(short_text(value * unit_of(q).per_si), page.words.language());
+  std::string out = localised(short_text(value * unit_of(q).per_si), page.words.language());
+  if (out.starts_with('-')) out.replace(0, 1, "\u2212");
+  return out;
 }
 
 std::string proposal_text(const Page& page, const IntervalProposal& proposal) {

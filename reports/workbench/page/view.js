@@ -27,7 +27,7 @@ const view = (() => {
   function bar() {
     return el("section", {id: "bar", "aria-labelledby": "bar-title"},
       el("h2", {id: "bar-title", class: "quiet"}, say("bar.title")),
-      el("div", {id: "verdict", role: "status"}), el("div", {class: "errors"}, el("div", {id: "now"}), el("div", {id: "trail"})),
+      el("div", {id: "verdict", role: "status"}), el("p", {id: "outcome", class: "note", hidden: true}), el("div", {class: "errors"}, el("div", {id: "now"}), el("div", {id: "trail"})),
       el("p", {id: "limits", class: "muted"}));
   }
   function middle() {

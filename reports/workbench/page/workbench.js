@@ -21,6 +21,7 @@
 
   // ---- asking ----
   async function post(what, body, then) {
+    outcome("");
     busy++;
     document.body.classList.add("busy");
     try {
@@ -45,6 +46,13 @@
   function lost(status) {
     view.alarm(status === 403 ? say("net.other") : say("net.lost", {at: new Date().toLocaleTimeString(language)}));
     document.body.classList.add("lost");
+  }
+  /// What "suggest" or "finish" came to, until the next thing is done: for those who see and those who hear.
+  function outcome(text) {
+    const place = by("outcome");
+    place.hidden = text === "";
+    place.textContent = text;
+    if (text) view.speak(text);
   }
   function running(n) {
     job = n;
@@ -469,7 +477,7 @@
       return;
     }
     if (e.type === "done" && e.data.state === "done")
-      view.speak(e.data.added && e.data.added.length ? say("job.added", {effects: e.data.added.join(", ")}) : say("job.none"));
+      outcome(e.data.added && e.data.added.length ? say("job.added", {effects: e.data.added.join(", ")}) : say("job.none"));
     clearTimeout(soon);
     soon = setTimeout(() => refresh().catch(complain), 15);
   }
