@@ -316,7 +316,7 @@ Source circle() {
     for (int i = 0; i < 180; ++i) {
       const double degrees = d > 0 ? 2.0 * i + 1.0 : 359.0 - 2.0 * i, t = degrees / deg_per_rad;
       const double deviation = 3.0 - 2.5 * std::sin(2.0 * t) + 0.2 * std::sin(37.0 * t) +
-                        d * (std::sin(t) > 0.0 ? 3.0 : -3.0) * std::cos(t);
+                               d * (std::sin(t) > 0.0 ? 3.0 : -3.0) * std::cos(t);
       rows += std::string("1,") + (d > 0 ? "+," : "-,") + fixed_text(degrees, 1) + "," +
               fixed_text(deviation, 3) + "\n";
     }

@@ -185,7 +185,7 @@ void spikes(Work& w, double total) {
     if (worst == nullptr) continue;
     add(w, "spike_" + w.circle.axis[k], worst->height, Quantity::deviation, worst->u,
         std::vector<double>(w.fit.bins.size(), 0.0));
-    // The largest of some ten readings is 2 s of noise: twice that is a spike.
+    // docs/constants.md, A13.
     if (std::fabs(worst->height) < 4.0 * worst->u) continue;
     const double alone = std::fabs(worst->height), share = alone / (total + alone);
     w.out.findings.push_back({.id = "circle.spikes",

@@ -79,8 +79,8 @@ void check_spatial(const nonio::Observations& obs, std::string_view bytes) {
 }
 
 struct World {
-  static constexpr std::array spatial_kinds{"diagonal", "step-diagonal", "ball-centres",
-                                            "observations", "circle", "rtcp"};
+  static constexpr std::array spatial_kinds{"diagonal",     "step-diagonal", "ball-centres",
+                                            "observations", "circle",        "rtcp"};
   static constexpr std::array<std::pair<std::string_view, std::size_t>, 6> spatial_by_words{
       {{"#diagonal", 0}, {"moved", 1}, {"angle", 2}, {"nx", 3}, {"#circle", 4}, {"tx", 5}}};
 

@@ -132,7 +132,8 @@ TEST(Circle, WithoutNoiseTheCausesAreWhatWasPutIn) {
     ASSERT_TRUE(fit);
     for (const auto& [cause, wanted] : exact::truth(m)) {
       // Of the second order, and where the drives' waves are late by the lag.
-      const double unit = cause == Cause::scale_mismatch || cause == Cause::squareness ? 0.3e-6 : 0.04e-6;
+      const double unit =
+          cause == Cause::scale_mismatch || cause == Cause::squareness ? 0.3e-6 : 0.04e-6;
       EXPECT_NEAR(fit->of[index(cause)].value, wanted, unit) << index(cause);
     }
   }
@@ -168,7 +169,8 @@ TEST(Circle, OneDirectionRefusesSquarenessAndServoMismatchByName) {
   std::mt19937_64 random(2);
   const exact::Mill m = mill();
   for (const int d : {1, -1}) {
-    const auto e = evaluated(test_of(m, exact::circle(m, {0.1e-6, 0.0, 0.0}, random, {d})), options());
+    const auto e =
+        evaluated(test_of(m, exact::circle(m, {0.1e-6, 0.0, 0.0}, random, {d})), options());
     EXPECT_EQ(value(e, "C0Y"), nullptr);
     EXPECT_EQ(value(e, "servo_mismatch"), nullptr);
     EXPECT_EQ(value(e, "G_b"), nullptr);
@@ -205,7 +207,8 @@ TEST(Circle, ACalibratedBarGivesDAndF) {
   Bench t = test_of(m, exact::circle(m, {0.05e-6, 0.0, 0.0}, random));
   for (double& d : t.observations.deviation) d += 5e-6;
   t.campaign.environment.misalignment = 1e-5, t.campaign.environment.temperature_range = 0.2;
-  t.campaign.environment.temperature_difference = 1.0, t.campaign.environment.expansion_range = 1e-6;
+  t.campaign.environment.temperature_difference = 1.0,
+  t.campaign.environment.expansion_range = 1e-6;
   const auto e = evaluated(t, options({{"calibrated_length", true}}));
   ASSERT_NE(value(e, "D"), nullptr);
   // R (ex + ey)/2 = 1.1 um, and both directions grow by up to 0.5 um.

@@ -51,9 +51,10 @@ inline Mill any_mill(std::mt19937_64& random) {
 /// Where one axis is, from the centre of the circle, and +1 .. -1: which way it presses.
 inline std::pair<double, double> place(const Mill& m, std::size_t k, double t, int d) {
   const Mill::Axis& a = m.axis[k];
-  const double w = m.F / m.R, behind = t - d * std::atan(w * a.lag), turned = k == 0 ? 0.0 : pi / 2.0;
-  double x = m.R / std::sqrt(1.0 + w * w * a.lag * a.lag) *
-             (k == 0 ? std::cos(behind) : std::sin(behind));
+  const double w = m.F / m.R, behind = t - d * std::atan(w * a.lag),
+               turned = k == 0 ? 0.0 : pi / 2.0;
+  double x =
+      m.R / std::sqrt(1.0 + w * w * a.lag * a.lag) * (k == 0 ? std::cos(behind) : std::sin(behind));
   double way = d * (behind - turned);
   way -= pi * std::floor(way / pi);
   const double outside = std::cos(behind - d * way - turned) > 0.0 ? 1.0 : -1.0;
@@ -87,8 +88,8 @@ inline std::vector<nonio::math::CircleReading> circle(const Mill& m, const Noise
     for (int i = 0; i < readings; ++i) {
       const double s = 2.0 * pi * (i + 0.5) / readings, t = d > 0 ? s : 2.0 * pi - s;
       slow = noise.rho * slow + std::sqrt(1.0 - noise.rho * noise.rho) * g(random);
-      out.push_back({t, radius(m, t, d) - m.R + grown + noise.white * g(random) + noise.slow * slow,
-                     d, 1});
+      out.push_back(
+          {t, radius(m, t, d) - m.R + grown + noise.white * g(random) + noise.slow * slow, d, 1});
     }
   }
   return out;
@@ -98,10 +99,15 @@ inline std::vector<nonio::math::CircleReading> circle(const Mill& m, const Noise
 inline std::vector<std::pair<nonio::math::Cause, double>> truth(const Mill& m) {
   using nonio::math::Cause;
   const auto &x = m.axis[0], &y = m.axis[1];
-  return {{Cause::scale_mismatch, x.scale - y.scale}, {Cause::squareness, m.squareness},
-          {Cause::servo_mismatch, m.F * (x.lag - y.lag)}, {Cause::reversal_u, -x.play},
-          {Cause::reversal_v, -y.play},  {Cause::lateral_u, x.lateral},
-          {Cause::lateral_v, y.lateral}, {Cause::bow_u, x.sagitta}, {Cause::bow_v, y.sagitta}};
+  return {{Cause::scale_mismatch, x.scale - y.scale},
+          {Cause::squareness, m.squareness},
+          {Cause::servo_mismatch, m.F * (x.lag - y.lag)},
+          {Cause::reversal_u, -x.play},
+          {Cause::reversal_v, -y.play},
+          {Cause::lateral_u, x.lateral},
+          {Cause::lateral_v, y.lateral},
+          {Cause::bow_u, x.sagitta},
+          {Cause::bow_v, y.sagitta}};
 }
 
 inline nonio::math::CircleModel model(const Mill& m, bool both = true) {
