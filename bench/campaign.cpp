@@ -74,9 +74,9 @@ bool do_one(const fs::path& folder, const fs::path& out, const reading::Context&
   auto analysed = evaluation::analyse(std::move(read), id, context, tell, {});
   const auto evaluated =
       evaluation::write_documents(std::move(analysed), nullptr, context, tell, nullptr);
-  clock.begin("to the worker, as bytes");
+  clock.begin("results to the worker as bytes");
   const auto received = sent(evaluated);
-  clock.begin("results.json, run.json, SHA-256, temporary files");
+  clock.begin("results.json and run.json with SHA-256 and temporary files");
   if (!batch::stage(out, received, context, {folder.string(), {1, ""}, "new", false})) return false;
   clock.begin("between the stages");
   staged.push_back({id, 0});
@@ -123,7 +123,7 @@ int main(int argc, char** argv) {
       for (const std::size_t end = std::min(i + batch, campaigns.size()); i < end; ++i)
         if (!do_one(campaigns[i], out, context, clock, staged))
           return std::fprintf(stderr, "%s failed\n", campaigns[i].c_str()), 1;
-      clock.begin("flushing, reading back, renaming");
+      clock.begin("flush and read back and rename");
       for (const auto& done : batch::commit(out, staged, 1, disk))
         if (!done) return std::fprintf(stderr, "%s\n", done.error().message.c_str()), 1;
       clock.begin("between the stages");
