@@ -325,7 +325,6 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
     return refuse(done.error().message);
   leave_out_new(*state, night.campaigns);
   tell_stage(events, "pages");
-  // The campaigns are safe; if this fails the night stays open, and the next run ends it.
   const auto closed = close_night(night, options, events, context, *state);
   if (closed && planned)
     if (const auto removed = remove_plan(options.out); !removed)

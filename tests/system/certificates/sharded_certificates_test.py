@@ -27,6 +27,8 @@ class ShardedCertificates(NightTest):
             text = manifest.replace('id = "adjusted"', f'id = "c{i}"')
             self.assertNotEqual(text, manifest)
             (self.site / f"c{i}" / "campaign.toml").write_text(text)
+            for readings in (self.site / f"c{i}").glob("*.csv"):  # of its own, not those of another campaign
+                readings.write_text(readings.read_text() + f"# {i}\n")
         self.campaign("plain", run='[run]\noutputs = ["json", "csv"]\n')
         (self.campaign("wrong") / "x.csv").write_text("run,direction,target_mm,deviation_um\n1,+,1O8.9,1.0\n")
 
