@@ -2,7 +2,6 @@
 //
 // The error of the tool point at the nodes of a grid as JSON, for a control or program that
 // compensates in the volume, and what it would leave of the readings.
-#include "nonio/sdk/format.h"
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -11,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+
+#include "nonio/sdk/format.h"
 
 namespace nonio {
 namespace volume_grid {
