@@ -21,7 +21,9 @@ VolumeMap map_of(const Estimator& estimator, const ErrorRows& rows, const Corner
                  const Corner& high, std::size_t parts) {
   VolumeMap map;
   map.parts = parts;
-  const Eigen::MatrixXd zero = rows(low);
+  Corner middle{};
+  for (std::size_t k = 0; k < 3; ++k) middle[k] = (low[k] + high[k]) / 2.0;
+  const Eigen::MatrixXd zero = rows(middle);
   Eigen::RowVectorXd along;
   for (const Corner& place : lattice(low, high, parts)) {
     const Eigen::MatrixXd here = rows(place) - zero;

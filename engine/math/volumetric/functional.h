@@ -27,7 +27,7 @@ struct Estimator {
 /// Rows of the three components of the error at a place.
 using ErrorRows = std::function<Eigen::MatrixXd(const Corner&)>;
 
-/// The map of what `rows` gives, less that at the lowest corner.
+/// The map of what `rows` gives, less that in the middle of the volume.
 VolumeMap map_of(const Estimator&, const ErrorRows& rows, const Corner& low, const Corner& high,
                  std::size_t parts);
 

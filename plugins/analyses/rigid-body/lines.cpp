@@ -68,6 +68,16 @@ struct Reader {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return times[a] < times[b]; });
+    if (m.kind == "step-diagonal" && o.time.empty())  // along the beam, whatever the rows say
+      std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        const auto when = [&](std::size_t row) {
+          const Corner at = place_of(o, m, row);
+          double along = 0.0;
+          for (std::size_t k = 0; k < 3; ++k) along += at[k] * o.sense_of(row)[k];
+          return std::pair(o.run_of(row), along);
+        };
+        return when(a) < when(b);
+      });
     const std::size_t group = group_of(m);
     for (std::uint32_t l = 0; l < o.lines.size(); ++l) {
       RigidLine line;

@@ -4,7 +4,6 @@
 // the error of the tool point in the whole volume.
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "lines.h"
 #include "nonio/sdk/format.h"
@@ -200,22 +199,17 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   return std::move(w.out);
 }
 
-/// How many axes the measurements of a state move.
-std::size_t axes_of(const Campaign& c, const std::string& state) {
-  std::set<std::size_t> moved;
-  for (const Measurement& m : c.measurements) {
-    if (!is_taken(c, m) || (!state_of(m).empty() && state_of(m) != state)) continue;
-    if (!m.axis.empty()) moved.insert(coordinate_of(m.axis));
-    for (const auto& [axis, from] : m.from)
-      if (const auto to = m.to.find(axis); to != m.to.end() && to->second != from)
-        moved.insert(coordinate_of(axis));
-  }
-  return moved.size();
+/// Whether a diagonal belongs to a state: without one no squareness is told, and so no volume.
+bool has_diagonal(const Campaign& c, const std::string& state) {
+  return std::any_of(c.measurements.begin(), c.measurements.end(), [&](const Measurement& m) {
+    return (m.kind == "diagonal" || m.kind == "step-diagonal") && is_taken(c, m) &&
+           (state_of(m).empty() || state_of(m) == state);
+  });
 }
 
 /// The first measurement of a state; of every state where nobody names one.
 bool applies(const Campaign& c, const Measurement& of) {
-  if (!is_taken(c, of) || axes_of(c, state_of(of)) < 2) return false;
+  if (!is_taken(c, of) || !has_diagonal(c, state_of(of))) return false;
   const bool states = std::any_of(c.measurements.begin(), c.measurements.end(), [&](const auto& m) {
     return is_taken(c, m) && !state_of(m).empty();
   });

@@ -100,7 +100,7 @@ class VolumeGrid(BenchTest):
         self.assertEqual(grid["schema"], "nonio-volume-grid/1")
         self.assertEqual(len(grid["error_um"]), 9 ** 3)
         self.assertEqual(len(grid["U_um"]), 9 ** 3)
-        zero = error(0, 0, 0)
+        zero = error(*(length / 2 for length in SIZE))
         before = after = 0.0
         for x in (0, 130, 400, 730, 800):
             for y in (0, 90, 300, 510, 600):
@@ -108,7 +108,7 @@ class VolumeGrid(BenchTest):
                     true = [e - z0 for e, z0 in zip(error(x, y, z), zero)]
                     left = [t - g for t, g in zip(true, read(grid, (x, y, z)))]
                     before, after = max(before, math.hypot(*true)), max(after, math.hypot(*left))
-        self.assertGreater(before, 20)
+        self.assertGreater(before, 10)
         self.assertLess(after, 0.5)  # scatter 0.05 um, and bows between nodes 100 mm apart
 
     def test_its_prediction_is_that_of_the_readings(self):

@@ -198,9 +198,10 @@ inline std::vector<RigidLine> whole_campaign(const Truth& t, std::mt19937_64* ra
   return lines;
 }
 
-/// Error of the tool point of the exact machine, less that at the low corner.
+/// Error of the tool point of the exact machine, less that in the middle of the volume.
 inline Corner exact_error(const Truth& t, const Corner& at) {
-  const machine::Vector p(at[0], at[1], at[2]), zero(low[0], low[1], low[2]);
+  const machine::Vector p(at[0], at[1], at[2]),
+      zero((low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0);
   const machine::Vector e =
       machine::point(t.errors, p) - p - (machine::point(t.errors, zero) - zero);
   return {e[0], e[1], e[2]};

@@ -10,7 +10,7 @@
 
 /// The error of the tool point at the nodes of a lattice over a volume.
 ///
-///     e(p) - e(low corner)      low corner: the lowest position of each axis
+///     e(p) - e(middle of the volume)
 ///     size = |e|,  u(size)^2 = n' V n with n = e/|e| and the covariance V of e
 ///
 /// The largest size is that of the largest node. Noise makes it larger by about u^2/(2 size) of each
