@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 
 #include "nonio/math/distributions.h"
 
@@ -63,14 +64,23 @@ class Check {
       return line.name.ends_with(" found x") || line.name.ends_with(" found y") ||
              line.name.ends_with(" found z");
     });
+    // By the names of the lines and by time: the order of the rows says nothing.
+    std::vector<std::size_t> rank(o_.lines.size());
+    for (const auto& line : o_.lines) names_.push_back(line.name);
+    std::sort(names_.begin(), names_.end());
+    for (std::size_t l = 0; l < rank.size(); ++l)
+      rank[l] = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), o_.lines[l].name) -
+                                         names_.begin());
+    const std::vector<double> when = math::reading_times(o_);
     std::vector<std::size_t> order(o_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     const auto key = [&](std::size_t i) {
-      return probe_ ? static_cast<std::size_t>(o_.lines[o_.line_of(i)].name.back() - 'x')
-                    : std::size_t{o_.line_of(i)};
+      const std::size_t line = rank[o_.line_of(i)];
+      return std::tuple(probe_ ? static_cast<std::size_t>(names_[line].back() - 'x') : line,
+                        probe_ ? line : 0, when[i], o_.axes[0].position[i], o_.deviation[i]);
     };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
     for (const std::size_t i : order) {
       if (!std::isfinite(o_.axes[0].position[i])) continue;
       out_.row.push_back(i);
@@ -78,7 +88,7 @@ class Check {
                                {x->position[i], y->position[i], z->position[i]},
                                o_.sense_of(i),
                                o_.deviation[i],
-                               o_.line_of(i),
+                               rank[o_.line_of(i)],
                                probe_});
     }
     return true;
@@ -174,7 +184,7 @@ class Check {
     for (std::size_t i = 0; i < out_.readings.size(); ++i) {
       const auto& r = out_.readings[i];
       const std::size_t group =
-          probe_ ? static_cast<std::size_t>(o_.lines[r.line].name.back() - 'x') : r.line;
+          probe_ ? static_cast<std::size_t>(names_[r.line].back() - 'x') : r.line;
       if (group != last) {
         lines.emplace_back();
         lines.back().kind =
@@ -221,7 +231,7 @@ class Check {
       list += (list.empty() ? "" : ", ") + out_.names[k];
     }
     std::string lines;
-    for (const auto& line : o_.lines) lines += (lines.empty() ? "" : ", ") + line.name;
+    for (const std::string& line : names_) lines += (lines.empty() ? "" : ", ") + line;
     if (!by_ball.empty())
       out_.findings.push_back(finding("rtcp.not-told-ball", {}, {{"names", by_ball}}));
     if (!by_direction.empty())
@@ -236,6 +246,7 @@ class Check {
   const Wish& wish_;
   Checked out_;
   bool probe_ = false;
+  std::vector<std::string> names_;  ///< of the lines, sorted: a line is its place here
 };
 
 }  // namespace

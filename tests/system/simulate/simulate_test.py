@@ -203,7 +203,7 @@ class EveryKind(unittest.TestCase):
         text = SAMPLE.with_name("machining-centre.toml").read_text("utf-8")
         for old, new, says in (('sensor = "probe"', "", "sensor: is missing"),
                                ('ball_mm = [550.0, 300.0, 80.0]\nnoise_um = 1.0', "noise_um = 1.0", "ball_mm: is missing"),
-                               ('"squareness:XY"', '"squareness:YZ"', "no measurement shows it"),
+                               ('"mirror-tilt:SD PPP"', '"mirror-tilt:SD QQQ"', "no measurement shows it"),
                                ("steps = 10\nruns = 1", "runs = 1", "steps: is missing"),
                                ('carries = "table"', "", "carries is missing"),
                                ('kind = "straightness"\naxis = "X"', 'kind = "angle"\nabout = "Z"\naxis = "X"', "found angle")):
