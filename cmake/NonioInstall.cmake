@@ -7,7 +7,7 @@ install(TARGETS nonio_sdk EXPORT nonio ARCHIVE DESTINATION ${NONIO_LIBRARY_SUBDI
 install(TARGETS nonio_math EXPORT nonio LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_COMPONENT dev)
 install(TARGETS nonio_history nonio_model nonio_pdf nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_SKIP)
 set(public sdk)
-foreach(room statistics axis uncertainty planning findings followed volumetric rotary compensation)
+foreach(room statistics axis uncertainty planning findings followed volumetric rotary circles compensation)
   list(APPEND public math/${room})
 endforeach()
 foreach(folder IN LISTS public)
