@@ -303,8 +303,8 @@ def rtcp():
              "where it is, and upright. After: new parameters. Constructed: the table turns exactly about the axis as it is,",
              "the linear axes about the one that the control has; noise 0.6 um."]
     return {"campaign.toml": manifest(
-        story, "21-rtcp", "Esempio Ventuno S.r.l.", "Udine", "2026-05-27",
-        {"maker": "Sample Machines", "model": "UM 5", "serial": "S-0121", "structure": "bridge"},
+        story, "22-rtcp", "Esempio Ventidue S.r.l.", "Udine", "2026-05-27",
+        {"maker": "Sample Machines", "model": "UM 5", "serial": "S-0122", "structure": "bridge"},
         {"C": {"kind": '"rotary"', "travel": "[0.0, 360.0]"},
          **{axis: {"kind": '"linear"', "expansion_um_per_m_K": "11.5"} for axis in "XYZ"}},
         [axis_measurement("C", "rtcp", "C " + when, adjustment=when, file="c-%s.csv" % when)
@@ -547,5 +547,5 @@ STORIES = {
     "18-one-column": one_column,
     "19-square-turned-over": square_turned_over,
     "20-body-diagonals": body_diagonals,
-    "21-rtcp": rtcp,
+    "22-rtcp": rtcp,
 }
