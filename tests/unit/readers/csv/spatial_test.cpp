@@ -56,7 +56,8 @@ TEST(Circle, AnglesGoFromTheFirstAxisToTheSecond) {
     const auto obs = read_text(rows, circle_of(plane));
     ASSERT_TRUE(obs) << obs.error().message;
     const auto *u = obs->axis(plane.substr(0, 1)), *v = obs->axis(plane.substr(1));
-    ASSERT_NE(u, nullptr), ASSERT_NE(v, nullptr);
+    ASSERT_NE(u, nullptr);
+    ASSERT_NE(v, nullptr);
     ASSERT_EQ(obs->size(), 5U);
     EXPECT_EQ(obs->missing, 1U);
     EXPECT_DOUBLE_EQ(u->position[0], 0.5);
