@@ -111,7 +111,7 @@ bool within_limits(const Wish& wish, const Change& c, OutputResult& result) {
   if (const auto table = wish.before.find(c.control); table != wish.before.end())
     for (const auto& [name, value] : table->second)
       if (std::none_of(c.fields.begin(), c.fields.end(),
-                       [&](const Field& f) { return f.name == name; })) {
+                       [&known = name](const Field& f) { return f.name == known; })) {
         result.findings.push_back({.id = "vectors.unknown-name",
                                    .attention = true,
                                    .texts = {{"control", c.control}, {"name", name}}});
