@@ -13,7 +13,7 @@ namespace nonio::math {
 
 namespace {
 
-using Readings = std::span<const CircleReading>;
+using PathReadings = std::span<const CircleReading>;
 using Centre = std::array<double, 2>;
 
 /// Distance from a centre less R, without the cancellation of hypot(...) - R.
@@ -29,7 +29,7 @@ double radial(const CircleReading& r, double R, const Centre& c) {
 /// is convex but for terms of second order.
 class Few {
  public:
-  Few(Readings all, const std::vector<std::size_t>& which, double R)
+  Few(PathReadings all, const std::vector<std::size_t>& which, double R)
       : all_(all), which_(which), R_(R) {}
 
   Centre best(Centre from, double reach) const {
@@ -67,14 +67,14 @@ class Few {
     return 0.5 * (low + high);
   }
 
-  Readings all_;
+  PathReadings all_;
   const std::vector<std::size_t>& which_;
   double R_;
 };
 
 }  // namespace
 
-PathCircle about(Readings readings, double R, Centre centre) {
+PathCircle about(PathReadings readings, double R, Centre centre) {
   PathCircle out;
   out.centre = centre;
   out.inner = INFINITY, out.outer = -INFINITY;
@@ -87,7 +87,7 @@ PathCircle about(Readings readings, double R, Centre centre) {
   return out;
 }
 
-PathCircle least_squares_circle(Readings readings, double R) {
+PathCircle least_squares_circle(PathReadings readings, double R) {
   Centre c{};
   double radius = 0.0;
   for (int step = 0; step < 4; ++step) {
@@ -106,7 +106,7 @@ PathCircle least_squares_circle(Readings readings, double R) {
   return about(readings, R, c);
 }
 
-PathCircle minimum_zone(Readings readings, double R) {
+PathCircle minimum_zone(PathReadings readings, double R) {
   PathCircle best = least_squares_circle(readings, R);
   if (readings.size() < 4 || !(best.width() > 0.0)) return best;
   // Of the readings that hold the zone there are four; more come in until none lies outside.
@@ -140,7 +140,7 @@ PathCircle minimum_zone(Readings readings, double R) {
   return best;
 }
 
-std::optional<Hysteresis> circular_hysteresis(Readings readings, double R, Centre centre,
+std::optional<Hysteresis> circular_hysteresis(PathReadings readings, double R, Centre centre,
                                               double step) {
   std::map<double, double> back;
   for (const CircleReading& r : readings)

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
-#include <source_location>
 #include <sstream>
 #include <string>
 
@@ -17,9 +16,9 @@ namespace {
 
 using namespace nonio::host::live;
 
-void must(bool holds, const std::source_location at = std::source_location::current()) {
+void must(bool holds, int line = __builtin_LINE()) {
   if (holds) return;
-  std::cerr << "line " << at.line() << " does not hold\n";
+  std::cerr << "line " << line << " does not hold\n";
   std::abort();
 }
 
