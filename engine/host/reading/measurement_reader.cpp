@@ -107,6 +107,7 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
   if (o.missing > 0 && m.kind != "axis")  // of an axis its analyses say it
     o.notes.push_back(
         {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
+  if (m.kind == "circle") return;  // a path has no targets to come back to
   if (const std::size_t moved = join_targets(o); moved > 0)
     o.notes.push_back(
         {"targets.joined", {{"readings", static_cast<double>(moved), Quantity::count}}});

@@ -221,6 +221,10 @@ void causes(Work& w, const circle::Wish& wish) {
                      {"share", share, Quantity::ratio}},
         .texts = {{"name", v.name}, {"first", w.circle.axis[0]}, {"second", w.circle.axis[1]}}};
     if (!v.axis.empty()) f.texts.emplace_back("axis", v.axis);
+    if (v.quantity == Quantity::time) {  // a sentence says 0.42 ms, not 0.00042 s
+      f.evidence.push_back({"value_ms", 1e3 * v.value, Quantity::number});
+      f.evidence.push_back({"U_ms", 1e3 * U, Quantity::number});
+    }
     ranked.emplace_back(share, std::move(f));
   }
   std::stable_sort(ranked.begin(), ranked.end(),

@@ -9,6 +9,7 @@
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 #include "pages.h"
+#include "rules.h"
 
 namespace nonio::pages {
 
@@ -72,7 +73,10 @@ std::string title_of(const Source& source, const Measured& m, const std::string&
                      Wording::Places places = {}) {
   const bool named =
       std::all_of(m.analyses.begin(), m.analyses.end(),
-                  [&](const Results::Analysed* a) { return follows_plan(source.in, *a); });
+                  [&](const Results::Analysed* a) { return follows_plan(source.in, *a); }) &&
+      std::none_of(m.analyses.begin(), m.analyses.end(), [](const Results::Analysed* a) {
+        return rules_of(*a) != nullptr;  // points of several rules are those of no standard
+      });
   return source.words.get(named ? key : key + "_own", places);
 }
 
@@ -368,12 +372,15 @@ void series_plots(const Source& source, const Measured& m, std::vector<Plot>& pl
   for (const auto* a : m.analyses)
     for (const Series& s : a->evaluation.series) {
       if (source.certificate && s.U.size() != s.value.size()) continue;
-      Plot plot =
-          empty_plot(source, m, source.words.get("plot.series", {{"name", symbol(s.name)}}));
+      // "line 1", as the column of the table is called.
+      const bool numbered = s.name.starts_with("line_");
+      const std::string name =
+          numbered ? source.words.get("column.line") + " " + s.name.substr(5) : symbol(s.name);
+      Plot plot = empty_plot(source, m, source.words.get("plot.series", {{"name", name}}));
       plot.x_title = source.words.get("plot.position",
                                       {{"axis", s.over}, {"unit", unit_text(s.position_quantity)}});
-      plot.y_title = source.words.get("plot.curve_axis",
-                                      {{"name", symbol(s.name)}, {"unit", unit_text(s.quantity)}});
+      plot.y_title =
+          source.words.get("plot.curve_axis", {{"name", name}, {"unit", unit_text(s.quantity)}});
       plot.degrees = s.position_quantity == Quantity::angle;
       const auto x = in_print(s.position, s.position_quantity), y = in_print(s.value, s.quantity);
       if (any_finite(s.U)) {

@@ -66,18 +66,20 @@ std::string without_gaps(std::string line) {
 
 namespace {
 
-/// The same thing found by two analyses is said once; attention before information.
+/// What two analyses find is said once, what one finds of two axes is two. Attention comes first.
 std::vector<const Finding*> findings_of(const std::vector<const Results::Analysed*>& analyses) {
   std::vector<const Finding*> out;
-  for (const auto* analysed : analyses)
+  for (const auto* analysed : analyses) {
+    const auto others = static_cast<std::ptrdiff_t>(out.size());
     for (const Finding& f : analysed->evaluation.findings) {
-      const auto same = std::find_if(out.begin(), out.end(),
+      const auto same = std::find_if(out.begin(), out.begin() + others,
                                      [&](const Finding* known) { return known->id == f.id; });
-      if (same == out.end())
+      if (same == out.begin() + others)
         out.push_back(&f);
       else if (f.attention && !(*same)->attention)
         *same = &f;
     }
+  }
   std::stable_partition(out.begin(), out.end(), [](const Finding* f) { return f->attention; });
   return out;
 }
@@ -329,7 +331,6 @@ Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
 }
 
 namespace {
-
 /// The places of a text, "{name}", each once, in order.
 std::set<std::string> places_of(const std::string& text) {
   std::set<std::string> out;

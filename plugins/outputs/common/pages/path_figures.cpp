@@ -142,20 +142,27 @@ std::string text_of(const Finding& f, const char* name) {
   return "";
 }
 
+const Number* number_of(const Finding& f, std::string_view name) {
+  const auto it = std::find_if(f.evidence.begin(), f.evidence.end(),
+                               [&](const Number& n) { return n.name == name; });
+  return it == f.evidence.end() ? nullptr : &*it;
+}
+
 /// The significant causes, the largest first.
 std::optional<BarChart> causes(const Source& source, const Results::Analysed& a) {
   constexpr std::string_view prefix = "circle.";
   std::vector<std::pair<double, BarChart::Row>> rows;
-  double total = 0.0;
   for (const Finding& f : a.evaluation.findings) {
-    const auto alone = std::find_if(f.evidence.begin(), f.evidence.end(),
-                                    [](const Number& n) { return n.name == "alone"; });
-    if (!f.id.starts_with(prefix) || alone == f.evidence.end()) continue;
+    const Number *alone = number_of(f, "alone"), *share = number_of(f, "share");
+    if (!f.id.starts_with(prefix) || alone == nullptr) continue;
     const double um = alone->value * per_um;
-    total += um;
+    std::string text = localised(fixed_text(um, um < 10.0 ? 1 : 0), source.language());
+    // The sum of all causes is without spikes, as the sentence below says.
+    if (share != nullptr && f.id != "circle.spikes")
+      text += "  (" + fixed_text(100.0 * share->value, 0) + " %)";
     rows.emplace_back(um, BarChart::Row{source.words.get("cause." + f.id.substr(prefix.size()),
                                                          {{"axis", text_of(f, "axis")}}),
-                                        {{um, ""}}});
+                                        {{um, std::move(text)}}});
   }
   if (rows.empty()) return {};
   std::stable_sort(rows.begin(), rows.end(),
@@ -165,11 +172,7 @@ std::optional<BarChart> causes(const Source& source, const Results::Analysed& a)
   chart.x_title = source.words.get("plot.causes_axis");
   chart.language = source.language();
   chart.series = {{source.words.get("plot.causes_axis"), source.look.style.plus}};
-  for (auto& [um, row] : rows) {
-    row.bars[0].text = localised(fixed_text(um, um < 10.0 ? 1 : 0), source.language()) + "  (" +
-                       fixed_text(100.0 * um / total, 0) + " %)";
-    chart.rows.push_back(std::move(row));
-  }
+  for (auto& [um, row] : rows) chart.rows.push_back(std::move(row));
   return chart;
 }
 
