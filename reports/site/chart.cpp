@@ -70,8 +70,10 @@ std::string rules(const Frame& f, const std::string& unit) {
   return out + text_at(4, top - 10, unit, "start");
 }
 
+/// One thing to those who do not see it, but with links in it a group, so that they reach them.
 std::string picture(const std::string& label, const std::string& inside) {
-  return "<svg class=\"chart\" role=\"img\" viewBox=\"0 0 " + fixed_text(width, 0) + ' ' +
+  const std::string role = inside.find("<a ") == std::string::npos ? "img" : "group";
+  return "<svg class=\"chart\" role=\"" + role + "\" viewBox=\"0 0 " + fixed_text(width, 0) + ' ' +
          fixed_text(height, 0) + "\" aria-label=\"" + html(label) + "\">" + inside + "</svg>\n";
 }
 
@@ -95,8 +97,6 @@ AxisScale calendar(const Page& page, double low, double high) {
   return out;
 }
 
-std::string unit_or_none(Quantity q) { return unit_text(q); }
-
 double scaled(double v, Quantity q) { return v * unit_of(q).per_si; }
 
 /// One series in printed units against days.
@@ -110,7 +110,7 @@ class HistoryDrawing {
     if (x_.empty()) return {};
     const std::string label =
         machine_.id + ' ' + series_.axis + ' ' + quantity_text(page_, series_.quantity);
-    return picture(label, guard() + rules(frame_, unit_or_none(series_.unit)) + events() + model() +
+    return picture(label, guard() + rules(frame_, unit_text(series_.unit)) + events() + model() +
                               forecast() + points());
   }
 

@@ -187,8 +187,11 @@ std::string strip(const Page& page) {
   for (const std::string& month : months) {
     const std::string text = month.substr(0, 4) == year ? "" : month.substr(2, 2);
     year = month.substr(0, 4);
-    head += element("th", html(text.empty() ? "" : "’" + text),
-                    "scope=\"col\" title=\"" + html(month_text(page, month)) + "\"");
+    const std::string whole = html(month_text(page, month));  // who does not see hears every month
+    head += element("th",
+                    element("span", whole, "class=\"unseen\"") +
+                        (text.empty() ? "" : element("span", "’" + text, "aria-hidden=\"true\"")),
+                    "scope=\"col\" title=\"" + whole + "\"");
   }
   std::string rows;
   for (const auto& [machine, of] : cells) {

@@ -20,20 +20,31 @@ axe.run(document, {resultTypes: ["violations"]}).then((r) => done(r.violations.f
 
 
 class Axe(live_browser.LivePage):
+    maxDiff = None
+    judged = 0  # pages with nothing wrong
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         cls.axe = pathlib.Path(AXE).read_text()
+        cls.d.set_script_timeout(10 * live_browser.PATIENCE)  # a busy machine judges slowly
 
-    def judge(self, where):
+    @classmethod
+    def tearDownClass(cls):
+        super().tearDownClass()
+        print(f"{cls.judged} pages have nothing wrong", flush=True)
+
+    def judge(self, where, language):
         """What is wrong with the page as it stands, in both colour schemes."""
         self.d.execute_script(self.axe)  # by the driver: the page's own policy lets nothing in
         for scheme in ("light", "dark"):
             self.media(prefers_color_scheme=scheme)
             self.wait(lambda: self.js("matchMedia('(prefers-color-scheme: ' + arguments[0] + ')').matches", scheme))
-            with self.subTest(f"{where} {scheme}"):
-                self.assertEqual([], self.d.execute_async_script(RUN))
-                self.seen = getattr(self, "seen", 0) + 1
+            with self.subTest(f"{where} {language} {scheme}"):
+                self.assertEqual("", "\n".join(self.d.execute_async_script(RUN)))
+                self.assertEqual(language, self.js("document.documentElement.lang"))
+                Axe.judged += 1
+        self.seen = getattr(self, "seen", 0) + 2
 
     def open(self, server, hash_=""):
         self.d.get("about:blank")
@@ -67,14 +78,14 @@ class Axe(live_browser.LivePage):
                 self.open(server)
                 self.ready("explained")
                 self.js("document.querySelectorAll('details').forEach((d) => d.open = true)")
-                self.judge(f"{name} {language}")
+                self.judge(name, language)
                 self.d.execute_script("document.getElementById('finish').click()")
                 self.wait(lambda: self.d.find_element("id", "save").is_enabled(), "steps are done")
                 self.ready("explained")
-                self.judge(f"{name} {language} finished")
+                self.judge(f"{name} finished", language)
                 self.click("save")
                 self.wait(lambda: self.js("document.getElementById('dialog').open"))
-                self.judge(f"{name} {language} dialog of saving")
+                self.judge(f"{name} dialog of saving", language)
                 server.stop()
         self.assertEqual(2 * 2 * 3 * len(LANGUAGES), self.seen)
 
@@ -99,7 +110,7 @@ class Axe(live_browser.LivePage):
             for name in (*pages, *models):
                 self.d.get((out / name).as_uri())
                 self.js("document.querySelectorAll('details').forEach((d) => d.open = true)")
-                self.judge(f"{name} {language}")
+                self.judge(name, language)
             server = self.serve(site, "--out", str(out), "--edit")
             self.open(server)
             self.ready("index.html")
@@ -107,7 +118,7 @@ class Axe(live_browser.LivePage):
                 self.d.execute_script("location.hash = arguments[0]", "" if name == "index.html" else "#to=" + urllib.parse.quote(name, safe=""))
                 self.ready(name)
                 self.js("document.querySelectorAll('details').forEach((d) => d.open = true)")
-                self.judge(f"{name} {language} served")
+                self.judge(f"{name} served", language)
         self.assertGreater(kinds, 0, "pages of a model")
         self.assertEqual(2 * len(LANGUAGES) * (5 + kinds + 8), self.seen)
 

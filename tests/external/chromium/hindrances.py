@@ -24,11 +24,13 @@ HINDRANCES = r"""(() => {
   for (const e of document.querySelectorAll("select, input"))
     if (!(e.labels && e.labels.length && name(e.labels[0])) && !e.getAttribute("aria-label")) say("no label", e);
   for (const e of document.querySelectorAll("svg"))
-    if (shown(e) && e.getAttribute("aria-hidden") !== "true" && !(["img", "application"].includes(e.getAttribute("role")) &&
+    if (shown(e) && e.getAttribute("aria-hidden") !== "true" && !(["img", "application", "group"].includes(e.getAttribute("role")) &&
         (e.getAttribute("aria-label") || e.getAttribute("aria-labelledby") || e.querySelector("title")))) say("no text for a picture", e);
   for (const e of document.querySelectorAll("nav, section[role], [role=region]"))
     if (!e.getAttribute("aria-label") && !e.getAttribute("aria-labelledby")) say("no name", e);
   for (const e of document.querySelectorAll("th")) if (!["row", "col"].includes(e.scope)) say("no scope", e);
+  for (const e of document.querySelectorAll("th")) if (!e.textContent.trim()) say("empty head", e);
+  for (const e of document.querySelectorAll("[role=img] a[href]")) say("a link within what is one picture", e);
   for (const e of document.querySelectorAll("[tabindex]")) if (e.tabIndex > 0) say("order of tabs", e);
   for (const e of document.querySelectorAll("body *")) {
     const style = getComputedStyle(e);

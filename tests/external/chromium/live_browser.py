@@ -26,7 +26,7 @@ except ImportError:
     webdriver = ActionChains = By = Keys = StaleElementReferenceException = None
 from browser import SKIPPED, program
 
-NONIO, SOURCE = (pathlib.Path(a) for a in sys.argv[1:3])
+NONIO, SOURCE = (pathlib.Path(a).resolve() for a in sys.argv[1:3])  # servers run in folders of their own
 DRIVER = shutil.which("chromedriver")
 PATIENCE = 30
 
