@@ -47,8 +47,12 @@ void print_night_plan(const host::batch::Night& night, bool json) {
   }
 }
 
+// A script's --shard "$UNSET" is a mistake, not a whole night on every host.
+constexpr const char* not_given = "not given";
+
 struct RunWish {
-  std::string site, out, shard;
+  std::string site, out;
+  std::string shard = not_given;
   host::batch::RunOptions options;
 };
 
@@ -106,7 +110,7 @@ int run_night(RunWish& wish, const Common& common) {
     return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   if (!options.only.empty() && (options.force || !options.date.empty()))
     return complain(verb, "--only goes with neither --force nor --date");
-  if (!wish.shard.empty()) {
+  if (wish.shard != not_given) {
     if (const auto wrong = take_shard(wish); !wrong.empty()) return complain(verb, wrong);
     prepare_run(options, wish.site, wish.out, common);
     return run_part(options, common);

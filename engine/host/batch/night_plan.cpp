@@ -333,7 +333,7 @@ Expected<std::optional<std::vector<ShardResult>>> read_shard_record(const fs::pa
   try {
     const Json json = Json::parse(*text);
     if (json.at("schema") != record_schema || json.at("plan") != plan.id ||
-        json.at("list_sha256") != plan.shards[shard].sha256)
+        json.at("shard") != shard || json.at("list_sha256") != plan.shards[shard].sha256)
       return fail(path.string() + " is of another plan; run the shard again");
     for (const Json& one : json.at("campaigns")) {
       ShardResult r;

@@ -227,7 +227,11 @@ Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& n
       return read ? std::move(*read) : (why = read.error().message, std::nullopt);
     });
     if (process::is_stop_requested()) return fail("");
-    if (!record || record->size() != listed->size()) {
+    const auto is_of = [](const ShardResult& r, const Listed& l) {
+      return r.campaign == l.campaign.id;
+    };
+    if (!record ||
+        !std::equal(record->begin(), record->end(), listed->begin(), listed->end(), is_of)) {
       silent.push_back(shard);
       continue;
     }

@@ -118,7 +118,13 @@ std::vector<double> by_bins(const Work& w, const std::vector<CircleReading>& pat
 }
 
 void add(Work& w, std::string name, double v, Quantity q, double u, const std::vector<double>& by) {
-  w.out.values.push_back(w.budget->value(std::move(name), v, q, u, w.readings.shares(by)));
+  math::Shares shares = w.readings.shares(by);
+  // What cancels leaves the rounding of the processor, which is none of the budget.
+  double largest = 0.0;
+  for (const double share : shares.u) largest = std::max(largest, std::fabs(share));
+  for (double& share : shares.u)
+    if (std::fabs(share) < 1e-9 * largest) share = 0.0;
+  w.out.values.push_back(w.budget->value(std::move(name), v, q, u, shares));
 }
 
 /// G of each direction and of both, H: of several runs the largest.

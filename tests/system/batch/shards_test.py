@@ -157,7 +157,7 @@ class Shards(NightTest):
         self.out.mkdir()
         self.assertIn("nonio night plan", self.shard(0, 2, expect=2).stderr)
         self.assertIn("nonio night plan", self.merge(expect=2).stderr)
-        for wrong in ("2/2", "x/2", "1/", "1", "0/0", "1/2/3"):
+        for wrong in ("", "2/2", "x/2", "1/", "1", "0/0", "1/2/3"):
             done = self.nonio("run", self.site, "--out", self.out, "--shard", wrong, expect=2)
             self.assertIn("expected i/S", done.stderr, wrong)
         self.assertIn("goes with --jobs alone", self.shard(0, 2, "--force", expect=2).stderr)

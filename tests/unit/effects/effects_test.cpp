@@ -84,6 +84,7 @@ const std::vector<std::string> kinds_in_space = {
     "line-slope",    "mirror-tilt",       "centre",      "direction", "radial-run-out",
     "axial-run-out", "linear-squareness", "linear-scale"};
 
+const std::vector<std::string> kinds_of_circles = {"circle-centre", "servo-mismatch"};
 const std::vector<std::string> descriptions = {"free-position", "free-reversal", "free-time",
                                                "free-growth"};
 
@@ -238,6 +239,7 @@ TEST(Effects, EveryOneHasACardInEveryLanguage) {
     };
     auto all = kinds;
     all.insert(all.end(), kinds_in_space.begin(), kinds_in_space.end());
+    all.insert(all.end(), kinds_of_circles.begin(), kinds_of_circles.end());
     all.insert(all.end(), descriptions.begin(), descriptions.end());
     for (const auto& kind : all) {
       for (const char* part : {"title", "is", "size", "looks", "alike", "cure"})

@@ -60,16 +60,17 @@ TEST(Circle, AnglesGoFromTheFirstAxisToTheSecond) {
     ASSERT_NE(v, nullptr);
     ASSERT_EQ(obs->size(), 5U);
     EXPECT_EQ(obs->missing, 1U);
-    EXPECT_DOUBLE_EQ(u->position[0], 0.5);
-    EXPECT_NEAR(u->position[1], 0.4 + 0.1 * std::cos(std::numbers::pi / 6.0), 1e-15);
-    EXPECT_NEAR(v->position[1], 0.25, 1e-15);
+    // Clockwise first: -300, -0, +0, +30, +200.
+    EXPECT_DOUBLE_EQ(u->position[2], 0.5);
+    EXPECT_NEAR(u->position[3], 0.4 + 0.1 * std::cos(std::numbers::pi / 6.0), 1e-15);
+    EXPECT_NEAR(v->position[3], 0.25, 1e-15);
     // At 0 deg the first axis is at its end: it came there towards +, then goes back.
-    EXPECT_EQ(u->approach, (std::vector<std::int8_t>{1, -1, 1, -1, 1}));
-    EXPECT_EQ(v->approach, (std::vector<std::int8_t>{1, 1, -1, -1, -1}));
+    EXPECT_EQ(u->approach, (std::vector<std::int8_t>{-1, 1, 1, -1, 1}));
+    EXPECT_EQ(v->approach, (std::vector<std::int8_t>{-1, -1, 1, 1, -1}));
     ASSERT_EQ(obs->lines.size(), 2U);
-    EXPECT_EQ(obs->lines[0].name, "C1 +");
-    EXPECT_EQ(obs->lines[1].name, "C1 -");
-    EXPECT_NEAR(obs->sense[1][coordinate_of(plane.substr(1))], 0.5, 1e-15);
+    EXPECT_EQ(obs->lines[0].name, "C1 -");
+    EXPECT_EQ(obs->lines[1].name, "C1 +");
+    EXPECT_NEAR(obs->sense[3][coordinate_of(plane.substr(1))], 0.5, 1e-15);
   }
 }
 
