@@ -192,7 +192,7 @@ void spikes(Work& w, double total) {
     add(w, "spike_" + w.circle.axis[k], worst->height, Quantity::deviation, worst->u,
         std::vector<double>(w.fit.bins.size(), 0.0));
     // docs/constants.md, A13.
-    if (std::fabs(worst->height) < 4.0 * worst->u) continue;
+    if (!(std::fabs(worst->height) > 4.0 * worst->u)) continue;  // readings of 0: nothing
     const double alone = std::fabs(worst->height), share = alone / (total + alone);
     w.out.findings.push_back({.id = "circle.spikes",
                               .attention = share >= share_for_attention,
