@@ -267,9 +267,13 @@ Verdict effect_neighbours(const Effect& e, const Bench& bench) {
 Verdict effect_independent(const Effect& e, const Bench& bench) {
   const auto all = shown(e, bench);
   if (all.empty()) return skipped(unseen);
+  // Where the direction of sensing turns from reading to reading (a circle), a constant shows.
+  const auto turns = [](const Shown& s) { return !s.table().sense.empty(); };
+  const bool everywhere_turned = std::all_of(all.begin(), all.end(), turns);
   double best = -1.0;
   std::string where;
   for (const Shown& s : all) {
+    if (turns(s) && !everywhere_turned) continue;
     bench.stage(s.where());
     for (const double share : {0.5, 0.0, 1.0}) {
       const auto shape = shape_at(e, s, share);
