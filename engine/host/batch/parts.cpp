@@ -205,6 +205,12 @@ Expected<void> plan_shards(const RunOptions& options, const reading::Context& co
   return {};
 }
 
+static bool is_of(const std::vector<ShardResult>& record, const std::vector<Listed>& list) {
+  return std::equal(
+      record.begin(), record.end(), list.begin(), list.end(),
+      [](const ShardResult& r, const Listed& l) { return r.campaign == l.campaign.id; });
+}
+
 Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& night) {
   const auto until = std::chrono::steady_clock::now() +
                      std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -227,11 +233,7 @@ Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& n
       return read ? std::move(*read) : (why = read.error().message, std::nullopt);
     });
     if (process::is_stop_requested()) return fail("");
-    const auto is_of = [](const ShardResult& r, const Listed& l) {
-      return r.campaign == l.campaign.id;
-    };
-    if (!record ||
-        !std::equal(record->begin(), record->end(), listed->begin(), listed->end(), is_of)) {
+    if (!record || !is_of(*record, *listed)) {
       silent.push_back(shard);
       continue;
     }

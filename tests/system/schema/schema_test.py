@@ -30,6 +30,7 @@ ONLY_PROGRAM = [
     (r"measurement\.\d+\.at", "the axis that moves"),
     (r"(acknowledged|withdrawn)(\..*)?", "the acknowledgement that is taken back"),
     (r"measurement\.[12](\.(id|kind|axis|reversal_of))?", "the line before the straightedge was turned over"),
+    (r"measurement\.8\.centre(\.[XY])?", "the axes of a circle's centre are those of its plane"),
     (r"measurement\.3\.(square|square_turned)|square(\.0(\.id)?)?", "a line on a square that there is"),
     (r"model\.formula\.0\.(axis|expression|parameters.*)", "a formula that is none on this machine"),
     (r"signing(\.(pkcs12|pkcs11|password_\w+|trust))?", "which keys stand together"),

@@ -45,6 +45,7 @@ def campaign():
             {"id": "E", "kind": "step-diagonal", "file": "e.csv", "from": {"X": 0}, "to": {"X": 1.5}},
             {"id": "C", "kind": "ball-centres", "file": "c.csv", "axis": "C", "feed_deg_per_min": 360,
              "over_travel_deg": 1},
+            {"id": "K1", "kind": "circle", "file": "k.csv", "plane": "XY", "radius_mm": 150, "centre": {"X": 400, "Y": 300}},
             {"id": "O", "kind": "observations", "file": "o.csv"},
             {"id": "B", "kind": "ballbar", "file": "b.b5r"}],
         "model": {"effects": ["backlash:X", "sag:X"], "compensate": "model",
