@@ -151,6 +151,7 @@ class HistoryServerTest(NightTest):
             self.assertEqual(self.rows(), self.made_again(), what)
 
         self.kill_nights(KILLS, SEED, check)
+        self.run_nonio("--date", "2026-04-01")
         said = self.said()
         self.assertEqual(self.in_sqlite(), said)
 

@@ -5,10 +5,12 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import unittest
 
-from nightly import NONIO, NightTest, tree
-from signing import run
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "batch"))
+from nightly import NONIO, NightTest, tree  # noqa: E402
+from signing import run  # noqa: E402
 
 SAMPLE = pathlib.Path(os.environ["NONIO_SAMPLES"]).parent / "certificates"
 RULES = ('release = "automatic"\nmay_stand = [{ finding = "reversal.*", reason = "as found" }, '
