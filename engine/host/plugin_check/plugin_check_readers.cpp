@@ -2,6 +2,7 @@
 // Laws of readers: a file is read whole or refused, and what is no reading never becomes one.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "host/config/manifest.h"
@@ -79,7 +80,11 @@ Verdict each_file(const Reader& r, const Bench& bench,
 using Row = std::vector<double>;
 
 Row row_of(const Observations& o, std::size_t i, bool placed = true) {
-  Row row{o.deviation[i], o.line.empty() ? 0.0 : static_cast<double>(o.line[i]),
+  // by its name: its number is another one when the file ends before the first row of other lines
+  const double line =
+      o.lines.empty() ? 0.0
+                      : static_cast<double>(std::hash<std::string>()(o.lines[o.line_of(i)].name));
+  Row row{o.deviation[i], line,
           o.run.empty() ? 0.0 : static_cast<double>(o.run[i])};
   for (const auto& axis : o.axes) {
     row.push_back(placed ? axis.position[i] : 0.0);

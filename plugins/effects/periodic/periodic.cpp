@@ -15,7 +15,8 @@ constexpr double usual_leads[] = {0.0025, 0.003, 0.004, 0.005, 0.006,  0.008, 0.
 
 /// The period of the manifest, or fewer periods than half the targets (evenly spaced ones), or than
 /// twice the targets (uneven ones show shorter periods too); three at least over the stretch. The
-/// step is a quarter of the width of a spectral line, coarser beyond 240 periods. Below, uneven
+/// step is a quarter of the width of a spectral line, coarser beyond 240 periods; on a circle, whose
+/// readings lie apart by more than that where the axis moves fast, not coarser. Below, uneven
 /// targets are searched for the usual leads of ball screws only, each with its spectral line: any
 /// period at all would find one that fits.
 static std::vector<double> grid(const Observations& o, const Axis& axis) {
@@ -31,7 +32,8 @@ static std::vector<double> grid(const Observations& o, const Axis& axis) {
   bool even = true;
   for (std::size_t k = 1; k < targets.size(); ++k)
     even = even && std::abs(targets[k] - targets[k - 1] - mean) <= 0.01 * mean;
-  const double limit = intervals * (even ? 0.5 : 2.0);  // periods over the stretch
+  double limit = intervals * (even ? 0.5 : 2.0);  // periods over the stretch
+  if (!o.sense.empty()) limit = std::min(limit, fewest_periods + 0.25 * most);
   const double step = std::max(0.25, (limit - fewest_periods) / most);
   std::vector<double> periods;
   for (int k = 0; fewest_periods + k * step < limit - step / 2.0; ++k)

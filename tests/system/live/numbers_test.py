@@ -16,7 +16,7 @@ CAMPAIGNS = sorted(p.parent.name for p in SAMPLES.glob("*/campaign.toml"))
 
 
 def parts_of(document):
-    return {p["axis"]: p for p in document.get("parts") or [document]}
+    return {p["axis"]: p for p in document.get("parts", [document])}
 
 
 class Numbers(LiveTest):
