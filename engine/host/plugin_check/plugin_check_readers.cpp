@@ -84,8 +84,7 @@ Row row_of(const Observations& o, std::size_t i, bool placed = true) {
   const double line =
       o.lines.empty() ? 0.0
                       : static_cast<double>(std::hash<std::string>()(o.lines[o.line_of(i)].name));
-  Row row{o.deviation[i], line,
-          o.run.empty() ? 0.0 : static_cast<double>(o.run[i])};
+  Row row{o.deviation[i], line, o.run.empty() ? 0.0 : static_cast<double>(o.run[i])};
   for (const auto& axis : o.axes) {
     row.push_back(placed ? axis.position[i] : 0.0);
     row.push_back(axis.approach.empty() ? 0.0 : static_cast<double>(axis.approach[i]));
