@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spatial_rows.h"
+
+#include "spatial.h"
+
+namespace nonio::csv {
+
+std::vector<ColumnSpec> with_common(std::vector<ColumnSpec> columns) {
+  for (const char* name : {"time_s", "material_c", "air_c", "pressure_hpa", "humidity_pct"})
+    columns.push_back({name});
+  columns.push_back({"run", Kind::whole});
+  return columns;
+}
+
+void put_common(Observations& obs, const Table& table, std::size_t row) {
+  const auto put = [&](const char* name, std::vector<double>& to) {
+    if (const auto* column = table.column(name)) to.push_back((*column)[row]);
+  };
+  put("time_s", obs.time);
+  put("material_c", obs.material);
+  put("air_c", obs.air);
+  put("pressure_hpa", obs.pressure);
+  put("humidity_pct", obs.humidity);
+  const auto* run = table.column("run");
+  obs.run.push_back(run == nullptr ? 1 : static_cast<std::uint32_t>((*run)[row]));
+  obs.source_line.push_back(table.line[row]);
+}
+
+Observations begin(const Measurement& m, const Table& table) {
+  Observations obs;
+  obs.measurement = m.id;
+  if (table.empty_rows > 0)
+    obs.notes.push_back({"csv.empty-rows", {count("rows", table.empty_rows)}});
+  return obs;
+}
+
+Expected<Observations> complete(Observations obs) {
+  if (obs.size() == 0)
+    return fail("expected readings, found " + std::to_string(obs.missing) +
+                " of which not one was taken");
+  return obs;
+}
+
+Error at_line(std::uint64_t line, std::string column, std::string message) {
+  Error error{std::move(message)};
+  error.line = line;
+  error.column = std::move(column);
+  return error;
+}
+
+Expected<Table> table_of(const ReadInput& input, const std::vector<ColumnSpec>& columns) {
+  auto table = read_table(input.bytes, columns);
+  if (!table) table.error().file = input.measurement.file;
+  return table;
+}
+
+}  // namespace nonio::csv
