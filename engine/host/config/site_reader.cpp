@@ -15,7 +15,7 @@ namespace nonio::host::config {
 
 namespace {
 
-constexpr double um = 1e-6, arcsec = 1.0 / arcsec_per_rad;
+constexpr double cmc_length = 1e-6, cmc_angle = 1.0 / arcsec_per_rad;
 
 /// What stands in one of several keys, or needs another one.
 void check_signing(TableReader& reader, const Signing& s) {
@@ -56,9 +56,9 @@ Cmc read_cmc(TableReader& laboratory) {
   Cmc cmc;
   auto reader = laboratory.table("cmc");
   if (!reader) return cmc;
-  cmc.fixed = reader->number("fixed_um", um);
-  cmc.per_length = reader->number("per_m_um", um);
-  cmc.angle = reader->number("arcsec", arcsec);
+  cmc.fixed = reader->number("fixed_um", cmc_length);
+  cmc.per_length = reader->number("per_m_um", cmc_length);
+  cmc.angle = reader->number("arcsec", cmc_angle);
   reader->finish();
   return cmc;
 }

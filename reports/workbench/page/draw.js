@@ -78,6 +78,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       let [low, high] = extremes(xs);
       this.empty = !(low <= high);
       if (this.empty) [low, high] = [0, 1];
+      // Values that differ by rounding alone are one value: no step would be small enough for ticks between them.
+      if (high - low < 1e-9 * Math.max(Math.abs(low), Math.abs(high))) high = low;
       const side = 0.025 * (high - low) || 0.5;
       this.lanes = options.lanes ? data.lanes : null;
       this.left = this.lanes ? 0 : low - side;
