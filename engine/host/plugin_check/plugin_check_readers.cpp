@@ -157,7 +157,10 @@ Verdict reader_truncated(const Reader& r, const Bench& bench) {
       if (!o) continue;
       const std::string cut = "cut off after " + std::to_string(length) + " bytes: ";
       if (const std::string why = unsound(*o); !why.empty()) return cut + why;
-      const std::uint32_t last = o->source_line.empty() ? 0 : o->source_line.back();
+      // not the last reading: a reader may put other lines behind it
+      const std::uint32_t last =
+          o->source_line.empty() ? 0
+                                 : *std::max_element(o->source_line.begin(), o->source_line.end());
       std::vector<std::uint32_t> kept;
       for (std::uint32_t i = 0; i < o->size(); ++i)
         if (o->source_line.empty() ? i + 1 < o->size() : o->source_line[i] != last)
