@@ -67,8 +67,8 @@ const bar = (() => {
       }
       const now = step.n === state.at;
       return el("li", {}, el("button", {type: "button", "data-key": "step" + step.n, "aria-current": now ? "step" : null, title: say("trail.go"),
-          "aria-label": `${what}: ${short(rms)} ${shown.unit}`, onclick: () => go(step.n)},
-        column, el("span", {class: "what"}, what), el("span", {class: "number"}, short(rms))));
+          onclick: () => go(step.n)},
+        column, el("span", {class: "what"}, what), el("span", {class: "number"}, short(rms), el("span", {class: "unseen"}, " " + shown.unit))));
     });
     return el("ol", {class: "trail", tabindex: 0, "aria-label": say("trail.title")}, ...steps);
   }

@@ -5,7 +5,7 @@ const view = (() => {
     return el("section", {id, "aria-labelledby": id + "-title"}, el("h2", {id: id + "-title"}, say(word)), ...more);
   }
   function pictureFigure(k) {
-    return el("figure", {id: "picture-" + k, role: "group", "aria-labelledby": `picture-${k}-title`},
+    return el("figure", {id: "picture-" + k, "aria-labelledby": `picture-${k}-title`},
       el("figcaption", {}, el("b", {id: `picture-${k}-title`}), el("span", {class: "fails", id: `fails-${k}`})),
       svg("svg", {role: "application", "aria-labelledby": `picture-${k}-title`, "aria-describedby": "picture-help", tabindex: 0}),
       el("figcaption", {}, el("p", {id: `picture-${k}-says`})));
@@ -51,7 +51,7 @@ const view = (() => {
         el("div", {class: "columns"},
           section("effects", "effects.title", el("div", {id: "effects-list"}), el("div", {id: "period"})),
           middle(),
-          el("div", {class: "right"}, section("about", "about.title", el("div", {id: "about-what"})),
+          el("div", {class: "right", role: "group", tabindex: 0, "aria-labelledby": "about-title next-title"}, section("about", "about.title", el("div", {id: "about-what"})),
             section("next", "next.title", el("div", {id: "next-what"}), el("div", {id: "what-if"}))))),
       el("footer", {}, el("span", {id: "command-label"}, say("command.label")), el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"}),
         button("copy", "command.copy"), el("span", {id: "read-at", class: "muted"})),
