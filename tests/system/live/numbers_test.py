@@ -28,7 +28,7 @@ class Numbers(LiveTest):
             return 0
         parts = parts_of(json_of("compare", folder, expect=compared.returncode))
         self.assertTrue(set(parts) <= {p["name"] for p in state["parts"]})
-        explained = parts_of(json_of("explain", folder, expect=None)) if explain else {}
+        explained = parts_of(json_of("explain", folder, expect=None)) if explain and parts else {}
         for name, wanted in parts.items():
             got = server.fit(name)
             self.assertEqual(got["compare"], wanted, name)
