@@ -21,13 +21,6 @@ struct StatusWish {
   double max_age = 36.0;  ///< h; 0: any
 };
 
-const char* to_text(NightStatus::State state) {
-  return state == NightStatus::State::complete  ? "complete"
-         : state == NightStatus::State::running ? "running"
-         : state == NightStatus::State::planned ? "planned"
-                                                : "cut-short";
-}
-
 std::string night_text(const host::evaluation::NightOf& night) {
   return "night " + std::to_string(night.number) + (night.date.empty() ? "" : " of " + night.date);
 }

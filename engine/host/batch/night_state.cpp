@@ -224,6 +224,14 @@ bool is_running(const fs::path& out) {
 
 }  // namespace
 
+const char* to_text(NightStatus::State state) {
+  using State = NightStatus::State;
+  return state == State::complete  ? "complete"
+         : state == State::running ? "running"
+         : state == State::planned ? "planned"
+                                   : "cut-short";
+}
+
 Expected<NightStatus> night_status(const fs::path& out) {
   const auto state = read_state(out);
   if (!state) return fail(state.error());

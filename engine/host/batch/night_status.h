@@ -26,6 +26,9 @@ struct NightStatus {
   std::uint64_t shards = 0, reported = 0;  ///< of a night that is planned
 };
 
+/// complete, running, planned, cut-short
+const char* to_text(NightStatus::State state);
+
 /// An error if no night was begun there, or if its files cannot be read.
 Expected<NightStatus> night_status(const std::filesystem::path& out);
 

@@ -27,10 +27,7 @@ NightNow night_now(const fs::path& out) {
   if (out.empty()) return {.state = "none"};
   const auto status = batch::night_status(out);
   if (!status) return {.state = "none"};
-  using State = batch::NightStatus::State;
-  NightNow now{.state = status->state == State::complete  ? "complete"
-                        : status->state == State::running ? "running"
-                                                          : "cut-short",
+  NightNow now{.state = batch::to_text(status->state),
                .number = status->night.number,
                .date = status->night.date};
   if (status->last) now.last = status->last->night.number, now.last_date = status->last->night.date;

@@ -14,7 +14,7 @@ namespace nonio::host::live {
 
 /// How the nights of an output folder stand.
 struct NightNow {
-  std::string state{};       ///< none, complete, running, cut-short
+  std::string state{};       ///< none, or as `nonio status` says
   std::uint64_t number = 0;  ///< of the last that began
   std::string date{};
   std::uint64_t last = 0;  ///< the last complete one; 0: none

@@ -78,7 +78,7 @@ const entries = (() => {
     return all.find((a) => a.machine === line.machine && (!a.axis || a.axis === line.axis) && a.by === line.by && a.until === line.until && a.why === line.why);
   }
   function table(head, rows) {
-    return el("div", {class: "scroll", role: "region", tabindex: 0, "aria-label": head.label},
+    return el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": head.label},
       el("table", {}, el("thead", {}, el("tr", {}, ...head.columns.map((w) => el("th", {scope: "col"}, say(w))))), el("tbody", {}, ...rows)));
   }
   /// The page of the entries.

@@ -208,7 +208,7 @@
     const n = state.night, r = state.run;
     fill(by("nav"), ...[...(state.out && n.last ? links : []), ...own.map((name) => [name, say("site." + name)])].map(([to, label]) =>
       el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to ? "page" : null}, label)));
-    const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.night, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.night}) : "";
+    const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.night, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.night}) : n.state === "planned" ? say("night.planned", {n: n.night}) : "";
     fill(by("night"), night_ ? el("p", {class: "note", id: "night-says"}, night_) : null);
     fill(by("rights"), state.edit ? null : el("p", {class: "muted", id: "read-only"}, say("site.read_only")));
     drawRun(r);

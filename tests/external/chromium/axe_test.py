@@ -95,7 +95,7 @@ class Axe(live_browser.LivePage):
             n for n in names if n.startswith("LAB-") and n not in MACHINES] if folder.endswith("laboratory") else [])
         shutil.copytree(SOURCE / "samples/tutorial/site/missing-effect", site / "missing-effect")
         manifest = site / "missing-effect/campaign.toml"
-        manifest.write_text(manifest.read_text() + f'\n[run]\noutputs = ["model-html"]\n[options.model-html]\nlanguage = "{language}"\n')
+        manifest.write_text(manifest.read_text() + f'\n[run]\nanalyses = ["iso230-2", "model-fit"]\noutputs = ["model-html"]\n[options.model-html]\nlanguage = "{language}"\n')
         self.in_language(site, language)
         nonio("run", site, "--out", site.parent / "out", "--quiet", "--date", DATE)
         return site, site.parent / "out"

@@ -230,6 +230,10 @@ class Sites(LiveTest):
                 self.assertGreater(len(s.get("/api/site")["lines"]), 0, "the results of the night before")
             s.until("/api/site/state", lambda state: state["night"]["state"] == "cut-short", "cut short")
             file.write_text(text)
+            nonio("night", "plan", self.small, "--out", self.out, "--shards", "2", "--date", DATE)
+            s.until("/api/site/state", lambda state: state["night"]["state"] == "planned", "planned")
+            nonio("night", "cancel", self.out)
+            file.write_text(text)
             s.until("/api/site/state", lambda state: state["night"]["state"] == "complete", "complete")
 
     def test_the_end_of_the_server_ends_a_run(self):
