@@ -282,6 +282,7 @@ std::string page_of(const Source& source) {
           element("h2", html(words.get("picture.heading", {{"part", source.fit.part}}))) +
           choices(source) + element("noscript", html(words.get("page.noscript"))) +
           legend(source, kept) + nine(source) + "</section>\n";
+  body = element("main", body);
   body += "<div id=\"tip\" hidden></div>\n";
   body += "<script type=\"application/json\" id=\"data\">" +
           workbench::data_of(drawn, kept, false) + "</script>\n";
