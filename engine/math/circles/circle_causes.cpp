@@ -11,7 +11,7 @@
 #include <map>
 #include <numbers>
 
-#include "circle_noise.h"
+#include "statistics/path_noise.h"
 #include "common/constants.h"
 #include "nonio/math/circle.h"
 

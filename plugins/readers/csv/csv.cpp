@@ -382,7 +382,8 @@ bool recognises(std::string_view head) {
 bool reads(std::string_view kind) {
   return kind == "axis" || kind == "straightness" || kind == "angle" || kind == "diagonal" ||
          kind == "step-diagonal" || kind == "ball-centres" || kind == "rtcp" ||
-         kind == "observations" || kind == "circle";
+         kind == "observations" || kind == "circle" || kind == "thermal" || kind == "spindle" ||
+         kind == "lengths";
 }
 
 Expected<Observations> read(const ReadInput& input) {
@@ -392,6 +393,9 @@ Expected<Observations> read(const ReadInput& input) {
   if (kind == "ball-centres") return read_ball_centres(input);
   if (kind == "circle") return read_circle(input);
   if (kind == "rtcp") return read_tool_centre(input);
+  if (kind == "thermal") return read_thermal(input);
+  if (kind == "spindle") return read_spindle(input);
+  if (kind == "lengths") return read_lengths(input);
   if (kind == "observations") return read_general(input);
   return read_runs(input);
 }
