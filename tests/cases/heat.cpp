@@ -72,7 +72,8 @@ Outcome of_thermal(const Case& c) {
   const auto noise = reading_noise(k);
   if (noise.dof > 0.0) out.values["s"] = noise.s / um;
   const auto fit = time_constants(k);
-  static constexpr const char* answers[] = {"resolved", "too_few", "none", "too_short", "unresolved"};
+  static constexpr const char* answers[] = {"resolved", "too_few", "none", "too_short",
+                                            "unresolved"};
   out.words["answer"] = answers[static_cast<int>(fit.answer)];
   if (fit.answer != TimeConstants::Answer::resolved) return out;
   for (std::size_t i = 0; i < fit.parts.size(); ++i) {
@@ -116,7 +117,8 @@ Outcome of_spindle(const Case& c) {
   }
   out.words["answer"] = "turns";
   const ErrorMotion e = error_motion(turns);
-  out.values["n"] = static_cast<double>(turns.n), out.values["turns"] = static_cast<double>(turns.N);
+  out.values["n"] = static_cast<double>(turns.n),
+  out.values["turns"] = static_cast<double>(turns.N);
   out.values["eccentricity"] = e.eccentricity() / um;
   out.values["total"] = (c.options.contains("axial") ? e.total_with_once : e.total) / um;
   out.values["synchronous"] =
@@ -152,8 +154,8 @@ Outcome of_lengths(const Case& c) {
   if (const double at = number(c, "at"); at > 0.0) out.values["mpe"] = limit.at(at * mm) / um;
   std::vector<LengthError> errors;
   for (const auto& e : lists(c, "error"))
-    errors.push_back({e[1] * mm, e[2] * um, static_cast<std::uint32_t>(e[3]),
-                      static_cast<std::size_t>(e[0])});
+    errors.push_back(
+        {e[1] * mm, e[2] * um, static_cast<std::uint32_t>(e[3]), static_cast<std::size_t>(e[0])});
   if (errors.empty()) return out;
   const auto it = c.options.find("edition");
   const std::vector<double> U(errors.size(), number(c, "U") * um);
@@ -187,7 +189,8 @@ Outcome of_sphere(const Case& c) {
 }  // namespace
 
 bool is_heat(const Case& c) {
-  for (const char* name : {"thermal", "spindle", "reversal-of-ball", "multi-step", "lengths", "sphere"})
+  for (const char* name :
+       {"thermal", "spindle", "reversal-of-ball", "multi-step", "lengths", "sphere"})
     if (c.analysis == name) return true;
   return false;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: a function for each way to measure.
 // The samples of `nonio plugin check`: one machine with smooth errors, measured in every way.
 #include <array>
 #include <cmath>
@@ -365,10 +366,11 @@ Source lengths() {
   for (int p = 1; p <= 7; ++p)
     for (int l = 1; l <= 5; ++l)
       for (int k = 1; k <= 3; ++k)
-        rows += "E0," + std::to_string(p) + "," + std::to_string(100 * l) + ".0," +
-                std::to_string(k) + "," +
-                fixed_text(0.3 * (p - 4) * l / 5.0 + 0.2 * std::sin(3.1 * p + 5.3 * l + 7.7 * k), 3) +
-                "\n";
+        rows +=
+            "E0," + std::to_string(p) + "," + std::to_string(100 * l) + ".0," + std::to_string(k) +
+            "," +
+            fixed_text(0.3 * (p - 4) * l / 5.0 + 0.2 * std::sin(3.1 * p + 5.3 * l + 7.7 * k), 3) +
+            "\n";
   s.files.push_back({"L.csv", rows});
   return s;
 }

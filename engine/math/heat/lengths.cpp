@@ -47,8 +47,10 @@ LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimi
       std::size_t more = 0, more_inside = 0;
       for (const std::size_t i : rows) {
         const bool later = all[i].repeat > repeats_of_plan;
-        if (later) ++more, more_inside += verdict[i] < 0 ? 1 : 0;
-        else if (verdict[i] > 0) beyond.push_back(i);
+        if (later)
+          ++more, more_inside += verdict[i] < 0 ? 1 : 0;
+        else if (verdict[i] > 0)
+          beyond.push_back(i);
       }
       if (beyond.size() != 1) continue;
       if (more >= 10 && more_inside == more) forgiven.insert(beyond.front());
@@ -63,8 +65,8 @@ LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimi
   }
   out.decision = out.to_repeat > 0 && out.outside == out.to_repeat ? Decision::cannot_be_decided
                  : out.outside > 0                                 ? Decision::does_not_conform
-                 : out.undecided > 0 ? Decision::cannot_be_decided
-                                     : Decision::conforms;
+                 : out.undecided > 0                               ? Decision::cannot_be_decided
+                                                                   : Decision::conforms;
   return out;
 }
 
@@ -152,8 +154,7 @@ std::optional<FormOfSphere> form_of_sphere(const std::vector<std::array<double, 
   double low = INFINITY, high = -INFINITY, squares = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& p = points[i];
-    const double d =
-        std::hypot(p[0] - out.centre[0], p[1] - out.centre[1], p[2] - out.centre[2]);
+    const double d = std::hypot(p[0] - out.centre[0], p[1] - out.centre[1], p[2] - out.centre[2]);
     if (d < low) low = d, out.innermost = i;
     if (d > high) high = d, out.outermost = i;
     squares += (d - out.radius) * (d - out.radius);

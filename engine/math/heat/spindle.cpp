@@ -62,12 +62,11 @@ std::optional<Turns> turns_of(const SpindleTrack& k) {
       std::fabs(std::remainder(k.angle.front(), whole_turn / static_cast<double>(n))) < as_read) {
     // From the first reading on; the curve begins at angle 0 of the spindle.
     const double turn = std::fmod(std::fmod(k.angle.front(), whole_turn) + whole_turn, whole_turn);
-    const auto shift = static_cast<std::size_t>(
-        std::lround(turn / whole_turn * static_cast<double>(n)));
+    const auto shift =
+        static_cast<std::size_t>(std::lround(turn / whole_turn * static_cast<double>(n)));
     out.n = n, out.N = k.r.size() / n;
     out.r.resize(out.n * out.N);
-    for (std::size_t i = 0; i < out.r.size(); ++i)
-      out.r[i / n * n + (i + shift) % n] = k.r[i];
+    for (std::size_t i = 0; i < out.r.size(); ++i) out.r[i / n * n + (i + shift) % n] = k.r[i];
     if (out.N < fewest_turns) return {};
     return out;
   }
@@ -75,8 +74,9 @@ std::optional<Turns> turns_of(const SpindleTrack& k) {
   const double turns = std::floor((k.angle.back() - first) / whole_turn + 1e-9);
   if (!(turns >= static_cast<double>(fewest_turns))) return {};
   out.N = static_cast<std::size_t>(turns);
-  out.n = std::min(most_in_turn, static_cast<std::size_t>(static_cast<double>(k.angle.size() - 1) /
-                                                          span * whole_turn + 1e-6));
+  out.n = std::min(
+      most_in_turn,
+      static_cast<std::size_t>(static_cast<double>(k.angle.size() - 1) / span * whole_turn + 1e-6));
   if (out.n < fewest_in_turn) return {};
   out.resampled = true;
   std::size_t behind = 0;
@@ -163,7 +163,8 @@ ErrorMotion error_motion(const Turns& k) {
   for (std::size_t i = 0; i < left.size(); ++i) {
     left[i] -= out.motion[i % k.n];
     squares += left[i] * left[i];
-    low[i % k.n] = std::min(low[i % k.n], left[i]), high[i % k.n] = std::max(high[i % k.n], left[i]);
+    low[i % k.n] = std::min(low[i % k.n], left[i]),
+            high[i % k.n] = std::max(high[i % k.n], left[i]);
   }
   for (std::size_t i = 0; i < k.n; ++i) {
     out.asynchronous = std::max(out.asynchronous, high[i] - low[i]);
@@ -204,15 +205,16 @@ Separated multi_step(std::span<const std::vector<double>> T) {
   // T_k(t) - S(t) = P(-t - 360 k/K): of the first set-up as it stands, the others turned back.
   for (std::size_t k = 0; k < K; ++k)
     for (std::size_t i = 0; i < n; ++i) {
-      const double from = static_cast<double>(i) - static_cast<double>(k * n) / static_cast<double>(K);
+      const double from =
+          static_cast<double>(i) - static_cast<double>(k * n) / static_cast<double>(K);
       const double whole = std::floor(from), part = from - whole;
       const auto index = [&](double x) {
-        return static_cast<std::size_t>(std::fmod(x + 2.0 * static_cast<double>(n),
-                                                  static_cast<double>(n)));
+        return static_cast<std::size_t>(
+            std::fmod(x + 2.0 * static_cast<double>(n), static_cast<double>(n)));
       };
       const std::size_t one = index(whole), next = index(whole + 1.0);
-      const double left = (1.0 - part) * (T[k][one] - out.spindle[one]) +
-                          part * (T[k][next] - out.spindle[next]);
+      const double left =
+          (1.0 - part) * (T[k][one] - out.spindle[one]) + part * (T[k][next] - out.spindle[next]);
       out.ball[i] += left / static_cast<double>(K);
     }
   return out;

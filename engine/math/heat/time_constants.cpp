@@ -50,8 +50,7 @@ Means means_of(const Track& k) {
     t.back() += k.time[i] - start, d.back() += k.d[i], n.back() += 1.0;
   }
   out.t.resize(at(t.size())), out.d.resize(at(t.size()));
-  for (std::size_t i = 0; i < t.size(); ++i)
-    out.t[at(i)] = t[i] / n[i], out.d[at(i)] = d[i] / n[i];
+  for (std::size_t i = 0; i < t.size(); ++i) out.t[at(i)] = t[i] / n[i], out.d[at(i)] = d[i] / n[i];
   return out;
 }
 
@@ -91,8 +90,8 @@ Matrix jacobian_of(const Means& m, const Curve& c) {
   J.leftCols(X.cols()) = X;
   for (std::size_t k = 0; k < c.log_tau.size(); ++k) {
     const double tau = std::exp(c.log_tau[k]), size = c.beta[at(k + 1)];
-    J.col(X.cols() + at(k)) = m.t.unaryExpr(
-        [tau, size](double t) { return -size * t / tau * std::exp(-t / tau); });
+    J.col(X.cols() + at(k)) =
+        m.t.unaryExpr([tau, size](double t) { return -size * t / tau * std::exp(-t / tau); });
   }
   return J;
 }
@@ -157,8 +156,7 @@ Fitted fitted(const Means& m, std::size_t parts) {
   for (int round = 0; round < 3; ++round) {
     Curve c = searched(m, parts, out.noise);
     refine(m, out.noise, c);
-    const Vector linearised =
-        m.d - columns_for(m, c.log_tau) * c.beta;
+    const Vector linearised = m.d - columns_for(m, c.log_tau) * c.beta;
     out.curve = std::move(c);
     if (round == 2) break;
     const PathNoise before = out.noise;
@@ -287,8 +285,10 @@ TimeConstants time_constants(const Track& k) {
     within = within && p.tau <= out.largest;
     resolved = resolved && p.u_tau <= largest_u_tau * p.tau && std::isfinite(p.u_tau);
   }
-  out.answer = !within ? Answer::too_short : none ? Answer::none
-               : !resolved ? Answer::unresolved : Answer::resolved;
+  out.answer = !within     ? Answer::too_short
+               : none      ? Answer::none
+               : !resolved ? Answer::unresolved
+                           : Answer::resolved;
   return out;
 }
 

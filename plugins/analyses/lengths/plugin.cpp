@@ -60,7 +60,8 @@ struct Decided {
 
 class Worker {
  public:
-  explicit Worker(const AnalysisInput& in) : in_(in), by_2001_(in.options.text("edition") == "2001") {}
+  explicit Worker(const AnalysisInput& in)
+      : in_(in), by_2001_(in.options.text("edition") == "2001") {}
 
   Evaluation run() {
     const Observations& o = in_.observations;
@@ -164,8 +165,7 @@ class Worker {
     }
     std::vector<double> row(all.size(), 0.0);
     if (r->high != r->low) row[rows[r->high]] = 1.0, row[rows[r->low]] = -1.0;
-    const Value v =
-        budget.value("R0", r->range, Quantity::deviation, 0.0, model.shares(row));
+    const Value v = budget.value("R0", r->range, Quantity::deviation, 0.0, model.shares(row));
     out_.values.push_back(v);
     const LengthLimit limit = limit_of(in_.options, "R0");
     if (!limit.stated()) return no_limit("R0");
@@ -236,10 +236,11 @@ class Worker {
   void decide_value(const char* name, const Value& v, double limit) {
     Decided d{name, v.value, limit, v.U.value_or(NAN)};
     if (v.U)
-      d.decision = v.value <= limit - *v.U   ? Decision::conforms
+      d.decision = v.value <= limit - *v.U  ? Decision::conforms
                    : v.value > limit + *v.U ? Decision::does_not_conform
                                             : Decision::cannot_be_decided;
-    d.outside = d.decision == Decision::does_not_conform, d.undecided = d.decision == Decision::cannot_be_decided;
+    d.outside = d.decision == Decision::does_not_conform,
+    d.undecided = d.decision == Decision::cannot_be_decided;
     decide(d);
   }
 
@@ -267,14 +268,16 @@ class Worker {
   void plan(const char* test, const std::vector<LengthError>& errors) {
     const math::LengthPlan p = math::length_plan(errors);
     // EL is measured in two positions (2009); E0 in seven.
-    if (p.whole() || (std::string_view(test) == "EL" && p.positions >= 2 && p.lengths >= 5 && p.repeats >= 3))
+    if (p.whole() ||
+        (std::string_view(test) == "EL" && p.positions >= 2 && p.lengths >= 5 && p.repeats >= 3))
       return;
-    out_.findings.push_back({.id = "lengths.plan",
-                             .attention = false,
-                             .evidence = {{"positions", static_cast<double>(p.positions), Quantity::count},
-                                          {"lengths", static_cast<double>(p.lengths), Quantity::count},
-                                          {"repeats", static_cast<double>(p.repeats), Quantity::count}},
-                             .texts = {{"name", test}}});
+    out_.findings.push_back(
+        {.id = "lengths.plan",
+         .attention = false,
+         .evidence = {{"positions", static_cast<double>(p.positions), Quantity::count},
+                      {"lengths", static_cast<double>(p.lengths), Quantity::count},
+                      {"repeats", static_cast<double>(p.repeats), Quantity::count}},
+         .texts = {{"name", test}}});
   }
 
   /// Each length of each position: the largest and the least error, and the limit.
@@ -317,7 +320,8 @@ std::vector<Option> options() {
     out.push_back({name, 0.0, unit, help, {}, 0.0, most});
   };
   number("mpe_E0_um", "um", "A of the limit A + L/K of E0; 0: not stated.", 1e6);
-  number("mpe_E0_K", "", "K of the limit A + L/K of E0, L in mm, the limit in um; 0: no such part.", 1e9);
+  number("mpe_E0_K", "", "K of the limit A + L/K of E0, L in mm, the limit in um; 0: no such part.",
+         1e9);
   number("mpe_E0_most_um", "um", "B: the limit of E0 is never above it; 0: no such bound.", 1e6);
   number("mpe_EL_um", "um", "A of the limit of EL; 0: not stated.", 1e6);
   number("mpe_EL_K", "", "K of the limit of EL; 0: no such part.", 1e9);

@@ -33,7 +33,8 @@ struct Channel {
 
 class Worker {
  public:
-  explicit Worker(const AnalysisInput& in) : in_(in), set_ups_(spindle::set_ups_of(in.observations)) {}
+  explicit Worker(const AnalysisInput& in)
+      : in_(in), set_ups_(spindle::set_ups_of(in.observations)) {}
 
   Evaluation run() {
     out_.findings = set_ups_.findings;

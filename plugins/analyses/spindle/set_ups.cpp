@@ -19,9 +19,7 @@ double rounded(double angle) {
   return steps >= 360e3 ? 0.0 : steps * grain;
 }
 
-bool same(double a, double b) {
-  return std::fabs(std::remainder(a - b, full)) < 1.5 * grain;
-}
+bool same(double a, double b) { return std::fabs(std::remainder(a - b, full)) < 1.5 * grain; }
 
 math::SpindleTrack track_of(const Observations& o, std::vector<std::size_t> rows) {
   const auto& angle = o.axes[0].position;
@@ -54,10 +52,11 @@ SetUps set_ups_of(const Observations& o) {
     const Place place{rounded(o.axes[1].position[first]), rounded(o.axes[2].position[first])};
     auto turns = math::turns_of(track_of(o, std::move(rows[line])));
     if (!turns) {
-      out.findings.push_back({.id = "spindle.no-turns",
-                              .attention = true,
-                              .evidence = {{"readings", static_cast<double>(count), Quantity::count}},
-                              .texts = {{"sensor", o.lines[line].name}}});
+      out.findings.push_back(
+          {.id = "spindle.no-turns",
+           .attention = true,
+           .evidence = {{"readings", static_cast<double>(count), Quantity::count}},
+           .texts = {{"sensor", o.lines[line].name}}});
       continue;
     }
     out.resampled = out.resampled || turns->resampled;

@@ -2,11 +2,12 @@
 //
 // Thermal tests (ISO 230-3): a machine at rest (ETVE), a spindle that turns, an axis that is
 // exercised.
+#include "nonio/sdk/plugin.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "nonio/math/differences.h"
-#include "nonio/sdk/plugin.h"
 #include "worked.h"
 
 namespace nonio {
@@ -20,7 +21,8 @@ using thermal::Worked;
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "thermal"; }
 
 /// What a machine at rest says of the drift that budgets of its other campaigns should have.
-void propose_drift(const AnalysisInput& in, const Worked& worked, const Wish& wish, Evaluation& out) {
+void propose_drift(const AnalysisInput& in, const Worked& worked, const Wish& wish,
+                   Evaluation& out) {
   if (!(worked.drift > 0.0)) return;
   constexpr double of_range = 0.6;  // docs/constants.md, A7
   Finding f{.id = "thermal.drift-proposal",
@@ -61,21 +63,22 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 }
 
 std::vector<Option> options() {
-  return {{"window_min",
-           60.0,
-           "min",
-           "Length of the windows in which ranges are taken: the time that a run of other campaigns "
-           "takes.",
-           {},
-           0.1,
-           1e5},
-          {"remaining_um",
-           1.0,
-           "um",
-           "Change that may remain after the warm-up that is proposed.",
-           {},
-           0.001,
-           1e4}};
+  return {
+      {"window_min",
+       60.0,
+       "min",
+       "Length of the windows in which ranges are taken: the time that a run of other campaigns "
+       "takes.",
+       {},
+       0.1,
+       1e5},
+      {"remaining_um",
+       1.0,
+       "um",
+       "Change that may remain after the warm-up that is proposed.",
+       {},
+       0.001,
+       1e4}};
 }
 
 }  // namespace

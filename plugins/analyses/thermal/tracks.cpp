@@ -40,7 +40,8 @@ struct Run {
 };
 
 /// Of one line: every line has the same speeds, but for readings that were not taken.
-std::optional<Run> run_of(const Observations& o, const std::vector<std::size_t>& rows, Tracks& out) {
+std::optional<Run> run_of(const Observations& o, const std::vector<std::size_t>& rows,
+                          Tracks& out) {
   const auto& s = o.axes.front();
   const auto turns = [&](std::size_t k) { return s.approach[rows[k]] != 0; };
   Run run;
@@ -102,10 +103,12 @@ math::Track tilt_of(const math::Track& one, const math::Track& two, double dista
 void add_tilts(const Measurement& m, const std::map<std::string, math::Track>& tracks,
                const std::map<std::string, std::optional<Run>>& runs, Tracks& out) {
   for (const auto& [name, letter] : {std::pair{"B", "X"}, {"A", "Y"}}) {
-    const auto one = tracks.find(std::string(letter) + "1"), two = tracks.find(std::string(letter) + "2");
+    const auto one = tracks.find(std::string(letter) + "1"),
+               two = tracks.find(std::string(letter) + "2");
     if (one == tracks.end() || two == tracks.end()) continue;
     if (!m.foot) {
-      out.findings.push_back({.id = "thermal.no-tilt", .attention = false, .texts = {{"axis", letter}}});
+      out.findings.push_back(
+          {.id = "thermal.no-tilt", .attention = false, .texts = {{"axis", letter}}});
       continue;
     }
     math::Track tilt = tilt_of(one->second, two->second, *m.foot);

@@ -16,10 +16,10 @@ enum class Test { etve, spindle, axis };
 
 /// One sensor, or a tilt from two of them; zero at its first reading.
 struct Followed {
-  std::string name;  ///< X, Y1; of a tilt A (about X), B (about Y)
-  math::Track run;   ///< of a spindle: from its start to its stop; else all
-  math::Track cool;  ///< from the stop on, zero there; empty if it did not stop
-  bool tilt = false; ///< rad in place of m
+  std::string name;    ///< X, Y1; of a tilt A (about X), B (about Y)
+  math::Track run;     ///< of a spindle: from its start to its stop; else all
+  math::Track cool;    ///< from the stop on, zero there; empty if it did not stop
+  bool tilt = false;   ///< rad in place of m
   double lever = 0.0;  ///< of a tilt: distance of the sensors, m
 };
 

@@ -58,7 +58,8 @@ class Worker {
     const Track& k = f.run;
     if (const auto whole = math::whole_range(k))
       out_.items.push_back(range_item("range", k, *whole, f));
-    const auto window = math::largest_range(k, wish_.window), first = math::first_range(k, wish_.window);
+    const auto window = math::largest_range(k, wish_.window),
+               first = math::first_range(k, wish_.window);
     if (!window || !first) {
       once("thermal.window-longer", {minutes("window_min", wish_.window),
                                      minutes("test_min", k.time.back() - k.time.front())});
@@ -224,10 +225,10 @@ class Worker {
                           .to = g.d.back() * L,
                           .scale = 1.0 / L,
                           .length = L});
-    Series s{"growth_" + m_.axis, "t", Quantity::time, Quantity::deviation_per_length, g.time, g.d, {}};
+    Series s{
+        "growth_" + m_.axis, "t", Quantity::time, Quantity::deviation_per_length, g.time, g.d, {}};
     out_.series.push_back(std::move(s));
-    const TimeConstants fit =
-        put_constants(m_.axis, g, L, Quantity::deviation_per_length, 1.0 / L);
+    const TimeConstants fit = put_constants(m_.axis, g, L, Quantity::deviation_per_length, 1.0 / L);
     if (fit.answer == TimeConstants::Answer::resolved) propose_effect(fit, low, high);
   }
 
@@ -262,7 +263,8 @@ class Worker {
     Followed f;
     f.name = m_.axis;
     out_.items.push_back(range_item("reversal", r, *whole, f));
-    out_.series.push_back({"reversal_" + m_.axis, "t", Quantity::time, Quantity::deviation, r.time, r.d, {}});
+    out_.series.push_back(
+        {"reversal_" + m_.axis, "t", Quantity::time, Quantity::deviation, r.time, r.d, {}});
   }
 
   /// Per target: what each side did.
@@ -273,7 +275,8 @@ class Worker {
     out_.points.columns.push_back(std::move(target));
     for (const char* what : {"range", "end"})
       for (const int direction : {1, -1}) {
-        PointTable::Column c{std::string(what) + (direction > 0 ? "+" : "-"), Quantity::deviation, {}};
+        PointTable::Column c{
+            std::string(what) + (direction > 0 ? "+" : "-"), Quantity::deviation, {}};
         for (const double place : places) {
           double value = NAN;
           for (const auto& v : tracks_.visits)

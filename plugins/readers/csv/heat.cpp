@@ -48,7 +48,8 @@ Expected<std::vector<Sensor>> sensors_of(const Table& table) {
   for (const Sensor& s : nest)
     if (table.column(s.column) != nullptr) out.push_back(s);
   if (out.empty())
-    return fail("missing column: expected a sensor: x_um, y_um, z_um, x1_um, x2_um, y1_um or y2_um");
+    return fail(
+        "missing column: expected a sensor: x_um, y_um, z_um, x1_um, x2_um, y1_um or y2_um");
   return out;
 }
 
@@ -105,9 +106,9 @@ Expected<Turning> turning_of(const Table& table) {
   Turning out;
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (!(std::fabs(speed[i]) <= 1e6))
-      return fail(heat_error(table, i, "speed_rpm",
-                             "expected a speed from -1000000 to 1000000 rpm, found " +
-                                 short_text(speed[i], 9)));
+      return fail(heat_error(
+          table, i, "speed_rpm",
+          "expected a speed from -1000000 to 1000000 rpm, found " + short_text(speed[i], 9)));
     const double before = i > 0 ? speed[i - 1] / 60.0 * heat_turn * (time[i] - time[i - 1]) : 0.0;
     out.angle.push_back(i > 0 ? out.angle.back() + before : 0.0);
     out.turns.push_back(speed[i] > 0.0 ? std::int8_t{1} : speed[i] < 0.0 ? std::int8_t{-1} : 0);
@@ -151,9 +152,10 @@ Expected<Observations> read_exercised(const ReadInput& input, const Table& table
   const Measurement& m = input.measurement;
   const Axis* axis = input.campaign.machine.axis(m.axis);
   if (axis == nullptr || axis->rotary || coordinate_of(m.axis) > 2)
-    return fail("columns of an axis that is exercised: expected `axis` of a linear axis X, Y or Z "
-                "in the manifest, found \"" +
-                m.axis + "\"");
+    return fail(
+        "columns of an axis that is exercised: expected `axis` of a linear axis X, Y or Z "
+        "in the manifest, found \"" +
+        m.axis + "\"");
   if (auto error = times_grow(table)) return fail(std::move(*error));
   auto obs = begun(input, table);
   obs->axes = {{m.axis, false, {}, {}}};
@@ -187,8 +189,9 @@ std::vector<double> angles_by_pulses(const std::vector<double>& index) {
     if (index[i] > 0.5) pulses.push_back(i);
   for (std::size_t k = 0; k + 1 < pulses.size(); ++k)
     for (std::size_t i = pulses[k]; i <= pulses[k + 1]; ++i)
-      out[i] = heat_turn * (static_cast<double>(k) + static_cast<double>(i - pulses[k]) /
-                                                         static_cast<double>(pulses[k + 1] - pulses[k]));
+      out[i] =
+          heat_turn * (static_cast<double>(k) + static_cast<double>(i - pulses[k]) /
+                                                    static_cast<double>(pulses[k + 1] - pulses[k]));
   return out;
 }
 
@@ -219,7 +222,8 @@ Expected<std::vector<double>> angles_of(const Table& table, const std::vector<st
   }
   const auto* index = table.column("index");
   if (index == nullptr)
-    return fail("missing column: expected angle_deg, or index (1 in the row of each pulse, else 0)");
+    return fail(
+        "missing column: expected angle_deg, or index (1 in the row of each pulse, else 0)");
   std::vector<double> own;
   for (const std::size_t row : rows) {
     const double pulse = (*index)[row];

@@ -40,8 +40,8 @@ Expected<Observations> read_errors(const ReadInput& input, const Table& table) {
       return wrong("repeat", "this length was read in line " + std::to_string(before) +
                                  " with the same repeat; expected another one");
     before = table.line[row];
-    const auto [line, fresh] = lines.try_emplace({test[row], position[row]},
-                                                 static_cast<std::uint32_t>(lines.size()));
+    const auto [line, fresh] =
+        lines.try_emplace({test[row], position[row]}, static_cast<std::uint32_t>(lines.size()));
     if (fresh)
       obs.lines.push_back(
           {test[row] + " " + std::to_string(static_cast<std::uint32_t>(position[row])), {}});
@@ -97,17 +97,16 @@ Expected<Observations> read_points(const ReadInput& input, const Table& table) {
 
 Expected<Observations> read_lengths(const ReadInput& input) {
   const bool points = input.bytes.substr(0, 65536).find("x_mm") != std::string_view::npos;
-  auto table =
-      points ? read_table(input.bytes, {{"x_mm", LengthKind::number, true},
-                                        {"y_mm", LengthKind::number, true},
-                                        {"z_mm", LengthKind::number, true}})
-             : read_table(input.bytes, {{"test", LengthKind::word, true, {"E0", "EL"}},
-                                        {"position", LengthKind::whole, true},
-                                        {"length_mm", LengthKind::place, true},
-                                        {"repeat", LengthKind::whole, true},
-                                        {"deviation_um", LengthKind::number, true},
-                                        {"material_c"},
-                                        {"air_c"}});
+  auto table = points ? read_table(input.bytes, {{"x_mm", LengthKind::number, true},
+                                                 {"y_mm", LengthKind::number, true},
+                                                 {"z_mm", LengthKind::number, true}})
+                      : read_table(input.bytes, {{"test", LengthKind::word, true, {"E0", "EL"}},
+                                                 {"position", LengthKind::whole, true},
+                                                 {"length_mm", LengthKind::place, true},
+                                                 {"repeat", LengthKind::whole, true},
+                                                 {"deviation_um", LengthKind::number, true},
+                                                 {"material_c"},
+                                                 {"air_c"}});
   auto obs = !table   ? Expected<Observations>(fail(table.error()))
              : points ? read_points(input, *table)
                       : read_errors(input, *table);

@@ -85,8 +85,15 @@ struct World {
                                             "observations", "circle",        "rtcp",
                                             "thermal",      "spindle",       "lengths"};
   static constexpr std::array<std::pair<std::string_view, std::size_t>, 10> spatial_by_words{
-      {{"#diagonal", 0}, {"moved", 1}, {"angle", 2}, {"nx", 3}, {"#circle", 4}, {"tx", 5},
-       {"speed_rpm", 6}, {"ball_deg", 7}, {"length_mm", 8},
+      {{"#diagonal", 0},
+       {"moved", 1},
+       {"angle", 2},
+       {"nx", 3},
+       {"#circle", 4},
+       {"tx", 5},
+       {"speed_rpm", 6},
+       {"ball_deg", 7},
+       {"length_mm", 8},
        {"#exercised", 9}}};
 
   nonio::Campaign campaign;

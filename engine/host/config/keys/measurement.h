@@ -44,7 +44,8 @@ inline constexpr Key measurement_keys[] = {
      .named = Named::reader},
     {.name = "axis",
      .holds = text,
-     .help = "The axis that moves, or the rotary axis with the measured balls; of kind thermal the linear "
+     .help = "The axis that moves, or the rotary axis with the measured balls; of kind thermal the "
+             "linear "
              "axis that is exercised, else none.",
      .needed = {"kind", of_one_axis},
      .missing = "which axis of the machine was measured"},

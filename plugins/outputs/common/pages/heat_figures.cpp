@@ -57,8 +57,9 @@ double first_time(const Observations& o) {
 /// Of each sensor or target and side: the change since its first reading.
 Plot changes(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
-  Plot plot = over_time(source, "plot.thermal",
-                        source.words.get("plot.change", {{"unit", unit_text(Quantity::deviation)}}));
+  Plot plot =
+      over_time(source, "plot.thermal",
+                source.words.get("plot.change", {{"unit", unit_text(Quantity::deviation)}}));
   const bool axis = !m.measurement.axis.empty();
   std::map<std::pair<double, int>, std::vector<std::size_t>> rows;
   for (std::size_t i = 0; i < o.size(); ++i) {
@@ -91,9 +92,9 @@ Plot changes(const Source& source, const Measured& m) {
 
 /// Curves that the analysis gives over time in one unit: growth, and what was fitted to it.
 std::optional<Plot> fits(const Source& source, const Results::Analysed& a, Plot* into) {
-  Plot own = over_time(source, "plot.growth",
-                       source.words.get("plot.change",
-                                        {{"unit", unit_text(Quantity::deviation_per_length)}}));
+  Plot own = over_time(
+      source, "plot.growth",
+      source.words.get("plot.change", {{"unit", unit_text(Quantity::deviation_per_length)}}));
   std::size_t number = 0;
   for (const Series& s : a.evaluation.series) {
     if (s.over != "t" || s.name.starts_with("reversal")) continue;
@@ -123,7 +124,8 @@ std::optional<Plot> temperatures_plot(const Source& source, const Observations& 
   plot.zero_line = false;
   const double start = first_time(o);
   std::size_t number = 0;
-  for (const auto& [values, word] : {std::pair{&o.air, "plot.air"}, {&o.material, "plot.material"}}) {
+  for (const auto& [values, word] :
+       {std::pair{&o.air, "plot.air"}, {&o.material, "plot.material"}}) {
     if (values->size() != o.size()) continue;
     Curve c;
     std::size_t rows = 0;

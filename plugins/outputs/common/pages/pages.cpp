@@ -184,12 +184,12 @@ std::string heading_of(const Source& source, const Measured& m) {
         {{"heading", words.get("measurement.circle", {{"plane", plane_of(measurement)}})},
          {"id", measurement.id}});
   if (is_heat(measurement))
-    return words.get("measurement.of",
-                     {{"heading", measurement.axis.empty()
-                                      ? words.get("measurement." + measurement.kind)
-                                      : words.get("measurement.thermal_axis",
-                                                  {{"axis", measurement.axis}})},
-                      {"id", measurement.id}});
+    return words.get(
+        "measurement.of",
+        {{"heading", measurement.axis.empty()
+                         ? words.get("measurement." + measurement.kind)
+                         : words.get("measurement.thermal_axis", {{"axis", measurement.axis}})},
+         {"id", measurement.id}});
   if (measurement.kind == "rtcp")
     return ids(words.get("measurement.rtcp", {{"axis", measurement.axis}}));
   if (measurement.kind == "step-diagonal")

@@ -48,8 +48,9 @@ struct Made {
 };
 
 /// Nothing where it fails: the caller says so.
-inline nonio::Evaluation evaluated(const nonio::Analysis& a, const Made& t,
-                                   std::map<std::string, nonio::Setting, std::less<>> changed = {}) {
+inline nonio::Evaluation evaluated(
+    const nonio::Analysis& a, const Made& t,
+    std::map<std::string, nonio::Setting, std::less<>> changed = {}) {
   nonio::Settings settings;
   for (const nonio::Option& o : a.info.options) settings.values[o.name] = o.default_value;
   for (auto& [name, value] : changed) settings.values[name] = value;

@@ -83,7 +83,8 @@ TEST(Lengths, ATemperatureOfTheGaugeCountsWhereItExpands) {
   MadeLengths m = gauging(r, 1e-6);
   const auto cold = evaluated(lengths(), m.test, wide);
   auto& c = m.test.campaign;
-  c.instrument.expansion = 11.5e-6, c.instrument.temperature_range = 0.5, c.instrument.expansion_range = 1e-6;
+  c.instrument.expansion = 11.5e-6, c.instrument.temperature_range = 0.5,
+  c.instrument.expansion_range = 1e-6;
   const auto no_room = evaluated(lengths(), m.test, wide);
   EXPECT_NE(finding(no_room, "uncertainty.no-data"), nullptr) << "how far from 20 degC?";
   c.environment.temperature_difference = 1.0;
@@ -99,7 +100,8 @@ TEST(Lengths, APartOfThePlanSaysSo) {
   MadeLengths m = gauging(r, 1e-6);
   EXPECT_EQ(finding(evaluated(lengths(), m.test, wide), "lengths.plan"), nullptr);
   std::vector<char> kept(m.test.o.size(), 1);
-  for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = m.test.o.line[i] < 3 && m.test.o.run[i] < 2;
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    kept[i] = m.test.o.line[i] < 3 && m.test.o.run[i] < 2;
   keep_rows(m.test.o, kept);
   const auto e = evaluated(lengths(), m.test, wide);
   const Finding* f = finding(e, "lengths.plan");
@@ -120,7 +122,8 @@ TEST(Lengths, FormOnASphere) {
   EXPECT_NE(finding(e, "lengths.conforms"), nullptr);
   EXPECT_EQ(finding(e, "lengths.points-of-plan"), nullptr);
   t.campaign.instrument.sphere.reset();
-  EXPECT_NE(finding(evaluated(lengths(), t, {{"mpe_P_um", 5.0}}), "lengths.no-uncertainty"), nullptr);
+  EXPECT_NE(finding(evaluated(lengths(), t, {{"mpe_P_um", 5.0}}), "lengths.no-uncertainty"),
+            nullptr);
   EXPECT_NE(finding(evaluated(lengths(), sphere(4, 0.0)), "lengths.no-sphere"), nullptr);
 }
 
@@ -129,7 +132,8 @@ TEST(Lengths, HostileReadingsAreNoCrashAndNoNumber) {
   MadeLengths m = gauging(r, 1e-6);
   for (const double d : {0.0, -1e20}) {
     m.test.o.deviation.assign(m.test.o.size(), d);
-    for (const Value& v : evaluated(lengths(), m.test, wide).values) EXPECT_TRUE(std::isfinite(v.value));
+    for (const Value& v : evaluated(lengths(), m.test, wide).values)
+      EXPECT_TRUE(std::isfinite(v.value));
   }
   m.test.o = rearranged(m.test.o, {});
   EXPECT_TRUE(evaluated(lengths(), m.test, wide).values.empty());

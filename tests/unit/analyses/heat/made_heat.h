@@ -151,7 +151,8 @@ inline Coverages spindle_coverage(int count, std::uint64_t seed) {
   Coverages out;
   Random r(seed);
   for (int i = 0; i < count; ++i) {
-    const MadeTurns m = turning(r, uniform(r, 0.02e-6, 0.2e-6), i % 2 == 1 ? 0.15e-6 : 0.02e-6, 32, 128);
+    const MadeTurns m =
+        turning(r, uniform(r, 0.02e-6, 0.2e-6), i % 2 == 1 ? 0.15e-6 : 0.02e-6, 32, 128);
     const auto e = evaluated(spindle(), m.test);
     hold(out, e, "sync_X", m.synchronous), hold(out, e, "eccentricity_X", m.eccentricity);
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nonio/math/spindle.h"
+
 #include <gtest/gtest.h>
 
 #include "made_heat.h"
-#include "nonio/math/spindle.h"
 
 using namespace nonio;
 using namespace heat;
@@ -15,7 +16,8 @@ constexpr double turn_rad = 2.0 * std::numbers::pi;
 void add_line(Made& t, const std::string& sensor, double ball, double at, int turns, int n,
               const std::function<double(double)>& r) {
   const auto line = static_cast<std::uint32_t>(t.o.lines.size());
-  t.o.lines.push_back({sensor + " ball " + std::to_string(ball) + " sensor " + std::to_string(at), {}});
+  t.o.lines.push_back(
+      {sensor + " ball " + std::to_string(ball) + " sensor " + std::to_string(at), {}});
   for (int i = 0; i < turns * n; ++i) {
     const double angle = turn_rad * i / n;
     t.o.axes[0].position.push_back(angle);
@@ -133,7 +135,8 @@ TEST(Spindle, TiltIsTheDifferenceOverTheDistance) {
 
 TEST(Spindle, AlongTheAxisOnceATurnIsAnError) {
   Made t = empty();
-  add_line(t, "Z", 0, 0, 4, 64, [](double a) { return 2e-6 * std::cos(a) + 0.5e-6 * std::cos(2.0 * a); });
+  add_line(t, "Z", 0, 0, 4, 64,
+           [](double a) { return 2e-6 * std::cos(a) + 0.5e-6 * std::cos(2.0 * a); });
   const auto out = evaluated(spindle(), t);
   EXPECT_NEAR(value(out, "fundamental_Z")->value, 4e-6, 1e-12);
   EXPECT_NEAR(value(out, "rest_Z")->value, 1e-6, 1e-12);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nonio/math/thermal.h"
+
 #include <gtest/gtest.h>
 
 #include "made_heat.h"
-#include "nonio/math/thermal.h"
 
 using namespace nonio;
 using namespace heat;
@@ -43,7 +44,8 @@ Made exercised(double w, double tau, double fixed, double noise, int cycles, Ran
   for (int c = 1; c <= cycles; ++c)
     for (const int direction : {1, -1})
       for (const double place : {direction > 0 ? 0.1 : 0.9, direction > 0 ? 0.9 : 0.1}) {
-        t.o.axes[0].position.push_back(place), t.o.axes[0].approach.push_back(direction > 0 ? 1 : -1);
+        t.o.axes[0].position.push_back(place),
+            t.o.axes[0].approach.push_back(direction > 0 ? 1 : -1);
         t.o.time.push_back(time), t.o.run.push_back(static_cast<std::uint32_t>(c));
         t.o.deviation.push_back(w * (place - fixed) * (1.0 - std::exp(-time / tau)) +
                                 direction * 1e-6 + noise * N(r));
@@ -99,12 +101,14 @@ TEST(Thermal, ShiftTurnAndOrderOfRowsChangeNothing) {
   for (double& d : shifted.o.deviation) d += 0.125;
   for (double& s : shifted.o.time) s += 1024.0;
   std::vector<std::uint32_t> back(m.test.o.size());
-  for (std::uint32_t i = 0; i < back.size(); ++i) back[i] = static_cast<std::uint32_t>(back.size() - 1 - i);
+  for (std::uint32_t i = 0; i < back.size(); ++i)
+    back[i] = static_cast<std::uint32_t>(back.size() - 1 - i);
   shifted.o = rearranged(shifted.o, back);
   const auto two = evaluated(thermal(), shifted);
   ASSERT_EQ(one.values.size(), two.values.size());
   for (std::size_t i = 0; i < one.values.size(); ++i)
-    EXPECT_NEAR(one.values[i].value, two.values[i].value, 1e-6 * std::fabs(one.values[i].value) + 1e-13)
+    EXPECT_NEAR(one.values[i].value, two.values[i].value,
+                1e-6 * std::fabs(one.values[i].value) + 1e-13)
         << one.values[i].name;
   Made mirrored = m.test;
   for (double& d : mirrored.o.deviation) d = -d;
@@ -141,7 +145,8 @@ TEST(Thermal, ASpindleIsCutWhereItStartsAndStops) {
   EXPECT_NEAR(value(e, "cool_Z")->value, 0.0, 1e-12);
   o.deviation[200] += 3e-6;
   EXPECT_NEAR(value(evaluated(thermal(), m.test), "cool_Z")->value, -3e-6, 1e-12);
-  for (std::size_t i = 100; i < o.size(); ++i) o.axes[0].position[i] *= 1.0 + 0.001 * static_cast<double>(i);
+  for (std::size_t i = 100; i < o.size(); ++i)
+    o.axes[0].position[i] *= 1.0 + 0.001 * static_cast<double>(i);
   const auto steps = evaluated(thermal(), m.test);
   EXPECT_NE(finding(steps, "thermal.speed-steps"), nullptr);
   EXPECT_EQ(value(steps, "tau_Z"), nullptr);

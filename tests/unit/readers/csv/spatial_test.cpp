@@ -279,7 +279,8 @@ TEST(General, BadTables) {
 
 TEST(Thermal, ASensorIsALineAndTheSpindleTurns) {
   const auto obs = read_text(
-      "time_s,speed_rpm,x1_um,z_um,air_c\n0,0,1,0,20\n60,600,2,5,20.1\n120,600,nan,7,\n180,0,3,9,21\n",
+      "time_s,speed_rpm,x1_um,z_um,air_c\n0,0,1,0,20\n60,600,2,5,20.1\n120,600,nan,7,\n180,0,3,9,"
+      "21\n",
       "thermal");
   ASSERT_TRUE(obs) << obs.error().message;
   EXPECT_EQ(obs->size(), 7U);
@@ -318,15 +319,16 @@ TEST(Thermal, BadTables) {
   ASSERT_FALSE(back);
   EXPECT_EQ(back.error().line, 4U);
   EXPECT_EQ(back.error().column, "time_s");
-  for (const char* bad : {"", "time_s\n0\n", "x_um\n1\n", "time_s,x_um\n0,nan\n60,-1e20\n",
-                          "time_s,x_um\nnan,1\n", "time_s,x_mm\n0,1\n",
-                          "time_s,speed_rpm,x_um\n0,9e9,1\n60,1,1\n"})
+  for (const char* bad :
+       {"", "time_s\n0\n", "x_um\n1\n", "time_s,x_um\n0,nan\n60,-1e20\n", "time_s,x_um\nnan,1\n",
+        "time_s,x_mm\n0,1\n", "time_s,speed_rpm,x_um\n0,9e9,1\n60,1,1\n"})
     EXPECT_FALSE(read_text(bad, "thermal")) << bad;
 }
 
 TEST(Spindle, ASetUpIsALine) {
-  const auto obs = read_text(
-      "angle_deg,ball_deg,sensor_deg,x_um,y_um\n0,0,0,1,2\n90,0,0,3,nan\n0,180,180,5,6\n", "spindle");
+  const auto obs =
+      read_text("angle_deg,ball_deg,sensor_deg,x_um,y_um\n0,0,0,1,2\n90,0,0,3,nan\n0,180,180,5,6\n",
+                "spindle");
   ASSERT_TRUE(obs) << obs.error().message;
   ASSERT_EQ(obs->lines.size(), 4U);
   EXPECT_EQ(obs->lines[2].name, "X ball 180 sensor 180");
@@ -354,7 +356,8 @@ TEST(Spindle, PulsesDivideATurnEvenly) {
 
 TEST(Lengths, TestAndPositionAreALine) {
   const auto obs = read_text(
-      "test,position,length_mm,repeat,deviation_um\nE0,1,100,1,0.5\nE0,1,100,2,n/a\nEL,1,100,1,-2\n",
+      "test,position,length_mm,repeat,deviation_um\nE0,1,100,1,0.5\nE0,1,100,2,n/"
+      "a\nEL,1,100,1,-2\n",
       "lengths");
   ASSERT_TRUE(obs) << obs.error().message;
   ASSERT_EQ(obs->lines.size(), 2U);

@@ -25,8 +25,8 @@ struct Difference {
   Quantity quantity = Quantity::deviation;
   double u = 0.0, dof = INFINITY;  ///< of the repetition; dof 0: not known, and no U
   double from = 0.0, to = 0.0;     ///< deviations whose difference it is, m
-  double scale = 0.0;   ///< of the value by that difference; 0: the instrument's gain drops out
-  double length = 0.0;  ///< measured by a beam, m
+  double scale = 0.0;      ///< of the value by that difference; 0: the instrument's gain drops out
+  double length = 0.0;     ///< measured by a beam, m
   bool with_ball = false;  ///< it holds the form of the ball
 };
 

@@ -44,10 +44,10 @@ struct LengthError {
 
 struct LengthAnswer {
   Decision decision = Decision::cannot_be_decided;
-  std::size_t worst = 0;     ///< error that is nearest to its limit, or farthest beyond
-  std::size_t outside = 0;   ///< errors beyond MPE + U
-  std::size_t undecided = 0; ///< errors nearer to MPE than U
-  std::size_t to_repeat = 0; ///< edition 2001: lengths that have to be measured ten times more
+  std::size_t worst = 0;      ///< error that is nearest to its limit, or farthest beyond
+  std::size_t outside = 0;    ///< errors beyond MPE + U
+  std::size_t undecided = 0;  ///< errors nearer to MPE than U
+  std::size_t to_repeat = 0;  ///< edition 2001: lengths that have to be measured ten times more
 };
 
 /// U: of each error. by_2001: with its five lengths.
@@ -73,7 +73,7 @@ LengthPlan length_plan(const std::vector<LengthError>& all);
 struct FormOfSphere {
   std::array<double, 3> centre{};
   double radius = 0.0, P = 0.0;
-  double s = 0.0;                        ///< of the radial distances
+  double s = 0.0;  ///< of the radial distances
   std::size_t outermost = 0, innermost = 0;
 };
 std::optional<FormOfSphere> form_of_sphere(const std::vector<std::array<double, 3>>& points);

@@ -50,14 +50,14 @@ std::optional<Turns> rotating(const Turns& X, const Turns& Y);
 
 struct ErrorMotion {
   double mean = 0.0, a = 0.0, b = 0.0;
-  double u_ab = 0.0;               ///< standard uncertainty of a and b, from turn to turn
+  double u_ab = 0.0;  ///< standard uncertainty of a and b, from turn to turn
   double total = 0.0, synchronous = 0.0, asynchronous = 0.0;
-  std::vector<double> motion;      ///< mean over the turns at each angle, without m, a, b
-  std::size_t low = 0, high = 0;   ///< of the synchronous motion
-  double s = 0.0;                  ///< of the asynchronous motion at one angle
-  double u_mean = 0.0;             ///< of the mean at one angle: turns that hang together count less
-  double dof = 0.0;                ///< of u_mean: effective number of turns less 1
-  std::vector<double> with_once;   ///< synchronous motion with the once-per-turn part
+  std::vector<double> motion;     ///< mean over the turns at each angle, without m, a, b
+  std::size_t low = 0, high = 0;  ///< of the synchronous motion
+  double s = 0.0;                 ///< of the asynchronous motion at one angle
+  double u_mean = 0.0;            ///< of the mean at one angle: turns that hang together count less
+  double dof = 0.0;               ///< of u_mean: effective number of turns less 1
+  std::vector<double> with_once;  ///< synchronous motion with the once-per-turn part
   double synchronous_with_once = 0.0, total_with_once = 0.0;
   double fundamental() const;
   double eccentricity() const;

@@ -55,20 +55,21 @@ double range_excess(std::span<const double> d, double s);
 struct TimeConstants {
   enum class Answer {
     resolved,
-    too_few,       ///< fewer than twelve readings
-    none,          ///< the displacement does not level off by an exponential: c is not significant
-    too_short,     ///< a time constant above half of the test
-    unresolved,    ///< u of a time constant above a quarter of it
+    too_few,     ///< fewer than twelve readings
+    none,        ///< the displacement does not level off by an exponential: c is not significant
+    too_short,   ///< a time constant above half of the test
+    unresolved,  ///< u of a time constant above a quarter of it
   };
   struct Part {
     double c = 0.0, tau = 0.0, u_c = 0.0, u_tau = 0.0;
   };
   Answer answer = Answer::too_few;
-  std::vector<Part> parts;  ///< one or two, the longest first; also of an answer too_short, unresolved
+  std::vector<Part>
+      parts;  ///< one or two, the longest first; also of an answer too_short, unresolved
   double d0 = 0.0;
-  double s = 0.0;             ///< of a mean over an interval, about the curve
-  double dof = 0.0;           ///< effective: neighbours hang together
-  double largest = 0.0;       ///< time constant that this test could have resolved, s
+  double s = 0.0;        ///< of a mean over an interval, about the curve
+  double dof = 0.0;      ///< effective: neighbours hang together
+  double largest = 0.0;  ///< time constant that this test could have resolved, s
   /// Covariance of d0, then c and ln tau of each part.
   std::vector<std::vector<double>> covariance;
 
