@@ -106,10 +106,11 @@ std::size_t whole_cycles(const std::vector<Visits>& all) {
   return n;
 }
 
+/// Mean of the visits: the slope of what all of them show belongs to that time.
 double time_of_cycle(const std::vector<Visits>& all, std::size_t j) {
-  double last = -INFINITY;
-  for (const Visits& v : all) last = std::max(last, v.track.time[j]);
-  return last;
+  double sum = 0.0;
+  for (const Visits& v : all) sum += v.track.time[j] / static_cast<double>(all.size());
+  return sum;
 }
 
 }  // namespace

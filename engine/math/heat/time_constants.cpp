@@ -27,9 +27,9 @@ constexpr double largest_u_tau = 0.25;  // of the time constant
 constexpr double second_level = 0.01;
 constexpr double apart = 2.0;  // ratio of two time constants
 
-/// Means over equal intervals, and the number of the interval of each.
+/// Means over equal intervals, the variance of the times in each, and the number of the interval.
 struct Means {
-  Vector t, d;
+  Vector t, d, v;
   std::vector<int> place;
   double duration = 0.0, step = 0.0;
 };
@@ -40,17 +40,23 @@ Means means_of(const Track& k) {
   out.duration = k.time.back() - start;
   const auto bins = static_cast<double>(std::min(k.size(), most_means));
   out.step = out.duration / (bins - 1.0);
-  std::vector<double> t, d, n;
+  std::vector<double> t, d, n, squares;
   for (std::size_t i = 0; i < k.size(); ++i) {
     const int at = static_cast<int>((k.time[i] - start) / out.step + 0.5);
     if (out.place.empty() || out.place.back() != at) {
       out.place.push_back(at);
-      t.push_back(0.0), d.push_back(0.0), n.push_back(0.0);
+      t.push_back(0.0), d.push_back(0.0), n.push_back(0.0), squares.push_back(0.0);
     }
-    t.back() += k.time[i] - start, d.back() += k.d[i], n.back() += 1.0;
+    // From the middle of the interval: no digits are lost.
+    const double off = k.time[i] - start - at * out.step;
+    t.back() += off, d.back() += k.d[i], n.back() += 1.0, squares.back() += off * off;
   }
-  out.t.resize(at(t.size())), out.d.resize(at(t.size()));
-  for (std::size_t i = 0; i < t.size(); ++i) out.t[at(i)] = t[i] / n[i], out.d[at(i)] = d[i] / n[i];
+  out.t.resize(at(t.size())), out.d.resize(at(t.size())), out.v.resize(at(t.size()));
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double off = t[i] / n[i];
+    out.t[at(i)] = out.place[i] * out.step + off, out.d[at(i)] = d[i] / n[i];
+    out.v[at(i)] = std::max(0.0, squares[i] / n[i] - off * off);
+  }
   return out;
 }
 
@@ -66,7 +72,10 @@ Matrix columns_for(const Means& m, const std::vector<double>& log_tau) {
   X.col(0).setOnes();
   for (std::size_t k = 0; k < log_tau.size(); ++k) {
     const double tau = std::exp(log_tau[k]);
-    X.col(at(k + 1)) = m.t.unaryExpr([tau](double t) { return -std::expm1(-t / tau); });
+    // The mean of exp(-t/tau) over times of variance v is that at their mean, times 1 + v/(2 tau^2).
+    X.col(at(k + 1)) = m.t.binaryExpr(m.v, [tau](double t, double v) {
+      return -std::expm1(-t / tau) - std::exp(-t / tau) * v / (2.0 * tau * tau);
+    });
   }
   return X;
 }
@@ -90,8 +99,10 @@ Matrix jacobian_of(const Means& m, const Curve& c) {
   J.leftCols(X.cols()) = X;
   for (std::size_t k = 0; k < c.log_tau.size(); ++k) {
     const double tau = std::exp(c.log_tau[k]), size = c.beta[at(k + 1)];
-    J.col(X.cols() + at(k)) =
-        m.t.unaryExpr([tau, size](double t) { return -size * t / tau * std::exp(-t / tau); });
+    J.col(X.cols() + at(k)) = m.t.binaryExpr(m.v, [tau, size](double t, double v) {
+      const double x = t / tau, w = v / (tau * tau);
+      return -size * std::exp(-x) * (x * (1.0 + w / 2.0) - w);
+    });
   }
   return J;
 }

@@ -47,7 +47,7 @@ class Worker {
     return {.name = name + "_" + f.name,
             .value = r.range,
             .quantity = f.tilt ? Quantity::small_angle : Quantity::deviation,
-            .u = std::sqrt(2.0 * noise.s * noise.s + excess * excess / 3.0),
+            .u = std::sqrt(2.0 * noise.s * noise.s + 2.0 * excess * excess),
             .dof = noise.dof,
             .from = k.d[r.low] * metre,
             .to = k.d[r.high] * metre,
@@ -229,13 +229,16 @@ class Worker {
         "growth_" + m_.axis, "t", Quantity::time, Quantity::deviation_per_length, g.time, g.d, {}};
     out_.series.push_back(std::move(s));
     const TimeConstants fit = put_constants(m_.axis, g, L, Quantity::deviation_per_length, 1.0 / L);
-    if (fit.answer == TimeConstants::Answer::resolved) propose_effect(fit, low, high);
+    if (fit.answer == TimeConstants::Answer::resolved)
+      propose_effect(fit, g.time.front(), low, high);
   }
 
   /// The effect of the model that says the same: w (p - fixed) (1 - exp(-t/tau)).
-  void propose_effect(const TimeConstants& fit, double low, double high) {
+  void propose_effect(const TimeConstants& fit, double first, double low, double high) {
     if (fit.parts.size() != 1) return once("thermal.two-for-the-model", {});
     const auto& p = fit.parts.front();
+    // The first cycle is 0 here, and the effect is 0 when the exercise starts.
+    const double before = std::exp(first / p.tau);
     double mean = 0.0, place = 0.0, n = 0.0;
     for (const auto& v : tracks_.visits)
       mean += v.track.d.back() - v.track.d.front(), place += v.position, n += 1.0;
@@ -244,8 +247,8 @@ class Worker {
     const double slope = fit.at(time.back() - time.front()) - fit.d0;
     Finding f{.id = "thermal.for-the-model",
               .attention = false,
-              .evidence = {{"w", p.c, Quantity::deviation_per_length},
-                           {"u_w", p.u_c, Quantity::deviation_per_length},
+              .evidence = {{"w", before * p.c, Quantity::deviation_per_length},
+                           {"u_w", before * p.u_c, Quantity::deviation_per_length},
                            {"tau", p.tau, Quantity::time},
                            {"u_tau", p.u_tau, Quantity::time},
                            minutes("tau_min", p.tau)},

@@ -65,7 +65,7 @@ inline MadeSpindle warming(Random& r, double noise, double wander, int readings 
   o.axes = {{"S", true, {}, {}}};
   o.lines = {{"Z", {0.0, 0.0, 1.0}}};
   std::normal_distribution<double> N;
-  double air = 0.0, low = 0.0, high = 0.0;
+  double air = 0.0, low = 0.0, high = 0.0, first = 0.0;
   // The gain of the instrument, as its certificate has it, reaches U_fixed at the largest reading.
   const double gain = 1.0 + 0.1e-6 * N(r) / out.c;
   for (int i = 0; i < readings; ++i) {
@@ -73,7 +73,10 @@ inline MadeSpindle warming(Random& r, double noise, double wander, int readings 
       for (int q = 0; q < 20; ++q) body.step(step / 20.0, body.P);
     air = 0.8 * air + 0.6 * wander * N(r);
     const double d = per_K * body.T;
-    low = std::min(low, d), high = std::max(high, d), out.end = d;
+    // What the air does is a motion of the machine, and no noise of the sensor.
+    if (i == 0) first = air;
+    const double moved = d + air - first;
+    low = std::min(low, moved), high = std::max(high, moved), out.end = moved;
     o.axes[0].position.push_back(500.0 * step * i);
     o.axes[0].approach.push_back(1);
     o.time.push_back(step * i);
@@ -129,7 +132,7 @@ inline MadeTurns turning(Random& r, double noise, double cage_size, int turns = 
   o.axes = {{"S", true, {}, {}}, {"ball", true, {}, {}}, {"sensor", true, {}, {}}};
   o.lines = {{"X ball 0 sensor 0", {1.0, 0.0, 0.0}}};
   double low = INFINITY, high = -INFINITY;
-  const double gain = 1.0 + 0.1e-6 * N(r) / (1.5 * e);
+  const double gain = 1.0 + 0.1e-6 * N(r) / e;
   const double phase = uniform(r, 0, full);
   for (int i = 0; i < turns * n; ++i) {
     const double t = full * i / n;
@@ -165,27 +168,30 @@ struct MadeLengths {
   std::vector<double> error;  ///< of the machine, of each reading
 };
 
-inline MadeLengths gauging(Random& r, double scale) {
+inline MadeLengths gauging(Random& r, double scale, int positions = 7, int lengths = 5,
+                           int repeats = 3) {
   MadeLengths out;
   begin(out.test, "lengths");
   auto& c = out.test.campaign;
   c.instrument.U_fixed = 0.3e-6, c.instrument.U_per_length = 0.8e-6;
-  c.environment.misalignment = 0.2e-3;
+  c.environment.misalignment = 0.4e-3;
   std::normal_distribution<double> N;
   auto& o = out.test.o;
   o.axes = {{"length", false, {}, {}}};
   const double gauge = 0.4e-6 * N(r);  // of the scale of its certificate
-  for (int p = 0; p < 7; ++p) {
+  double of_length[6];                 // of the calibration of each length
+  for (double& one : of_length) one = 0.15e-6 * N(r);
+  for (int p = 0; p < positions; ++p) {
     o.lines.push_back({"E0 " + std::to_string(p + 1), {}});
     const double own = scale * uniform(r, -1.0, 1.0);
-    // The far end lies up to 0.2 mm beside the line: each length is short by the same share.
-    const double aside = uniform(r, 0.0, 0.2e-3), longest = 0.5;
-    for (int l = 1; l <= 5; ++l)
-      for (int k = 1; k <= 3; ++k) {
+    // The far end lies up to 0.4 mm beside the line: each length is short by the same share.
+    const double aside = uniform(r, 0.0, 0.4e-3), longest = 0.1 * lengths;
+    for (int l = 1; l <= lengths; ++l)
+      for (int k = 1; k <= repeats; ++k) {
         const double L = 0.1 * l, error = own * L + 0.2e-6 * N(r);
         out.error.push_back(error);
         o.axes[0].position.push_back(L);
-        o.deviation.push_back(error + 0.15e-6 * N(r) + gauge * L +
+        o.deviation.push_back(error + of_length[l] + gauge * L +
                               L * aside * aside / (2.0 * longest * longest));
         o.run.push_back(static_cast<std::uint32_t>(k));
         o.line.push_back(static_cast<std::uint32_t>(p));
@@ -198,6 +204,9 @@ inline Coverages lengths_coverage(int count, std::uint64_t seed) {
   Coverages out;
   Random r(seed);
   for (int i = 0; i < count; ++i) {
+    const MadeLengths one = gauging(r, 3e-6, 1, 1, 1);
+    if (const auto* v = value(evaluated(lengths(), one.test), "E0_max"); v != nullptr && v->U)
+      out["one error"].add(std::fabs(v->value - one.error.front()) <= *v->U);
     const MadeLengths m = gauging(r, 3e-6);
     const auto e = evaluated(lengths(), m.test, {{"mpe_E0_um", 1.7}, {"mpe_E0_K", 333.0}});
     for (const char* name : {"E0_max", "E0_min", "E0"}) {

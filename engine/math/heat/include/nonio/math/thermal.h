@@ -48,8 +48,9 @@ struct ReadingNoise {
 };
 ReadingNoise reading_noise(const Track&);
 
-/// By how much noise of s makes a range larger, at a guess: noise of the same size is added once
-/// more, and the range grows by about as much again. Always the same for the same values.
+/// By how much noise of s, added once more, makes a range larger. What is in it already has made it
+/// larger by up to 1/(sqrt 2 - 1) of that: the largest of many grows as their scatter does. Always the
+/// same for the same values.
 double range_excess(std::span<const double> d, double s);
 
 struct TimeConstants {
@@ -93,8 +94,8 @@ struct Visits {
   Track track;
 };
 
-/// Slope of the change since the first cycle over the targets, against time: each cycle a reading
-/// when all targets were visited. With two targets: difference of the changes over their distance.
+/// Slope of the change since the first cycle over the targets, against time: each cycle a reading, at
+/// the mean of its times. With two targets: difference of the changes over their distance.
 Track growth(const std::vector<Visits>&);
 /// Mean over the targets of (+) less (-), less the same of the first cycle.
 Track reversal_change(const std::vector<Visits>&);
