@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Formulas: nonio/math/spindle.h.
+// What the analysis names has judgements too: docs/constants.md, A18, of few turns;
+// docs/constants.md, A19, of waves.
 #include "nonio/math/spindle.h"
 
 #include <algorithm>

@@ -161,11 +161,15 @@ class Worker {
       case Answer::too_short:
         f.id = "thermal.test-too-short";
         break;
-      default:
+      default: {
         f.id = "thermal.unresolved";
-        f.evidence.push_back(minutes("tau_min", fit.parts.front().tau));
-        f.evidence.push_back(minutes("u_min", fit.parts.front().u_tau));
+        const auto& worst = *std::max_element(
+            fit.parts.begin(), fit.parts.end(),
+            [](const auto& a, const auto& b) { return a.u_tau / a.tau < b.u_tau / b.tau; });
+        f.evidence.push_back(minutes("tau_min", worst.tau));
+        f.evidence.push_back(minutes("u_min", worst.u_tau));
         break;
+      }
     }
     out_.findings.push_back(std::move(f));
   }

@@ -24,9 +24,9 @@ struct Sensor {
   const char *column, *name;
   std::size_t coordinate;
 };
-constexpr Sensor nest[] = {{"x_um", "X", 0},   {"y_um", "Y", 1},   {"z_um", "Z", 2},
-                           {"x1_um", "X1", 0}, {"x2_um", "X2", 0}, {"y1_um", "Y1", 1},
-                           {"y2_um", "Y2", 1}};
+constexpr Sensor nest[] = {{"x_um", "X", 0}, {"x1_um", "X1", 0}, {"x2_um", "X2", 0},
+                           {"y_um", "Y", 1}, {"y1_um", "Y1", 1}, {"y2_um", "Y2", 1},
+                           {"z_um", "Z", 2}};
 
 Error heat_error(const Table& table, std::size_t row, std::string column, std::string message) {
   Error error{std::move(message)};
@@ -202,8 +202,10 @@ struct SetUp {
 };
 
 std::string set_up_name(const Sensor& s, const SetUp& at) {
-  return std::string(s.name) + " ball " + short_text(at.ball, 6) + " sensor " +
-         short_text(at.sensor, 6);
+  std::string name = std::string(s.name) + " ball ";
+  append_shortest(name, at.ball);
+  append_shortest(name += " sensor ", at.sensor);
+  return name;
 }
 
 Expected<std::vector<double>> angles_of(const Table& table, const std::vector<std::size_t>& rows) {

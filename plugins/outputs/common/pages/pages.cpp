@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: headings and sentences of every kind of measurement.
 #include "pages.h"
 
 #include <algorithm>
