@@ -153,7 +153,7 @@ def gauge():
                                        {"id": "sphere", "kind": "lengths", "file": "sphere.csv"}], instrument=GAUGE,
                                       environment={"misalignment_mm": "0.2", "temperature_difference_K": "0.8"},
                                       analyses=["lengths"],
-                                      options={"lengths": {"mpe_E0_um": "2.0", "mpe_E0_K": "250", "mpe_R0_um": "2.0",
+                                      options={"lengths": {"mpe_E0_um": "2.0", "mpe_E0_divisor": "250", "mpe_R0_um": "2.0",
                                                            "mpe_P_um": "2.5"}})}
 
 

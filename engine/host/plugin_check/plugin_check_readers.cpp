@@ -84,8 +84,7 @@ Row row_of(const Observations& o, std::size_t i, bool placed = true) {
   const double line =
       o.lines.empty() ? 0.0
                       : static_cast<double>(std::hash<std::string>()(o.lines[o.line_of(i)].name));
-  Row row{o.deviation[i], line,
-          o.run.empty() ? 0.0 : static_cast<double>(o.run[i])};
+  Row row{o.deviation[i], line, o.run.empty() ? 0.0 : static_cast<double>(o.run[i])};
   for (const auto& axis : o.axes) {
     row.push_back(placed ? axis.position[i] : 0.0);
     row.push_back(axis.approach.empty() ? 0.0 : static_cast<double>(axis.approach[i]));
@@ -158,7 +157,10 @@ Verdict reader_truncated(const Reader& r, const Bench& bench) {
       if (!o) continue;
       const std::string cut = "cut off after " + std::to_string(length) + " bytes: ";
       if (const std::string why = unsound(*o); !why.empty()) return cut + why;
-      const std::uint32_t last = o->source_line.empty() ? 0 : o->source_line.back();
+      // a reader may have its rows in another order than the file
+      const std::uint32_t last =
+          o->source_line.empty() ? 0
+                                 : *std::max_element(o->source_line.begin(), o->source_line.end());
       std::vector<std::uint32_t> kept;
       for (std::uint32_t i = 0; i < o->size(); ++i)
         if (o->source_line.empty() ? i + 1 < o->size() : o->source_line[i] != last)

@@ -24,7 +24,7 @@ constexpr double per_um = 1e-6;
 
 LengthLimit limit_of(const Settings& options, const std::string& test) {
   return {options.number("mpe_" + test + "_um") * per_um,
-          options.number("mpe_" + test + "_K") * 1e-3 / per_um,
+          options.number("mpe_" + test + "_divisor") * 1e-3 / per_um,
           options.number("mpe_" + test + "_most_um") * per_um};
 }
 
@@ -320,11 +320,11 @@ std::vector<Option> options() {
     out.push_back({name, 0.0, unit, help, {}, 0.0, most});
   };
   number("mpe_E0_um", "um", "A of the limit A + L/K of E0; 0: not stated.", 1e6);
-  number("mpe_E0_K", "", "K of the limit A + L/K of E0, L in mm, the limit in um; 0: no such part.",
-         1e9);
+  number("mpe_E0_divisor", "",
+         "K of the limit A + L/K of E0, L in mm, the limit in um; 0: no such part.", 1e9);
   number("mpe_E0_most_um", "um", "B: the limit of E0 is never above it; 0: no such bound.", 1e6);
   number("mpe_EL_um", "um", "A of the limit of EL; 0: not stated.", 1e6);
-  number("mpe_EL_K", "", "K of the limit of EL; 0: no such part.", 1e9);
+  number("mpe_EL_divisor", "", "K of the limit of EL; 0: no such part.", 1e9);
   number("mpe_EL_most_um", "um", "B: the limit of EL is never above it; 0: no such bound.", 1e6);
   number("mpe_R0_um", "um", "Limit of R0; 0: not stated.", 1e6);
   number("mpe_P_um", "um", "Limit of P; 0: not stated.", 1e6);

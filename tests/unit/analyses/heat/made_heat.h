@@ -208,7 +208,7 @@ inline Coverages lengths_coverage(int count, std::uint64_t seed) {
     if (const auto* v = value(evaluated(lengths(), one.test), "E0_max"); v != nullptr && v->U)
       out["one error"].add(std::fabs(v->value - one.error.front()) <= *v->U);
     const MadeLengths m = gauging(r, 3e-6);
-    const auto e = evaluated(lengths(), m.test, {{"mpe_E0_um", 1.7}, {"mpe_E0_K", 333.0}});
+    const auto e = evaluated(lengths(), m.test, {{"mpe_E0_um", 1.7}, {"mpe_E0_divisor", 333.0}});
     for (const char* name : {"E0_max", "E0_min", "E0"}) {
       const auto* v = value(e, name);
       if (v == nullptr || !v->U) continue;
