@@ -6,6 +6,7 @@
 
 #include "circle.h"
 #include "expression.h"
+#include "heat.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/iso230_2.h"
 #include "nonio/math/positioning.h"
@@ -229,6 +230,16 @@ std::string give(Case& c, const std::vector<std::string>& words) {
     c.numbers[words[1]] = *number;
     return "";
   }
+  if (is_heat(c) && words.size() >= 3) {
+    std::vector<double> list;
+    for (std::size_t k = 2; k < words.size(); ++k) {
+      const auto number = Expression::value(words[k]);
+      if (!number) return "expected a number, found " + words[k];
+      list.push_back(*number);
+    }
+    c.lists[words[1]].push_back(std::move(list));
+    return "";
+  }
   if (words.size() < 3) return "expected: given TARGET DIRECTION x x x, or: given KEY VALUE";
   if (const auto target = Expression::value(words[1])) return give_readings(c, words, *target);
   const auto value = Expression::value(words[2]);
@@ -238,6 +249,7 @@ std::string give(Case& c, const std::vector<std::string>& words) {
 
 Outcome evaluate(const Case& c) {
   if (c.analysis == "circle") return evaluate_circle(c);
+  if (is_heat(c)) return evaluate_heat(c);
   Outcome out;
   const AxisTest all = AxisTest::arrange(c.observations);
   const bool leave_out = c.options.count("leave-out") > 0;

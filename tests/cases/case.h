@@ -15,7 +15,8 @@ struct Case {
   std::map<std::string, std::string> options;  ///< name=value after it
   nonio::Campaign campaign;
   nonio::Observations observations;
-  std::map<std::string, double> numbers{};  ///< of a circle: by name
+  std::map<std::string, double> numbers{};                          ///< of a circle: by name
+  std::map<std::string, std::vector<std::vector<double>>> lists{};  ///< of heat: lines by name
   bool rotary() const { return options.count("rotary") > 0; }
 };
 

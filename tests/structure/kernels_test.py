@@ -10,7 +10,7 @@ MAY = {
     "engine/math": {
         "statistics": set(), "axis": {"statistics"}, "uncertainty": {"statistics", "axis"}, "planning": {"statistics"},
         "findings": {"statistics", "uncertainty", "axis", "planning"}, "volumetric": {"statistics", "uncertainty"},
-        "rotary": {"statistics"}, "circles": set(), "compensation": {"statistics", "axis"}, "followed": {"statistics", "axis"}},
+        "rotary": {"statistics"}, "circles": {"statistics"}, "heat": {"statistics", "uncertainty"}, "compensation": {"statistics", "axis"}, "followed": {"statistics", "axis"}},
     "engine/model": {
         "data": set(), "fit": {"data"}, "search": {"data", "fit"}, "diagnosis": {"data", "fit", "search"}},
 }

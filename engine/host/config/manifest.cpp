@@ -230,6 +230,7 @@ Measurement read_measurement(TableReader& reader) {
     m.lateral = reader.text("about");
     m.foot = reader.number("foot_mm", mm);
   }
+  if (m.kind == "thermal" || m.kind == "spindle") m.foot = reader.number("sensor_distance_mm", mm);
   m.exclude = reader.integers("exclude");
   m.exclude_reason = reader.text("exclude_reason");
   for (const auto& [axis, position] : reader.number_table("from", mm)) m.from[axis] = position;

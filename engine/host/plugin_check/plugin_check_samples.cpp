@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: a function for each way to measure.
 // The samples of `nonio plugin check`: one machine with smooth errors, measured in every way.
 #include <array>
 #include <cmath>
@@ -324,6 +325,56 @@ Source circle() {
   return s;
 }
 
+/// A spindle that warms up for two hours, in two sensors.
+Source thermal() {
+  Source s{"thermal", head("thermal") + linear_axis('Z') + measured("T", "thermal", ""), {}};
+  std::string rows = "time_s,speed_rpm,y_um,z_um,air_c\n";
+  for (int i = 0; i < 121; ++i) {
+    const double minute = i, z = 18.0 * (1.0 - std::exp(-minute / 22.0)),
+                 y = 6.0 * (1.0 - std::exp(-minute / 31.0));
+    rows += std::to_string(60 * i) + ",6000," + fixed_text(y + 0.05 * std::sin(1.7 * i), 3) + "," +
+            fixed_text(z + 0.05 * std::cos(2.3 * i), 3) + "," + fixed_text(20.0 + 0.004 * i, 3) +
+            "\n";
+  }
+  s.files.push_back({"T.csv", rows});
+  return s;
+}
+
+/// Eight turns of a ball against two sensors, an oval journal and a cage.
+Source spindle() {
+  Source s{"spindle", head("spindle") + linear_axis('Z') + measured("S", "spindle", ""), {}};
+  std::string rows = "angle_deg,x_um,y_um\n";
+  for (int i = 0; i < 8 * 72; ++i) {
+    const double degrees = 5.0 * i, t = degrees / deg_per_rad;
+    rows += fixed_text(degrees, 1) + "," +
+            fixed_text(4.0 * std::cos(t) + 0.5 * std::cos(2.0 * t) + 0.1 * std::cos(0.41 * t), 3) +
+            "," +
+            fixed_text(4.0 * std::sin(t) + 0.5 * std::sin(2.0 * t) + 0.1 * std::sin(0.41 * t), 3) +
+            "\n";
+  }
+  s.files.push_back({"S.csv", rows});
+  return s;
+}
+
+/// Five lengths in seven positions, three times each.
+Source lengths() {
+  Source s{"lengths",
+           head("lengths") + linear_axis('X') + "[options.lengths]\nmpe_E0_um = 3.0\n" +
+               measured("L", "lengths", ""),
+           {}};
+  std::string rows = "test,position,length_mm,repeat,deviation_um\n";
+  for (int p = 1; p <= 7; ++p)
+    for (int l = 1; l <= 5; ++l)
+      for (int k = 1; k <= 3; ++k)
+        rows +=
+            "E0," + std::to_string(p) + "," + std::to_string(100 * l) + ".0," + std::to_string(k) +
+            "," +
+            fixed_text(0.3 * (p - 4) * l / 5.0 + 0.2 * std::sin(3.1 * p + 5.3 * l + 7.7 * k), 3) +
+            "\n";
+  s.files.push_back({"L.csv", rows});
+  return s;
+}
+
 Source balls(MadeMachine& machine) {
   Source s{"ball-centres",
            head("ball-centres") +
@@ -361,6 +412,9 @@ std::vector<Source> made_sources(std::uint64_t seed) {
           diagonals(m),
           step_diagonals(m),
           circle(),
+          thermal(),
+          spindle(),
+          lengths(),
           balls(m),
           tool_centre(m)};
 }

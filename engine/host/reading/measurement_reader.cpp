@@ -107,7 +107,9 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
   if (o.missing > 0 && m.kind != "axis")  // of an axis its analyses say it
     o.notes.push_back(
         {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
-  if (m.kind == "circle") return;  // a path has no targets to come back to
+  // A path, a time and an angle have no targets to come back to; lengths are those of the artefact.
+  if (m.kind == "circle" || m.kind == "thermal" || m.kind == "spindle" || m.kind == "lengths")
+    return;
   if (const std::size_t moved = join_targets(o); moved > 0)
     o.notes.push_back(
         {"targets.joined", {{"readings", static_cast<double>(moved), Quantity::count}}});

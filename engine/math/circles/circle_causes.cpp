@@ -11,9 +11,9 @@
 #include <map>
 #include <numbers>
 
-#include "circle_noise.h"
 #include "common/constants.h"
 #include "nonio/math/circle.h"
+#include "statistics/path_noise.h"
 
 namespace nonio::math {
 

@@ -43,6 +43,8 @@ class Parts {
     const Observations& o = read_[m];
     if (o.size() == 0 || o.axes.empty() || !check(o)) return;
     const std::string& kind = measurement(m).kind;
+    // No effects of the model: the first two run over time and angle, the third has no places.
+    if (kind == "thermal" || kind == "spindle" || kind == "lengths") return;
     if (kind == "ball-centres") {
       kind_[m] = Kind::balls;
     } else if (sensed_along_one_axis(o)) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: the rows of an axis from the header to the last line, and which function reads which kind.
 #include "csv.h"
 
 #include <algorithm>
@@ -357,6 +358,24 @@ Expected<Observations> read_diagonal(const ReadInput& input) {
   return obs;
 }
 
+/// How each kind of measurement is read.
+struct Way {
+  std::string_view kind;
+  Expected<Observations> (*read)(const ReadInput&);
+};
+constexpr Way ways[] = {{"axis", read_runs},
+                        {"straightness", read_runs},
+                        {"angle", read_runs},
+                        {"diagonal", read_diagonal},
+                        {"step-diagonal", read_step_diagonal},
+                        {"ball-centres", read_ball_centres},
+                        {"circle", read_circle},
+                        {"rtcp", read_tool_centre},
+                        {"thermal", read_thermal},
+                        {"spindle", read_spindle},
+                        {"lengths", read_lengths},
+                        {"observations", read_general}};
+
 }  // namespace
 
 /// UTF-16 is recognised, to be refused with a word for it: Latin letters in it have a zero byte
@@ -380,19 +399,13 @@ bool recognises(std::string_view head) {
 }
 
 bool reads(std::string_view kind) {
-  return kind == "axis" || kind == "straightness" || kind == "angle" || kind == "diagonal" ||
-         kind == "step-diagonal" || kind == "ball-centres" || kind == "rtcp" ||
-         kind == "observations" || kind == "circle";
+  return std::any_of(std::begin(ways), std::end(ways),
+                     [&](const Way& w) { return w.kind == kind; });
 }
 
 Expected<Observations> read(const ReadInput& input) {
-  const std::string& kind = input.measurement.kind;
-  if (kind == "diagonal") return read_diagonal(input);
-  if (kind == "step-diagonal") return read_step_diagonal(input);
-  if (kind == "ball-centres") return read_ball_centres(input);
-  if (kind == "circle") return read_circle(input);
-  if (kind == "rtcp") return read_tool_centre(input);
-  if (kind == "observations") return read_general(input);
+  for (const Way& way : ways)
+    if (way.kind == input.measurement.kind) return way.read(input);
   return read_runs(input);
 }
 

@@ -203,8 +203,10 @@ Expected<Observations> read_general(const ReadInput& input) {
 
 const std::vector<std::string_view>& spatial_names() {
   static const std::vector<std::string_view> names{
-      "diagonal", "step",         "moved", "angle_deg", "x_mm", "y_mm",  "z_mm",  "nx",   "ny",
-      "nz",       "deviation_um", "tx",    "ty",        "tz",   "dx_um", "dy_um", "dz_um"};
+      "diagonal", "step",  "moved", "angle_deg",    "x_mm",     "y_mm", "z_mm",
+      "nx",       "ny",    "nz",    "deviation_um", "tx",       "ty",   "tz",
+      "dx_um",    "dy_um", "dz_um", "x_um",         "y_um",     "z_um", "x1_um",
+      "x2_um",    "y1_um", "y2_um", "speed_rpm",    "length_mm"};
   return names;
 }
 

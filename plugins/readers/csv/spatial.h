@@ -36,6 +36,9 @@ void spread(Observations& observations, const Span& span);
 Expected<Observations> read_step_diagonal(const ReadInput& input);
 Expected<Observations> read_ball_centres(const ReadInput& input);
 Expected<Observations> read_circle(const ReadInput& input);
+Expected<Observations> read_lengths(const ReadInput& input);
+Expected<Observations> read_spindle(const ReadInput& input);
+Expected<Observations> read_thermal(const ReadInput& input);
 Expected<Observations> read_tool_centre(const ReadInput& input);
 Expected<Observations> read_general(const ReadInput& input);
 

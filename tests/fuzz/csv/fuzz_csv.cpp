@@ -58,7 +58,8 @@ void check_observations(const nonio::Observations& obs, std::string_view bytes) 
 }
 
 /// What holds of measurements of several axes.
-void check_spatial(const nonio::Observations& obs, std::string_view bytes) {
+/// directed: each reading is sensed in a direction; a length has none.
+void check_spatial(const nonio::Observations& obs, std::string_view bytes, bool directed) {
   const std::size_t n = obs.size();
   must(n > 0 && n + obs.missing <= 3 * bytes.size(), "there are readings");
   must(obs.run.size() == n && obs.source_line.size() == n, "run and line of each reading");
@@ -72,7 +73,8 @@ void check_spatial(const nonio::Observations& obs, std::string_view bytes) {
     for (const auto& axis : obs.axes) must(std::isfinite(axis.position[i]), "finite");
     must(obs.line.empty() || obs.line[i] < obs.lines.size(), "a line that is there");
     const auto& sense = obs.sense_of(i);
-    must(std::fabs(std::hypot(sense[0], sense[1], sense[2]) - 1.0) < 1e-9, "a unit vector");
+    must(std::fabs(std::hypot(sense[0], sense[1], sense[2]) - (directed ? 1.0 : 0.0)) < 1e-9,
+         "a unit vector");
   }
   for (const auto* column : {&obs.time, &obs.material, &obs.air, &obs.pressure, &obs.humidity})
     check_column(*column, n);
@@ -80,9 +82,19 @@ void check_spatial(const nonio::Observations& obs, std::string_view bytes) {
 
 struct World {
   static constexpr std::array spatial_kinds{"diagonal",     "step-diagonal", "ball-centres",
-                                            "observations", "circle",        "rtcp"};
-  static constexpr std::array<std::pair<std::string_view, std::size_t>, 6> spatial_by_words{
-      {{"#diagonal", 0}, {"moved", 1}, {"angle", 2}, {"nx", 3}, {"#circle", 4}, {"tx", 5}}};
+                                            "observations", "circle",        "rtcp",
+                                            "thermal",      "spindle",       "lengths"};
+  static constexpr std::array<std::pair<std::string_view, std::size_t>, 10> spatial_by_words{
+      {{"#diagonal", 0},
+       {"moved", 1},
+       {"angle", 2},
+       {"nx", 3},
+       {"#circle", 4},
+       {"tx", 5},
+       {"speed_rpm", 6},
+       {"ball_deg", 7},
+       {"length_mm", 8},
+       {"#exercised", 9}}};
 
   nonio::Campaign campaign;
   nonio::Measurement linear, rotary, straightness;
@@ -110,8 +122,13 @@ struct World {
         m.from = {{"X", 0.4}, {"Y", 0.2}};
         m.to = {{"X", 0.5}, {"Y", 0.2}};
       }
+      if (m.kind == "thermal") m.axis = "";
+      if (m.kind == "lengths") m.from.clear(), m.to.clear();
       spatial.push_back(m);
     }
+    // An axis that is exercised.
+    spatial.push_back(spatial[6]);
+    spatial.back().axis = "X";
   }
 };
 
@@ -128,7 +145,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const nonio::Measurement& m = world.spatial[kind];
     const auto table = nonio::csv::read({bytes, world.campaign, m, world.options, {}});
     if (table)
-      check_spatial(*table, bytes);
+      check_spatial(*table, bytes, m.kind != "lengths" || table->axes[0].axis == "point");
     else
       check_error(table.error(), bytes);
   }

@@ -9,7 +9,8 @@ namespace nonio::host::config::declared {
 inline constexpr Words axis_runs[] = {"axis"};
 inline constexpr Choice measurement_kinds[] = {
     {"axis"},         {"straightness"}, {"angle"},        {"diagonal"}, {"step-diagonal"},
-    {"ball-centres"}, {"rtcp"},         {"observations"}, {"circle"},   {"ballbar"}};
+    {"ball-centres"}, {"rtcp"},         {"observations"}, {"circle"},   {"thermal"},
+    {"spindle"},      {"lengths"},      {"ballbar"}};
 inline constexpr Choice on_or_off[] = {{"on"}, {"off"}};
 inline constexpr Choice adjustments[] = {{"before"}, {"after"}};
 inline constexpr Choice listed_orders[] = {{"pendulum"}, {"as-listed"}, {"unknown"}};
@@ -17,7 +18,7 @@ inline constexpr Choice planes[] = {{"XY"}, {"YZ"}, {"ZX"}};
 inline constexpr Choice linear_axes[] = {{"X"}, {"Y"}, {"Z"}};
 inline constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres", "rtcp"};
 inline constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"},
-                       circle[] = {"circle"};
+                       circle[] = {"circle"}, nest[] = {"thermal", "spindle"};
 inline constexpr Words diagonals[] = {"diagonal", "step-diagonal"};
 inline constexpr Words an_end = "the axis positions of that end, { X = 0, Y = 0 }";
 inline constexpr Key measurement_keys[] = {
@@ -43,7 +44,9 @@ inline constexpr Key measurement_keys[] = {
      .named = Named::reader},
     {.name = "axis",
      .holds = text,
-     .help = "The axis that moves, or the rotary axis with the measured balls.",
+     .help = "The axis that moves, or the rotary axis with the measured balls; of kind thermal the "
+             "linear "
+             "axis that is exercised, else none.",
      .needed = {"kind", of_one_axis},
      .missing = "which axis of the machine was measured"},
     {.name = "lateral",
@@ -90,6 +93,15 @@ inline constexpr Key measurement_keys[] = {
      .only = {"kind", angle},
      .wanted = "expected a length above 0",
      .least = 0.001},
+    {.name = "sensor_distance_mm",
+     .holds = number,
+     .help = "Distance along the spindle between the sensors 1 and 2 of a nest (x1_um and x2_um, "
+             "y1_um and y2_um): their difference then gives the tilt.",
+     .unit = "mm",
+     .only = {"kind", nest},
+     .wanted = "expected a distance from 1 to 10000 mm",
+     .least = 1.0,
+     .most = 1e4},
     {.name = "reversal_of",
      .holds = text,
      .help = "The measurement of the same line before the straightedge was turned over: both give "

@@ -411,6 +411,7 @@ void series_plots(const Source& source, const Measured& m, std::vector<Plot>& pl
 std::optional<Plot> readings_plot(const Source& source, const Measured& m) {
   if (over_one_position(m.measurement)) return runs_plot(source, m);
   if (m.measurement.kind == "circle") return path_plot(source, m);
+  if (is_heat(m.measurement)) return heat_plot(source, m);
   std::vector<Plot> plots;
   if (m.measurement.kind == "ball-centres") add_circle(source, m, plots);
   add_volume(source, m, plots);
@@ -420,6 +421,7 @@ std::optional<Plot> readings_plot(const Source& source, const Measured& m) {
 
 void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
   if (m.measurement.kind == "circle") return add_path(source, m, blocks);
+  if (is_heat(m.measurement)) return add_heat(source, m, blocks);
   std::vector<Plot> plots;
   const bool circle = m.measurement.kind == "ball-centres";  // coordinates, not deviations
   const auto add = [&](std::optional<Plot> plot) {

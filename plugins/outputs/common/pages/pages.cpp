@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: headings and sentences of every kind of measurement.
 #include "pages.h"
 
 #include <algorithm>
@@ -183,6 +184,13 @@ std::string heading_of(const Source& source, const Measured& m) {
         "measurement.of",
         {{"heading", words.get("measurement.circle", {{"plane", plane_of(measurement)}})},
          {"id", measurement.id}});
+  if (is_heat(measurement))
+    return words.get(
+        "measurement.of",
+        {{"heading", measurement.axis.empty()
+                         ? words.get("measurement." + measurement.kind)
+                         : words.get("measurement.thermal_axis", {{"axis", measurement.axis}})},
+         {"id", measurement.id}});
   if (measurement.kind == "rtcp")
     return ids(words.get("measurement.rtcp", {{"axis", measurement.axis}}));
   if (measurement.kind == "step-diagonal")
@@ -209,7 +217,17 @@ std::vector<double> along_line(const Measured& m) {
 /// How the test was made, as the readings show it.
 std::string test_of(const Source& source, const Measured& m) {
   const Observations& o = m.observations;
-  if (o.axes.empty() || o.size() == 0) return source.words.get("measurement.unread");
+  if (o.size() == 0 || (o.axes.empty() && !is_heat(m.measurement)))
+    return source.words.get("measurement.unread");
+  if (m.measurement.kind == "thermal" && o.time.size() == o.size()) {
+    const auto [first, last] = std::minmax_element(o.time.begin(), o.time.end());
+    return source.words.get("measurement.thermal_test",
+                            {{"count", std::to_string(o.size())},
+                             {"minutes", localised(short_text((*last - *first) / 60.0, 4),
+                                                   source.language())}}) +
+           temperatures(source, "measurement.material", o.material) +
+           temperatures(source, "measurement.air", o.air);
+  }
   const bool centres = m.measurement.kind == "ball-centres";
   if (m.measurement.kind == "circle")
     return circle_test(source, m) + temperatures(source, "measurement.material", o.material) +

@@ -113,5 +113,17 @@ void add_circle(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// The path of a circular test over rings, and beside it the causes by their size.
 std::optional<reports::Plot> path_plot(const Source&, const Measured&);
 void add_path(const Source&, const Measured&, Blocks&);
+/// Rings for a polar picture: the mean is four divisions from the middle, what is drawn at most three
+/// from it; and that division, for deviations of up to `largest`.
+reports::Plot rings(const Source&, std::string title, std::string caption);
+double division_of(double largest);
+std::string division_text(const Source&, double division);
+/// Thermal tests, spindles and lengths have pictures of their own: changes over time, error motions
+/// over rings, errors between their limits.
+inline bool is_heat(const Measurement& m) {
+  return m.kind == "thermal" || m.kind == "spindle" || m.kind == "lengths";
+}
+std::optional<reports::Plot> heat_plot(const Source&, const Measured&);
+void add_heat(const Source&, const Measured&, Blocks&);
 
 }  // namespace nonio::pages

@@ -85,16 +85,21 @@ void add_ring(Plot& plot, double radius, Colour colour, double width, Dash dash)
   plot.curves.push_back(std::move(ring));
 }
 
-/// Rings: the mean radius is four divisions from the middle, the path at most three from it.
-Plot polar(const Source& source, const Paths& paths) {
-  const Style& style = source.look.style;
-  const double division = round_factor(std::max(paths.largest, 0.003) / 3.0 * 2.4999);
+}  // namespace
+
+double division_of(double largest) { return round_factor(std::max(largest, 0.003) / 3.0 * 2.4999); }
+
+std::string division_text(const Source& source, double division) {
   std::string text;
   append_shortest(text, std::round(division * 1e6) / 1e6);
-  text = localised(text, source.language());
+  return localised(text, source.language());
+}
+
+Plot rings(const Source& source, std::string title, std::string caption) {
+  const Style& style = source.look.style;
   Plot plot;
-  plot.title = source.words.get("plot.polar", {{"division", text}});
-  plot.x_title = source.words.get("plot.polar_scale", {{"division", text}});
+  plot.title = std::move(title);
+  plot.x_title = std::move(caption);
   plot.language = source.language();
   plot.same_scale = true, plot.scales = false;
   plot.height = 1.9 * style.plot_height;
@@ -109,6 +114,17 @@ Plot polar(const Source& source, const Paths& paths) {
     cross.colour = style.muted, cross.width = 0.4;
     plot.curves.push_back(std::move(cross));
   }
+  return plot;
+}
+
+namespace {
+
+Plot polar(const Source& source, const Paths& paths) {
+  const Style& style = source.look.style;
+  const double division = division_of(paths.largest);
+  const std::string text = division_text(source, division);
+  Plot plot = rings(source, source.words.get("plot.polar", {{"division", text}}),
+                    source.words.get("plot.polar_scale", {{"division", text}}));
   plot.labels = {{7.4, 0.0, "+" + paths.first}, {0.0, 7.4, "+" + paths.second}};
   std::array<bool, 2> named{};
   for (const Path& path : paths.all) {

@@ -526,8 +526,9 @@ TEST(Csv, RecognisesItsHeader) {
 }
 
 TEST(Csv, ReadsItsKinds) {
-  for (const char* kind : {"axis", "straightness", "angle", "diagonal", "step-diagonal",
-                           "ball-centres", "rtcp", "observations", "circle"})
+  for (const char* kind :
+       {"axis", "straightness", "angle", "diagonal", "step-diagonal", "ball-centres", "rtcp",
+        "observations", "circle", "thermal", "spindle", "lengths"})
     EXPECT_TRUE(reads(kind)) << kind;
   for (const char* kind : {"", "Axis", "circular"}) EXPECT_FALSE(reads(kind)) << kind;
 }

@@ -277,5 +277,112 @@ TEST(General, BadTables) {
   EXPECT_FALSE(read_text("", "observations"));
 }
 
+TEST(Thermal, ASensorIsALineAndTheSpindleTurns) {
+  const auto obs = read_text(
+      "time_s,speed_rpm,x1_um,z_um,air_c\n0,0,1,0,20\n60,600,2,5,20.1\n120,600,nan,7,\n180,0,3,9,"
+      "21\n",
+      "thermal");
+  ASSERT_TRUE(obs) << obs.error().message;
+  EXPECT_EQ(obs->size(), 7U);
+  EXPECT_EQ(obs->missing, 1U);
+  ASSERT_EQ(obs->lines.size(), 2U);
+  EXPECT_EQ(obs->lines[0].name, "X1");
+  EXPECT_EQ(obs->lines[1].sense, (std::array<double, 3>{0.0, 0.0, 1.0}));
+  ASSERT_EQ(obs->axes.size(), 1U);
+  EXPECT_EQ(obs->axes[0].approach, (std::vector<std::int8_t>{0, 1, 0, 0, 1, 1, 0}));
+  // A speed holds until the next row: 600 rpm for two minutes are 1,200 turns.
+  EXPECT_NEAR(obs->axes[0].position.back(), 1200.0 * 2.0 * std::numbers::pi, 1e-6);
+  EXPECT_NEAR(obs->deviation[1], 2e-6, 1e-20);
+  const auto at_rest = read_text("time_s,y_um\n0,0\n60,1\n", "thermal");
+  ASSERT_TRUE(at_rest) << at_rest.error().message;
+  EXPECT_EQ(at_rest->axes[0].approach, (std::vector<std::int8_t>{0, 0}));
+}
+
+TEST(Thermal, AnAxisThatIsExercisedCountsItsCycles) {
+  Measurement m = measurement("thermal");
+  m.axis = "X";
+  const std::string text =
+      "time_s,direction,target_mm,deviation_um\n0,+,20,1\n9,+,780,2\n20,-,780,1\n30,-,20,0\n"
+      "40,+,20,3\n50,+,780,9\n";
+  const auto obs = read_text(text, m);
+  ASSERT_TRUE(obs) << obs.error().message;
+  EXPECT_EQ(obs->run, (std::vector<std::uint32_t>{1, 1, 1, 1, 2, 2}));
+  EXPECT_NEAR(obs->axes[0].position[1], 0.78, 1e-12);
+  m.axis = "C";
+  EXPECT_FALSE(read_text(text, m)) << "a rotary axis has sensors";
+  m.axis = "";
+  EXPECT_FALSE(read_text(text, m)) << "columns of an axis, and none is stated";
+}
+
+TEST(Thermal, BadTables) {
+  const auto back = read_text("time_s,x_um\n0,1\n60,2\n60,3\n", "thermal");
+  ASSERT_FALSE(back);
+  EXPECT_EQ(back.error().line, 4U);
+  EXPECT_EQ(back.error().column, "time_s");
+  for (const char* bad :
+       {"", "time_s\n0\n", "x_um\n1\n", "time_s,x_um\n0,nan\n60,-1e20\n", "time_s,x_um\nnan,1\n",
+        "time_s,x_mm\n0,1\n", "time_s,speed_rpm,x_um\n0,9e9,1\n60,1,1\n"})
+    EXPECT_FALSE(read_text(bad, "thermal")) << bad;
+}
+
+TEST(Spindle, ASetUpIsALine) {
+  const auto obs =
+      read_text("angle_deg,ball_deg,sensor_deg,x_um,y_um\n0,0,0,1,2\n90,0,0,3,nan\n0,180,180,5,6\n",
+                "spindle");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->lines.size(), 4U);
+  EXPECT_EQ(obs->lines[2].name, "X ball 180 sensor 180");
+  EXPECT_NEAR(obs->lines[2].sense[0], -1.0, 1e-12);  // it stands on the other side
+  EXPECT_NEAR(obs->lines[1].sense[1], 1.0, 1e-12);
+  EXPECT_EQ(obs->size(), 5U);
+  EXPECT_EQ(obs->missing, 1U);
+  ASSERT_EQ(obs->axes.size(), 3U);
+  EXPECT_NEAR(obs->axes[1].position.back(), std::numbers::pi, 1e-12);
+}
+
+TEST(Spindle, PulsesDivideATurnEvenly) {
+  const auto obs =
+      read_text("index,x_um\n0,9\n1,1\n0,2\n0,3\n0,4\n1,5\n0,6\n1,7\n0,8\n", "spindle");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->size(), 7U);  // one before the first pulse, one behind the last
+  ASSERT_EQ(obs->notes.size(), 1U);
+  EXPECT_EQ(obs->notes[0].id, "csv.outside-pulses");
+  EXPECT_NEAR(obs->axes[0].position[1], 2.0 * std::numbers::pi / 4.0, 1e-12);
+  EXPECT_NEAR(obs->axes[0].position[5], 2.0 * std::numbers::pi * 1.5, 1e-12);
+  for (const char* bad : {"index,x_um\n0.5,1\n", "x_um\n1\n", "angle_deg,x_um\n0,1\n0,2\n",
+                          "angle_deg,x_um\n90,1\n0,2\n", "angle_deg\n1\n", "index,x_um\n0,1\n"})
+    EXPECT_FALSE(read_text(bad, "spindle")) << bad;
+}
+
+TEST(Lengths, TestAndPositionAreALine) {
+  const auto obs = read_text(
+      "test,position,length_mm,repeat,deviation_um\nE0,1,100,1,0.5\nE0,1,100,2,n/"
+      "a\nEL,1,100,1,-2\n",
+      "lengths");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->lines.size(), 2U);
+  EXPECT_EQ(obs->lines[1].name, "EL 1");
+  EXPECT_EQ(obs->missing, 1U);
+  EXPECT_NEAR(obs->deviation[1], -2e-6, 1e-20);
+  const auto twice = read_text(
+      "test,position,length_mm,repeat,deviation_um\nE0,1,100,1,0.5\nE0,1,100,1,0.6\n", "lengths");
+  ASSERT_FALSE(twice);
+  EXPECT_EQ(twice.error().line, 3U);
+  for (const char* bad : {"test,position,length_mm,repeat,deviation_um\nE1,1,100,1,0\n",
+                          "test,position,length_mm,repeat,deviation_um\nE0,0,100,1,0\n",
+                          "test,position,length_mm,repeat,deviation_um\nE0,1,-5,1,0\n",
+                          "test,position,length_mm,repeat\nE0,1,100,1\n", ""})
+    EXPECT_FALSE(read_text(bad, "lengths")) << bad;
+}
+
+TEST(Lengths, APointIsThreeReadings) {
+  const auto obs = read_text("x_mm,y_mm,z_mm\n1,2,3\n4,,6\n7,8,9\n", "lengths");
+  ASSERT_TRUE(obs) << obs.error().message;
+  EXPECT_EQ(obs->size(), 6U);
+  EXPECT_EQ(obs->missing, 1U);
+  EXPECT_NEAR(obs->deviation[5], 9e-3, 1e-15);
+  EXPECT_EQ(obs->sense[4], (std::array<double, 3>{0.0, 1.0, 0.0}));
+}
+
 }  // namespace
 }  // namespace nonio::csv::spatial_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "circle_noise.h"
+#include "statistics/path_noise.h"
 
 #include <cmath>
 

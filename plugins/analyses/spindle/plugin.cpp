@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Axes of rotation (ISO 230-7): error motions of a spindle from one sensor or a nest of them.
+#include "nonio/sdk/plugin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "nonio/math/differences.h"
+#include "nonio/math/spindle.h"
+#include "nonio/math/thermal.h"
+#include "set_ups.h"
+
+namespace nonio {
+namespace {
+
+using math::Difference;
+using math::ErrorMotion;
+using math::Turns;
+using spindle::Separation;
+
+bool applies(const Campaign&, const Measurement& m) { return m.kind == "spindle"; }
+
+/// What values are taken from: a sensor, both of them together, or a tilt.
+struct Channel {
+  std::string name;
+  Turns turns;
+  bool axial = false;
+  double lever = 0.0;  ///< of a tilt: distance of the sensors, m; else 0
+  bool with_ball = true;
+};
+
+class Worker {
+ public:
+  explicit Worker(const AnalysisInput& in)
+      : in_(in), set_ups_(spindle::set_ups_of(in.observations)) {}
+
+  Evaluation run() {
+    out_.findings = set_ups_.findings;
+    for (const auto& [name, places] : set_ups_.of) {
+      if (name == "Z") {
+        one({name, places.begin()->second, true, 0.0, false}, nullptr);
+        continue;
+      }
+      const Separation how = spindle::separation_of(places);
+      one({name, first_of(places, how), false, 0.0, how.kind == Separation::Kind::none}, &how);
+    }
+    both_directions();
+    tilts();
+    if (ball_) out_.findings.push_back({.id = "spindle.ball-in-values", .attention = false});
+    math::put_differences(in_.campaign, items_, out_);
+    out_.notes.push_back({"method.spindle"});
+    if (set_ups_.resampled) out_.notes.push_back({"method.spindle-resampled"});
+    return std::move(out_);
+  }
+
+ private:
+  static const Turns& first_of(const std::map<spindle::Place, Turns>& places,
+                               const Separation& how) {
+    return how.places.empty() ? places.begin()->second : places.at(how.places.front());
+  }
+
+  void put(const Channel& c, const char* name, double value, double u, double dof, double from,
+           double to, bool ball) {
+    const bool tilt = c.lever > 0.0;
+    ball_ = ball_ || (ball && !in_.campaign.instrument.sphere);
+    items_.push_back({.name = std::string(name) + "_" + c.name,
+                      .value = tilt ? value / c.lever : value,
+                      .quantity = tilt ? Quantity::small_angle : Quantity::deviation,
+                      .u = tilt ? u / c.lever : u,
+                      .dof = dof,
+                      .from = from,
+                      .to = to,
+                      .scale = tilt ? 1.0 / c.lever : 1.0,
+                      .with_ball = ball});
+  }
+
+  /// Range of a mean curve: two readings of it, and what noise adds to the largest of many.
+  void put_synchronous(const Channel& c, const char* name, const std::vector<double>& curve,
+                       double u_mean, double dof) {
+    const auto [low, high] = std::minmax_element(curve.begin(), curve.end());
+    const double excess = math::range_excess(curve, u_mean);
+    put(c, name, *high - *low, std::sqrt(2.0 * u_mean * u_mean + excess * excess / 3.0), dof, *low,
+        *high, c.with_ball);
+  }
+
+  void one(const Channel& c, const Separation* how) {
+    const ErrorMotion e = math::error_motion(c.turns);
+    const double half = e.total / 2.0, N = static_cast<double>(c.turns.N);
+    // What these turns did is what is asked for: no repetition of its own.
+    const double total = c.axial ? e.total_with_once : e.total;
+    put(c, "total", total, 0.0, INFINITY, -total / 2.0, total / 2.0, c.with_ball && !c.axial);
+    std::vector<double> curve = c.axial ? e.with_once : e.motion;
+    double u_mean = e.u_mean;
+    if (how != nullptr && how->kind != Separation::Kind::none) separate(c, *how, curve, u_mean);
+    put_synchronous(c, "sync", curve, u_mean, e.dof);
+    put(c, "async", e.asynchronous, 0.0, INFINITY, -half, half, false);
+    const double once = e.eccentricity();
+    if (c.axial) {
+      put(c, "fundamental", e.fundamental(), 2.0 * e.u_ab, e.dof, 0.0, e.fundamental(), false);
+      put_synchronous(c, "rest", e.motion, e.u_mean, e.dof);
+    } else if (c.lever == 0.0 && c.name != "R") {
+      put(c, "eccentricity", once, e.u_ab, e.dof, 0.0, once, false);
+    }
+    waves(c, curve, u_mean);
+    put_curve(c, curve);
+    constexpr double few = 20.0;  // docs/constants.md, A18
+    if (N < few && !few_turns_) {
+      few_turns_ = true;
+      out_.findings.push_back({.id = "spindle.few-turns",
+                               .attention = false,
+                               .evidence = {{"turns", N, Quantity::count}}});
+    }
+  }
+
+  /// The motion of the spindle without the form of the ball, and that form.
+  void separate(const Channel& c, const Separation& how, std::vector<double>& curve,
+                double& u_mean) {
+    const auto& places = set_ups_.of.at(c.name);
+    std::vector<std::vector<double>> curves;
+    double squares = 0.0;
+    for (const auto& place : how.places) {
+      const ErrorMotion e = math::error_motion(places.at(place));
+      curves.push_back(e.motion);
+      squares += e.u_mean * e.u_mean;
+    }
+    const double K = static_cast<double>(curves.size());
+    const math::Separated s = how.kind == Separation::Kind::donaldson
+                                  ? math::donaldson(curves[0], curves[1])
+                                  : math::multi_step(curves);
+    curve = s.spindle;
+    u_mean = std::sqrt(squares) / K;
+    Channel ball = c;
+    ball.with_ball = false;
+    put_synchronous(ball, "ball", s.ball, u_mean, 2.0 * K);
+    if (how.kind == Separation::Kind::multi_step)
+      out_.findings.push_back({.id = "spindle.multi-step-leaves",
+                               .attention = false,
+                               .evidence = {{"steps", K, Quantity::count}},
+                               .texts = {{"sensor", c.name}}});
+    else
+      out_.findings.push_back(
+          {.id = "spindle.reversal", .attention = false, .texts = {{"sensor", c.name}}});
+  }
+
+  /// The wave of the synchronous motion that is largest: its number tells where to look.
+  void waves(const Channel& c, const std::vector<double>& curve, double u_mean) {
+    constexpr int most = 64;
+    const auto n = static_cast<double>(curve.size());
+    double best = 0.0, all = 0.0;
+    int order = 0;
+    for (const double v : curve) all += v * v / n;
+    for (int k = c.axial ? 1 : 2; k <= std::min(most, static_cast<int>(n) / 3); ++k) {
+      double a = 0.0, b = 0.0;
+      for (std::size_t i = 0; i < curve.size(); ++i) {
+        const double t = 2.0 * std::numbers::pi * k * static_cast<double>(i) / n;
+        a += 2.0 / n * curve[i] * std::cos(t), b += 2.0 / n * curve[i] * std::sin(t);
+      }
+      if (const double size = std::hypot(a, b); size > best) best = size, order = k;
+    }
+    constexpr double large_share = 0.5;  // docs/constants.md, A19
+    if (order == 0 || !(best * best / 2.0 > large_share * all) ||
+        !(best > 4.0 * u_mean * std::sqrt(2.0 / n)))
+      return;
+    const double lever = c.lever > 0.0 ? 1.0 / c.lever : 1.0;
+    out_.findings.push_back(
+        {.id = "spindle.wave",
+         .attention = false,
+         .evidence = {{"waves", static_cast<double>(order), Quantity::count},
+                      {"amplitude", best * lever,
+                       c.lever > 0.0 ? Quantity::small_angle : Quantity::deviation},
+                      {"share", best * best / 2.0 / all, Quantity::ratio}},
+         .texts = {{"name", c.name}}});
+  }
+
+  void put_curve(const Channel& c, const std::vector<double>& curve) {
+    const bool tilt = c.lever > 0.0;
+    Series s{"sync_" + c.name,
+             "S",
+             Quantity::angle,
+             tilt ? Quantity::small_angle : Quantity::deviation,
+             {},
+             {},
+             {}};
+    const std::size_t step = curve.size() / 720 + 1;
+    for (std::size_t i = 0; i < curve.size(); i += step) {
+      s.position.push_back(c.turns.angle(i));
+      s.value.push_back(tilt ? curve[i] / c.lever : curve[i]);
+    }
+    out_.series.push_back(std::move(s));
+  }
+
+  const Turns* first(const char* name) const {
+    const auto found = set_ups_.of.find(name);
+    return found == set_ups_.of.end() ? nullptr : &found->second.begin()->second;
+  }
+
+  /// Rotating sensitive direction: from two sensors at a right angle, of the pair nearest the nose.
+  void both_directions() {
+    for (const auto& [x, y] : {std::pair{"X", "Y"}, {"X1", "Y1"}}) {
+      const Turns *X = first(x), *Y = first(y);
+      if (X == nullptr || Y == nullptr) continue;
+      if (auto R = math::rotating(*X, *Y)) return one({"R", std::move(*R)}, nullptr);
+    }
+    if (!set_ups_.of.empty())
+      out_.findings.push_back({.id = "spindle.fixed-only", .attention = false});
+  }
+
+  void tilts() {
+    for (const auto& [name, one_name, two_name, axis] :
+         {std::tuple{"B", "X1", "X2", "X"}, {"A", "Y1", "Y2", "Y"}}) {
+      const Turns *near = first(one_name), *far = first(two_name);
+      if (near == nullptr || far == nullptr || near->n != far->n || near->N != far->N) continue;
+      if (!in_.measurement.foot) {
+        out_.findings.push_back(
+            {.id = "spindle.no-tilt", .attention = false, .texts = {{"axis", axis}}});
+        continue;
+      }
+      Channel c{name, *near, false, *in_.measurement.foot, true};
+      for (std::size_t i = 0; i < c.turns.r.size(); ++i) c.turns.r[i] -= far->r[i];
+      one(c, nullptr);
+    }
+  }
+
+  const AnalysisInput& in_;
+  spindle::SetUps set_ups_;
+  std::vector<Difference> items_;
+  Evaluation out_;
+  bool ball_ = false, few_turns_ = false;
+};
+
+Expected<Evaluation> analyse(const AnalysisInput& in) { return Worker(in).run(); }
+
+}  // namespace
+}  // namespace nonio
+
+NONIO_PLUGIN(registry) {
+  nonio::Analysis a;
+  a.info = {"spindle",
+            "1.0.0",
+            "Axes of rotation (ISO 230-7): total, synchronous and asynchronous error motion, tilt, "
+            "reversal.",
+            {}};
+  a.applies = nonio::applies;
+  a.analyse = nonio::analyse;
+  registry.add(std::move(a));
+}

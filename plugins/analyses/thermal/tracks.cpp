@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+namespace nonio::thermal {
+
+namespace {
+
+/// By time, each time once: of readings at one time the first row stands for where the spindle was.
+struct Ordered {
+  std::vector<std::size_t> rows;
+  math::Track track;
+};
+
+Ordered ordered(const Observations& o, std::vector<std::size_t> rows) {
+  std::stable_sort(rows.begin(), rows.end(),
+                   [&](std::size_t a, std::size_t b) { return o.time[a] < o.time[b]; });
+  Ordered out;
+  double n = 0.0;
+  for (const std::size_t i : rows) {
+    if (out.rows.empty() || o.time[i] > out.track.time.back()) {
+      out.rows.push_back(i);
+      out.track.time.push_back(o.time[i]), out.track.d.push_back(0.0);
+      n = 0.0;
+    }
+    n += 1.0;
+    out.track.d.back() += (o.deviation[i] - out.track.d.back()) / n;
+  }
+  return out;
+}
+
+/// Rows of the file at which a spindle starts and stops; the speed of a row holds until the next.
+struct Run {
+  std::size_t start = 0, stop = 0;
+  bool stopped = false;
+};
+
+/// Of one line: every line has the same speeds, but for readings that were not taken.
+std::optional<Run> run_of(const Observations& o, const std::vector<std::size_t>& rows,
+                          Tracks& out) {
+  const auto& s = o.axes.front();
+  const auto turns = [&](std::size_t k) { return s.approach[rows[k]] != 0; };
+  Run run;
+  while (run.start < rows.size() && !turns(run.start)) ++run.start;
+  if (run.start == rows.size()) return {};
+  run.stop = run.start;
+  while (run.stop + 1 < rows.size() && turns(run.stop)) ++run.stop;
+  run.stopped = !turns(run.stop);
+  for (std::size_t k = run.stop; k < rows.size() && run.stopped; ++k)
+    if (turns(k)) {
+      out.findings.push_back({.id = "thermal.several-runs", .attention = true});
+      break;
+    }
+  double slowest = INFINITY, fastest = 0.0;
+  for (std::size_t k = run.start; k < run.stop; ++k) {
+    const double speed = std::fabs((s.position[rows[k + 1]] - s.position[rows[k]]) /
+                                   (o.time[rows[k + 1]] - o.time[rows[k]]));
+    slowest = std::min(slowest, speed), fastest = std::max(fastest, speed);
+  }
+  constexpr double same = 0.02;
+  out.speed_steps = out.speed_steps || slowest < (1.0 - same) * fastest;
+  return run;
+}
+
+math::Track cut(const math::Track& k, std::size_t first, std::size_t last) {
+  math::Track out;
+  for (std::size_t i = first; i <= last && i < k.size(); ++i) {
+    out.time.push_back(k.time[i] - k.time[first]);
+    out.d.push_back(k.d[i] - k.d[first]);
+  }
+  return out;
+}
+
+Followed followed(std::string name, const math::Track& whole, const std::optional<Run>& run) {
+  Followed f;
+  f.name = std::move(name);
+  if (!run) {
+    f.run = cut(whole, 0, whole.size() - 1);
+    return f;
+  }
+  f.run = cut(whole, run->start, run->stop);
+  if (run->stopped) f.cool = cut(whole, run->stop, whole.size() - 1);
+  return f;
+}
+
+/// Times that both have, and the difference of the first from the second over their distance.
+math::Track tilt_of(const math::Track& one, const math::Track& two, double distance) {
+  math::Track out;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    while (j < two.size() && two.time[j] < one.time[i]) ++j;
+    if (j == two.size() || two.time[j] != one.time[i]) continue;
+    out.time.push_back(one.time[i]);
+    out.d.push_back((one.d[i] - two.d[j]) / distance);
+  }
+  return out;
+}
+
+void add_tilts(const Measurement& m, const std::map<std::string, math::Track>& tracks,
+               const std::map<std::string, std::optional<Run>>& runs, Tracks& out) {
+  for (const auto& [name, letter] : {std::pair{"B", "X"}, {"A", "Y"}}) {
+    const auto one = tracks.find(std::string(letter) + "1"),
+               two = tracks.find(std::string(letter) + "2");
+    if (one == tracks.end() || two == tracks.end()) continue;
+    if (!m.foot) {
+      out.findings.push_back(
+          {.id = "thermal.no-tilt", .attention = false, .texts = {{"axis", letter}}});
+      continue;
+    }
+    math::Track tilt = tilt_of(one->second, two->second, *m.foot);
+    if (tilt.size() < 2 || tilt.size() != one->second.size()) continue;
+    Followed f = followed(name, tilt, runs.at(one->first));
+    f.tilt = true, f.lever = *m.foot;
+    out.all.push_back(std::move(f));
+  }
+}
+
+void exercised(const Observations& o, Tracks& out) {
+  if (o.size() == 0) return;
+  std::map<std::pair<double, int>, std::vector<std::size_t>> visits;
+  const auto& axis = o.axes.front();
+  const double start = *std::min_element(o.time.begin(), o.time.end());
+  for (std::size_t i = 0; i < o.size(); ++i)
+    visits[{axis.position[i], axis.approach.empty() ? 1 : axis.approach[i]}].push_back(i);
+  for (auto& [place, rows] : visits) {
+    math::Visits v{place.first, place.second, ordered(o, std::move(rows)).track};
+    for (double& t : v.track.time) t -= start;
+    if (v.track.size() > 1) out.visits.push_back(std::move(v));
+  }
+}
+
+}  // namespace
+
+Tracks tracks_of(const Measurement& m, const Observations& o) {
+  Tracks out;
+  if (!m.axis.empty()) {
+    out.test = Test::axis;
+    exercised(o, out);
+    return out;
+  }
+  const bool spindle = !o.axes.empty() && o.axes.front().approach.size() == o.size() &&
+                       std::any_of(o.axes.front().approach.begin(), o.axes.front().approach.end(),
+                                   [](std::int8_t a) { return a != 0; });
+  out.test = spindle ? Test::spindle : Test::etve;
+  std::vector<std::vector<std::size_t>> rows(o.lines.size());
+  for (std::size_t i = 0; i < o.size(); ++i) rows[o.line_of(i)].push_back(i);
+  std::map<std::string, math::Track> tracks;
+  std::map<std::string, std::optional<Run>> runs;
+  for (std::size_t line = 0; line < o.lines.size(); ++line) {
+    if (rows[line].size() < 2) continue;
+    auto [kept, track] = ordered(o, std::move(rows[line]));
+    if (track.size() < 2) continue;
+    std::optional<Run> run;
+    if (spindle) run = run_of(o, kept, out);
+    out.all.push_back(followed(o.lines[line].name, track, run));
+    runs[o.lines[line].name] = run;
+    tracks[o.lines[line].name] = std::move(track);
+  }
+  add_tilts(m, tracks, runs, out);
+  std::sort(out.findings.begin(), out.findings.end(),
+            [](const Finding& a, const Finding& b) { return a.id < b.id; });
+  out.findings.erase(std::unique(out.findings.begin(), out.findings.end(),
+                                 [](const Finding& a, const Finding& b) {
+                                   return a.id == b.id && a.texts == b.texts;
+                                 }),
+                     out.findings.end());
+  return out;
+}
+
+}  // namespace nonio::thermal

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "worked.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace nonio::thermal {
+
+namespace {
+
+using math::RangeOf;
+using math::TimeConstants;
+using math::Track;
+
+constexpr double per_min = 1.0 / 60.0;
+
+Number minutes(const char* name, double s) { return {name, s * per_min, Quantity::number}; }
+
+class Worker {
+ public:
+  Worker(const Tracks& tracks, const Measurement& m, const Wish& wish)
+      : tracks_(tracks), m_(m), wish_(wish) {}
+
+  Worked run() {
+    out_.findings = tracks_.findings;
+    if (tracks_.test == Test::axis)
+      exercised();
+    else
+      for (const Followed& f : tracks_.all) one(f);
+    settle();
+    return std::move(out_);
+  }
+
+ private:
+  /// Noise of a range: two readings, and what noise adds to the largest and the least of many.
+  Item range_item(const std::string& name, const Track& k, const RangeOf& r, const Followed& f) {
+    const auto noise = math::reading_noise(k);
+    const std::span<const double> d(k.d);
+    const auto first = static_cast<std::size_t>(
+        std::lower_bound(k.time.begin(), k.time.end(), r.from) - k.time.begin());
+    const auto last = static_cast<std::size_t>(
+        std::upper_bound(k.time.begin(), k.time.end(), r.to) - k.time.begin());
+    const double excess = math::range_excess(d.subspan(first, last - first), noise.s);
+    const double scale = f.tilt ? 1.0 / f.lever : 1.0, metre = f.tilt ? f.lever : 1.0;
+    return {.name = name + "_" + f.name,
+            .value = r.range,
+            .quantity = f.tilt ? Quantity::small_angle : Quantity::deviation,
+            .u = std::sqrt(2.0 * noise.s * noise.s + 2.0 * excess * excess),
+            .dof = noise.dof,
+            .from = k.d[r.low] * metre,
+            .to = k.d[r.high] * metre,
+            .scale = scale};
+  }
+
+  void put_ranges(const Followed& f) {
+    const Track& k = f.run;
+    if (const auto whole = math::whole_range(k))
+      out_.items.push_back(range_item("range", k, *whole, f));
+    const auto window = math::largest_range(k, wish_.window),
+               first = math::first_range(k, wish_.window);
+    if (!window || !first) {
+      once("thermal.window-longer", {minutes("window_min", wish_.window),
+                                     minutes("test_min", k.time.back() - k.time.front())});
+      return;
+    }
+    out_.items.push_back(range_item("window", k, *window, f));
+    out_.items.push_back(range_item("first", k, *first, f));
+    if (tracks_.test == Test::etve && !f.tilt && window->range > out_.drift)
+      out_.drift = window->range, out_.drift_sensor = f.name;
+    double widest = 0.0;
+    for (std::size_t i = 1; i < k.size(); ++i) widest = std::max(widest, k.time[i] - k.time[i - 1]);
+    // docs/constants.md, A16: a window with fewer readings can miss its extremes.
+    if (widest > wish_.window / 4.0)
+      once("thermal.sparse", {minutes("step_min", widest), minutes("window_min", wish_.window)});
+  }
+
+  void put_end(const Followed& f, const char* name, const Track& k) {
+    if (k.size() < 2) return;
+    const auto noise = math::reading_noise(k);
+    const double metre = f.tilt ? f.lever : 1.0;
+    out_.items.push_back({.name = std::string(name) + "_" + f.name,
+                          .value = k.d.back() - k.d.front(),
+                          .quantity = f.tilt ? Quantity::small_angle : Quantity::deviation,
+                          .u = std::numbers::sqrt2 * noise.s,
+                          .dof = noise.dof,
+                          .from = k.d.front() * metre,
+                          .to = k.d.back() * metre,
+                          .scale = 1.0 / metre});
+  }
+
+  void one(const Followed& f) {
+    if (f.run.size() < 2) return;
+    put_ranges(f);
+    if (tracks_.test != Test::spindle) return;
+    put_end(f, "end", f.run);
+    put_end(f, "cool", f.cool);
+    if (f.tilt) return;
+    if (tracks_.speed_steps) return once("thermal.speed-steps", {});
+    put_constants(f.name, f.run, 1.0, Quantity::deviation, 1.0);
+  }
+
+  /// Of a track whose unit is `quantity`; times `lever` it is a length of the machine.
+  TimeConstants put_constants(const std::string& name, const Track& k, double lever,
+                              Quantity quantity, double scale) {
+    const TimeConstants fit = math::time_constants(k);
+    using Answer = TimeConstants::Answer;
+    if (fit.answer != Answer::resolved) {
+      refuse(name, k, fit);
+      return fit;
+    }
+    for (std::size_t i = 0; i < fit.parts.size(); ++i) {
+      const auto& p = fit.parts[i];
+      const std::string number = i == 0 ? "" : "2";
+      out_.items.push_back({.name = "tau" + number + "_" + name,
+                            .value = p.tau,
+                            .quantity = Quantity::time,
+                            .u = p.u_tau,
+                            .dof = fit.dof});
+      out_.items.push_back({.name = "c" + number + "_" + name,
+                            .value = p.c,
+                            .quantity = quantity,
+                            .u = p.u_c,
+                            .dof = fit.dof,
+                            .to = p.c * lever,
+                            .scale = scale});
+    }
+    const auto t = fit.settled(wish_.remaining / lever);
+    if (t.t >= slowest_) slowest_ = t.t, slowest_u_ = t.u, slowest_name_ = name;
+    put_curve(name, fit, k);
+    return fit;
+  }
+
+  void put_curve(const std::string& name, const TimeConstants& fit, const Track& k) {
+    Series s{"fit_" + name, "t", Quantity::time, Quantity::deviation, {}, {}, {}};
+    if (tracks_.test == Test::axis) s.quantity = Quantity::deviation_per_length;
+    constexpr int steps = 100;
+    for (int i = 0; i <= steps; ++i) {
+      s.position.push_back((k.time.back() - k.time.front()) * i / steps);
+      s.value.push_back(fit.at(s.position.back()));
+    }
+    out_.series.push_back(std::move(s));
+  }
+
+  void refuse(const std::string& name, const Track& k, const TimeConstants& fit) {
+    using Answer = TimeConstants::Answer;
+    open_ = true;
+    Finding f{.id = "",
+              .attention = false,
+              .evidence = {minutes("test_min", k.time.back() - k.time.front())},
+              .texts = {{"sensor", name}}};
+    switch (fit.answer) {
+      case Answer::too_few:
+        f.id = "thermal.too-few";
+        f.evidence.push_back({"readings", static_cast<double>(k.size()), Quantity::count});
+        break;
+      case Answer::none:
+        f.id = "thermal.no-time-constant";
+        break;
+      case Answer::too_short:
+        f.id = "thermal.test-too-short";
+        break;
+      default: {
+        f.id = "thermal.unresolved";
+        const auto& worst = *std::max_element(
+            fit.parts.begin(), fit.parts.end(),
+            [](const auto& a, const auto& b) { return a.u_tau / a.tau < b.u_tau / b.tau; });
+        f.evidence.push_back(minutes("tau_min", worst.tau));
+        f.evidence.push_back(minutes("u_min", worst.u_tau));
+        break;
+      }
+    }
+    out_.findings.push_back(std::move(f));
+  }
+
+  /// The largest of all targets and sides.
+  void put_largest(const char* name, const std::vector<Item>& all) {
+    const auto worst = std::max_element(all.begin(), all.end(), [](const Item& a, const Item& b) {
+      return std::fabs(a.value) < std::fabs(b.value);
+    });
+    if (worst == all.end()) return;
+    out_.items.push_back(*worst);
+    out_.items.back().name = std::string(name) + "_" + m_.axis;
+  }
+
+  void exercised() {
+    if (tracks_.visits.empty()) return once("thermal.too-few-cycles", {});
+    std::vector<Item> whole, window, first, end;
+    points();
+    for (const auto& v : tracks_.visits) {
+      Followed f;
+      f.name = m_.axis;
+      f.run = v.track;
+      for (double& d : f.run.d) d -= v.track.d.front();
+      const std::size_t before = out_.items.size();
+      put_ranges(f);
+      put_end(f, "end", f.run);
+      for (std::size_t i = before; i < out_.items.size(); ++i) {
+        Item item = out_.items[i];
+        item.length = v.position;
+        (item.name.starts_with("range")    ? whole
+         : item.name.starts_with("window") ? window
+         : item.name.starts_with("first")  ? first
+                                           : end)
+            .push_back(std::move(item));
+      }
+      out_.items.resize(before);
+    }
+    put_largest("range", whole), put_largest("window", window), put_largest("first", first);
+    put_largest("end", end);
+    put_growth();
+    put_reversal();
+  }
+
+  void put_growth() {
+    const Track g = math::growth(tracks_.visits);
+    if (g.size() < 2) return once("thermal.one-target", {});
+    double low = INFINITY, high = -INFINITY;
+    for (const auto& v : tracks_.visits)
+      low = std::min(low, v.position), high = std::max(high, v.position);
+    const double L = high - low;
+    const auto noise = math::reading_noise(g);
+    out_.items.push_back({.name = "growth_" + m_.axis,
+                          .value = g.d.back(),
+                          .quantity = Quantity::deviation_per_length,
+                          .u = std::numbers::sqrt2 * noise.s,
+                          .dof = noise.dof,
+                          .to = g.d.back() * L,
+                          .scale = 1.0 / L,
+                          .length = L});
+    Series s{
+        "growth_" + m_.axis, "t", Quantity::time, Quantity::deviation_per_length, g.time, g.d, {}};
+    out_.series.push_back(std::move(s));
+    const TimeConstants fit = put_constants(m_.axis, g, L, Quantity::deviation_per_length, 1.0 / L);
+    if (fit.answer == TimeConstants::Answer::resolved)
+      propose_effect(fit, g.time.front(), low, high);
+  }
+
+  /// The effect of the model that says the same: w (p - fixed) (1 - exp(-t/tau)).
+  void propose_effect(const TimeConstants& fit, double first, double low, double high) {
+    if (fit.parts.size() != 1) return once("thermal.two-for-the-model", {});
+    const auto& p = fit.parts.front();
+    // The first cycle is 0 here, and the effect is 0 when the exercise starts.
+    const double before = std::exp(first / p.tau);
+    double mean = 0.0, place = 0.0, n = 0.0;
+    for (const auto& v : tracks_.visits)
+      mean += v.track.d.back() - v.track.d.front(), place += v.position, n += 1.0;
+    mean /= n, place /= n;
+    const auto& time = tracks_.visits.front().track.time;
+    const double slope = fit.at(time.back() - time.front()) - fit.d0;
+    Finding f{.id = "thermal.for-the-model",
+              .attention = false,
+              .evidence = {{"w", before * p.c, Quantity::deviation_per_length},
+                           {"u_w", before * p.u_c, Quantity::deviation_per_length},
+                           {"tau", p.tau, Quantity::time},
+                           {"u_tau", p.u_tau, Quantity::time},
+                           minutes("tau_min", p.tau)},
+              .texts = {{"effect", "warm-up:" + m_.axis}, {"axis", m_.axis}}};
+    const double fixed = place - mean / slope;
+    if (std::isfinite(fixed) && std::fabs(fixed) < 100.0 * (high - low) + std::fabs(high))
+      f.evidence.push_back({"fixed", fixed, Quantity::length});
+    out_.findings.push_back(std::move(f));
+  }
+
+  void put_reversal() {
+    const Track r = math::reversal_change(tracks_.visits);
+    const auto whole = math::whole_range(r);
+    if (!whole || r.size() < 2) return;
+    Followed f;
+    f.name = m_.axis;
+    out_.items.push_back(range_item("reversal", r, *whole, f));
+    out_.series.push_back(
+        {"reversal_" + m_.axis, "t", Quantity::time, Quantity::deviation, r.time, r.d, {}});
+  }
+
+  /// Per target: what each side did.
+  void points() {
+    std::set<double> places;
+    for (const auto& v : tracks_.visits) places.insert(v.position);
+    PointTable::Column target{"target", Quantity::length, {places.begin(), places.end()}};
+    out_.points.columns.push_back(std::move(target));
+    for (const char* what : {"range", "end"})
+      for (const int direction : {1, -1}) {
+        PointTable::Column c{
+            std::string(what) + (direction > 0 ? "+" : "-"), Quantity::deviation, {}};
+        for (const double place : places) {
+          double value = NAN;
+          for (const auto& v : tracks_.visits)
+            if (v.position == place && v.direction == direction)
+              value = what[0] == 'e' ? v.track.d.back() - v.track.d.front()
+                                     : math::whole_range(v.track)->range;
+          c.values.push_back(value);
+        }
+        out_.points.columns.push_back(std::move(c));
+      }
+  }
+
+  /// How long to warm up, where every sensor that moves says it.
+  void settle() {
+    if (tracks_.test == Test::etve || slowest_name_.empty()) return;
+    out_.findings.push_back({.id = open_ ? "thermal.warm-up-at-least" : "thermal.warm-up-time",
+                             .attention = false,
+                             .evidence = {minutes("time_min", slowest_),
+                                          minutes("U_min", 2.0 * slowest_u_),
+                                          {"remaining", wish_.remaining, Quantity::deviation}},
+                             .texts = {{"sensor", slowest_name_}}});
+  }
+
+  void once(const char* id, std::vector<Number> evidence) {
+    if (!said_.insert(id).second) return;
+    out_.findings.push_back({.id = id, .attention = false, .evidence = std::move(evidence)});
+  }
+
+  const Tracks& tracks_;
+  const Measurement& m_;
+  const Wish& wish_;
+  Worked out_;
+  std::set<std::string> said_;
+  double slowest_ = -1.0, slowest_u_ = 0.0;
+  std::string slowest_name_;
+  bool open_ = false;
+};
+
+}  // namespace
+
+Worked work(const Tracks& tracks, const Measurement& m, const Wish& wish) {
+  return Worker(tracks, m, wish).run();
+}
+
+}  // namespace nonio::thermal

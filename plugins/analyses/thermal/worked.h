@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "nonio/math/differences.h"
+#include "nonio/sdk/plugin.h"
+#include "tracks.h"
+
+namespace nonio::thermal {
+
+struct Wish {
+  double window = 3600.0;   ///< s
+  double remaining = 1e-6;  ///< m, change that may remain after the warm-up
+};
+
+using Item = math::Difference;
+
+/// Everything that the tracks give, and what they do not.
+struct Worked {
+  std::vector<Item> items;
+  std::vector<Finding> findings;
+  std::vector<Series> series;
+  PointTable points;
+  double drift = 0.0;  ///< largest change in a window of a machine at rest, m; 0: not known
+  std::string drift_sensor;
+};
+
+Worked work(const Tracks&, const Measurement&, const Wish&);
+
+}  // namespace nonio::thermal
