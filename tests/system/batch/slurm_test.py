@@ -2,7 +2,7 @@
 """A night on a real Slurm with two nodes on this host: the scripts that are installed, run as a site runs them.
 
 NONIO_SLURM_LONG=1: also what Slurm does after two minutes of waiting (a task put back, a node lost).
-NONIO_SLURM_KILLS=N: how often a task is killed (2; by hand 20). NONIO_SEED: when."""
+NONIO_SLURM_KILLS=N: how often a task is killed (2; more by hand). NONIO_SEED: when."""
 import os
 import pathlib
 import random
@@ -211,7 +211,7 @@ class SlurmTest(NightTest):
 
     def test_a_task_is_killed_again_and_again(self):
         # As an operator submits it again: by its requeue it would wait two minutes each time.
-        for i in range(8, 40):
+        for i in range(8, 40 + 8 * KILLS):
             self.campaign(f"c{i}")
         shutil.rmtree(self.out)
         self.run_nonio("--date", "2026-11-01", expect=0)
