@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """A night on a real Slurm with two nodes on this host: the scripts that are installed, run as a site runs them.
 
-NONIO_SLURM_LONG=1: also what Slurm does after two minutes of waiting (a task put back, a node lost)."""
+NONIO_SLURM_LONG=1: also what Slurm does after two minutes of waiting (a task put back, a node lost).
+NONIO_SLURM_KILLS=N: how often a task is killed (2; more by hand). NONIO_SEED: when."""
 import os
 import pathlib
+import random
 import shutil
 import signal
 import socket
@@ -22,6 +24,8 @@ for program in ("slurmctld", "slurmd", "munged", "sbatch"):
 
 SCRIPTS = pathlib.Path(os.environ["NONIO_SLURM_SCRIPTS"])
 LONG = "NONIO_SLURM_LONG" in os.environ
+KILLS = int(os.environ.get("NONIO_SLURM_KILLS", "2"))
+SEED = int(os.environ.get("NONIO_SEED", "20261126"))
 CONF = """ClusterName=nonio
 SlurmctldHost={host}(127.0.0.1)
 SlurmctldPort={port}
@@ -109,16 +113,20 @@ class Cluster:
             return None
 
     def processes_of(self, node):
-        """slurmd of a node, its steps and their children."""
-        found = []
+        """Steps of a node, which would report the end of their task, before the processes of the tasks."""
+        steps, tasks = [], []
         for proc in pathlib.Path("/proc").glob("[0-9]*"):
             try:
-                if f"SLURMD_NODENAME={node}".encode() in (proc / "environ").read_bytes().split(b"\0") and \
-                        str(self.folder).encode() in (proc / "environ").read_bytes():
-                    found.append(int(proc.name))
+                environ = (proc / "environ").read_bytes()
+                if f"SLURMD_NODENAME={node}".encode() not in environ.split(b"\0") or str(self.folder).encode() not in environ:
+                    continue
+                tasks.append(int(proc.name))
+                parent = int((proc / "stat").read_text().rpartition(")")[2].split()[1])
+                if pathlib.Path(f"/proc/{parent}/comm").read_text().startswith("slurmstepd"):
+                    steps.append(parent)
             except OSError:
                 pass
-        return found
+        return [*dict.fromkeys(steps + tasks)]
 
     def close(self):
         pids = [self.pid(f"{name}.pid") for name in ("slurmd-n1", "slurmd-n2", "slurmctld", "munged")]
@@ -154,10 +162,13 @@ class SlurmTest(NightTest):
         one, parts = tree(self.out), {k: v for k, v in tree(self.parts).items() if not k.startswith(".nonio/log/")}
         self.assertEqual(sorted(k for k in one.keys() | parts.keys() if one.get(k) != parts.get(k)), [])
 
-    def submit(self, *args, **env):
-        """The array alone, of 4 shards."""
+    def plan(self):
         self.cluster.call(NONIO, "night", "plan", self.site, "--out", self.parts, "--shards", "4", "--date", "2026-11-01")
         self.log.mkdir(exist_ok=True)
+
+    def submit(self, *args, **env):
+        """The array alone, of 4 shards."""
+        self.plan()
         more = "".join(f",{k}={v}" for k, v in env.items())
         return self.again("0-3", more, *args)
 
@@ -167,15 +178,67 @@ class SlurmTest(NightTest):
             f"{self.site},NONIO_SHARD_OUT={self.parts},NONIO_SHARDS=4{more}", *args, SCRIPTS / "nonio-shard.sbatch")
         return done.stdout.strip()
 
+    def waits_or_runs(self, job):
+        asked = self.cluster.call("squeue", "-h", "-j", job, check=False)
+        return bool(asked.stdout.strip()) or (asked.returncode != 0 and "Invalid job id" not in asked.stderr)
+
     def ended(self, job, seconds):
-        self.cluster.until(lambda: not self.cluster.call("squeue", "-h", "-j", job, check=False).stdout.strip(), seconds)
+        self.cluster.until(lambda: not self.waits_or_runs(job), seconds)
 
     def merge(self):
         return self.cluster.call(NONIO, "night", "merge", self.parts, "--wait", "0", check=False)
 
+    def process(self):
+        """That of a shard of this site, or None."""
+        for proc in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                if (proc / "cmdline").read_bytes().split(b"\0")[:3] == [b"nonio", b"run", str(self.site).encode()]:
+                    return int(proc.name)
+            except OSError:
+                pass
+        return None
+
+    def kill_one(self):
+        """Whether one was there to be killed."""
+        try:
+            pid = self.process()
+            if pid is None:
+                return False
+            os.kill(pid, signal.SIGKILL)
+        except ProcessLookupError:
+            return False
+        return True
+
+    def test_a_task_is_killed_again_and_again(self):
+        # As an operator submits it again: by its requeue it would wait two minutes each time.
+        for i in range(8, 40 + 8 * KILLS):
+            self.campaign(f"c{i}")
+        shutil.rmtree(self.out)
+        self.run_nonio("--date", "2026-11-01", expect=0)
+        chance = random.Random(SEED)
+        self.plan()
+        killed = working = 0
+        for _ in range(3 * KILLS + 5):
+            if killed == KILLS:
+                break
+            job = self.again("2", ",NONIO_RESTARTS=0")
+            self.cluster.until(lambda: self.process() or not self.waits_or_runs(job), 120)
+            time.sleep(chance.uniform(0, 0.3))
+            reported = any(self.parts.glob(".nonio/**/shard-*2.done.json"))
+            if self.kill_one():
+                killed += 1
+                working += not reported
+            self.ended(job, 120)
+        self.assertEqual(killed, KILLS, f"seed {SEED}")
+        self.assertGreater(working, 0, "each kill came after the shard's end")
+        print(f"seed {SEED}: a task killed {killed} times, {working} before its shard was done", file=sys.stderr)
+        self.ended(self.again("0-3"), 240)
+        done = self.merge()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.same()
+
     def test_an_array_of_four_is_one_run(self):
-        # Its date; nonio-night plans the same night again.
-        self.cluster.call(NONIO, "night", "plan", self.site, "--out", self.parts, "--shards", "4", "--date", "2026-11-01")
+        self.plan()  # its date; nonio-night plans the same night again
         done = self.cluster.call(SCRIPTS / "nonio-night", self.site, self.parts, "4", check=False)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.same()
@@ -197,25 +260,12 @@ class SlurmTest(NightTest):
 
     @unittest.skipUnless(LONG, "Slurm waits two minutes: NONIO_SLURM_LONG=1")
     def test_requeued_by_its_script_after_kill_9(self):
-        site = self.site
         for i in range(8, 120):
             self.campaign(f"c{i}")
         shutil.rmtree(self.out)
         self.run_nonio("--date", "2026-11-01", expect=0)
         job = self.submit()
-        victims = []
-
-        def kill_one():
-            for proc in pathlib.Path("/proc").glob("[0-9]*"):
-                try:
-                    if (proc / "cmdline").read_bytes().split(b"\0")[:3] == [b"nonio", b"run", str(site).encode()]:
-                        os.kill(int(proc.name), signal.SIGKILL)
-                        victims.append(int(proc.name))
-                        return True
-                except OSError:
-                    pass
-            return False
-        self.cluster.until(kill_one, 60)
+        self.cluster.until(self.kill_one, 60)
         self.ended(job, 400)
         self.assertEqual(self.merge().returncode, 0)
         self.same()
@@ -235,7 +285,8 @@ class SlurmTest(NightTest):
             except OSError:
                 pass
         self.ended(job, 500)
-        self.assertEqual(self.merge().returncode, 0)
+        done = self.merge()
+        self.assertEqual(done.returncode, 0, done.stderr + "".join(p.read_text() for p in self.log.iterdir()))
         self.same()
         self.cluster.start("n2")
 
