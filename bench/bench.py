@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """bench.py NONIO [--campaigns 1000] [--unchanged 10000]: what the nightly run costs, beside a Python
-pipeline with the same outputs in the same run. Prints a table; asserts nothing. TMPDIR says on which disk."""
+pipeline with the same outputs in the same run; then where the time goes (bench_campaign, if it was built beside NONIO),
+and the limit: what writing the same files, their digests and the deflate of the pages cost alone (limit.py). Prints
+tables; asserts nothing. TMPDIR says on which disk."""
 import argparse
 import json
 import os
@@ -11,6 +13,8 @@ import sys
 import tempfile
 import threading
 import time
+
+import limit
 
 HERE = pathlib.Path(__file__).parent
 
@@ -56,6 +60,17 @@ def beside(commands):
     return walls
 
 
+def stages(nonio, site, out):
+    """A line a stage, all in one process."""
+    program = nonio.parent / "bench_campaign"
+    if not program.exists():
+        print(f"no stages: there is no {program}; build its target")
+        return
+    plugins = next(nonio.parent.parent.glob("lib/**/nonio/plugins"))
+    templates = nonio.parent.parent / "share" / "nonio" / "templates"
+    subprocess.run([program, site, out, plugins, templates], check=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("nonio")
@@ -82,6 +97,11 @@ def main():
         walls = beside([[*run, root / f"beside-{core}", "--jobs", "1"] for core in range(2)])
         print(f"two runs of one worker at once, one on each core: {sum(one / wall for wall in walls):.2f} times; "
               "what this machine and its disk give")
+        print("where a campaign's CPU time goes:", flush=True)
+        stages(pathlib.Path(args.nonio).resolve(), site, root / "stages")
+        print("the limit, CPU time a campaign:")
+        least = limit.print_limits(root / "one")
+        print(f"Nonio takes {one_cpu / n / least:.1f} times the limit")
         sample = root / "one" / "bench-000000"
         print("outputs of one campaign:", json.dumps({p.name: p.stat().st_size for p in sorted(sample.iterdir())}))
         small, _, small_memory = timed([*run, root / "one", "--jobs", "1"], 2)

@@ -41,6 +41,9 @@ char32_t next_character(std::string_view text, std::size_t& i) {
 }
 
 char32_t next_composed(std::string_view text, std::size_t& i) {
+  const auto is_ascii = [&](std::size_t at) { return static_cast<unsigned char>(text[at]) < 0x80; };
+  if (is_ascii(i) && (i + 1 == text.size() || is_ascii(i + 1)))  // nearly always; no mark follows
+    return static_cast<unsigned char>(text[i++]);
   char32_t c = next_character(text, i);
   if (c == not_utf8) return c;
   if (c >= 0x80)

@@ -119,6 +119,7 @@ Expected<void> check_text(std::string_view text, const Fonts& fonts, std::string
 }
 
 std::string visible_text(std::string_view text, const Fonts& fonts) {
+  if (check_text(text, fonts, "")) return std::string(text);  // nearly always
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t at = i;

@@ -7,6 +7,7 @@
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
 #include "host/storage/json_values.h"
+#include "nonio/sdk/gathered_words.h"
 
 namespace nonio::host::config {
 namespace fs = std::filesystem;
@@ -96,6 +97,7 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
     if (auto kept = keep(templates, name, std::move(*bytes), path.string()); !kept)
       return fail(kept.error());
   }
+  gather_words(templates);
   digest = storage::sha256(all);
   if (json != nullptr)
     *json = storage::dump(
@@ -146,6 +148,7 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
   if (ours.is_object() && ours.contains("files"))
     for (const auto& [name, file] : ours["files"].items())
       if (!json["files"].contains(name)) out.strange.push_back(name);
+  gather_words(out.templates);
   out.sha256 = storage::sha256(all);
   return out;
 }

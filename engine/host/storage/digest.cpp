@@ -20,8 +20,19 @@ struct RunningDigest::State {
                                                              &::EVP_MD_CTX_free};
 };
 
+namespace {
+
+/// Looked up once: with EVP_sha256() OpenSSL 3 compares names of algorithms for every digest, which
+/// takes as long as hashing a kilobyte.
+const EVP_MD* method() {
+  static const EVP_MD* const found = ::EVP_MD_fetch(nullptr, "SHA256", nullptr);
+  return found != nullptr ? found : ::EVP_sha256();
+}
+
+}  // namespace
+
 RunningDigest::RunningDigest() : state_(std::make_unique<State>()) {
-  if (!state_->context || ::EVP_DigestInit_ex(state_->context.get(), ::EVP_sha256(), nullptr) != 1)
+  if (!state_->context || ::EVP_DigestInit_ex(state_->context.get(), method(), nullptr) != 1)
     throw std::bad_alloc();
 }
 

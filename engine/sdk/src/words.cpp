@@ -3,8 +3,36 @@
 #include <cmath>
 
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/gathered_words.h"
 
 namespace nonio {
+
+namespace {
+
+constexpr std::string_view words_folder = "words/", gathered_folder = "gathered words/";
+
+bool is_gathered(std::string_view name) {
+  return name.starts_with("finding.") || name.starts_with("note.") || name.starts_with("term.");
+}
+
+using Texts = std::vector<std::pair<std::string, std::string>>;
+
+}  // namespace
+
+void gather_words(Templates& templates) {
+  std::erase_if(templates.tables,
+                [](const auto& table) { return table.first.starts_with(gathered_folder); });
+  std::map<std::string, Settings, std::less<>> gathered;
+  for (const auto& [name, table] : templates.tables) {
+    const std::size_t end = name.find('/', words_folder.size());
+    if (!name.starts_with(words_folder) || end == std::string::npos) continue;
+    const std::string language = name.substr(words_folder.size(), end - words_folder.size());
+    Settings& all = gathered[std::string(gathered_folder) + language];
+    for (const auto& [key, text] : table.values)
+      if (is_gathered(key)) all.values.try_emplace(key, text);
+  }
+  templates.tables.merge(gathered);
+}
 
 std::string localised(std::string number, std::string_view language) {
   if (language == "it" || language == "de" || language == "es")
@@ -13,7 +41,11 @@ std::string localised(std::string number, std::string_view language) {
 }
 
 std::string words(const Templates& templates, std::string_view language, std::string_view name) {
-  const std::string folder = "words/" + std::string(language) + "/";
+  if (is_gathered(name))
+    if (const auto all = templates.tables.find(std::string(gathered_folder).append(language));
+        all != templates.tables.end())
+      return all->second.text(name);
+  const std::string folder = std::string(words_folder).append(language) + "/";
   for (auto it = templates.tables.lower_bound(folder);
        it != templates.tables.end() && it->first.compare(0, folder.size(), folder) == 0; ++it)
     if (it->second.has(name)) return it->second.text(name);
@@ -35,23 +67,37 @@ std::string evidence_text(const Number& n) {
   return text;
 }
 
-std::string filled(std::string_view text, const Finding& finding, std::string_view language) {
+namespace {
+
+/// Name and suffix one after the other, without joining them.
+bool is_joined(std::string_view joined, std::string_view name, std::string_view suffix) {
+  return joined.size() == name.size() + suffix.size() && joined.starts_with(name) &&
+         joined.ends_with(suffix);
+}
+
+std::string filled(std::string_view text, const std::vector<Number>& evidence, const Texts& texts,
+                   std::string_view language) {
   std::string out;
+  out.reserve(text.size() + text.size() / 4);
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t close = text[i] == '{' ? text.find('}', i) : std::string_view::npos;
+    const std::size_t open = std::min(text.find('{', i), text.size());
+    out += text.substr(i, open - i);
+    i = open;
+    if (i == text.size()) break;
+    const std::size_t close = text.find('}', i);
     if (close == std::string_view::npos) {
       out += text[i++];
       continue;
     }
     const std::string_view name = text.substr(i + 1, close - i - 1);
     std::string value(text.substr(i, close + 1 - i));
-    for (const Number& n : finding.evidence)
-      if (name == n.name + std::string(unit_of(n.quantity).suffix))
+    for (const Number& n : evidence)
+      if (is_joined(name, n.name, unit_of(n.quantity).suffix))
         value = localised(evidence_text(n), language);
       else if (name == n.name)
         value =
             localised(evidence_text(n), language) + " " + std::string(unit_of(n.quantity).symbol);
-    for (const auto& [key, words_of] : finding.texts)
+    for (const auto& [key, words_of] : texts)
       if (name == key) value = words_of;
     out += value;
     i = close + 1;
@@ -59,9 +105,13 @@ std::string filled(std::string_view text, const Finding& finding, std::string_vi
   return out;
 }
 
-std::vector<std::pair<std::string, std::string>> said(
-    const Templates& templates, std::string_view language,
-    std::vector<std::pair<std::string, std::string>> texts) {
+}  // namespace
+
+std::string filled(std::string_view text, const Finding& finding, std::string_view language) {
+  return filled(text, finding.evidence, finding.texts, language);
+}
+
+Texts said(const Templates& templates, std::string_view language, Texts texts) {
   for (auto& [key, text] : texts)
     if (std::string term = words(templates, language, "term." + key + "." + text); !term.empty())
       text = std::move(term);
@@ -74,9 +124,7 @@ std::string finding_text(const Templates& templates, std::string_view language,
   if (text.empty() && language != "en")
     text = words(templates, "en", "finding." + finding.id + "." + std::string(part));
   if (text.empty()) return part == "advice" ? finding.advice : part == "title" ? finding.id : "";
-  Finding in_words = finding;
-  in_words.texts = said(templates, language, std::move(in_words.texts));
-  return filled(text, in_words, language);
+  return filled(text, finding.evidence, said(templates, language, finding.texts), language);
 }
 
 std::string remark_text(const Templates& templates, std::string_view language,
@@ -84,8 +132,7 @@ std::string remark_text(const Templates& templates, std::string_view language,
   std::string text = words(templates, language, "note." + remark.id);
   if (text.empty() && language != "en") text = words(templates, "en", "note." + remark.id);
   if (text.empty()) return remark.english;
-  return filled(text, {.id = remark.id, .evidence = remark.evidence, .texts = remark.texts},
-                language);
+  return filled(text, remark.evidence, remark.texts, language);
 }
 
 }  // namespace nonio

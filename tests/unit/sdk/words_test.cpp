@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "nonio/sdk/format.h"
+#include "nonio/sdk/gathered_words.h"
+
+namespace nonio {
+namespace {
+
+/// Two files of one language say the same name, and one name is a number.
+Templates two_files() {
+  Templates t;
+  t.tables["words/en/a"].values = {
+      {"finding.drift.title", std::string("of a, {mean} at {mean_um} um {what} {open")},
+      {"finding.drift.says", std::int64_t{3}},
+      {"effect.scale.name", std::string("Scale")}};
+  t.tables["words/en/b"].values = {{"finding.drift.title", std::string("of b")},
+                                   {"finding.drift.says", std::string("of b")},
+                                   {"finding.turn.title", std::string("{strange} }")},
+                                   {"note.moved", std::string("{count} readings of {what}")},
+                                   {"term.what.x", std::string("the X axis")}};
+  t.tables["words/english/a"].values = {{"finding.turn.title", std::string("of another language")}};
+  t.tables["words/it/a"].values = {{"finding.drift.title", std::string("in italiano {mean}")}};
+  return t;
+}
+
+const Finding drift{
+    .id = "drift", .evidence = {{"mean", 0.0025, Quantity::deviation}}, .texts = {{"what", "x"}}};
+
+void expect_what_is_said(const Templates& t) {
+  EXPECT_EQ(finding_text(t, "en", drift, "title"), "of a, 2500 um at 2500 um the X axis {open");
+  EXPECT_EQ(finding_text(t, "en", drift, "says"), "");  // the first file has the name, and no text
+  EXPECT_EQ(finding_text(t, "en", {.id = "turn"}, "title"), "{strange} }");
+  EXPECT_EQ(finding_text(t, "it", drift, "title"), "in italiano 2500 um");
+  EXPECT_EQ(finding_text(t, "it", {.id = "turn"}, "title"), "{strange} }");  // English in its place
+  EXPECT_EQ(finding_text(t, "en", {.id = "unknown"}, "title"), "unknown");
+  EXPECT_EQ(remark_text(t, "en", {"moved", {{"count", 2, Quantity::count}}, {{"what", "x"}}}),
+            "2 readings of x");
+  EXPECT_EQ(words(t, "en", "effect.scale.name"), "Scale");
+  EXPECT_EQ(words(t, "en", "effect.other.name"), "");
+}
+
+TEST(Words, GatheredTheySayTheSame) {
+  Templates t = two_files();
+  expect_what_is_said(t);
+  gather_words(t);
+  expect_what_is_said(t);
+  gather_words(t);
+  expect_what_is_said(t);
+}
+
+TEST(Words, GatheredAgainTheyFollowTheFiles) {
+  Templates t = two_files();
+  gather_words(t);
+  t.tables["words/en/a"].values["finding.drift.title"] = std::string("changed");
+  t.tables.erase("words/it/a");
+  gather_words(t);
+  EXPECT_EQ(finding_text(t, "en", drift, "title"), "changed");
+  EXPECT_EQ(finding_text(t, "it", drift, "title"), "changed");
+}
+
+}  // namespace
+}  // namespace nonio
