@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <pthread.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <string_view>
@@ -22,6 +24,15 @@ nonio::app::Verb apart(nonio::app::Verb verb) {
   return verb;
 }
 
+/// Who reads our output and goes away is an error of `write`, not the end of a process that stores results. Libraries of
+/// plugins (Poco) set the same mask when they are loaded: set before, that is no change of theirs.
+void block_pipe_signal() {
+  sigset_t pipe;
+  ::sigemptyset(&pipe);
+  ::sigaddset(&pipe, SIGPIPE);
+  ::pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
+}
+
 /// What cannot be thrown further, out of a destructor or a library: with a word and a status.
 [[noreturn]] void give_up() noexcept {
   constexpr std::string_view words = "nonio: out of memory, or an unexpected error\n";
@@ -34,6 +45,7 @@ nonio::app::Verb apart(nonio::app::Verb verb) {
 int main(int argc, char** argv) try {
   using namespace nonio::app;
   std::set_terminate(give_up);
+  block_pipe_signal();
   Common common;
   Program program{
       .name = "nonio",

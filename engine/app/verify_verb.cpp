@@ -3,8 +3,10 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "host/certificates/verify.h"
+#include "host/process/apart.h"
 #include "printable.h"
 #include "verbs.h"
 
@@ -40,13 +42,12 @@ Json to_json(const std::string& file, const sign::Verified& v) {
 }
 
 /// The verdict first: nothing that a file says comes before it, and nothing can look like it.
-void print(const std::string& file, const sign::Verified& v, bool quiet) {
+void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet) {
   const std::string name = printable(file);
-  std::cout << name << ": " << host::certificates::verdict_of(v) << "\n";
+  out << name << ": " << host::certificates::verdict_of(v) << "\n";
   if (quiet) return;
   for (const sign::Check& c : v.checks)
-    std::cout << name << ": " << c.id << " " << to_text(c.state) << ": " << printable(c.says)
-              << "\n";
+    out << name << ": " << c.id << " " << to_text(c.state) << ": " << printable(c.says) << "\n";
 }
 
 int verify(const VerifyWish& wanted, const Common& common) {
@@ -56,19 +57,30 @@ int verify(const VerifyWish& wanted, const Common& common) {
     for (const Error& e : verifier.error()) complain("nonio verify", text_of(e));
     return exit_usage;
   }
-  const auto place = host::certificates::open_to_verify(
-      common.plugin_folders(), common.template_folders(), wanted.site, NONIO_VERSION);
-  if (!place) return complain("nonio verify", place.error().message);
+  host::process::step_aside();  // a stranger's file is read confined, as the plugins' code is run
+  std::unique_ptr<host::reading::Workplace> place;
+  std::ostringstream early;  // loading plugins may begin this process anew: said when that is over
+  const auto open = [&]() -> Expected<const host::reading::Context*> {
+    if (place) return &place->context;
+    auto opened = host::certificates::open_to_verify(
+        common.plugin_folders(), common.template_folders(), wanted.site, NONIO_VERSION);
+    std::cout << early.str();
+    if (!opened) return fail(opened.error());
+    place = std::move(*opened);
+    return &place->context;
+  };
   bool all = true;
   for (const std::string& file : wanted.files) {
-    const sign::Verified v =
-        host::certificates::verify_file(file, *verifier, (*place)->context, wanted.site);
-    all = all && v.holds();
+    const auto v = host::certificates::verify_file(file, *verifier, open, wanted.site);
+    if (!v) return complain("nonio verify", v.error().message);
+    all = all && v->holds();
+    std::ostream& out = place ? std::cout : early;
     if (common.json)
-      std::cout << to_json(file, v).dump(-1, ' ', true, Json::error_handler_t::replace) << "\n";
+      out << to_json(file, *v).dump(-1, ' ', true, Json::error_handler_t::replace) << "\n";
     else
-      print(file, v, common.quiet);
+      print(out, file, *v, common.quiet);
   }
+  if (!place) std::cout << early.str();
   return all ? exit_done : exit_failed;
 }
 

@@ -24,9 +24,9 @@
 #include <utility>
 #include <vector>
 
-#include "host/batch/read_apart.h"
 #include "host/config/secret_files.h"
 #include "host/process/child.h"
+#include "host/storage/late_library.h"
 
 namespace nonio::host::batch {
 namespace fs = std::filesystem;
@@ -265,33 +265,15 @@ Expected<std::string> by_server(const config::Mail& mail, const fs::path& site,
   return std::string();
 }
 
+Expected<std::string> deliver(const config::Mail& mail, const fs::path& site, const Letter& letter,
+                              double seconds) {
+  net::MailMessage message;
+  fill(message, mail, letter);
+  return mail.smtp.empty() ? by_program(mail, message) : by_server(mail, site, message, seconds);
+}
+
 }  // namespace
-
-bool is_reason_for_mail(const reports::MorningLine& line, config::Mail::On on) {
-  using Kind = reports::MorningLine::Kind;
-  if (!reports::asks_by_mail(line)) return false;
-  switch (on) {
-    case config::Mail::On::lost:
-      return line.kind <= Kind::failed;
-    case config::Mail::On::out:
-      return line.kind <= Kind::out;
-    case config::Mail::On::decision:
-      break;
-  }
-  return true;
-}
-
-Expected<void> send_mail(const config::Mail& mail, const fs::path& site, const Letter& letter,
-                         double seconds) {
-  const auto sent = read_apart<std::string>(
-      "the answer to the mail", seconds, [&](process::SignsOfLife&) -> Expected<std::string> {
-        net::MailMessage message;
-        fill(message, mail, letter);
-        return mail.smtp.empty() ? by_program(mail, message)
-                                 : by_server(mail, site, message, seconds / 2);
-      });
-  if (!sent) return fail("the mail was not sent: " + sent.error().message);
-  return {};
-}
-
 }  // namespace nonio::host::batch
+
+NONIO_EXPORTED const nonio::host::batch::Deliver nonio_deliver;
+const nonio::host::batch::Deliver nonio_deliver = nonio::host::batch::deliver;

@@ -24,4 +24,10 @@ bool is_reason_for_mail(const reports::MorningLine& line, config::Mail::On on);
 Expected<void> send_mail(const config::Mail& mail, const std::filesystem::path& site,
                          const Letter& letter, double seconds = 60.0);
 
+/// The way to the server or program, as `nonio_deliver` of a library that is loaded late
+/// (late_library.h). A server may take `seconds` (s).
+using Deliver = Expected<std::string> (*)(const config::Mail& mail,
+                                          const std::filesystem::path& site, const Letter& letter,
+                                          double seconds);
+
 }  // namespace nonio::host::batch

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/batch/runner.h"
 
-#include <Poco/Environment.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -82,7 +81,7 @@ class Runner {
   bool run() {
     process::keep_freed_memory();
     const std::size_t jobs =
-        options_.jobs != 0 ? options_.jobs : Poco::Environment::processorCount();
+        options_.jobs != 0 ? options_.jobs : std::max(1U, std::thread::hardware_concurrency());
     while (!process::is_stop_requested()) {
       while (workers_.size() < jobs && !process::is_stop_requested()) {
         const auto campaign = next();

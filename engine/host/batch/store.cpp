@@ -134,11 +134,10 @@ class Move {
   void read_back() {
     for (const evaluation::RecordedFile& f : record_.files) {
       const fs::path path = storage::temporary_path(folder_, f.name);
-      storage::drop_cached(path);
-      const auto now = storage::sha256_of_file(path);
-      if (!now || *now != f.sha256)
+      const auto same = storage::disk_gives_back(path, f.size, f.sha256);
+      if (!same || !*same)
         return give_up("the disk does not give back what was written to it: " +
-                       (folder_ / f.name).string() + (now ? "" : ": " + now.error().message));
+                       (folder_ / f.name).string() + (same ? "" : ": " + same.error().message));
     }
     storage::drop_cached(storage::temporary_path(folder_, evaluation::record_name));
     const auto record = evaluation::staged_record(folder_);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/batch/survey_pool.h"
 
-#include <Poco/Environment.h>
-
 #include <algorithm>
 #include <map>
+#include <thread>
 
 #include "host/batch/survey_look.h"
 #include "host/process/watched.h"
@@ -74,7 +73,7 @@ class Pool {
       : in_(input), states_(states) {}
 
   Expected<void> run(const std::vector<std::size_t>& which) {
-    const std::size_t cores = Poco::Environment::processorCount();
+    const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
     // Several for each core, so that all end at about the same time.
     const std::size_t size =
         std::clamp(which.size() / (4 * cores), std::size_t{1}, campaigns_in_batch);

@@ -109,8 +109,8 @@ Expected<std::string> read_bounded(const fs::path& path) {
   return bytes;
 }
 
-sign::Verified verify_file(const fs::path& path, const sign::Verifier& verifier,
-                           const reading::Context& context, const fs::path& site) {
+Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier& verifier,
+                                     const OpenContext& open, const fs::path& site) {
   const auto bytes = read_bounded(path);
   if (!bytes) return refused(bytes.error().message);
   if (bytes->starts_with("<?xml")) {
@@ -131,7 +131,9 @@ sign::Verified verify_file(const fs::path& path, const sign::Verifier& verifier,
   const std::string_view issued = std::string_view(*bytes).substr(0, v.issued);
   if (auto state = check_register(v, issued, site)) v.checks.push_back(std::move(*state));
   check_documents(v, verifier);
-  for (sign::Check& c : check_content(v, issued, context)) v.checks.push_back(std::move(c));
+  const auto context = open();
+  if (!context) return fail(context.error());
+  for (sign::Check& c : check_content(v, issued, **context)) v.checks.push_back(std::move(c));
   return v;
 }
 

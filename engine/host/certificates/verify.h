@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,12 +33,16 @@ Expected<std::unique_ptr<reading::Workplace>> open_to_verify(
 /// comes than may; never read whole.
 Expected<std::string> read_bounded(const std::filesystem::path& path);
 
+/// Opens plugins and templates at the first call: a file whose signature does not hold needs none.
+using OpenContext = std::function<Expected<const reading::Context*>()>;
+
 /// A certificate (PDF) or a DCC (XML): its signature first, then, where that holds, its content:
-/// every attached DCC, and the attached readings evaluated again by the plugins of `context`, up to
-/// the printed pages. The register of `site` (may be empty) is asked whether a number is in force.
-/// Whatever the file holds, there is an answer.
-sign::Verified verify_file(const std::filesystem::path& path, const sign::Verifier& verifier,
-                           const reading::Context& context, const std::filesystem::path& site);
+/// every attached DCC, and the attached readings evaluated again by the plugins that `open` gives,
+/// up to the printed pages. The register of `site` (may be empty) is asked whether a number is in
+/// force. Whatever the file holds, there is an answer; an error is one of `open`.
+Expected<sign::Verified> verify_file(const std::filesystem::path& path,
+                                     const sign::Verifier& verifier, const OpenContext& open,
+                                     const std::filesystem::path& site);
 
 /// What it all comes to, in a few words: "HOLDS", "DOES NOT HOLD", or "holds, ..." with what was
 /// not compared.

@@ -26,6 +26,7 @@
 #include "host/live/campaign_service.h"
 #include "host/live/front.h"
 #include "host/live/token.h"
+#include "host/storage/late_library.h"
 
 namespace nonio::host::live {
 namespace net = Poco::Net;
@@ -276,9 +277,7 @@ sigset_t block_signals() {
   return ends;
 }
 
-}  // namespace
-
-Expected<void> serve(const LiveWish& wish) {
+Expected<void> serve_here(const LiveWish& wish) {
   auto token = wish.token_file.empty() ? new_token() : token_in(wish.token_file);
   if (!token) return fail(token.error());
   auto front = Front::open(wish.port);
@@ -309,4 +308,8 @@ Expected<void> serve(const LiveWish& wish) {
   return {};
 }
 
+}  // namespace
 }  // namespace nonio::host::live
+
+NONIO_EXPORTED const nonio::host::live::Serve nonio_serve;
+const nonio::host::live::Serve nonio_serve = nonio::host::live::serve_here;

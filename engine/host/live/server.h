@@ -28,4 +28,7 @@ struct LiveWish {
 /// tells why it could not begin. To be called by a process of one thread without plugins.
 Expected<void> serve(const LiveWish& wish);
 
+/// The server itself, as `nonio_serve` of a library that is loaded late (late_library.h).
+using Serve = Expected<void> (*)(const LiveWish& wish);
+
 }  // namespace nonio::host::live

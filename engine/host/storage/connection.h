@@ -37,6 +37,11 @@ std::string shortest(double number);
 
 Expected<std::unique_ptr<Connection>> connect_sqlite(const std::filesystem::path& path,
                                                      Database::Use use, double patience);
-Expected<std::unique_ptr<Connection>> connect_postgresql(const Server& server, double patience);
+
+/// What the library that knows libpq exports as `nonio_postgresql` (late_library.h).
+struct PostgreSQL {
+  Expected<void> (*check_address)(const std::string& url);
+  Expected<std::unique_ptr<Connection>> (*connect)(const Server& server, double patience);
+};
 
 }  // namespace nonio::host::storage

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/storage/connection.h"
+#include "host/storage/late_library.h"
 
 namespace nonio::host::storage {
 
@@ -29,8 +30,23 @@ Expected<Database> Database::open(const std::filesystem::path& path, Use use, do
   return Database(std::move(*connection), Kind::sqlite);
 }
 
+namespace {
+
+Expected<const PostgreSQL*> postgresql() {
+  return exported_as<PostgreSQL>("libnonio_postgresql.so", "nonio_postgresql");
+}
+
+}  // namespace
+
+Expected<void> check_address(const std::string& url) {
+  const auto library = postgresql();
+  return library ? (*library)->check_address(url) : fail(library.error());
+}
+
 Expected<Database> Database::open(const Server& server, double patience) {
-  auto connection = connect_postgresql(server, patience);
+  const auto library = postgresql();
+  if (!library) return fail(library.error());
+  auto connection = (*library)->connect(server, patience);
   if (!connection) return fail(connection.error());
   return Database(std::move(*connection), Kind::postgresql);
 }

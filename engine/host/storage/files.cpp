@@ -423,6 +423,26 @@ void drop_cached(const fs::path& path) {
   if (fd) ::posix_fadvise(fd.get(), 0, 0, POSIX_FADV_DONTNEED);
 }
 
+Expected<bool> disk_gives_back(const fs::path& path, std::uint64_t size, std::string_view sha256) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  if (!file) return system_error("cannot read", path);
+  ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);
+  // A byte more than it is to have: that none comes says that it ends there.
+  std::string buffer(std::min<std::uint64_t>(size + 1, 1 << 20), '\0');
+  RunningDigest digest;
+  std::uint64_t seen = 0;
+  while (seen <= size) {
+    const std::size_t wanted = std::min<std::uint64_t>(buffer.size(), size + 1 - seen);
+    const ssize_t n = ::read(file.get(), buffer.data(), wanted);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return system_error("cannot read", path);
+    digest.add(std::string_view(buffer).substr(0, static_cast<std::size_t>(n)));
+    seen += static_cast<std::uint64_t>(n);
+    if (static_cast<std::size_t>(n) < wanted && (n == 0 || seen == size)) break;
+  }
+  return seen == size && digest.hex() == sha256;
+}
+
 void remove_temporaries(const fs::path& folder, const std::vector<std::string>& names) {
   constexpr int tries = 3;  // a refusal may pass
   for (const std::string& name : names)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -108,6 +109,10 @@ Expected<void> write_temporaries(const std::filesystem::path& folder,
 Expected<std::vector<std::string>> temporaries(const std::filesystem::path& folder);
 /// What was flushed of this file is read from the disk the next time.
 void drop_cached(const std::filesystem::path& path);
+/// Both in one: reads a file that was flushed from the disk, and says whether it has exactly these bytes by their size
+/// and SHA-256. An error if it cannot be read. Takes half of the system calls.
+Expected<bool> disk_gives_back(const std::filesystem::path& path, std::uint64_t size,
+                               std::string_view sha256);
 
 /// `publish` in two steps, for what is written elsewhere: the name to write and flush it under, and
 /// the renaming of such files.

@@ -11,6 +11,7 @@
 
 #include "host/storage/connection.h"
 #include "host/storage/files.h"
+#include "host/storage/late_library.h"
 
 namespace nonio::host::storage {
 
@@ -261,9 +262,7 @@ Expected<std::string> server_password(const std::filesystem::path& file) {
   return text;
 }
 
-}  // namespace
-
-Expected<void> check_address(const std::string& url) {
+Expected<void> check(const std::string& url) {
   if (!url.starts_with("postgresql://")) return fail("expected postgresql://user@host/name");
   char* why = nullptr;
   PQconninfoOption* options = ::PQconninfoParse(url.c_str(), &why);
@@ -285,8 +284,8 @@ Expected<void> check_address(const std::string& url) {
   return {};
 }
 
-Expected<std::unique_ptr<Connection>> connect_postgresql(const Server& server, double patience) {
-  if (auto well = check_address(server.url); !well) return fail(well.error());
+Expected<std::unique_ptr<Connection>> connect(const Server& server, double patience) {
+  if (auto well = check(server.url); !well) return fail(well.error());
   std::string password;
   if (!server.password_file.empty()) {
     auto read = server_password(server.password_file);
@@ -308,4 +307,9 @@ Expected<std::unique_ptr<Connection>> connect_postgresql(const Server& server, d
   return connection;
 }
 
+}  // namespace
 }  // namespace nonio::host::storage
+
+NONIO_EXPORTED const nonio::host::storage::PostgreSQL nonio_postgresql;
+const nonio::host::storage::PostgreSQL nonio_postgresql{nonio::host::storage::check,
+                                                        nonio::host::storage::connect};

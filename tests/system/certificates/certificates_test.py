@@ -340,6 +340,19 @@ class Certificates(SigningTest):
         self.assertEqual(self.state(answer[0], "content.printed"), "fails")
         done, answer = self.verify(self.pdf("c1"), how="lie")
         self.assertEqual(done.returncode, 0)
+        self.plugins_are_loaded_where_a_signature_holds(self.pdf("c1"))
+
+    def plugins_are_loaded_where_a_signature_holds(self, honest):
+        broken = self.site.parent / "broken.pdf"
+        broken.write_bytes(honest.read_bytes()[:-200])
+        files = [broken, honest, self.site.parent / "none.pdf", honest, broken]
+        with unittest.mock.patch.dict(os.environ, {"LD_DEBUG": "files"}):
+            done, refused = self.verify(broken, broken)
+            self.assertEqual([a["holds"] for a in refused], [False] * 2)
+            self.assertNotIn("plugins/", done.stderr)
+            done, answers = self.verify(*files)
+            self.assertIn("plugins/", done.stderr)
+        self.assertEqual([a["file"] for a in answers], list(map(str, files)))  # each once, in this order
 
     # A person releases.
 
