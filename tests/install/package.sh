@@ -18,7 +18,7 @@ quietly() { "$@" > "$work/said.log" 2>&1 || { local s=$?; cat "$work/said.log"; 
 [ -n "${NONIO_TEST_PACKAGES:-}" ] || skip "it takes minutes and makes a whole Debian; NONIO_TEST_PACKAGES=1 asks for it"
 [ "$(id -u)" = 0 ] || skip "it makes a root file system, which needs root"
 for program in buildah mmdebstrap lintian man; do
-  [ -n "$(type -P $program)" ] || skip "$program is missing (scripts/install-dependencies --tests)"
+  [ -n "$(type -P $program)" ] || skip "$program is missing (scripts/install-dependencies --all)"
 done
 unshare --mount --pid --fork true 2> /dev/null || skip "unshare --mount is not permitted here"
 /usr/lib/apt/apt-helper download-file http://deb.debian.org/debian/dists/bookworm/Release "$work/Release" > /dev/null 2>&1 ||
