@@ -272,6 +272,17 @@ void kill_after(pid_t child, useconds_t microseconds) {
   ::waitpid(child, nullptr, 0);
 }
 
+/// Or, on a busy machine, nothing would be tried: none would come as far as to issue one.
+template <class Entries>
+void until_one_is_issued(const Entries& entries) {
+  for (int tries = 0; tries < 1000; ++tries) {
+    const auto so_far = entries();
+    if (std::any_of(so_far.begin(), so_far.end(), [](const auto& e) { return e.state != "drawn"; }))
+      return;
+    ::usleep(10000);
+  }
+}
+
 TEST_F(RegisterTest, ProcessesAtOnceAndKilledOnesLoseAndRepeatNothing) {
   const char* wanted = std::getenv("NONIO_SEED");
   const unsigned seed = wanted == nullptr ? std::random_device{}() : std::atoi(wanted);
@@ -296,13 +307,7 @@ TEST_F(RegisterTest, ProcessesAtOnceAndKilledOnesLoseAndRepeatNothing) {
       }
       children.push_back(child);
     }
-    // On a busy machine none would come as far as to issue one; then nothing was tried.
-    const auto some = [](const auto& e) { return e.state != "drawn"; };
-    for (int tries = 0; round == 0 && tries < 1000; ++tries) {
-      const auto so_far = entries();
-      if (std::any_of(so_far.begin(), so_far.end(), some)) break;
-      ::usleep(10000);
-    }
+    if (round == 0) until_one_is_issued([this] { return entries(); });
     ::usleep(static_cast<useconds_t>(random() % 30000));
     for (const pid_t child : children) kill_after(child, static_cast<useconds_t>(random() % 3000));
   }
