@@ -42,7 +42,7 @@ Means means_of(const Track& k) {
   out.step = out.duration / (bins - 1.0);
   std::vector<double> t, d, n, squares;
   for (std::size_t i = 0; i < k.size(); ++i) {
-    const int at = static_cast<int>((k.time[i] - start) / out.step + 0.5);
+    const int at = static_cast<int>(std::lround((k.time[i] - start) / out.step));
     if (out.place.empty() || out.place.back() != at) {
       out.place.push_back(at);
       t.push_back(0.0), d.push_back(0.0), n.push_back(0.0), squares.push_back(0.0);
