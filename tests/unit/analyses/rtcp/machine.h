@@ -70,7 +70,7 @@ inline Observations begin() {
 inline void put(Observations& o, std::size_t line, double angle, const Vector& at, const Vector& s,
                 double deviation) {
   o.axes[0].position.push_back(angle);
-  for (int k = 0; k < 3; ++k) o.axes[static_cast<std::size_t>(1 + k)].position.push_back(at[k]);
+  for (int k = 0; k < 3; ++k) o.axes[1 + static_cast<std::size_t>(k)].position.push_back(at[k]);
   o.sense.push_back({s[0], s[1], s[2]});
   o.line.push_back(static_cast<std::uint32_t>(line));
   o.run.push_back(1);
