@@ -125,8 +125,8 @@ Expected<Observations> in_steps(const Specification& s, const CycleSpec& c) {
         for (std::size_t k = 0; k < 3; ++k) {
           const Side& side = (*sides)[k];
           const double whole = c.measurement.to.at(side.axis) - side.from;
-          const double moved =
-              static_cast<double>((step + 2 - static_cast<std::uint32_t>(k)) / 3);  // X, then Y, Z
+          // X, then Y, Z
+          const std::uint32_t moved = (step + 2 - static_cast<std::uint32_t>(k)) / 3;
           o.axes[k].position.push_back((sign[k] > 0.0 ? side.from : side.from + whole) +
                                        sign[k] * whole * moved / c.steps);
           o.axes[k].approach.push_back(sign[k] * whole > 0.0 ? 1 : -1);
