@@ -10,8 +10,8 @@
 
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
+#include "rows.h"
 #include "spatial.h"
-#include "table.h"
 
 namespace nonio::csv {
 
@@ -44,13 +44,6 @@ Expected<Circle> circle_of(const Measurement& m) {
   return c;
 }
 
-Error wrong_row(const Table& table, std::size_t row, std::string column, std::string message) {
-  Error error{std::move(message)};
-  error.line = table.line[row];
-  error.column = std::move(column);
-  return error;
-}
-
 CircleRuns runs_of(const Table& table) {
   CircleRuns runs;
   const auto* run = table.column("run");
@@ -73,17 +66,17 @@ Expected<std::vector<std::size_t>> evaluated(const Table& table,
   for (std::size_t i = 0; i < rows.size(); ++i) {
     least = std::min(least, angle[rows[i]]), most = std::max(most, angle[rows[i]]);
     if (i > 0 && (angle[rows[i]] - angle[rows[i - 1]]) * direction < 0.0)
-      return fail(wrong_row(table, rows[i], "angle_deg",
-                            "expected angles that " + std::string(direction > 0 ? "grow" : "fall") +
-                                " in direction " + (direction > 0 ? "+" : "-") +
-                                ", row by row (beyond 360 or below 0, if the start is not at 0)"));
+      return fail(at_line(table.line[rows[i]], "angle_deg",
+                          "expected angles that " + std::string(direction > 0 ? "grow" : "fall") +
+                              " in direction " + (direction > 0 ? "+" : "-") +
+                              ", row by row (beyond 360 or below 0, if the start is not at 0)"));
   }
   if (most - least <= 360.0 + slack) return rows;
   if (!(over_travel > 0.0) || most - least > 360.0 + 2.0 * over_travel + 1.0)
-    return fail(wrong_row(table, rows.front(), "angle_deg",
-                          "expected at most 360 deg in a run, or the angle before and behind it as "
-                          "`over_travel_deg` in the manifest; found " +
-                              fixed_text(most - least, 3) + " deg"));
+    return fail(at_line(table.line[rows.front()], "angle_deg",
+                        "expected at most 360 deg in a run, or the angle before and behind it as "
+                        "`over_travel_deg` in the manifest; found " +
+                            fixed_text(most - least, 3) + " deg"));
   const double middle = 0.5 * (least + most);
   std::vector<std::size_t> kept;
   for (const std::size_t row : rows)
@@ -109,26 +102,10 @@ void put_row(Observations& obs, const Circle& c, double t, int d, double deviati
   obs.deviation.push_back(deviation);
 }
 
-/// Columns of time and air, as the file has them.
-void put_others(Observations& obs, const Table& table, std::size_t row) {
-  const auto put = [&](const char* name, std::vector<double>& to) {
-    if (const auto* column = table.column(name)) to.push_back((*column)[row]);
-  };
-  put("time_s", obs.time);
-  put("material_c", obs.material);
-  put("air_c", obs.air);
-  put("pressure_hpa", obs.pressure);
-  put("humidity_pct", obs.humidity);
-  obs.source_line.push_back(table.line[row]);
-}
-
 Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle,
                                     const Table& table) {
   const Measurement& m = input.measurement;
-  Observations obs;
-  obs.measurement = m.id;
-  if (table.empty_rows > 0)
-    obs.notes.push_back({"csv.empty-rows", {count("rows", table.empty_rows)}});
+  Observations obs = begin(m, table);
   obs.axes = {{circle.first, false, {}, {}}, {circle.second, false, {}, {}}};
   const auto& deviation = *table.column("deviation_um");
   std::uint64_t arcs = 0;
@@ -148,22 +125,18 @@ Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle
               deviation[row] * 1e-6);
       obs.line.push_back(static_cast<std::uint32_t>(obs.lines.size()));
       obs.run.push_back(run);
-      put_others(obs, table, row);
+      put_beside(obs, table, row);
     }
     if (!obs.sense.empty()) line.sense = obs.sense.back();
     obs.lines.push_back(std::move(line));
   }
   if (arcs > 0) obs.notes.push_back({"csv.over-travel", {count("rows", arcs)}});
-  if (obs.size() == 0)
-    return fail("expected readings, found " + std::to_string(obs.missing) +
-                " of which not one was taken");
-  return obs;
+  return complete(std::move(obs));
 }
 
 }  // namespace
 
 Expected<Observations> read_circle(const ReadInput& input) {
-  using Kind = ColumnSpec::Kind;
   const auto circle = circle_of(input.measurement);
   if (!circle) return fail(circle.error());
   auto table = read_table(input.bytes, {{"direction", Kind::sign, true},

@@ -9,15 +9,14 @@
 
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
+#include "rows.h"
 #include "spatial.h"
-#include "table.h"
 
 namespace nonio::csv {
 
 namespace {
 
 constexpr double heat_turn = 2.0 * std::numbers::pi, heat_deg = std::numbers::pi / 180.0;
-using HeatKind = ColumnSpec::Kind;
 
 /// One of the sensors of a nest about a test mandrel: along an axis, 1 nearer to the spindle than 2.
 struct Sensor {
@@ -27,13 +26,6 @@ struct Sensor {
 constexpr Sensor nest[] = {{"x_um", "X", 0}, {"x1_um", "X1", 0}, {"x2_um", "X2", 0},
                            {"y_um", "Y", 1}, {"y1_um", "Y1", 1}, {"y2_um", "Y2", 1},
                            {"z_um", "Z", 2}};
-
-Error heat_error(const Table& table, std::size_t row, std::string column, std::string message) {
-  Error error{std::move(message)};
-  error.line = table.line[row];
-  error.column = std::move(column);
-  return error;
-}
 
 std::vector<ColumnSpec> with_sensors(std::vector<ColumnSpec> columns) {
   for (const Sensor& s : nest) columns.push_back({s.column});
@@ -53,42 +45,13 @@ Expected<std::vector<Sensor>> sensors_of(const Table& table) {
   return out;
 }
 
-/// What was measured beside the deviation, once for each reading.
-void put_beside(Observations& obs, const Table& table, std::size_t row) {
-  const auto put = [&](const char* name, std::vector<double>& to) {
-    if (const auto* column = table.column(name)) to.push_back((*column)[row]);
-  };
-  put("time_s", obs.time);
-  put("material_c", obs.material);
-  put("air_c", obs.air);
-  put("pressure_hpa", obs.pressure);
-  put("humidity_pct", obs.humidity);
-  obs.source_line.push_back(table.line[row]);
-}
-
-Expected<Observations> begun(const ReadInput& input, const Table& table) {
-  Observations obs;
-  obs.measurement = input.measurement.id;
-  if (table.empty_rows > 0)
-    obs.notes.push_back({"csv.empty-rows", {count("rows", table.empty_rows)}});
-  return obs;
-}
-
-Expected<Observations> ended(Observations obs) {
-  if (obs.size() == 0)
-    return fail("expected readings, found " + std::to_string(obs.missing) +
-                " of which not one was taken");
-  return obs;
-}
-
 std::optional<Error> times_grow(const Table& table) {
   const auto& time = *table.column("time_s");
   for (std::size_t i = 1; i < time.size(); ++i)
     if (!(time[i] > time[i - 1]))
-      return heat_error(table, i, "time_s",
-                        "expected a time later than that of the row before, " +
-                            short_text(time[i - 1], 9) + " s, found " + short_text(time[i], 9) +
-                            " s");
+      return at_line(table.line[i], "time_s",
+                     "expected a time later than that of the row before, " +
+                         short_text(time[i - 1], 9) + " s, found " + short_text(time[i], 9) + " s");
   return std::nullopt;
 }
 
@@ -106,8 +69,8 @@ Expected<Turning> turning_of(const Table& table) {
   Turning out;
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (!(std::fabs(speed[i]) <= 1e6))
-      return fail(heat_error(
-          table, i, "speed_rpm",
+      return fail(at_line(
+          table.line[i], "speed_rpm",
           "expected a speed from -1000000 to 1000000 rpm, found " + short_text(speed[i], 9)));
     const double before = i > 0 ? speed[i - 1] / 60.0 * heat_turn * (time[i] - time[i - 1]) : 0.0;
     out.angle.push_back(i > 0 ? out.angle.back() + before : 0.0);
@@ -121,30 +84,30 @@ Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
   const auto sensors = sensors_of(table);
   if (!sensors) return fail(sensors.error());
   if (auto error = times_grow(table)) return fail(std::move(*error));
-  auto obs = begun(input, table);
+  Observations obs = begin(input.measurement, table);
   const auto turning = turning_of(table);
   if (!turning) return fail(turning.error());
-  obs->axes = {{"S", true, {}, {}}};
+  obs.axes = {{"S", true, {}, {}}};
   for (const Sensor& s : *sensors) {
     Observations::Line line{s.name, {}};
     line.sense[s.coordinate] = 1.0;
-    const auto number = static_cast<std::uint32_t>(obs->lines.size());
-    obs->lines.push_back(std::move(line));
+    const auto number = static_cast<std::uint32_t>(obs.lines.size());
+    obs.lines.push_back(std::move(line));
     const auto& deviation = *table.column(s.column);
     for (std::size_t row = 0; row < table.size(); ++row) {
       if (!std::isfinite(deviation[row])) {
-        ++obs->missing;
+        ++obs.missing;
         continue;
       }
-      obs->deviation.push_back(deviation[row] * 1e-6);
-      obs->line.push_back(number);
-      obs->run.push_back(1);
-      obs->axes[0].position.push_back(turning->angle[row]);
-      obs->axes[0].approach.push_back(turning->turns[row]);
-      put_beside(*obs, table, row);
+      obs.deviation.push_back(deviation[row] * 1e-6);
+      obs.line.push_back(number);
+      obs.run.push_back(1);
+      obs.axes[0].position.push_back(turning->angle[row]);
+      obs.axes[0].approach.push_back(turning->turns[row]);
+      put_beside(obs, table, row);
     }
   }
-  return ended(std::move(*obs));
+  return complete(std::move(obs));
 }
 
 /// An axis that is exercised between targets: each reading of a target from a side is a cycle more.
@@ -157,27 +120,27 @@ Expected<Observations> read_exercised(const ReadInput& input, const Table& table
         "in the manifest, found \"" +
         m.axis + "\"");
   if (auto error = times_grow(table)) return fail(std::move(*error));
-  auto obs = begun(input, table);
-  obs->axes = {{m.axis, false, {}, {}}};
+  Observations obs = begin(input.measurement, table);
+  obs.axes = {{m.axis, false, {}, {}}};
   Observations::Line line{m.id, {}};
   line.sense[coordinate_of(m.axis)] = 1.0;
-  obs->lines.push_back(std::move(line));
+  obs.lines.push_back(std::move(line));
   const auto &target = *table.column("target_mm"), &direction = *table.column("direction"),
              &deviation = *table.column("deviation_um");
   std::map<std::pair<double, double>, std::uint32_t> cycles;
   for (std::size_t row = 0; row < table.size(); ++row) {
     const std::uint32_t cycle = ++cycles[{target[row], direction[row]}];
     if (!std::isfinite(deviation[row])) {
-      ++obs->missing;
+      ++obs.missing;
       continue;
     }
-    obs->axes[0].position.push_back(target[row] * 1e-3);
-    obs->axes[0].approach.push_back(direction[row] > 0.0 ? std::int8_t{1} : std::int8_t{-1});
-    obs->deviation.push_back(deviation[row] * 1e-6);
-    obs->run.push_back(cycle);
-    put_beside(*obs, table, row);
+    obs.axes[0].position.push_back(target[row] * 1e-3);
+    obs.axes[0].approach.push_back(direction[row] > 0.0 ? std::int8_t{1} : std::int8_t{-1});
+    obs.deviation.push_back(deviation[row] * 1e-6);
+    obs.run.push_back(cycle);
+    put_beside(obs, table, row);
   }
-  return ended(std::move(*obs));
+  return complete(std::move(obs));
 }
 
 /// Angles of a file with a pulse a turn: rows between two pulses are equally far apart. Rows before
@@ -214,11 +177,11 @@ Expected<std::vector<double>> angles_of(const Table& table, const std::vector<st
     for (std::size_t k = 0; k < rows.size(); ++k) {
       out.push_back((*angle)[rows[k]] * heat_deg);
       if (k > 0 && !(out[k] > out[k - 1]))
-        return fail(heat_error(table, rows[k], "angle_deg",
-                               "expected angles that grow from row to row and go on beyond 360, "
-                               "found " +
-                                   short_text((*angle)[rows[k]], 9) + " behind " +
-                                   short_text((*angle)[rows[k - 1]], 9)));
+        return fail(at_line(table.line[rows[k]], "angle_deg",
+                            "expected angles that grow from row to row and go on beyond 360, "
+                            "found " +
+                                short_text((*angle)[rows[k]], 9) + " behind " +
+                                short_text((*angle)[rows[k - 1]], 9)));
     }
     return out;
   }
@@ -230,7 +193,7 @@ Expected<std::vector<double>> angles_of(const Table& table, const std::vector<st
   for (const std::size_t row : rows) {
     const double pulse = (*index)[row];
     if (pulse != 0.0 && pulse != 1.0)
-      return fail(heat_error(table, row, "index", "expected 1 in the row of a pulse, else 0"));
+      return fail(at_line(table.line[row], "index", "expected 1 in the row of a pulse, else 0"));
     own.push_back(pulse);
   }
   return angles_by_pulses(own);
@@ -273,15 +236,15 @@ Expected<void> put_set_up(Observations& obs, const Table& table, const Sensor& s
 
 Expected<Observations> read_thermal(const ReadInput& input) {
   const bool exercised = !input.measurement.axis.empty();
-  std::vector<ColumnSpec> columns{{"time_s", HeatKind::place, true}};
+  std::vector<ColumnSpec> columns{{"time_s", Kind::place, true}};
   if (exercised) {
-    columns.push_back({"target_mm", HeatKind::place, true});
-    columns.push_back({"direction", HeatKind::sign, true});
-    columns.push_back({"deviation_um", HeatKind::number, true});
+    columns.push_back({"target_mm", Kind::place, true});
+    columns.push_back({"direction", Kind::sign, true});
+    columns.push_back({"deviation_um", Kind::number, true});
     for (const char* name : {"material_c", "air_c", "pressure_hpa", "humidity_pct"})
       columns.push_back({name});
   } else {
-    columns.push_back({"speed_rpm", HeatKind::place});
+    columns.push_back({"speed_rpm", Kind::place});
     columns = with_sensors(std::move(columns));
   }
   auto table = read_table(input.bytes, columns);
@@ -297,8 +260,8 @@ namespace {
 Expected<Observations> read_turns(const ReadInput& input, const Table& table) {
   const auto sensors = sensors_of(table);
   if (!sensors) return fail(sensors.error());
-  auto obs = begun(input, table);
-  obs->axes = {{"S", true, {}, {}}, {"ball", true, {}, {}}, {"sensor", true, {}, {}}};
+  Observations obs = begin(input.measurement, table);
+  obs.axes = {{"S", true, {}, {}}, {"ball", true, {}, {}}, {"sensor", true, {}, {}}};
   const auto *ball = table.column("ball_deg"), *sensor = table.column("sensor_deg");
   std::map<SetUp, std::vector<std::size_t>> set_ups;
   for (std::size_t row = 0; row < table.size(); ++row)
@@ -311,19 +274,19 @@ Expected<Observations> read_turns(const ReadInput& input, const Table& table) {
   std::uint64_t outside = 0;
   for (const auto& [at, rows] : set_ups)
     for (const Sensor& s : *sensors)
-      if (auto done = put_set_up(*obs, table, s, at, rows, outside); !done)
+      if (auto done = put_set_up(obs, table, s, at, rows, outside); !done)
         return fail(done.error());
-  if (outside > 0) obs->notes.push_back({"csv.outside-pulses", {count("readings", outside)}});
-  return ended(std::move(*obs));
+  if (outside > 0) obs.notes.push_back({"csv.outside-pulses", {count("readings", outside)}});
+  return complete(std::move(obs));
 }
 
 }  // namespace
 
 Expected<Observations> read_spindle(const ReadInput& input) {
-  auto table = read_table(input.bytes, with_sensors({{"angle_deg", HeatKind::place},
-                                                     {"index", HeatKind::place},
-                                                     {"ball_deg", HeatKind::place},
-                                                     {"sensor_deg", HeatKind::place},
+  auto table = read_table(input.bytes, with_sensors({{"angle_deg", Kind::place},
+                                                     {"index", Kind::place},
+                                                     {"ball_deg", Kind::place},
+                                                     {"sensor_deg", Kind::place},
                                                      {"time_s"}}));
   auto obs = table ? read_turns(input, *table) : Expected<Observations>(fail(table.error()));
   if (!obs) obs.error().file = input.measurement.file;

@@ -5,19 +5,16 @@
 #include <map>
 
 #include "nonio/sdk/fields.h"
+#include "rows.h"
 #include "spatial.h"
-#include "table.h"
 
 namespace nonio::csv {
 
 namespace {
 
-using LengthKind = ColumnSpec::Kind;
-
 /// A line for each test and position: E0 1, E0 2, ..., EL 1. Run: the repeat.
 Expected<Observations> read_errors(const ReadInput& input, const Table& table) {
-  Observations obs;
-  obs.measurement = input.measurement.id;
+  Observations obs = begin(input.measurement, table);
   obs.axes = {{"length", false, {}, {}}};
   const auto &position = *table.column("position"), &repeat = *table.column("repeat"),
              &length = *table.column("length_mm"), &deviation = *table.column("deviation_um");
@@ -29,9 +26,7 @@ Expected<Observations> read_errors(const ReadInput& input, const Table& table) {
   std::map<std::array<double, 3>, std::map<std::string, std::uint32_t>> taken;
   for (std::size_t row = 0; row < table.size(); ++row) {
     const auto wrong = [&](const char* column, std::string message) {
-      Error error{std::move(message)};
-      error.line = table.line[row], error.column = column, error.file = input.measurement.file;
-      return fail(std::move(error));
+      return fail(at_line(table.line[row], column, std::move(message)));
     };
     if (!(length[row] > 0.0 && length[row] <= 1e6))
       return wrong("length_mm", "expected a length above 0, at most 1000000 mm");
@@ -62,8 +57,7 @@ Expected<Observations> read_errors(const ReadInput& input, const Table& table) {
 
 /// Three readings a point, along X, Y and Z, of which the deviation is the coordinate.
 Expected<Observations> read_points(const ReadInput& input, const Table& table) {
-  Observations obs;
-  obs.measurement = input.measurement.id;
+  Observations obs = begin(input.measurement, table);
   obs.axes = {{"point", false, {}, {}}};
   obs.lines = {{"P", {}}};
   std::uint32_t number = 0;
@@ -97,29 +91,20 @@ Expected<Observations> read_points(const ReadInput& input, const Table& table) {
 
 Expected<Observations> read_lengths(const ReadInput& input) {
   const bool points = input.bytes.substr(0, 65536).find("x_mm") != std::string_view::npos;
-  auto table = points ? read_table(input.bytes, {{"x_mm", LengthKind::number, true},
-                                                 {"y_mm", LengthKind::number, true},
-                                                 {"z_mm", LengthKind::number, true}})
-                      : read_table(input.bytes, {{"test", LengthKind::word, true, {"E0", "EL"}},
-                                                 {"position", LengthKind::whole, true},
-                                                 {"length_mm", LengthKind::place, true},
-                                                 {"repeat", LengthKind::whole, true},
-                                                 {"deviation_um", LengthKind::number, true},
+  auto table = points ? read_table(input.bytes, {{"x_mm", Kind::number, true},
+                                                 {"y_mm", Kind::number, true},
+                                                 {"z_mm", Kind::number, true}})
+                      : read_table(input.bytes, {{"test", Kind::word, true, {"E0", "EL"}},
+                                                 {"position", Kind::whole, true},
+                                                 {"length_mm", Kind::place, true},
+                                                 {"repeat", Kind::whole, true},
+                                                 {"deviation_um", Kind::number, true},
                                                  {"material_c"},
                                                  {"air_c"}});
   auto obs = !table   ? Expected<Observations>(fail(table.error()))
              : points ? read_points(input, *table)
                       : read_errors(input, *table);
-  if (!obs) {
-    obs.error().file = input.measurement.file;
-    return obs;
-  }
-  if (table->empty_rows > 0)
-    obs->notes.push_back({"csv.empty-rows", {count("rows", table->empty_rows)}});
-  if (obs->size() == 0)
-    return fail("expected readings, found " + std::to_string(obs->missing) +
-                " of which not one was taken");
-  return obs;
+  return in_file(obs ? complete(std::move(*obs)) : std::move(obs), input);
 }
 
 }  // namespace nonio::csv

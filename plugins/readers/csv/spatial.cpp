@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "spatial_rows.h"
+#include "rows.h"
 
 namespace nonio::csv {
 

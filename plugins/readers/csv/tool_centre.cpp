@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "rows.h"
 #include "spatial.h"
-#include "spatial_rows.h"
 
 namespace nonio::csv {
 namespace {

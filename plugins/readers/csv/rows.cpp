@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "spatial_rows.h"
+#include "rows.h"
 
 #include "spatial.h"
 
@@ -12,7 +12,7 @@ std::vector<ColumnSpec> with_common(std::vector<ColumnSpec> columns) {
   return columns;
 }
 
-void put_common(Observations& obs, const Table& table, std::size_t row) {
+void put_beside(Observations& obs, const Table& table, std::size_t row) {
   const auto put = [&](const char* name, std::vector<double>& to) {
     if (const auto* column = table.column(name)) to.push_back((*column)[row]);
   };
@@ -21,9 +21,13 @@ void put_common(Observations& obs, const Table& table, std::size_t row) {
   put("air_c", obs.air);
   put("pressure_hpa", obs.pressure);
   put("humidity_pct", obs.humidity);
+  obs.source_line.push_back(table.line[row]);
+}
+
+void put_common(Observations& obs, const Table& table, std::size_t row) {
   const auto* run = table.column("run");
   obs.run.push_back(run == nullptr ? 1 : static_cast<std::uint32_t>((*run)[row]));
-  obs.source_line.push_back(table.line[row]);
+  put_beside(obs, table, row);
 }
 
 Observations begin(const Measurement& m, const Table& table) {
