@@ -16,6 +16,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import by_rules  # noqa: E402 (this folder is no package)
 import for_customers  # noqa: E402 (this folder is no package)
 import in_circles  # noqa: E402
+import in_fine  # noqa: E402
 import in_heat  # noqa: E402
 import in_space  # noqa: E402 (this folder is no package)
 from parts import (GOOD_ROOM, MADE_UP, ROTARY_CALIBRATOR, Noise, axis_measurement, behind, decimal,
@@ -331,6 +332,7 @@ STORIES = {
     **by_rules.STORIES,
     **in_circles.STORIES,
     **in_heat.STORIES,
+    **in_fine.STORIES,
 }
 
 RECORDS = {"S-0109": """# Constructed, as all samples are: what the house knows of this machine, whoever measures it.

@@ -141,7 +141,8 @@ def toml(value):
 
 
 def manifest(story, ident, customer, place, date, machine, axes, measurements, instrument=None,
-             environment=None, analyses=None, model=None, operator="A. Sample", campaign=None, options=None):
+             environment=None, analyses=None, model=None, operator="A. Sample", campaign=None, options=None,
+             outputs=None):
     """`campaign`: more keys of [campaign]; `options`: {plugin: {key: value}}."""
     out = ["# Constructed: nobody measured this machine, and customer and machine are invented."]
     out += ["# " + line for line in story]
@@ -168,6 +169,8 @@ def manifest(story, ident, customer, place, date, machine, axes, measurements, i
         out += ["", "[options.%s]" % plugin] + ["%s = %s" % item for item in keys.items()]
     if analyses:
         out += ["", "[run]", "analyses = [%s]" % ", ".join(toml(name) for name in analyses)]
+    if outputs:
+        out += ["outputs = [%s]" % ", ".join(toml(name) for name in outputs)]
     return "\n".join(out) + "\n"
 
 

@@ -6,6 +6,7 @@
 
 #include "circle.h"
 #include "expression.h"
+#include "fine_motion.h"
 #include "heat.h"
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/iso230_2.h"
@@ -230,7 +231,7 @@ std::string give(Case& c, const std::vector<std::string>& words) {
     c.numbers[words[1]] = *number;
     return "";
   }
-  if (is_heat(c) && words.size() >= 3) {
+  if ((is_heat(c) || is_fine_motion(c)) && words.size() >= 3) {
     std::vector<double> list;
     for (std::size_t k = 2; k < words.size(); ++k) {
       const auto number = Expression::value(words[k]);
@@ -250,6 +251,7 @@ std::string give(Case& c, const std::vector<std::string>& words) {
 Outcome evaluate(const Case& c) {
   if (c.analysis == "circle") return evaluate_circle(c);
   if (is_heat(c)) return evaluate_heat(c);
+  if (is_fine_motion(c)) return evaluate_fine_motion(c);
   Outcome out;
   const AxisTest all = AxisTest::arrange(c.observations);
   const bool leave_out = c.options.count("leave-out") > 0;

@@ -63,6 +63,17 @@ class Documents(unittest.TestCase):
         wide = [f"{page.relative_to(ROOT)}:{n}" for page in PAGES for n in wide_lines(page.read_text())]
         self.assertEqual([], wide, "expected at most 120 columns")
 
+    def test_each_sample_has_one_row_in_their_order(self):
+        rows = re.findall(r"^\| `([^`]+)` \|", (ROOT / "samples" / "README.md").read_text(), re.M)
+        there = sorted(p.name for p in (ROOT / "samples" / "site").iterdir() if (p / "campaign.toml").exists())
+        self.assertEqual(there, rows)
+
+    def test_no_row_of_the_manifest_is_there_twice(self):
+        rows = re.findall(r"^\|.*$", (ROOT / "docs" / "manifest.md").read_text(), re.M)
+        keys = [row.split(" | ")[0] for row in rows if "`[" in row.split(" | ")[0] or "`kind`" in row]
+        self.assertEqual([], sorted({k for k in keys if keys.count(k) > 1 and k != "| `kind`"}))
+        self.assertEqual(1, sum(row.startswith("| `kind` | required") for row in rows))
+
     def test_links_lead_to_files_that_are_there(self):
         lost = [f"{page.relative_to(ROOT)}: {target}" for page in PAGES
                 for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text())

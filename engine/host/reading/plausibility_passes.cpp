@@ -144,6 +144,22 @@ class Curve {
 /// What makes `one` the same curve as `other`: nothing, its other end first, its other sign.
 enum class Turned { not_at_all, order, sign };
 
+/// Sums of squares of what is left between two curves: as they are, turned round, turned over.
+struct Likeness {
+  double same = 0.0, order = 0.0, sign = 0.0;
+};
+
+Likeness likeness(const std::vector<double>& a, const std::vector<double>& b,
+                  const std::vector<double>& from_the_end) {
+  Likeness out;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    out.same += (a[i] - b[i]) * (a[i] - b[i]);
+    out.order += (from_the_end[i] - b[i]) * (from_the_end[i] - b[i]);
+    out.sign += (a[i] + b[i]) * (a[i] + b[i]);
+  }
+  return out;
+}
+
 Turned turned(const Curve& one, const Curve& other, double step) {
   constexpr std::size_t fewest = 7;
   std::vector<double> at, a, b;
@@ -164,18 +180,20 @@ Turned turned(const Curve& one, const Curve& other, double step) {
   take_line_out(at, a);
   take_line_out(at, b);
   take_line_out(at, from_the_end);
-  double same = 0.0, order = 0.0, sign = 0.0;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    same += (a[i] - b[i]) * (a[i] - b[i]);
-    order += (from_the_end[i] - b[i]) * (from_the_end[i] - b[i]);
-    sign += (a[i] + b[i]) * (a[i] + b[i]);
-  }
-  const auto n = static_cast<double>(at.size());
-  const auto fits = [&](double sum_of_squares) {
-    return same > 12.0 * sum_of_squares && sum_of_squares < 6.0 * noise * n &&
-           same > 20.0 * noise * n;
+  const Likeness whole = likeness(a, b, from_the_end);
+  // What the first reading of each pass alone has (a slide that sticks) is at both ends too.
+  const auto inner = [](std::vector<double>& v) { v.erase(v.begin()), v.pop_back(); };
+  inner(at), inner(a), inner(b), inner(from_the_end);
+  take_line_out(at, a), take_line_out(at, b), take_line_out(at, from_the_end);
+  const Likeness within = likeness(a, b, from_the_end);
+  const auto n = static_cast<double>(at.size() + 2);
+  const auto fits = [&](double sum_of_squares, double sum_within) {
+    return whole.same > 12.0 * sum_of_squares && sum_of_squares < 6.0 * noise * n &&
+           whole.same > 20.0 * noise * n && within.same > 3.0 * sum_within;
   };
-  return fits(order) ? Turned::order : fits(sign) ? Turned::sign : Turned::not_at_all;
+  return fits(whole.order, within.order) ? Turned::order
+         : fits(whole.sign, within.sign) ? Turned::sign
+                                         : Turned::not_at_all;
 }
 
 void push_turned(Turned how, const std::string& which, std::vector<Finding>& out) {

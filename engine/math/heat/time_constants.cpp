@@ -128,10 +128,13 @@ Curve searched(const Means& m, std::size_t parts, const PathNoise& noise) {
   return best;
 }
 
-/// Steps of Gauss-Newton in ln tau, halved while they make it worse.
+/// Steps of Gauss-Newton in ln tau, halved while they make it worse. Near the minimum the sum of
+/// squares is flat, and its rounding must not decide where the search ends.
 void refine(const Means& m, const PathNoise& noise, Curve& c) {
+  constexpr int most = 60;
+  constexpr double near = 1e-4, reached = 1e-11;
   const std::size_t parts = c.log_tau.size();
-  for (int step = 0; step < 30; ++step) {
+  for (int step = 0; step < most; ++step) {
     const Matrix J = jacobian_of(m, c);
     Matrix both(J.rows(), J.cols() + 1);
     both << J, m.d - columns_for(m, c.log_tau) * c.beta;
@@ -149,10 +152,10 @@ void refine(const Means& m, const PathNoise& noise, Curve& c) {
         log_tau[k] = std::clamp(log_tau[k], std::log(m.step / 20.0), std::log(100.0 * m.duration));
       }
       Curve next = linear(m, log_tau, noise);
-      better = next.rss < c.rss;
+      better = next.rss < c.rss || largest < near;
       if (better) c = std::move(next);
     }
-    if (!better || largest < 1e-7) break;
+    if (!better || largest < reached) break;
   }
   c.jacobian = jacobian_of(m, c);
 }

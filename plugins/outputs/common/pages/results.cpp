@@ -192,6 +192,15 @@ std::vector<std::string> undecided(const Source& source) {
              !(source.certificate && k.reason == "no-uncertainty");
     });
   };
+  // A value that stands with another measurement and was made of this one too (the worst line).
+  const auto is_held_with = [&](const std::string& measurement, const std::string& name) {
+    const auto& all = source.in.results.analyses;
+    return std::any_of(all.begin(), all.end(), [&](const Results::Analysed& a) {
+      const auto& uses = a.evaluation.uses;
+      return std::find(uses.begin(), uses.end(), measurement) != uses.end() &&
+             is_held(a.measurement, name);
+    });
+  };
   std::string not_measured;
   std::vector<std::string> sentences;
   for (const Axis& axis : c.machine.axes) {
@@ -202,7 +211,8 @@ std::vector<std::string> undecided(const Source& source) {
       measured = true;
       std::string names;
       for (const auto& [name, limit] : axis.tolerance)
-        if (!is_held(m.id, name)) names += (names.empty() ? "" : ", ") + symbol(name);
+        if (!is_held(m.id, name) && !is_held_with(m.id, name))
+          names += (names.empty() ? "" : ", ") + symbol(name);
       if (!names.empty())
         sentences.push_back(
             w.get("undecided.no_result", {{"measurement", m.id}, {"names", names}}));

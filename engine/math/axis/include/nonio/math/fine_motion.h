@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Motion of an axis over less than one turn of its screw: the periodic error of a dense run, and
+/// single small steps.
+namespace nonio::math {
+
+/// One pass in one direction.
+struct Pass {
+  std::vector<double> position;   ///< m or rad, in order of motion
+  std::vector<double> deviation;  ///< m or rad
+};
+
+/// Periodic error over a declared period p, of passes in one direction:
+///
+///     d(x) = a_q + b_q x + sum_(k=1,2) [C_k cos(2 pi k x/p) + S_k sin(2 pi k x/p)]     of pass q
+///     folded(j) = mean of d(x) - a_q - b_q x over the readings whose phase is j/n, j = 0..n-1
+///     range = max folded - min folded;  c_k = sqrt(C_k^2 + S_k^2), peak to valley 2 c_k
+///
+/// By least squares of all passes at once, so that a line does not take its part of a wave. Noise
+/// of c_k: white with a slow part, from what the fit leaves, higher harmonics included; of the
+/// folded means: the scatter about them.
+/// Source: ASME B5.54 and the annex of ISO 230-2 on dense runs, after our reading
+/// (docs/formulas.md). Range: every pass over two periods with steps of p/20 at most.
+struct PeriodicError {
+  enum class Answer { given, no_pass, too_short, too_coarse };
+  struct Harmonic {
+    double amplitude = 0.0;  ///< c_k, m or rad
+    double phase = 0.0;      ///< rad, 0..2 pi: position of its first maximum is phase p/(2 pi k)
+    double u = 0.0;          ///< of the amplitude
+  };
+  Answer answer = Answer::no_pass;
+  double periods = 0.0;  ///< of the shortest pass
+  double step = 0.0;     ///< the widest of all passes, m or rad
+  std::array<Harmonic, 2> harmonics{};
+  std::vector<double> folded;  ///< m or rad, n values over one period
+  double range = 0.0;
+  double s = 0.0;         ///< of a reading about the folded mean; NaN with dof 0
+  double u_folded = 0.0;  ///< of a folded mean
+  double dof = 0.0;
+};
+PeriodicError periodic_error(std::span<const Pass>, double period);
+
+/// Single steps of one commanded size, there and back. With x the commanded position and d the
+/// deviation of neighbouring readings of one run in one direction:
+///
+///     step_j = d_(j+1) - d_j, in the direction of motion     deviation of the step, m
+///     first  = the same of the step in which the direction turns: from the last target of one
+///              direction to the next one of the other, where only one of them has that last target
+///
+/// Not followed: the way of the step is less than half of the commanded one. The order of the
+/// readings says nothing: passes go in their direction. Source: ours; the tests of the rules for
+/// small steps were not available (docs/formulas.md).
+struct SmallSteps {
+  enum class Answer { given, too_few, several_sizes };
+  struct One {
+    double error = 0.0;  ///< deviation of the step, m: positive if it is too long
+    bool first = false;  ///< after a reversal
+    std::uint32_t run = 0;
+    double position = 0.0;        ///< at its end
+    int direction = 0;            ///< 1, -1
+    double from = 0.0, to = 0.0;  ///< deviations of its readings
+  };
+  Answer answer = Answer::too_few;
+  double commanded = 0.0;  ///< size of a step
+  std::vector<One> steps;
+  std::size_t largest = 0, least = 0;  ///< of the steps that are not the first after a reversal
+  std::size_t least_first = 0;         ///< of those that are; steps.size() if there is none
+  std::size_t not_followed = 0;        ///< of the steps that are not the first after a reversal
+  double s = 0.0;                      ///< of one step, about the mean of its place
+  double dof = 0.0;                    ///< 0: no place was stepped over twice the same way
+};
+struct SteppedReading {
+  double position = 0.0, deviation = 0.0;
+  std::uint32_t run = 0;
+  int direction = 0;
+};
+/// In any order. Several readings of one target, run and direction count with their mean.
+SmallSteps small_steps(std::span<const SteppedReading>);
+
+}  // namespace nonio::math
