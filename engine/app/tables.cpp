@@ -135,9 +135,10 @@ void print_after_table(std::ostream& out, const model::Part& part, const model::
     std::string text = measurement + ":";
     for (const auto& [name, before, after] :
          {std::tuple("E", was.E, is.E), std::tuple("A", was.A, is.A), std::tuple("R", was.R, is.R)})
-      text += std::string(name == std::string("E") ? " " : ", ") + name + " " + value(before) +
-              " -> " + value(after);
-    line(out, "", text);
+      if (std::isfinite(before))
+        text += std::string(text.ends_with(':') ? " " : ", ") + name + " " + value(before) +
+                " -> " + value(after);
+    if (!text.ends_with(':')) line(out, "", text);
   }
 }
 
