@@ -31,14 +31,15 @@ int compare(const std::string& folder, const Common& common) {
       errors.push_back(comparison.error());
     }
   }
+  if (parts->empty())
+    complain(verb, text_of(errors.emplace_back(host::modelling::nothing_to_compare(open.read))));
   for (const std::string& warning : warnings) complain(verb, warning);
   if (common.json)
     std::cout << host::modelling::compare_json(all, open.campaign(), words, warnings, errors);
   else
     for (const host::modelling::Compared& one : all)
       print_comparison(std::cout, one, open.campaign(), words);
-  if (parts->empty()) complain(verb, "there is no measurement of an axis with readings");
-  return errors.empty() && !parts->empty() ? exit_done : exit_failed;
+  return errors.empty() ? exit_done : exit_failed;
 }
 
 }  // namespace

@@ -29,7 +29,10 @@ class Explain {
     if (!opened) return opened.error();
     open_ = std::move(*opened);
     words_.emplace(words_for(open_, common_));
-    if (const int status = explain(); status != exit_done && all_.empty()) return status;
+    if (const int status = explain(); status != exit_done && all_.empty()) {
+      if (common_.json && status == exit_failed) show();
+      return status;
+    }
     while (options_.automatic && !next().empty()) {
       if (steps_.size() == most_steps) {
         tell(std::to_string(most_steps) + " effects were added and one is still missing; stopped");
@@ -58,7 +61,8 @@ class Explain {
     warnings_.clear();
     for (const std::string& effect : host::modelling::unmeasured(open_.campaign().model, *parts))
       warnings_.push_back(words_->unmeasured(effect));
-    if (parts->empty()) tell("there is no measurement of an axis with readings");
+    if (parts->empty())
+      tell(text_of(errors_.emplace_back(host::modelling::nothing_to_compare(open_.read))));
     for (host::modelling::PartModel& part : *parts) {
       auto explanation = host::modelling::explain_part(part, options_.seed);
       if (explanation) {
@@ -92,7 +96,6 @@ class Explain {
 
   void show() {
     for (const std::string& warning : warnings_) tell(warning);
-    if (all_.empty()) return;
     for (host::modelling::Explained& e : all_)
       if (options_.what_if) e.what_if = model::foresee(e.part.part, e.explanation);
     if (common_.json) {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
+#include <tuple>
 
+#include "host/modelling/after_table.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::app {
@@ -119,6 +121,27 @@ void print_suspects(std::ostream& out, const model::Comparison& c,
         << "\n";
 }
 
+/// What a table in the control would leave, predicted; nothing if the model has nothing for one.
+void print_after_table(std::ostream& out, const model::Part& part, const model::Fit& fit,
+                       Quantity q, const host::config::TerminalWords& say) {
+  const host::modelling::AfterTable predicted = host::modelling::after_table(part, fit);
+  if (predicted.effects.empty()) return;
+  const auto value = [q](double v) { return std::isfinite(v) ? with_unit(v, q) : "-"; };
+  line(out, say("after-table"),
+       say("after-table.rms", {{"before", value(predicted.rms_before)},
+                               {"after", value(predicted.rms)},
+                               {"effects", host::storage::listed(predicted.effects)}}));
+  for (const auto& [measurement, was, is] : predicted.tests) {
+    std::string text = measurement + ":";
+    for (const auto& [name, before, after] :
+         {std::tuple("E", was.E, is.E), std::tuple("A", was.A, is.A), std::tuple("R", was.R, is.R)})
+      if (std::isfinite(before))
+        text += std::string(text.ends_with(':') ? " " : ", ") + name + " " + value(before) +
+                " -> " + value(after);
+    if (!text.ends_with(':')) line(out, "", text);
+  }
+}
+
 std::string largest_text(const host::modelling::Compared& compared, const Campaign& campaign,
                          const host::config::TerminalWords& say) {
   const host::modelling::PartModel& part = compared.part;
@@ -226,6 +249,7 @@ void print_comparison(std::ostream& out, const host::modelling::Compared& compar
   print_places(out, c, words, part.deviation());
   if (c.means > 0) line(out, "", say("means", {{"count", std::to_string(c.means)}}));
   print_suspects(out, c, part, campaign, words);
+  print_after_table(out, part.part, c.fit, q, say);
   for (const std::string& warning : host::modelling::warnings_of(part, c.fit, words))
     out << "  " << say("warning") << ": " << warning << "\n";
 }

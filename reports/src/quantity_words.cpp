@@ -6,6 +6,12 @@ namespace nonio::reports {
 std::string followed_quantity(const Wording& site, const std::string& quantity) {
   const auto colon = quantity.find(':');
   const std::string kind = quantity.substr(0, colon);
+  // "iso-1988:A": a value of a rule, with the standard's name.
+  if (const std::string rule = site.get_or("site.rule." + kind, "");
+      !rule.empty() && colon != std::string::npos) {
+    const std::string symbol = quantity.substr(colon + 1);
+    return (symbol.starts_with("+-") ? "± " + symbol.substr(2) : symbol) + ", " + rule;
+  }
   const std::string name = site.get_or("site.quantity." + kind, quantity);
   if (name == quantity || colon == std::string::npos) return name;
   // "straightness:Z.curve_2": of which movement, and which part of it.

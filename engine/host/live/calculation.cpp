@@ -249,10 +249,11 @@ const model::Groundwork* groundwork_of(const Bench& bench, const Tried& tried) {
   return found == bench.groundwork.end() ? nullptr : &found->second;
 }
 
-/// All of a fit but the page.
-std::string head_of(const Bench& bench, const PartModel& part, const model::Comparison& c) {
+/// All of a fit but the page. What is not `whole` comes before the places where it fails.
+std::string head_of(const Bench& bench, const PartModel& part, const model::Comparison& c,
+                    bool whole) {
   const modelling::Compared both{part, c};
-  return "\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) +
+  return "\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench), whole) +
          ",\"text\":" + storage::dump(text_of(bench, part, c));
 }
 
@@ -270,7 +271,7 @@ Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> r
     const auto page = page_of(c);
     if (!page || !first) return;
     process::Parcel parcel;
-    parcel.add(head_of(bench, one->part(), c)).add(*page);
+    parcel.add(head_of(bench, one->part(), c, false)).add(*page);
     first(parcel.bytes());
     is_begun = true;
   };
@@ -279,7 +280,7 @@ Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> r
   auto page = is_begun ? Expected<std::string>("") : page_of(*compared);
   if (!page) return page;
   process::Parcel parcel;
-  parcel.add(head_of(bench, one->part(), *compared)).add(*page);
+  parcel.add(head_of(bench, one->part(), *compared, true)).add(*page);
   return parcel.bytes();
 }
 
@@ -393,6 +394,7 @@ Json described(const Bench& bench) {
                {"customer", campaign.customer},
                {"date", campaign.date},
                {"language", bench.language()},
+               {"kinds", modelling::kinds_measured(bench.read)},
                {"model", campaign.model},
                {"parts", Json::array()},
                {"catalogue", bench.has_catalogue ? catalogue_json(bench) : Json(nullptr)},

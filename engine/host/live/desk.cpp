@@ -169,6 +169,7 @@ Answer Desk::state() {
   json["errors"] = campaign_.value("errors", Json::array());
   json["mistakes"] = campaign_.value("mistakes", Json::array());
   json["parts"] = campaign_.value("parts", Json::array());
+  json["kinds"] = campaign_.value("kinds", Json::array());
   json["model"] = session_.trial().model;
   json["saved_model"] = session_.saved();
   json["catalogue"] = campaign_.value("catalogue", Json::array());

@@ -95,10 +95,10 @@ class Desk {
   Answer cancel(const Json& body);
   Answer save(const Request& request);
   Answer reload();
-  Answer changed(const Expected<void>& done, const std::string& command);
-  Expected<void> change(const std::string& what, const Json& body, std::string& command);
-  Expected<void> change_model(const Json& body);
-  std::optional<std::string> mistake_in(const std::vector<std::string>& effects) const;
+  Answer changed(const Done& done, const std::string& command);
+  Done change(const std::string& what, const Json& body, std::string& command);
+  Done change_model(const Json& body);
+  Done known(const std::vector<std::string>& effects) const;
 
   // what the bench says
   void tell(std::uint64_t job, const std::string& state, std::string text);
@@ -121,7 +121,8 @@ class Desk {
   void search_on();
   bool is_explained() const;
   void search_ended(const std::string& state, const std::string& says);
-  void fail_search(const std::string& words);
+  /// In the program's own words, or by the name of a sentence of the page.
+  void fail_search(const std::string& words, const std::string& name = "");
   void end_search();
   /// The answer to a request, waited for with `lock` released.
   Waiting wait_for(std::unique_lock<std::mutex>& lock, const Json& request,

@@ -43,40 +43,40 @@ Answer Desk::post(const std::string& what, const Json& body, const Request& requ
 }
 
 /// Also where it failed: with words.
-Answer Desk::changed(const Expected<void>& done, const std::string& command_now) {
-  if (!done) return refusal(422, done.error().message);
+Answer Desk::changed(const Done& done, const std::string& command_now) {
+  if (!done) return refused(422, done.error().name, done.error().places);
   refresh();
   publish("state", "", Json::object());
   return json_answer(200, {{"version", session_.version()}, {"command", command_now}});
 }
 
-std::optional<std::string> Desk::mistake_in(const std::vector<std::string>& effects) const {
+Done Desk::known(const std::vector<std::string>& effects) const {
   for (const std::string& effect : effects) {
     if (std::find(session_.saved().begin(), session_.saved().end(), effect) !=
         session_.saved().end())
       continue;
     const Json& catalogue = campaign_.at("catalogue");
-    if (catalogue.is_null()) return "the effects still look at the readings; wait for event state";
+    if (catalogue.is_null()) return tl::unexpected<Said>(Said{"no_catalogue"});
     if (std::none_of(catalogue.begin(), catalogue.end(),
                      [&](const Json& one) { return one.at("effect") == effect; }))
-      return "no measurement of this campaign can show \"" + effect.substr(0, 100) + "\"";
+      return tl::unexpected<Said>(Said{"not_shown", {{"effect", effect.substr(0, 100)}}});
   }
-  return std::nullopt;
+  return {};
 }
 
-Expected<void> Desk::change_model(const Json& body) {
+Done Desk::change_model(const Json& body) {
   if (body.contains("drop")) return session_.drop(body.at("drop").get<std::string>());
   if (body.contains("add")) {
     const auto effect = body.at("add").get<std::string>();
-    if (const auto mistake = mistake_in({effect})) return fail(*mistake);
+    if (auto right = known({effect}); !right) return right;
     return session_.add(effect);
   }
   const auto model = body.at("model").get<std::vector<std::string>>();
-  if (const auto mistake = mistake_in(model)) return fail(*mistake);
+  if (auto right = known(model); !right) return right;
   return session_.set(model);
 }
 
-Expected<void> Desk::change(const std::string& what, const Json& body, std::string& told) {
+Done Desk::change(const std::string& what, const Json& body, std::string& told) {
   if (what == "model") return change_model(body);
   if (what == "undo") return session_.undo();
   if (what == "redo") return session_.redo();
@@ -95,7 +95,7 @@ Expected<void> Desk::change(const std::string& what, const Json& body, std::stri
   if (std::none_of(axes.begin(), axes.end(), [&](const Json& one) {
         return one.at("name") == axis && !one.at("rotary").get<bool>();
       }))
-    return fail("the machine has no linear axis \"" + axis.substr(0, 40) + "\"");
+    return tl::unexpected<Said>(Said{"no_linear_axis", {{"axis", axis.substr(0, 40)}}});
   return session_.period(axis, body.at("period_mm").get<double>());
 }
 
@@ -179,14 +179,11 @@ Answer Desk::save(const Request& request) {
   const Json now = Json::parse(looked.text);
   const std::string digest = now.at("manifest_sha256").get<std::string>();
   if (wanted != "\"" + digest + "\"" || now.at("changed_on_disk").get<bool>()) {
-    Json json = {{"error",
-                  "campaign.toml is not the file that this page has read; nothing was written. "
-                  "Read it again, then decide"},
-                 {"status", 412},
-                 {"yours", session_.trial().model},
-                 {"manifest_sha256", digest}};
-    json["on_disk"] = now.value("on_disk", Json(nullptr));
-    return json_answer(412, json);
+    Json more = {{"yours", session_.trial().model}, {"manifest_sha256", digest}};
+    more["on_disk"] = now.value("on_disk", Json(nullptr));
+    Answer out = refused(412, "changed");
+    out.body = storage::dump_line(more);
+    return out;
   }
   const Json body = Json::parse(request.body.empty() ? "{}" : request.body);
   const std::string told = command();
@@ -194,7 +191,8 @@ Answer Desk::save(const Request& request) {
   wish["why"] = body.value("why", "").substr(0, longest_text);
   const Waiting done = wait_for(lock, wish, "");
   if (!done.well)
-    return refusal(done.text.find("changed while") != std::string::npos ? 412 : 422, done.text);
+    return done.text.find("changed while") != std::string::npos ? refused(412, "changed")
+                                                                : refusal(422, done.text);
   const Json saved = Json::parse(done.text);
   const Trial& trial = session_.trial();
   const bool reads_others = !trial.excluded.empty() || !trial.period_mm.empty();
@@ -248,8 +246,10 @@ void Desk::search_ended(const std::string& state, const std::string& says) {
   searching_.reset();
 }
 
-void Desk::fail_search(const std::string& words) {
-  publish("failed", "job", {{"job", searching_->job}, {"error", words}});
+void Desk::fail_search(const std::string& words, const std::string& name) {
+  Json data = {{"job", searching_->job}, {"error", words}};
+  if (!name.empty()) data["id"] = name;
+  publish("failed", "job", data);
   searching_.reset();
 }
 
@@ -287,8 +287,9 @@ void Desk::search_on() {
     const std::string next = modelling::next_effect(told);
     if (next.empty()) return search_ended("done", says);
     if (searching_->added.size() == most_added)
-      return fail_search("12 effects were added and one is still missing; stopped");
-    if (const auto added = session_.add(next); !added) return fail_search(added.error().message);
+      return fail_search("12 effects were added and one is still missing; stopped", "most_added");
+    if (const auto added = session_.add(next); !added)
+      return fail_search(added.error().name, added.error().name);
     searching_->added.push_back(next);
     refresh();
     publish("state", "", Json::object());

@@ -48,7 +48,10 @@ std::string Sentences::operator()(const Said& said) const {
 
 Answer Sentences::spelled(Answer answer) const {
   if (answer.said.name.empty()) return answer;
-  const storage::Json json = {{"error", (*this)(answer.said)}, {"status", answer.status}};
+  storage::Json json = {{"error", (*this)(answer.said)},
+                        {"id", answer.said.name.substr(answer.said.name.find('.') + 1)},
+                        {"status", answer.status}};
+  if (!answer.body.empty()) json.update(storage::Json::parse(answer.body));
   Answer out{answer.status, "application/json", storage::dump_line(json)};
   out.headers = std::move(answer.headers);
   return out;

@@ -27,12 +27,12 @@ struct Answer {
   int status = 200;
   std::string type = "application/json", body;
   std::vector<std::pair<std::string, std::string>> headers{};
-  Said said{};                         ///< instead of a body: why it is refused
+  Said said{};                         ///< why it is refused; `body`: more members, or nothing
   std::shared_ptr<Listener> stream{};  ///< instead of a body: events until one side ends
   Events* events = nullptr;            ///< of the stream
 };
 
-/// {"error": sentence, "status": status}; `name` without "refused." in front.
+/// {"error": sentence, "id": name, "status": status}; `name` without "refused." in front.
 Answer refused(int status, const std::string& name,
                std::vector<std::pair<std::string, std::string>> places = {});
 /// The same with a sentence that somebody else has made.

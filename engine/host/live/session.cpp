@@ -26,7 +26,16 @@ std::string differences(const std::vector<std::string>& from, const std::vector<
   return out;
 }
 
+tl::unexpected<Said> no(std::string name,
+                        std::vector<std::pair<std::string, std::string>> places = {}) {
+  return tl::unexpected<Said>(Said{std::move(name), std::move(places)});
+}
+
 }  // namespace
+
+tl::unexpected<Said> Session::no_step(std::size_t n) const {
+  return no("no_step", {{"n", std::to_string(n)}, {"last", std::to_string(steps_.size() - 1)}});
+}
 
 Session::Session(std::vector<std::string> saved) : saved_(std::move(saved)) {
   steps_.front().trial.model = saved_;
@@ -53,12 +62,13 @@ std::vector<std::string> Session::in_order(const std::vector<std::string>& model
   return out;
 }
 
-Expected<void> Session::set(const std::vector<std::string>& model) {
-  if (model.size() > most_effects) return fail("a model has at most 500 effects");
+Done Session::set(const std::vector<std::string>& model) {
+  if (model.size() > most_effects)
+    return no("most_effects", {{"most", std::to_string(most_effects)}});
   for (std::size_t i = 0; i < model.size(); ++i)
     if (std::find(model.begin(), model.begin() + static_cast<std::ptrdiff_t>(i), model[i]) !=
         model.begin() + static_cast<std::ptrdiff_t>(i))
-      return fail("\"" + model[i] + "\" is there twice");
+      return no("twice", {{"effect", model[i]}});
   Trial next = trial();
   next.model = in_order(model);
   std::string what = differences(trial().model, next.model);
@@ -66,51 +76,49 @@ Expected<void> Session::set(const std::vector<std::string>& model) {
   return {};
 }
 
-Expected<void> Session::add(const std::string& effect) {
-  if (has(trial().model, effect)) return fail("\"" + effect + "\" is in the model already");
+Done Session::add(const std::string& effect) {
+  if (has(trial().model, effect)) return no("in_model", {{"effect", effect}});
   auto model = trial().model;
   model.push_back(effect);
   return set(model);
 }
 
-Expected<void> Session::drop(const std::string& effect) {
-  if (!has(trial().model, effect)) return fail("\"" + effect + "\" is not in the model");
+Done Session::drop(const std::string& effect) {
+  if (!has(trial().model, effect)) return no("not_in_model", {{"effect", effect}});
   auto model = trial().model;
   std::erase(model, effect);
   return set(model);
 }
 
-Expected<void> Session::undo() {
-  if (!can_undo()) return fail("there is no step before this one");
+Done Session::undo() {
+  if (!can_undo()) return no("no_step_before");
   return go_to(at_ - 1);
 }
 
-Expected<void> Session::redo() {
-  if (!can_redo()) return fail("there is no step after this one");
+Done Session::redo() {
+  if (!can_redo()) return no("no_step_after");
   return go_to(at_ + 1);
 }
 
-Expected<void> Session::go_to(std::size_t n) {
-  if (n >= steps_.size())
-    return fail("there is no step " + std::to_string(n) + "; the last one is " +
-                std::to_string(steps_.size() - 1));
+Done Session::go_to(std::size_t n) {
+  if (n >= steps_.size()) return no_step(n);
   if (n != at_) ++version_;
   at_ = n;
   return {};
 }
 
-Expected<void> Session::name(std::size_t n, const std::string& name) {
-  if (n >= steps_.size()) return fail("there is no step " + std::to_string(n));
-  if (name.size() > longest_name) return fail("a name has at most 200 bytes");
+Done Session::name(std::size_t n, const std::string& name) {
+  if (n >= steps_.size()) return no_step(n);
+  if (name.size() > longest_name) return no("long_name", {{"most", std::to_string(longest_name)}});
   if (steps_[n].name != name) ++version_;
   steps_[n].name = name;
   return {};
 }
 
-Expected<void> Session::exclude(const std::vector<Excluded>& readings) {
+Done Session::exclude(const std::vector<Excluded>& readings) {
   Trial next = trial();
   for (const Excluded& one : readings) {
-    if (one.why.empty()) return fail("expected a reason why the reading is excluded");
+    if (one.why.empty()) return no("why");
     std::erase_if(next.excluded,
                   [&](const Excluded& e) { return e.part == one.part && e.row == one.row; });
     next.excluded.push_back(one);
@@ -122,24 +130,21 @@ Expected<void> Session::exclude(const std::vector<Excluded>& readings) {
   return {};
 }
 
-Expected<void> Session::include(const std::string& part, const std::vector<std::size_t>& rows) {
+Done Session::include(const std::string& part, const std::vector<std::size_t>& rows) {
   Trial next = trial();
   const std::size_t before = next.excluded.size();
   std::erase_if(next.excluded, [&](const Excluded& e) {
     return e.part == part && std::find(rows.begin(), rows.end(), e.row) != rows.end();
   });
-  if (next.excluded.size() == before) return fail("none of these readings is excluded");
+  if (next.excluded.size() == before) return no("none_excluded");
   const std::size_t back = before - next.excluded.size();
   take(std::move(next), "included " + std::to_string(back));
   return {};
 }
 
-Expected<void> Session::period(const std::string& axis, double period_mm) {
+Done Session::period(const std::string& axis, double period_mm) {
   constexpr double most = 1e5;
-  if (!std::isfinite(period_mm) || period_mm < 0.0 || period_mm > most)
-    return fail(
-        "period_mm: expected a length above 0 and up to 100000 mm, or 0 for that of "
-        "campaign.toml");
+  if (!std::isfinite(period_mm) || period_mm < 0.0 || period_mm > most) return no("period");
   Trial next = trial();
   if (period_mm > 0.0)
     next.period_mm[axis] = period_mm;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/live/guard.h"
 #include "nonio/sdk/error.h"
 
 /// What a person does on the page of a campaign: a value without files, processes or clock.
@@ -39,6 +40,9 @@ struct Step {
   Trial trial;
 };
 
+/// Else a sentence for the person, its name without "refused." in front.
+using Done = tl::expected<void, Said>;
+
 class Session {
  public:
   Session() = default;
@@ -54,18 +58,18 @@ class Session {
   bool can_redo() const { return at_ + 1 < steps_.size(); }
 
   // What changes it; an error leaves it as it is. Whether an effect exists is the caller's concern.
-  Expected<void> add(const std::string& effect);
-  Expected<void> drop(const std::string& effect);
-  Expected<void> set(const std::vector<std::string>& model);
-  Expected<void> undo();
-  Expected<void> redo();
-  Expected<void> go_to(std::size_t n);
-  Expected<void> name(std::size_t n, const std::string& name);
+  Done add(const std::string& effect);
+  Done drop(const std::string& effect);
+  Done set(const std::vector<std::string>& model);
+  Done undo();
+  Done redo();
+  Done go_to(std::size_t n);
+  Done name(std::size_t n, const std::string& name);
   /// Those that are excluded already get the new reason.
-  Expected<void> exclude(const std::vector<Excluded>& readings);
-  Expected<void> include(const std::string& part, const std::vector<std::size_t>& rows);
+  Done exclude(const std::vector<Excluded>& readings);
+  Done include(const std::string& part, const std::vector<std::size_t>& rows);
   /// 0: as campaign.toml has it.
-  Expected<void> period(const std::string& axis, double period_mm);
+  Done period(const std::string& axis, double period_mm);
 
   /// The model was written to campaign.toml, or read from it anew.
   void was_saved(const std::vector<std::string>& model);
@@ -76,6 +80,7 @@ class Session {
   void touch() { ++version_; }
 
  private:
+  tl::unexpected<Said> no_step(std::size_t n) const;
   void take(Trial trial, std::string what);
   std::vector<std::string> in_order(const std::vector<std::string>& model) const;
 

@@ -150,6 +150,26 @@ std::vector<PartModel> bare_parts(const reading::ReadCampaign& read) {
   return parts;
 }
 
+std::vector<std::string> kinds_measured(const reading::ReadCampaign& read) {
+  std::vector<std::string> kinds;
+  for (std::size_t m = 0; m < read.observations.size(); ++m) {
+    const std::string& kind = read.manifest->campaign.measurements[m].kind;
+    if (read.observations[m].size() > 0 &&
+        std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+      kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+Error nothing_to_compare(const reading::ReadCampaign& read) {
+  const auto kinds = kinds_measured(read);
+  if (kinds.empty()) return {"no measurement of this campaign has readings"};
+  return {
+      "effects explain runs of an axis, straightness, diagonals, circles and ball centres; this "
+      "campaign has readings of another kind: " +
+      storage::listed(kinds)};
+}
+
 void fill_catalogue(PartModel& part, const reading::ReadCampaign& read) {
   part.catalogue = model::catalogue(part.part, read.effects);
   part.left_out = model::not_applying(part.part, read.effects);

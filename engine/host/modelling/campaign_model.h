@@ -62,6 +62,11 @@ std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
 Expected<std::vector<PartModel>> part_models(const reading::ReadCampaign& read,
                                              const std::vector<std::string>& effects);
 
+/// Why a campaign has no part: what is measured in it, and what effects explain.
+Error nothing_to_compare(const reading::ReadCampaign& read);
+/// Kinds of the measurements that have readings, each once, as in the manifest.
+std::vector<std::string> kinds_measured(const reading::ReadCampaign& read);
+
 /// What `part_models` is made of: readings without a model and a catalogue, and the catalogue, for
 /// which every effect looks at every reading.
 std::vector<PartModel> bare_parts(const reading::ReadCampaign& read);

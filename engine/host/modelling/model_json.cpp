@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/modelling/after_table.h"
 #include "host/modelling/model_history.h"
 #include "host/storage/json_values.h"
 
@@ -147,7 +148,33 @@ void put_part(storage::Json& json, const PartModel& part) {
   json["observations"] = part.part.table.size();
 }
 
-storage::Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords& words) {
+storage::Json positioning_json(const AfterTable::Positioning& p, Quantity q) {
+  storage::Json json = storage::Json::object();
+  storage::put(json, "E", p.E, q);
+  storage::put(json, "A", p.A, q);
+  storage::put(json, "R", p.R, q);
+  return json;
+}
+
+/// What a table in the control would leave; nothing where the model has nothing for a table.
+void put_after_table(storage::Json& json, const model::Part& part, const model::Fit& fit,
+                     Quantity q) {
+  const AfterTable predicted = after_table(part, fit);
+  if (predicted.effects.empty()) return;
+  storage::Json one = {{"takes", predicted.effects}};
+  storage::put(one, "rms_before", predicted.rms_before, q);
+  storage::put(one, "rms", predicted.rms, q);
+  storage::Json tests = storage::Json::array();
+  for (const AfterTable::Test& test : predicted.tests)
+    tests.push_back({{"measurement", test.measurement},
+                     {"before", positioning_json(test.before, q)},
+                     {"after", positioning_json(test.after, q)}});
+  one["tests"] = std::move(tests);
+  json["after_table"] = std::move(one);
+}
+
+storage::Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords& words,
+                            bool whole = true) {
   const Quantity q = c.part.deviation();
   const model::Comparison& comparison = c.comparison;
   storage::Json json = storage::Json::object();
@@ -177,6 +204,7 @@ storage::Json compared_json(const Compared& c, const Campaign& campaign, const M
   if (comparison.means > 0) json["means"] = comparison.means;
   json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
   json["warnings"] = warnings_of(c.part, comparison.fit, words);
+  if (whole) put_after_table(json, c.part.part, comparison.fit, q);
   return json;
 }
 
@@ -390,8 +418,9 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
   return out;
 }
 
-std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words) {
-  return storage::dump(compared_json(compared, campaign, words));
+std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words,
+                      bool whole) {
+  return storage::dump(compared_json(compared, campaign, words, whole));
 }
 
 std::string part_json(const Explained& explained, const Campaign& campaign,
@@ -424,9 +453,11 @@ std::string explain_json(const std::vector<Explained>& all, const Campaign& camp
                          const std::vector<std::string>& warnings,
                          const std::vector<Error>& errors) {
   storage::Json json = {{"schema", "nonio-explain/1"}, {"campaign", campaign.id}};
-  put_explained(json, all[most_severe(all)], campaign, words);
-  json["axis"] = all[most_severe(all)].part.part.name;
-  if (all.size() > 1) {
+  if (!all.empty()) {
+    put_explained(json, all[most_severe(all)], campaign, words);
+    json["axis"] = all[most_severe(all)].part.part.name;
+  }
+  if (all.size() != 1) {
     storage::Json parts = storage::Json::array();
     for (const Explained& e : all) {
       storage::Json one = storage::Json::object();

@@ -25,7 +25,9 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
                                      const ModelWords& words);
 
 /// One entry of "parts" in nonio-compare/1 and nonio-explain/1.
-std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words);
+/// `whole`: with what a table would leave; else it comes later.
+std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words,
+                      bool whole = true);
 std::string part_json(const Explained& explained, const Campaign& campaign,
                       const ModelWords& words);
 
@@ -38,8 +40,8 @@ struct Told {
 std::vector<Told> told_of(const std::vector<Explained>& all);
 std::string next_effect(const std::vector<Told>& parts);
 
-/// docs/json.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. `all` is not empty;
-/// `warnings` and `errors` are those of the campaign.
+/// docs/json.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. Where `all` is empty, `errors`
+/// say why; they and `warnings` are those of the campaign.
 std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
                          const ModelWords& words, const std::vector<std::string>& warnings,
                          const std::vector<Error>& errors);

@@ -112,9 +112,19 @@ std::string filled(std::string_view text, const Finding& finding, std::string_vi
 }
 
 Texts said(const Templates& templates, std::string_view language, Texts texts) {
-  for (auto& [key, text] : texts)
+  for (auto& [key, text] : texts) {
+    std::string out;
+    for (std::size_t at = 0; at <= text.size();) {  // each of a list
+      const std::size_t end = std::min(text.find(", ", at), text.size());
+      const std::string one = text.substr(at, end - at);
+      const std::string term = words(templates, language, "term." + key + "." + one);
+      out += (at == 0 ? "" : ", ") + (term.empty() ? one : term);
+      at = end + 2;
+    }
     if (std::string term = words(templates, language, "term." + key + "." + text); !term.empty())
-      text = std::move(term);
+      out = std::move(term);
+    text = std::move(out);
+  }
   return texts;
 }
 

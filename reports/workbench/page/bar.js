@@ -21,6 +21,7 @@ const bar = (() => {
 
   function verdictOf(shown) {
     const {explain, fit} = shown;
+    if (shown.none) return ["nothing-here", shown.none];
     if (shown.error) return ["failed", say("verdict.failed", {error: shown.error})];
     if (!fit || shown.fitIsOld) return ["thinking", say("verdict.fitting")];
     if (!explain || shown.explainIsOld) return ["thinking", shown.seconds > 0 ? say("verdict.progress", {seconds: shown.seconds}) : say("verdict.thinking")];

@@ -41,6 +41,13 @@ const certificates = (() => {
     const what = rest ? word(id) || word("xml_" + rest) || word("certificate_" + rest) || word("signer_" + rest) || rest : word(id) || id;
     return rest ? say("check.dcc", {what}) : what;
   }
+  /// What it means that this check fails; nothing of a check of another version.
+  function meaning(id) {
+    const rest = id.startsWith("dcc.") ? id.slice(4) : "";
+    const names = id === "dcc" ? ["dcc_none"] : rest ? ["dcc_" + rest, "xml_" + rest, "certificate_" + rest, "signer_" + rest] : [id];
+    const found = names.map((name) => words["failing." + name.replace(/\./g, "_")]).find(Boolean);
+    return found ? el("p", {class: "meaning"}, found) : null;
+  }
   const sign = {holds: "\u2714", fails: "\u2716", "not checked": "\u2013"};
   function result(one) {
     const checks = one.answer ? one.answer.checks : [];
@@ -49,7 +56,7 @@ const certificates = (() => {
       one.answer && one.answer.signer ? el("p", {class: "muted"}, say("verify.signer", {signer: entries.visible(one.answer.signer)})) : null,
       checks.length ? el("details", {open: wrong.length > 0}, el("summary", {}, say("verify.checks", {n: checks.length, wrong: wrong.length})),
         entries.table({label: say("verify.checks", {n: checks.length, wrong: wrong.length}), columns: ["verify.check", "verify.state", "verify.says"]},
-          checks.map((c) => el("tr", {class: "check-" + c.state.replace(" ", "-")}, el("th", {scope: "row", title: c.id}, nameOf(c.id)), el("td", {}, `${sign[c.state] || ""} ${say("verify.is_" + c.state.replace(" ", "_"))}`), el("td", {lang: "en"}, entries.visible(c.says)))))) : null);
+          checks.map((c) => el("tr", {class: "check-" + c.state.replace(" ", "-")}, el("th", {scope: "row", title: c.id}, nameOf(c.id)), el("td", {}, `${sign[c.state] || ""} ${say("verify.is_" + c.state.replace(" ", "_"))}`), el("td", {}, c.state === "fails" ? meaning(c.id) : null, el("span", {lang: "en", class: c.state === "fails" ? "muted" : null}, entries.visible(c.says))))))) : null);
   }
   function drop(draw) {
     const input = el("input", {type: "file", id: "verify-files", multiple: true, accept: ".pdf,.xml,.json", "data-key": "verify-files", onchange: () => verify(input.files, draw)});

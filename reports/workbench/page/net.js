@@ -11,8 +11,19 @@ const net = (() => {
   const base = location.pathname.slice(0, location.pathname.lastIndexOf("/"));
   const token = () => sessionStorage.getItem("nonio-token") || "";
 
-  /// What the program itself says is English, as on a terminal; the page says so in its own language.
-  const program = (text) => (language === "en" ? text : `${say("net.program")} ${text}`);
+  /// What the program says of a fit, and what people bring about: in the words of the page.
+  const known = [[/^the readings cannot tell these apart: (?<which>.+)$/, "apart"], [/^the readings cannot show (?<which>.+)$/, "not_shown"],
+    [/^(?<n>\d+) readings cannot determine (?<unknowns>\d+) unknowns$/, "few"], [/^no reading of part (?<part>.+) is left$/, "none_left"],
+    [/^no answer within (?<seconds>\d+) s/, "slow"], [/^a plugin brought the process down in which it ran/, "crashed"],
+    [/^the process that calculates has ended/, "restarted"], [/^campaign\.toml has this model already/, "saved_already"]];
+  /// Whatever else the program says is English, as on a terminal; the page says so in its own language.
+  function program(text) {
+    for (const [form, name] of known) {
+      const found = form.exec(text);
+      if (found) return say("program." + name, found.groups || {});
+    }
+    return language === "en" ? text : `${say("net.program")} ${text}`;
+  }
   class Refused extends Error {
     constructor(status, answer) {
       super(answer && answer.error ? (answer.lang ? program(answer.error) : answer.error) : say("net.status", {status}));

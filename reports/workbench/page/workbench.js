@@ -57,7 +57,7 @@
   function running(n) {
     job = n;
     by("cancel").hidden = n === null;
-    for (const id of ["suggest", "finish"]) by(id).disabled = n !== null;
+    for (const id of ["suggest", "finish"]) by(id).disabled = n !== null || Boolean(shown.none);
   }
   /// One piece of what the server knows of this part and trial, for `take`; what belongs to another one meanwhile is
   /// dropped. True if it is settled: there, or never to come.
@@ -266,6 +266,20 @@
     readings.drawRegion(state, shown, rows, act);
     view.speak(rows.length ? say("region.said", {n: rows.length}) : "");
   }
+  /// What a table in the control would do to what is printed: as nonio compare says it.
+  function tableWouldDo() {
+    const compare = shown.fit && !shown.fit.partial && !shown.looks && !shown.fitIsOld && shown.fit.compare, predicted = compare && compare.after_table;
+    if (!compare) return null;
+    if (!predicted) return el("p", {id: "after-table"}, say("table.none"));
+    const cell = (object, name) => el("td", {class: "number", "data-value": field(object, name)}, short(field(object, name)));
+    const row = (name, was, is, key) => el("tr", {}, el("th", {scope: "row"}, name), cell(was, key), cell(is, key));
+    const rows = predicted.tests.flatMap((t) => ["E", "A", "R"].map((name) => row(predicted.tests.length > 1 ? `${name} (${t.measurement})` : name, t.before, t.after, name)));
+    const rms = el("tr", {}, el("th", {scope: "row"}, "RMS"), cell(predicted, "rms_before"), cell(predicted, "rms"));
+    const compareIt = /^nonio compare /.test(state.command) ? state.command : `${state.command} && nonio compare ${quoted(state.campaign.folder)}`;
+    return el("div", {id: "after-table"}, el("table", {}, el("caption", {}, say("table.title", {unit: shown.unit})), el("thead", {}, el("tr", {}, el("td"), el("th", {scope: "col", class: "number"}, say("table.before")), el("th", {scope: "col", class: "number"}, say("table.after")))), el("tbody", {}, ...rows, rms)),
+      el("p", {class: "muted"}, say(predicted.tests.length ? "table.what" : "table.what_space", {effects: predicted.takes.join(", ")})), el("p", {class: "muted"}, say("command.label") + " ", el("code", {}, compareIt)));
+  }
+  const quoted = (word) => (/^[\w\-./:=,+@%]+$/.test(word) ? word : "'" + word.replace(/'/g, "'\\''") + "'");
   function drawDrawn() {
     const kinds = ["residual", "deviation", "table"];
     const data = shown.fit && shown.fit.page, v = data ? values() : [], weights = data ? data.weight : [];
@@ -275,7 +289,8 @@
       shown.drawing = k;
       drawDrawn();
       drawPictures();
-    }}), " " + say("drawn." + k)))), data && shown.drawing !== "residual" ? el("p", {}, say("drawn.rms." + shown.drawing, {rms: short(rms), unit: shown.unit})) : null,
+    }}), " " + say("drawn." + k)))), data && shown.drawing === "deviation" ? el("p", {}, say("drawn.rms.deviation", {rms: short(rms), unit: shown.unit})) : null,
+    shown.drawing === "table" ? tableWouldDo() : null,
     el("details", {open: hidden.d.size + hidden.r.size > 0 || null}, el("summary", {}, say("filter.title")), ...filters.map(([kind, all, word]) => el("fieldset", {}, el("legend", {}, say(word)), ...all.map(([v_, label]) => el("label", {}, el("input", {type: "checkbox", "data-key": kind + v_, checked: !hidden[kind].has(v_), onchange: (e) => {
       if (e.target.checked) hidden[kind].delete(v_);
       else hidden[kind].add(v_);
@@ -318,6 +333,8 @@
   }
   function draw() {
     if (!state) return;
+    shown.none = state.bench !== "open" || state.parts.length ? null : state.kinds.length ? say("parts.none", {kinds: state.kinds.map((k) => (words["kind." + k] ? say("kind." + k) : k)).join(", ")}) : say("parts.nothing");
+    document.body.classList.toggle("without", Boolean(shown.none));
     shown.learning = learn.on;
     shown.hideVerdict = learn.on ? say("learn.hidden") : null;
     shown.fitIsOld = shown.fitOf !== trial();
@@ -338,7 +355,7 @@
     document.body.dataset.version = state.version;
     const settled = (name) => shown.of[name] === trial();
     const explained = shown.explain && !shown.explainIsOld && settled("fingerprints") && settled("without");
-    document.body.dataset.ready = shown.fit && !shown.fitIsOld && !shown.fit.partial ? (explained ? "explained" : "fitted") : "";
+    document.body.dataset.ready = shown.none ? "none" : shown.fit && !shown.fitIsOld && !shown.fit.partial ? (explained ? "explained" : "fitted") : "";
   }
 
   // ---- what a person does ----
@@ -469,7 +486,7 @@
   function event(e) {
     if (e.type === "failed") {
       running(null);
-      if (e.data.job) view.alarm(e.data.error ? net.program(e.data.error) : say("net.failed"));
+      if (e.data.job) view.alarm(e.data.id ? say("refused." + e.data.id) : e.data.error ? net.program(e.data.error) : say("net.failed"));
     }
     if (e.type === "progress" && e.data.part) {
       shown.seconds = e.data.seconds || 0;

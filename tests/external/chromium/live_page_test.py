@@ -447,6 +447,51 @@ class Page(live_browser.LivePage):
             self.assertLess(abs(float(rows[2][2 + k]) / one["evidence"][0]["then"] - 1), 0.006)
         self.assertIn("--what-if", self.text("what-if"))
 
+    def test_a_table_off_and_on_is_what_compare_says(self):
+        folder = self.campaign()
+        self.open(self.serve(folder))
+        predicted = said("compare", folder)["parts"][0]["after_table"]
+        self.assertEqual(["scale:X", "backlash:X"], predicted["takes"])
+        drawn = lambda: self.js("document.querySelector('#picture-0 svg').innerHTML")
+        choose = lambda what: self.d.find_element(By.CSS_SELECTOR, f"input[name=drawn][value={what}]").click()
+        choose("deviation")
+        off = drawn()
+        choose("table")
+        self.wait(lambda: drawn() != off, "the pictures are those after the table")
+        cells = self.js("[...document.querySelectorAll('#after-table tbody tr')].map((r) => [r.children[0].textContent, ...[...r.children].slice(1).map((c) => Number(c.dataset.value))])")
+        test = predicted["tests"][0]
+        self.assertEqual([[n, test["before"][n + "_um"], test["after"][n + "_um"]] for n in "EAR"] + [["RMS", predicted["rms_before_um"], predicted["rms_um"]]], cells)
+        self.assertIn("nonio compare " + folder.name, self.text("after-table"))
+        self.tick("scale:X")
+        self.wait(lambda: "backlash:X" in self.text("after-table") and "scale:X as" not in self.text("after-table").replace("scale:X, ", ""))
+        self.assertIn("&& nonio compare " + folder.name, self.text("after-table"), "what a terminal has to do first")
+        self.tick("backlash:X")
+        self.wait(lambda: "No effect of this model" in self.text("after-table"))
+        self.no_complaints()
+
+    def test_a_campaign_that_effects_do_not_explain_says_what_it_has(self):
+        self.open(self.serve(self.campaign(SOURCE / "samples/site/42-heat")), "none")
+        self.assertIn("Measured here: thermal drift", self.text("verdict"))
+        self.assertFalse(self.d.find_element(By.ID, "suggest").is_displayed())
+        self.assertTrue(self.d.find_element(By.ID, "report").is_displayed())
+        self.no_complaints()
+
+    def test_what_people_bring_about_is_told_in_their_language(self):
+        for language, apart, again in (("de", "können nicht unterscheiden", "schon im Modell"), ("it", "non distinguono", "già nel modello")):
+            site = self.folder / language
+            site.mkdir()
+            (site / "site.toml").write_text(f'language = "{language}"\n')
+            shutil.copytree(TUTORIAL, site / "one")
+            server = self.serve(site / "one")
+            self.open(server)
+            self.js("net.ask('/api/model', {body: {add: 'scale:X'}}).catch((e) => window.told = e.message)")
+            self.wait(lambda: self.js("window.told"))
+            self.assertIn(again, self.js("window.told"))
+            self.assertNotIn("English", self.js("window.told"))
+            self.assertIn(apart, self.js("net.program('the readings cannot tell these apart: scale:X a, warm-up:X g')"))
+            self.assertIn("13", self.js("net.program('5 readings cannot determine 13 unknowns')"))
+            self.assertIn("no such sentence", self.js("net.program('no such sentence')"))
+
     def test_in_space_the_machine_stands_with_its_lines(self):
         source = SOURCE / "samples/site/13-gantry-diagonals"
         self.open(self.serve(self.campaign(source)))
@@ -568,8 +613,20 @@ class Words(unittest.TestCase):
         "space.is_": ("engine/host/config/keys/machine_of_campaign.h", r"structures\[\] = (.*?);", {}), "space.": None, "more.is_": ("engine/model/diagnosis/foresight.cpp", r"wanted\{(.*?)\}", {}), 
         "check.": ("engine/sign/src/*.cpp engine/host/certificates/content_check.cpp engine/host/certificates/verify.cpp engine/host/certificates/register_check.cpp", r"(?:add\(|Check check\{|State state\) \{|push_back\(\{|sign::Check\{)\s*(\"(?:signature|file|updates|signer|certificate|xml|register|content|attachments)[a-z.-]*\")", {"dcc", "dcc_none", "dcc_values", "signature_form", "signature_time", "xml_time"}),
         "where.": ("engine/model/fit/places.cpp", r"name_of\(Factor factor\) \{(.*?)\n\}", {}),
-        "verdict.": None, "verify.": None, "x.": None, "column.": None, "key.": None, "drawn.": None, "drawn.rms.": None, "learn.step": None, "learn.hint.": None, "site.": None,
+        "verdict.": None, "verify.": None, "x.": None, "column.": None, "key.": None, "drawn.": None, "learn.step": None, "learn.hint.": None, "site.": None,
+        "failing.": None, "kind.": None, "program.": None, "refused.": None,
     }
+
+    def test_what_the_program_says_of_a_fit_is_what_the_page_looks_for(self):
+        """The page knows these sentences by their words: those must stand in the program's sources."""
+        script = (SOURCE / "reports/workbench/page/net.js").read_text()
+        forms = re.findall(r"\[/\^(.*?)/, \"(\w+)\"\]", script)
+        self.assertEqual(8, len(forms))
+        program = "".join(re.sub(r'"\s*\n\s*"', "", p.read_text()) for folder in ("engine/model/fit", "engine/host/live") for p in sorted((SOURCE / folder).glob("*.cpp")))
+        for form, name in forms:
+            fixed = max(re.split(r"\(\?<\w+>[^)]*\)|[$]", form), key=len).replace("\\", "").strip()
+            self.assertGreater(len(fixed), 15, name)
+            self.assertIn(fixed, program, name)
 
     @staticmethod
     def flat(table, before=""):
@@ -593,7 +650,7 @@ class Words(unittest.TestCase):
             values = {v for text in re.findall(source[1], "".join(p.read_text() for one in source[0].split() for p in SOURCE.glob(one)), re.S) for v in re.findall(r'"([\w. -]+)"', text)}
             self.assertGreater(len(values), 1, f"{prefix}: {source[0]}")
             self.assertEqual(set(), {prefix + re.sub("[ .-]", "_" if prefix != "where." else "-", v) for v in values | set(source[2])} - set(english), "what the program sends has a word")
-        made = (*self.SENT, "shell.", "refused.")
+        made = (*self.SENT, "shell.")
         self.assertEqual([], [k for k in english if k not in asked and not k.startswith(made)], "words that nobody asks for")
         for language in ("de", "it"):
             other = read(language)

@@ -54,6 +54,26 @@ class Changes(LiveTest):
             self.assertEqual(s.post("/api/cancel", {"job": 77}, expect=404)["status"], 404)
             self.assertEqual(nonio("compare", self.folder, "--json").stdout, nonio("compare", self.folder, "--json").stdout)
 
+    def test_refusals_are_in_the_language_of_the_site(self):
+        told, plain = {}, (self.site / "site.toml").read_text()
+        for language in ("en", "de", "it"):
+            (self.site / "site.toml").write_text(f'language = "{language}"\n' + plain)
+            with Server(self.folder) as s:
+                self.assertEqual(s.opened()["language"], language)
+                s.fit("Z")
+                answers = [s.post("/api/undo", expect=422), s.post("/api/redo", expect=422), s.post("/api/model", {"drop": "backlash:Z"}, expect=422),
+                           s.post("/api/model", {"add": "nothing:Z"}, expect=422), s.post("/api/goto", {"n": 99}, expect=422),
+                           s.post("/api/name", {"n": 0, "name": "x" * 201}, expect=422), s.post("/api/include", {"part": "Z", "rows": [3]}, expect=422),
+                           s.post("/api/period", {"axis": "Z", "period_mm": -1}, expect=422), s.post("/api/period", {"axis": "C", "period_mm": 1}, expect=422)]
+                s.post("/api/model", {"add": "scale:Z"})
+                answers.append(s.post("/api/model", {"add": "scale:Z"}, expect=422))
+                told[language] = {a["id"]: a["error"] for a in answers}
+                self.assertTrue(all("lang" not in a for a in answers))
+        self.assertEqual(len(told["en"]), 10)
+        for language in ("de", "it"):
+            self.assertEqual(set(told[language]), set(told["en"]))
+            self.assertEqual([], [k for k, v in told[language].items() if v == told["en"][k]])
+
     def test_versions_only_grow(self):
         with Server(self.folder) as s:
             s.opened()

@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """nonio compare: figures, places, suspects and their exclusion."""
+import pathlib
+import statistics
 import unittest
 
 from verbs import VerbTest, manifest, readings
+
+
+SITE = pathlib.Path(__file__).resolve().parents[3] / "samples/site"
 
 
 class Compare(VerbTest):
@@ -30,6 +35,48 @@ class Compare(VerbTest):
         self.assertEqual(values["backlash:X", "b"]["unit"], "um")
         self.assertEqual(part["fails"], [])
         self.assertEqual(part["warnings"], [])
+
+    def test_what_a_table_would_leave_is_calculated_here_too(self):
+        """E, A and R of ISO 230-2 of the readings less scale and backlash, from the file alone."""
+        data = readings(seed=7, scale=20, backlash=-6)
+        self.campaign(manifest(["scale:X", "backlash:X"]), x=data)
+        part = self.part()
+        values = {p["name"]: p["value"] for p in part["model"]["parameters"]}
+        lines = [line.split(",") for line in data.splitlines() if line and line[0].isdigit()]
+        rows = [(1 if f[1] == "+" else -1, float(f[2]), float(f[3])) for f in lines]
+        middle = (min(r[1] for r in rows) + max(r[1] for r in rows)) / 2
+
+        def positioning(taken):
+            at = {}
+            for way, target, deviation in rows:
+                at.setdefault(target, {}).setdefault(way, []).append(deviation - taken(way, target))
+            mean = {(t, w): statistics.mean(v) for t, ways in at.items() for w, v in ways.items()}
+            s = {(t, w): statistics.stdev(v) for t, ways in at.items() for w, v in ways.items()}
+            R = [max(2 * s[t, 1] + 2 * s[t, -1] + abs(mean[t, 1] - mean[t, -1]), 4 * s[t, 1], 4 * s[t, -1]) for t in at]
+            return {"E_um": max(mean.values()) - min(mean.values()), "A_um": max(mean[k] + 2 * s[k] for k in mean) - min(mean[k] - 2 * s[k] for k in mean), "R_um": max(R)}
+
+        predicted = part["after_table"]
+        self.assertEqual(predicted["takes"], ["scale:X", "backlash:X"])
+        (test,) = predicted["tests"]
+        for name, wanted in (("before", positioning(lambda way, target: 0.0)), ("after", positioning(lambda way, target: values["a"] * (target - middle) / 1000 + values["b"] * way / 2))):
+            for key, value in wanted.items():
+                self.assertAlmostEqual(test[name][key], value, delta=2e-5 * abs(wanted["E_um"]) + 1e-5, msg=f"{name} {key}")
+        self.assertGreater(test["before"]["E_um"], 3 * test["after"]["E_um"])
+        left = [d - values["a"] * (t - middle) / 1000 - values["b"] * w / 2 for w, t, d in rows]
+        self.assertAlmostEqual(predicted["rms_um"], (sum(x * x for x in left) / len(left)) ** 0.5, delta=1e-4)
+        shown = self.nonio("compare", self.folder).stdout
+        self.assertRegex(shown, r"after a table +RMS [\d.]+ um -> [\d.]+ um, predicted, if it takes away scale:X, backlash:X\n +X: E [\d.]+ um -> ")
+
+    def test_without_anything_for_a_table_it_says_nothing_of_one(self):
+        self.campaign(manifest(["zero-drift:X"]), x=readings())
+        self.assertNotIn("after_table", self.part())
+        self.assertNotIn("after a table", self.nonio("compare", self.folder).stdout)
+
+    def test_a_campaign_without_parts_says_why(self):
+        for verb in ("compare", "explain"):
+            told = self.json_of(verb, SITE / "42-heat", expect=1)
+            self.assertEqual(told["parts"], [])
+            self.assertRegex(told["errors"][0]["message"], "^effects explain runs of an axis.*: thermal$")
 
     def test_what_is_left_is_told_once_each_beside_those_before_it(self):
         self.campaign(manifest([]), x=readings(runs=4, drift=6, wave=3, backlash=-4))

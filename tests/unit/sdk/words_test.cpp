@@ -40,6 +40,17 @@ void expect_what_is_said(const Templates& t) {
   EXPECT_EQ(words(t, "en", "effect.other.name"), "");
 }
 
+TEST(Words, EachOfAListHasItsTerm) {
+  const Templates t = two_files();
+  const auto text = [&](const std::string& what) {
+    return said(t, "en", {{"what", what}})[0].second;
+  };
+  EXPECT_EQ(text("y, x, x"), "y, the X axis, the X axis");
+  EXPECT_EQ(text("x,x"), "x,x");
+  EXPECT_EQ(text(""), "");
+  EXPECT_EQ(text("x, "), "the X axis, ");
+}
+
 TEST(Words, GatheredTheySayTheSame) {
   Templates t = two_files();
   expect_what_is_said(t);
