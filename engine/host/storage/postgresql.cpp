@@ -173,6 +173,7 @@ class Postgresql final : public Connection {
     name_ = "database " + text_of(::PQdb(server_.get())) + " on " +
             text_of(::PQhost(server_.get())) + ", schema " + schema_;
     if (::PQstatus(server_.get()) != CONNECTION_OK) return own_error();
+    was_there_ = true;
     ::PQsetNoticeProcessor(
         server_.get(), [](void*, const char*) {}, nullptr);
     if (::PQserverVersion(server_.get()) < oldest_server)
@@ -192,7 +193,9 @@ class Postgresql final : public Connection {
   std::string zero_words() const { return name_ + ": a text with a character 0 in it"; }
 
   std::string own_error() const {
-    return name_ + ": " + in_one_line(::PQerrorMessage(server_.get()));
+    const std::string said = name_ + ": " + in_one_line(::PQerrorMessage(server_.get()));
+    return was_there_ && ::PQstatus(server_.get()) != CONNECTION_OK ? said + ": " + away_words
+                                                                    : said;
   }
 
   /// "" of what went well.
@@ -204,6 +207,9 @@ class Postgresql final : public Connection {
     const std::string_view state = code == nullptr ? "" : code;
     if (state == "55P03" || state == "40P01" || state == "40001")
       return name_ + ": " + locked_words;
+    // It is shut down, has crashed or starts again; class 08: the connection is lost.
+    if (state.starts_with("08") || state == "57P01" || state == "57P02" || state == "57P03")
+      return name_ + ": " + away_words;
     const char* message = ::PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
     return message == nullptr ? own_error() : name_ + ": " + in_one_line(message);
   }
@@ -243,6 +249,7 @@ class Postgresql final : public Connection {
   std::map<std::string, std::string, std::less<>> names_;  ///< of prepared statements, by SQL
   std::string schema_, name_;
   int under_way_ = 0;
+  bool was_there_ = false;
 };
 
 Expected<std::string> server_password(const std::filesystem::path& file) {
@@ -301,10 +308,18 @@ Expected<std::unique_ptr<Connection>> connect(const Server& server, double patie
                             nullptr};
   const char* values[] = {connect_seconds, "nonio",          server.url.c_str(),
                           "UTF8",          password.c_str(), nullptr};
-  auto connection =
-      std::make_unique<Postgresql>(::PQconnectdbParams(keywords, values, 1), server.schema);
-  if (std::string trouble = connection->set_up(patience); !trouble.empty()) return fail(trouble);
-  return connection;
+  // A server that refuses us is there; one that starts or stops is not, and may have started since.
+  for (bool again = false;; again = true) {
+    auto connection =
+        std::make_unique<Postgresql>(::PQconnectdbParams(keywords, values, 1), server.schema);
+    const std::string trouble = connection->set_up(patience);
+    if (trouble.empty()) return connection;
+    if (is_locked(Error{trouble})) return fail(trouble);
+    const PGPing answer = ::PQpingParams(keywords, values, 1);
+    if (answer == PQPING_REJECT || answer == PQPING_NO_RESPONSE)
+      return fail(trouble + ": " + away_words);
+    if (again) return fail(trouble);
+  }
 }
 
 }  // namespace
