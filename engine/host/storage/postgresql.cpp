@@ -4,9 +4,11 @@
 
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cstdio>
 #include <map>
 #include <new>
+#include <thread>
 #include <utility>
 
 #include "host/storage/connection.h"
@@ -308,8 +310,10 @@ Expected<std::unique_ptr<Connection>> connect(const Server& server, double patie
                             nullptr};
   const char* values[] = {connect_seconds, "nonio",          server.url.c_str(),
                           "UTF8",          password.c_str(), nullptr};
-  // A server that refuses us is there; one that starts or stops is not, and may have started since.
-  for (bool again = false;; again = true) {
+  // A server that refuses us is there; one that starts or stops is not, and may be there again when
+  // it is asked. Only what it says again and again is its answer.
+  constexpr int trials = 4;
+  for (int trial = 1;; ++trial) {
     auto connection =
         std::make_unique<Postgresql>(::PQconnectdbParams(keywords, values, 1), server.schema);
     const std::string trouble = connection->set_up(patience);
@@ -318,7 +322,8 @@ Expected<std::unique_ptr<Connection>> connect(const Server& server, double patie
     const PGPing answer = ::PQpingParams(keywords, values, 1);
     if (answer == PQPING_REJECT || answer == PQPING_NO_RESPONSE)
       return fail(trouble + ": " + away_words);
-    if (again) return fail(trouble);
+    if (trial == trials) return fail(trouble);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50 << trial));
   }
 }
 
