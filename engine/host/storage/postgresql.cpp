@@ -194,10 +194,11 @@ class Postgresql final : public Connection {
 
   std::string zero_words() const { return name_ + ": a text with a character 0 in it"; }
 
-  std::string own_error() const {
-    const std::string said = name_ + ": " + in_one_line(::PQerrorMessage(server_.get()));
-    return was_there_ && ::PQstatus(server_.get()) != CONNECTION_OK ? said + ": " + away_words
-                                                                    : said;
+  std::string own_error() const { return error_words(::PQerrorMessage(server_.get())); }
+
+  std::string error_words(const char* said) const {
+    const bool lost = was_there_ && ::PQstatus(server_.get()) != CONNECTION_OK;
+    return name_ + ": " + in_one_line(said) + (lost ? std::string(": ") + away_words : "");
   }
 
   /// "" of what went well.
@@ -209,11 +210,13 @@ class Postgresql final : public Connection {
     const std::string_view state = code == nullptr ? "" : code;
     if (state == "55P03" || state == "40P01" || state == "40001")
       return name_ + ": " + locked_words;
-    // It is shut down, has crashed or starts again; class 08: the connection is lost.
-    if (state.starts_with("08") || state == "57P01" || state == "57P02" || state == "57P03")
-      return name_ + ": " + away_words;
     const char* message = ::PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
-    return message == nullptr ? own_error() : name_ + ": " + in_one_line(message);
+    // It is shut down, has crashed or starts again; class 08, and what libpq says
+    // itself, without a code: the connection is lost.
+    if ((was_there_ && state.empty()) || state.starts_with("08") || state == "57P01" ||
+        state == "57P02" || state == "57P03")
+      return name_ + ": " + in_one_line(message == nullptr ? "" : message) + ": " + away_words;
+    return message == nullptr ? own_error() : error_words(message);
   }
 
   /// Waits for all that is under way; the first trouble of it.
