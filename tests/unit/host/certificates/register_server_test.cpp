@@ -100,7 +100,7 @@ TEST_F(RegisterServerTest, AServerThatIsAwayIsWaitedForAndOneThatRefusesIsNot) {
   EXPECT_EQ(drawn(*std::make_unique<certificates::Register>(open()), "c1", first_data).issue.number,
             "2026-0001");
   auto wrong = numbering_;
-  wrong.server->url.replace(wrong.server->url.find("user=nonio"), 10, "user=nobody_here");
+  wrong.server->url += "&dbname=nobody";
   const auto unknown = certificates::Register::open(site_, wrong);
   ASSERT_FALSE(unknown);
   EXPECT_FALSE(storage::is_locked(unknown.error())) << unknown.error().message;
