@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "host/batch/read_apart.h"
+#include "host/certificates/register_place.h"
 
 namespace nonio::host::batch {
 namespace fs = std::filesystem;
@@ -12,16 +13,16 @@ namespace {
 
 /// A register in an output folder below the site would be lost with it.
 Expected<void> check_register_place(const RunOptions& options, const reading::Context& context) {
-  const auto path = certificates::register_path(options.site, context.site.numbering);
-  if (!path) return fail(path.error());
+  const auto place = certificates::register_place(options.site, context.site.numbering);
+  if (!place) return fail(place.error());
   std::error_code error;
   const auto is_below = [](const fs::path& one, const fs::path& folder) {
     const fs::path way = one.lexically_relative(folder);
     return !way.empty() && *way.begin() != "..";
   };
   const fs::path out = fs::weakly_canonical(options.out, error);
-  if (is_below(*path, out) && is_below(out, fs::weakly_canonical(options.site, error)))
-    return fail("the register of certificates " + path->string() +
+  if (is_below(place->file, out) && is_below(out, fs::weakly_canonical(options.site, error)))
+    return fail("the register of certificates " + place->name +
                 " would lie in the output folder; expected it elsewhere in the site");
   return {};
 }
@@ -38,7 +39,7 @@ Expected<std::optional<Known>> known_of(const RunOptions& options,
       [&](process::SignsOfLife& signs)
           -> Expected<std::pair<std::vector<certificates::RegisterEntry>,
                                 std::vector<certificates::WaitingDraft>>> {
-        signs.reading((options.site / numbering.register_file).string());
+        if (!numbering.server) signs.reading((options.site / numbering.register_file).string());
         if (const auto sound = check_register_place(options, context); !sound)
           return fail(sound.error());
         auto numbers = certificates::Register::entries(options.site, numbering, patience);

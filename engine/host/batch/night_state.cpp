@@ -279,15 +279,14 @@ Expected<void> settle_folders(const fs::path& out, bool hashed, bool dry_run) {
                           {{(out / storage::hashed_mark).filename().string(), "OUT/ab/<id>\n"}});
 }
 
-namespace {
-
-std::string planned_words(const fs::path& out) {
-  return "a night is planned in " + out.string() +
-         " and not merged yet; expected its shards and `nonio night merge OUT`, or `nonio night "
-         "cancel OUT` to withdraw the plan";
+Expected<void> check_not_planned(const fs::path& out) {
+  const auto planned = storage::is_there(out / state_folder / plan_folder / plan_name);
+  if (!planned) return fail(planned.error());
+  if (!*planned) return {};
+  return fail("a night is planned in " + out.string() +
+              " and not merged yet; expected its shards and `nonio night merge OUT`, or `nonio "
+              "night cancel OUT` to withdraw the plan");
 }
-
-}  // namespace
 
 Expected<OutputLock> OutputLock::take(const fs::path& out, Use use) {
   std::error_code error;
@@ -304,9 +303,7 @@ Expected<OutputLock> OutputLock::take(const fs::path& out, Use use) {
     if (::flock(fd, (use == Use::shard ? LOCK_SH : LOCK_EX) | LOCK_NB) == 0) {
       OutputLock lock(fd);
       if (use != Use::whole) return lock;
-      const auto planned = storage::is_there(out / state_folder / plan_folder / plan_name);
-      if (!planned) return fail(planned.error());
-      if (*planned) return fail(planned_words(out));
+      if (const auto free = check_not_planned(out); !free) return fail(free.error());
       return lock;
     }
     code = errno;

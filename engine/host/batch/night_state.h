@@ -54,6 +54,9 @@ Expected<void> end_night(const std::filesystem::path& out, const NightState& nig
 /// are there, and marks a new output folder. Results are never moved: another layout is an error.
 Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
+/// An error while a night is planned and not merged yet: the next run would be refused.
+Expected<void> check_not_planned(const std::filesystem::path& out);
+
 /// Held while a run uses an output folder; an error names the trouble if another run does.
 class OutputLock {
  public:

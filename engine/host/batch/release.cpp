@@ -8,6 +8,7 @@
 #include "host/batch/set_up.h"
 #include "host/batch/twins.h"
 #include "host/certificates/certificate_list.h"
+#include "host/certificates/register_place.h"
 #include "host/config/site_files.h"
 #include "host/evaluation/record.h"
 #include "host/storage/digest.h"
@@ -132,9 +133,11 @@ class Releaser {
   Expected<void> open_draft() {
     const std::string none = "nothing of campaign " + id_ +
                              " waits for a release; a draft is made by `nonio run SITE --out OUT`";
-    const auto path = certificates::register_path(options_.site, numbering_);
-    if (!path) return fail(path.error());
-    if (std::error_code error; !fs::exists(*path, error)) return fail(none);
+    const auto place = certificates::register_place(options_.site, numbering_);
+    if (!place) return fail(place.error());
+    const auto there = certificates::has_register(*place, numbering_.patience);
+    if (!there) return fail(there.error());
+    if (!*there) return fail(none);
     auto opened = certificates::Register::open(options_.site, numbering_);
     if (!opened) return fail(opened.error());
     auto draft = opened->draft(id_);

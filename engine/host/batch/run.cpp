@@ -352,7 +352,10 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   night.notes = (*place)->notes;
 
   std::optional<OutputLock> lock;
-  if (!options.dry_run) {
+  if (options.dry_run) {
+    if (const auto free = check_not_planned(options.out); !free)
+      return refuse(free.error().message);
+  } else {
     const bool whole = options.step == RunOptions::Step::whole;
     auto taken =
         OutputLock::take(options.out, whole ? OutputLock::Use::whole : OutputLock::Use::planned);
@@ -363,8 +366,8 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   if (!known) return refuse(known.error().message);
   if (!*known)
     night.notes.push_back(
-        "another process keeps the register of certificates locked: campaigns that need a number "
-        "wait for it");
+        "another process keeps the register of certificates locked, or its server is away: "
+        "campaigns that need a number wait for it");
   for (const std::string& note : night.notes) events.note(note);
   if (!(*place)->unstamped.empty()) night.notes.push_back((*place)->unstamped);
   // What takes the memory goes first, then there is enough to tell of it.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "host/certificates/register_place.h"
 #include "host/config/site_files.h"
 #include "host/storage/files.h"
 #include "nonio/sdk/statement.h"
@@ -44,10 +45,12 @@ Expected<void> withdraw(const fs::path& site, const config::Numbering& numbering
 }
 
 Expected<Audit> audit(const fs::path& site, const config::Numbering& numbering) {
-  const auto path = register_path(site, numbering);
-  if (!path) return fail(path.error());
-  if (std::error_code error; !fs::exists(*path, error))
-    return fail("there is no register " + path->string() + ": nothing was issued or drafted yet");
+  const auto place = register_place(site, numbering);
+  if (!place) return fail(place.error());
+  const auto there = has_register(*place, storage::Database::usual_patience);
+  if (!there) return fail(there.error());
+  if (!*there)
+    return fail("there is no register " + place->name + ": nothing was issued or drafted yet");
   auto opened = Register::open(site, numbering);
   if (!opened) return fail(opened.error());
   return opened->audit();

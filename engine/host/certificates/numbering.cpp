@@ -9,6 +9,7 @@
 #include "host/certificates/certificates.h"
 #include "host/certificates/journal.h"
 #include "host/certificates/recomputed.h"
+#include "host/certificates/register_place.h"
 #include "host/evaluation/results_json.h"
 #include "host/reading/plausibility.h"
 #include "host/reading/traceability.h"
@@ -127,9 +128,9 @@ const config::StandingRule* rule_for(const config::Numbering& numbering,
 }
 
 Expected<bool> Numbers::has_register() const {
-  const auto path = register_path(where_.site, context_.site.numbering);
-  if (!path) return fail(path.error());
-  return storage::is_there(*path);
+  const auto place = register_place(where_.site, context_.site.numbering);
+  if (!place) return fail(place.error());
+  return certificates::has_register(*place, short_wait(context_.site.numbering));
 }
 
 Expected<Register> Numbers::open() const {

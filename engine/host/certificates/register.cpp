@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "host/certificates/journal.h"
+#include "host/certificates/register_place.h"
 #include "host/certificates/register_tables.h"
 #include "host/config/number_pattern.h"
 #include "host/evaluation/issue_json.h"
@@ -58,25 +59,21 @@ Register::~Register() = default;
 
 Expected<Register> Register::open(const fs::path& site, const config::Numbering& numbering,
                                   double patience) {
-  const auto path = register_path(site, numbering);
-  if (!path) return fail(path.error());
-  std::error_code error;
-  fs::create_directories(path->parent_path(), error);
-  auto database = storage::Database::open(*path, storage::Database::Use::create, patience);
-  if (!database) return fail("the register of certificates: " + database.error().message);
-  auto place = std::make_unique<storage::Database>(std::move(*database));
-  if (auto made = make_tables(*place); !made)
-    return fail("the register of certificates " + path->string() + ": " + made.error().message);
-  return Register(std::move(place), numbering.pattern);
+  const auto place = register_place(site, numbering);
+  if (!place) return fail(place.error());
+  auto database = open_register(*place, storage::Database::Use::create, patience);
+  if (!database) return fail(database.error());
+  return Register(std::make_unique<storage::Database>(std::move(*database)), numbering.pattern);
 }
 
 Expected<Register> Register::open_to_read(const fs::path& site,
                                           const config::Numbering& numbering) {
-  const auto path = register_path(site, numbering);
-  if (!path) return fail(path.error());
+  const auto place = register_place(site, numbering);
+  if (!place) return fail(place.error());
   // Not as read-only: what a killed process has left half-written is taken back.
-  auto database = storage::Database::open(*path, storage::Database::Use::write);
-  if (!database) return fail("the register of certificates: " + database.error().message);
+  auto database =
+      open_register(*place, storage::Database::Use::write, storage::Database::usual_patience);
+  if (!database) return fail(database.error());
   return Register(std::make_unique<storage::Database>(std::move(*database)), numbering.pattern);
 }
 
@@ -87,7 +84,8 @@ std::string Register::id() {
 std::string Register::number_of(const std::string& file_sha256) {
   if (!is_of_this_version(*database_)) return {};
   return database_->first(
-      "SELECT number FROM journal WHERE what = 'issued' AND instr(says, '\"sha256\":\"' || ?) > 0",
+      "SELECT number FROM journal WHERE what = 'issued' AND says LIKE '%\"sha256\":\"' || "
+      "CAST(? AS TEXT) || '\"%'",
       {file_sha256});
 }
 
@@ -97,14 +95,11 @@ namespace {
 Expected<std::optional<Register>> open_if_there(const fs::path& site,
                                                 const config::Numbering& numbering,
                                                 double patience) {
-  const auto path = register_path(site, numbering);
-  if (!path) return fail(path.error());
-  std::error_code error;
-  const auto kind = fs::status(*path, error).type();
-  if (kind == fs::file_type::not_found) return std::nullopt;
-  if (kind == fs::file_type::none)
-    return fail("cannot look at the register of certificates " + path->string() + ": " +
-                error.message());
+  const auto place = register_place(site, numbering);
+  if (!place) return fail(place.error());
+  const auto there = has_register(*place, patience);
+  if (!there) return fail(there.error());
+  if (!*there) return std::nullopt;
   auto opened = Register::open(site, numbering, patience);
   if (!opened) return fail(opened.error());
   return std::move(*opened);
@@ -313,7 +308,7 @@ Expected<std::string> Register::next_number(const std::string& year) {
   for (;;) {
     const std::int64_t number =
         integer(database_->first("INSERT INTO counters VALUES(?, 1) ON CONFLICT(sequence) "
-                                 "DO UPDATE SET last = last + 1 RETURNING last",
+                                 "DO UPDATE SET last = counters.last + 1 RETURNING last",
                                  {sequence}));
     auto text = config::number_text(pattern_, year, static_cast<std::uint64_t>(number));
     // With another pattern before it may have been used.

@@ -63,7 +63,8 @@ struct Audit {
   std::vector<std::string> wrong;    ///< empty: all is as it was written
 };
 
-/// The site's register of numbers and of everything that was issued under them, an SQLite file.
+/// The site's register of numbers and of everything that was issued under them: an SQLite file, or a
+/// schema of a server (register_place.h).
 /// Entries are never deleted. Several processes may use it at once; each opens it itself, and none
 /// carries it across a fork. What a call has changed is on disk when it returns.
 class Register {

@@ -6,6 +6,7 @@
 #include "host/certificates/certificate_list.h"
 #include "host/certificates/content_check.h"
 #include "host/certificates/register.h"
+#include "host/certificates/register_place.h"
 #include "host/evaluation/issue_json.h"
 #include "host/evaluation/record.h"
 #include "host/storage/digest.h"
@@ -78,10 +79,11 @@ std::optional<sign::Check> check_register(const sign::Verified& verified, std::s
   }
   const auto numbering = numbering_of(site);
   if (!numbering) return says(State::fails, numbering.error().message);
-  const auto path = register_path(site, *numbering);
-  if (!path) return says(State::fails, path.error().message);
-  std::error_code error;
-  if (!fs::exists(*path, error)) {
+  const auto place = register_place(site, *numbering);
+  if (!place) return says(State::fails, place.error().message);
+  const auto there = has_register(*place, storage::Database::usual_patience);
+  if (!there) return says(State::fails, there.error().message);
+  if (!*there) {
     check.essential = stated.by_register;
     return says(State::not_checked, "the site has no register that knows " + stated.number);
   }

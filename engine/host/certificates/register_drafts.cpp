@@ -97,9 +97,10 @@ Expected<std::optional<WaitingDraft>> Register::draft(const std::string& campaig
 namespace {
 
 void put_draft(storage::Database& database, const WaitingDraft& draft) {
-  database.rows("INSERT OR REPLACE INTO drafts VALUES(?, ?)",
-                {draft.campaign,
-                 draft_json(draft).dump(-1, ' ', false, storage::Json::error_handler_t::replace)});
+  database.rows(
+      "INSERT INTO drafts VALUES(?, ?) ON CONFLICT(campaign) DO UPDATE SET says = excluded.says",
+      {draft.campaign,
+       draft_json(draft).dump(-1, ' ', false, storage::Json::error_handler_t::replace)});
 }
 
 }  // namespace

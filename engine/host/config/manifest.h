@@ -73,6 +73,7 @@ struct DatabaseChoice {
   std::string url;  ///< without a password
   std::string password_file{};
   std::string schema = "nonio";
+  std::string register_schema{};  ///< empty: the register of certificate numbers is a file
 };
 
 /// `[[due]]` of site.toml: months from the last campaign to the next. machine empty: all that no
@@ -103,8 +104,9 @@ struct StandingRule {
 struct Numbering {
   std::string pattern = "{year}-{number:4}";          ///< the sequence begins anew with each year
   std::string register_file = "certificates.sqlite";  ///< relative to the site
-  double patience = 60.0;  ///< s, with a register that another process keeps locked
-  bool automatic = false;  ///< a night may release what no finding holds up
+  std::optional<DatabaseChoice> server{};  ///< in place of the file; its schema is the register's
+  double patience = 60.0;                  ///< s, with a register that another process keeps locked
+  bool automatic = false;                  ///< a night may release what no finding holds up
   std::vector<StandingRule> may_stand{};
   bool two_persons = false;  ///< author and authoriser must not be the same
 };

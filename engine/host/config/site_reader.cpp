@@ -87,6 +87,12 @@ std::vector<Alias> read_aliases(TableReader& top) {
 DatabaseChoice read_database(TableReader& reader) {
   DatabaseChoice choice{reader.text("url"), reader.text("password_file")};
   if (const std::string schema = reader.text("schema"); !schema.empty()) choice.schema = schema;
+  choice.register_schema = reader.text("register");
+  if (choice.register_schema == choice.schema)
+    reader.error("register",
+                 "\"" + choice.schema +
+                     "\" is the schema of the history, which may be removed and is made again; "
+                     "expected another one for the register of certificate numbers");
   if (!choice.url.empty())
     if (const auto well = storage::check_address(choice.url); !well)
       reader.error("url", well.error().message);
@@ -176,7 +182,17 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
     site.numbering = read_numbering(*reader);
     reader->finish();
   }
-  if (auto reader = top.table("database")) site.database = read_database(*reader);
+  if (auto reader = top.table("database")) {
+    site.database = read_database(*reader);
+    if (!site.database->register_schema.empty()) {
+      const auto in_file = (*root)["certificate"]["register"].value_or(std::string());
+      if (!in_file.empty())
+        reader->error("register", "[certificate] register says \"" + in_file +
+                                      "\"; expected the register here or there");
+      site.numbering.server = site.database;
+      site.numbering.server->schema = site.database->register_schema;
+    }
+  }
   top.finish();
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   note_lines(*root, "", site.lines);

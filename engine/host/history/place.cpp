@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -20,17 +21,18 @@ namespace {
 constexpr const char* place_name = "database";
 fs::path place_folder(const fs::path& out) { return out / ".nonio"; }
 
-std::string new_owner() {
+std::string random_digits(int count) {
   std::random_device random;
-  std::string owner;
-  for (int i = 0; i < 32; ++i) owner += "0123456789abcdef"[random() % 16];
-  return owner;
+  std::string digits;
+  for (int i = 0; i < count; ++i) digits += "0123456789abcdef"[random() % 16];
+  return digits;
 }
 
 Expected<void> write_place(const fs::path& out, const StorePlace& place) {
   nlohmann::ordered_json json;
   json["owner"] = place.owner;
   json["evaluations"] = place.evaluations;
+  if (!place.turns.empty()) json["turns"] = place.turns;
   if (place.server) {
     json["url"] = place.server->url;
     json["schema"] = place.server->schema;
@@ -62,7 +64,8 @@ Expected<StorePlace> place_of(const fs::path& out) {
   if (!text) return fail(text.error());
   try {
     const auto json = nlohmann::json::parse(*text);
-    StorePlace place{std::nullopt, json.at("owner"), json.at("evaluations")};
+    StorePlace place{std::nullopt, json.at("owner"), json.at("evaluations"),
+                     json.value("turns", std::vector<std::string>{})};
     if (json.contains("url"))
       place.server = storage::Server{json.at("url"), json.at("schema"),
                                      json.at("password_file").get<std::string>()};
@@ -86,7 +89,7 @@ Expected<bool> note_place(const fs::path& out, const std::optional<storage::Serv
   };
   if (!elsewhere && file(place->server) == file(server)) return false;
   place->server = server;
-  if (place->owner.empty()) place->owner = new_owner();
+  if (place->owner.empty()) place->owner = random_digits(32);
   if (auto written = write_place(out, *place); !written) return fail(written.error());
   return elsewhere;
 }
@@ -137,21 +140,46 @@ Expected<Database> open_store(const fs::path& out) {
   return database;
 }
 
-Expected<void> take_schema(Database& database, const StorePlace& place) {
-  const std::string& schema = place.server->schema;
+namespace {
+
+/// Noted here before it is on the server: whichever of the two a crash leaves, the server's is known.
+Expected<void> take_turn(Database& database, const fs::path& out, StorePlace& place,
+                         const std::string& last) {
+  constexpr std::size_t most = 500;
+  const auto& turns = place.turns;
+  if (!last.empty() && std::find(turns.begin(), turns.end(), last) == turns.end())
+    return fail("schema " + place.server->schema +
+                " was written since by another copy of this output folder: give each a schema of "
+                "its own ([database] schema in site.toml), or leave one of them. If this folder is "
+                "the one that counts (a restored backup, for example), remove the schema (DROP "
+                "SCHEMA ... CASCADE): it is made again from the results that are there");
+  place.turns.push_back(random_digits(16));
+  if (place.turns.size() > most) place.turns.erase(place.turns.begin());
+  if (auto written = write_place(out, place); !written) return written;
+  database.put("UPDATE owner SET owner = ?", {place.owner + ":" + place.turns.back()});
+  return database.take_error();
+}
+
+}  // namespace
+
+Expected<void> take_schema(Database& database, const fs::path& out) {
+  auto place = place_of(out);
+  if (!place) return fail(place.error());
+  const std::string& schema = place->server->schema;
   if (database.first("SELECT COUNT(*) FROM pg_catalog.pg_namespace WHERE nspname = ?", {schema}) ==
       "0")
     database.script("CREATE SCHEMA \"" + schema + "\"");
   if (!has_table(database, "owner")) database.script("CREATE TABLE owner (owner TEXT NOT NULL)");
-  const std::string owner = database.first("SELECT owner FROM owner");
+  std::string owner = database.first("SELECT owner FROM owner");
   if (database.failed()) return database.take_error();
   if (owner.empty()) {
     if (has_table(database, "store")) return fail("schema " + schema + another_owner);
-    database.put("INSERT INTO owner VALUES (?)", {place.owner});
-    return database.take_error();
+    database.put("INSERT INTO owner VALUES (?)", {place->owner});
+    owner = place->owner;
   }
-  if (owner != place.owner) return fail("schema " + schema + another_owner);
-  return {};
+  const std::size_t mark = owner.find(':');
+  if (owner.substr(0, mark) != place->owner) return fail("schema " + schema + another_owner);
+  return take_turn(database, out, *place, mark == owner.npos ? "" : owner.substr(mark + 1));
 }
 
 }  // namespace nonio::host::history

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/storage/database.h"
 
@@ -16,6 +17,9 @@ struct StorePlace {
   std::optional<storage::Server> server{};  ///< none: OUT/history.sqlite
   std::string owner{};                      ///< random; the schema on the server bears it too
   std::int64_t evaluations = 0;  ///< that the server's store had when it was last written
+  /// Random, one each time that the store is written; the server has the one of the last time. A
+  /// copy of this folder does not know those that come after it.
+  std::vector<std::string> turns{};
 };
 
 /// An error if the file is damaged. Where it belongs to somebody else it names no password file:
@@ -34,7 +38,8 @@ std::string store_in(const std::filesystem::path& out);
 /// The store, opened to be read: on a server all that is read from it is of one night.
 Expected<storage::Database> open_store(const std::filesystem::path& out);
 
-/// Makes the server's schema if it is not there. An error if it is another output folder's.
-Expected<void> take_schema(storage::Database& database, const StorePlace& place);
+/// Makes the server's schema if it is not there. An error if it is another output folder's, or if a
+/// copy of this one has written into it.
+Expected<void> take_schema(storage::Database& database, const std::filesystem::path& out);
 
 }  // namespace nonio::host::history

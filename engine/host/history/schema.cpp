@@ -96,17 +96,6 @@ std::string server_triggers() {
   return sql;
 }
 
-/// In PostgreSQL's words. Texts are ordered by their bytes, as SQLite orders them.
-std::string server_words(std::string sql) {
-  const auto replace_all = [&](std::string_view old, std::string_view by) {
-    for (std::size_t at = 0; (at = sql.find(old, at)) != std::string::npos; at += by.size())
-      sql.replace(at, old.size(), by);
-  };
-  replace_all(" TEXT", " TEXT COLLATE \"C\"");
-  replace_all(" BLOB", " BYTEA");
-  return sql;
-}
-
 std::string triggers() {
   std::string sql;
   for (const std::string table : append_only)
@@ -142,7 +131,8 @@ void make_tables(Database& database) {
   for (const std::string table : all_tables) sql += "DROP TABLE IF EXISTS " + table + ";\n";
   const std::string made = std::string(tables) + covariance_table;
   if (database.kind() == Database::Kind::postgresql)
-    sql += "DROP FUNCTION IF EXISTS append_only();\n" + server_words(made) + server_triggers();
+    sql += "DROP FUNCTION IF EXISTS append_only();\n" + storage::server_words(made) +
+           server_triggers();
   else
     sql += made + triggers() + "PRAGMA user_version = " + std::to_string(schema_version) + ";\n";
   database.script(sql);

@@ -230,7 +230,7 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
   if (database.failed()) return fail(database.take_error().error());
   if (auto fit = check_version(version, name_of(*place, out)); !fit) return fail(fit.error());
   if (place->server)
-    if (auto ours = take_schema(database, *place); !ours) return fail(ours.error());
+    if (auto ours = take_schema(database, out); !ours) return fail(ours.error());
   bool again = all || version != schema_version;
   // A server whose backup was restored, or whose standby took over, has forgotten the last nights.
   if (!again && place->server) again = last_number(database) != place->evaluations;

@@ -8,6 +8,7 @@
 
 #include "host/batch/night_status.h"
 #include "host/certificates/certificate_list.h"
+#include "host/certificates/register_place.h"
 #include "host/config/site_logs.h"
 
 namespace nonio::host::live {
@@ -37,8 +38,8 @@ NightNow night_now(const fs::path& out) {
 fs::path register_of(const fs::path& site) {
   const auto numbering = certificates::numbering_of(site);
   if (!numbering) return {};
-  const auto path = certificates::register_path(site, *numbering);
-  return path ? *path : fs::path();
+  const auto place = certificates::register_place(site, *numbering);
+  return place ? place->file : fs::path();
 }
 
 }  // namespace

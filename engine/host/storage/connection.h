@@ -31,6 +31,7 @@ class Connection {
 };
 
 inline constexpr const char* locked_words = "another process keeps it locked";
+inline constexpr const char* away_words = "the server is away";
 
 /// In the fewest digits that give the double back.
 std::string shortest(double number);

@@ -10,7 +10,21 @@
 
 namespace nonio::host::storage {
 
-bool is_locked(const Error& error) { return error.message.ends_with(locked_words); }
+bool is_locked(const Error& error) {
+  return error.message.ends_with(locked_words) || error.message.ends_with(away_words);
+}
+
+std::string server_words(std::string sql) {
+  constexpr std::pair<std::string_view, std::string_view> words[] = {
+      {" TEXT", " TEXT COLLATE \"C\""},
+      {" BLOB", " BYTEA"},
+      {" INTEGER", " BIGINT"},
+      {" WITHOUT ROWID", ""}};
+  for (const auto& [old, by] : words)
+    for (std::size_t at = 0; (at = sql.find(old, at)) != std::string::npos; at += by.size())
+      sql.replace(at, old.size(), by);
+  return sql;
+}
 
 std::string shortest(double number) {
   std::array<char, 32> text{};

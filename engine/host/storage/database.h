@@ -89,7 +89,12 @@ class Database {
   std::string error_;
 };
 
-/// Whether it was another process that kept the database to itself: the same may succeed later.
+/// Whether another process kept the database to itself, or its server was away: the same may succeed
+/// later.
 bool is_locked(const Error& error);
+
+/// Tables and their columns as SQLite takes them, in PostgreSQL's words. Texts are ordered by their
+/// bytes, as SQLite orders them.
+std::string server_words(std::string sql);
 
 }  // namespace nonio::host::storage

@@ -4,9 +4,11 @@
 
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cstdio>
 #include <map>
 #include <new>
+#include <thread>
 #include <utility>
 
 #include "host/storage/connection.h"
@@ -173,6 +175,7 @@ class Postgresql final : public Connection {
     name_ = "database " + text_of(::PQdb(server_.get())) + " on " +
             text_of(::PQhost(server_.get())) + ", schema " + schema_;
     if (::PQstatus(server_.get()) != CONNECTION_OK) return own_error();
+    was_there_ = true;
     ::PQsetNoticeProcessor(
         server_.get(), [](void*, const char*) {}, nullptr);
     if (::PQserverVersion(server_.get()) < oldest_server)
@@ -191,8 +194,11 @@ class Postgresql final : public Connection {
 
   std::string zero_words() const { return name_ + ": a text with a character 0 in it"; }
 
-  std::string own_error() const {
-    return name_ + ": " + in_one_line(::PQerrorMessage(server_.get()));
+  std::string own_error() const { return error_words(::PQerrorMessage(server_.get())); }
+
+  std::string error_words(const char* said) const {
+    const bool lost = was_there_ && ::PQstatus(server_.get()) != CONNECTION_OK;
+    return name_ + ": " + in_one_line(said) + (lost ? std::string(": ") + away_words : "");
   }
 
   /// "" of what went well.
@@ -205,7 +211,12 @@ class Postgresql final : public Connection {
     if (state == "55P03" || state == "40P01" || state == "40001")
       return name_ + ": " + locked_words;
     const char* message = ::PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
-    return message == nullptr ? own_error() : name_ + ": " + in_one_line(message);
+    // It is shut down, has crashed or starts again; class 08, and what libpq says
+    // itself, without a code: the connection is lost.
+    if ((was_there_ && state.empty()) || state.starts_with("08") || state == "57P01" ||
+        state == "57P02" || state == "57P03")
+      return name_ + ": " + in_one_line(message == nullptr ? "" : message) + ": " + away_words;
+    return message == nullptr ? own_error() : error_words(message);
   }
 
   /// Waits for all that is under way; the first trouble of it.
@@ -243,6 +254,7 @@ class Postgresql final : public Connection {
   std::map<std::string, std::string, std::less<>> names_;  ///< of prepared statements, by SQL
   std::string schema_, name_;
   int under_way_ = 0;
+  bool was_there_ = false;
 };
 
 Expected<std::string> server_password(const std::filesystem::path& file) {
@@ -301,10 +313,21 @@ Expected<std::unique_ptr<Connection>> connect(const Server& server, double patie
                             nullptr};
   const char* values[] = {connect_seconds, "nonio",          server.url.c_str(),
                           "UTF8",          password.c_str(), nullptr};
-  auto connection =
-      std::make_unique<Postgresql>(::PQconnectdbParams(keywords, values, 1), server.schema);
-  if (std::string trouble = connection->set_up(patience); !trouble.empty()) return fail(trouble);
-  return connection;
+  // A server that refuses us is there; one that starts or stops is not, and may be there again when
+  // it is asked. Only what it says again and again is its answer.
+  constexpr int trials = 4;
+  for (int trial = 1;; ++trial) {
+    auto connection =
+        std::make_unique<Postgresql>(::PQconnectdbParams(keywords, values, 1), server.schema);
+    const std::string trouble = connection->set_up(patience);
+    if (trouble.empty()) return connection;
+    if (is_locked(Error{trouble})) return fail(trouble);
+    const PGPing answer = ::PQpingParams(keywords, values, 1);
+    if (answer == PQPING_REJECT || answer == PQPING_NO_RESPONSE)
+      return fail(trouble + ": " + away_words);
+    if (trial == trials) return fail(trouble);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50 << trial));
+  }
 }
 
 }  // namespace

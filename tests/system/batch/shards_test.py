@@ -164,6 +164,7 @@ class Shards(NightTest):
         self.plan(2, "--date", "2026-11-01")
         self.assertIn("planned for 2 shards", self.shard(0, 3, expect=2).stderr)
         self.assertIn("not merged yet", self.run_nonio(expect=2).stderr)
+        self.assertIn("not merged yet", self.run_nonio("--dry-run", expect=2).stderr)
         self.assertIn("not merged yet", self.run_nonio("--only", "a", expect=2).stderr)
         (self.site / "site.toml").write_text("format = 1\n[limits]\nseconds = 100\n")
         done = [self.shard(i, 2, expect=(0, 2)) for i in range(2)]  # one of them has nothing to do

@@ -3,6 +3,7 @@
 
 NONIO_SLURM_LONG=1: also what Slurm does after two minutes of waiting (a task put back, a node lost).
 NONIO_SLURM_KILLS=N: how often a task is killed (2; more by hand). NONIO_SEED: when."""
+import json
 import os
 import pathlib
 import random
@@ -257,6 +258,59 @@ class SlurmTest(NightTest):
         self.ended(self.again("2"), 60)
         self.assertEqual(self.merge().returncode, 0)
         self.same()
+
+    def test_the_database_is_killed_in_the_middle(self):
+        """History and register of numbers on a server that loses its power while shards and merge run."""
+        chance = random.Random(SEED)
+        sample = pathlib.Path(os.environ["NONIO_SAMPLES"]).parent / "certificates"
+        shutil.copy(sample / "make-key.sh", self.site)
+        subprocess.run([self.site / "make-key.sh"], check=True, capture_output=True)
+        for i in range(3):
+            shutil.copytree(sample / "adjusted", self.site / f"z{i}")
+            manifest = self.site / f"z{i}" / "campaign.toml"
+            manifest.write_text(manifest.read_text().replace('id = "adjusted"', f'id = "z{i}"'))
+            for readings in (self.site / f"z{i}").glob("*.csv"):
+                readings.write_text(readings.read_text() + f"# {i}\n")
+        rules = ('release = "automatic"\nmay_stand = [{ finding = "reversal.*", reason = "as found" }, '
+                 '{ finding = "tolerance.*", reason = "as found" }]\nregister_seconds = 60\n')
+        text = (sample / "site.toml").read_text().replace("[signing]", rules + "[signing]")
+        here = f"slurm_{os.getpid()}"
+        database = f'[database]\nurl = "{os.environ["NONIO_TEST_DATABASE"]}"\nschema = "{here}"\nregister = "{here}_register"\n'
+        (self.site / "site.toml").write_text(text + database)
+        job, cuts = self.submit(), 0
+
+        def cut_while(runs):
+            nonlocal cuts
+            while runs():
+                time.sleep(chance.uniform(0, 0.5))
+                if cuts < 20:
+                    subprocess.run([os.environ["NONIO_TEST_PG_CTL"], "-m", "immediate", "restart"], check=True)
+                    cuts += 1
+
+        cut_while(lambda: self.waits_or_runs(job))
+        of_shards = cuts
+        cuts = 0
+        merging = subprocess.Popen([NONIO, "night", "merge", self.parts, "--quiet"], stderr=subprocess.PIPE, text=True)
+        cut_while(lambda: merging.poll() is None)
+        said = merging.communicate()[1]
+        self.assertIn(merging.returncode, (0, 1), said)
+        print(f"seed {SEED}: power cuts: {of_shards} beside the shards, {cuts} beside the merge", file=sys.stderr)
+        # The next night finds what was left over, and nothing to do after that.
+        self.run_nonio("--date", "2026-11-02", out=self.parts)
+        done = self.run_nonio("--date", "2026-11-03", out=self.parts, expect=0)
+        self.assertEqual(self.summary(self.parts)["done"], [], done.stderr)
+        listed = json.loads(self.cluster.call(NONIO, "certificates", self.site, "--json").stdout)["certificates"]
+        self.assertEqual([(c["number"], c["state"]) for c in listed], [(f"S-000{i + 1}", "issued") for i in range(3)])
+        self.assertEqual(sorted(c["campaign"] for c in listed), ["z0", "z1", "z2"])
+        self.assertIn("sound", self.cluster.call(NONIO, "certificates", self.site, "--audit", "--json").stdout)
+        # The same history as one that was never on a server.
+        ask = (NONIO, "query", self.parts, "--csv", "--superseded")
+        on_server = self.cluster.call(*ask).stdout
+        (self.site / "site.toml").write_text(
+            text + database.replace(f'schema = "{here}"', f'schema = "{here}_again"'))
+        self.run_nonio("--date", "2026-11-04", out=self.parts, expect=0)
+        self.assertEqual(self.cluster.call(*ask).stdout, on_server)
+        self.assertEqual(len({line.split(",")[0] for line in on_server.splitlines()}) > 1, True)
 
     @unittest.skipUnless(LONG, "Slurm waits two minutes: NONIO_SLURM_LONG=1")
     def test_requeued_by_its_script_after_kill_9(self):

@@ -36,6 +36,7 @@ ONLY_PROGRAM = [
     (r"signing(\.(pkcs12|pkcs11|password_\w+|trust))?", "which keys stand together"),
     (r"mail\.(to|smtp|sendmail|user|password_\w+)(\.\d+)?", "which keys stand together; addresses"),
     (r"certificate\.numbering", "a pattern of numbers"),
+    (r"certificate\.register|database\.(register|schema)", "one register, apart from the history"),
     (r".*\b(travel|range)", "the smaller number first"),
     (r"asset", "the name of the file"),
     (r"taken(\..*)?", "the smaller number first"),

@@ -108,7 +108,7 @@ def site():
                  "password_credential": ""},
         "certificate": {"languages": ["en"], "template": "certificate", "location": "laboratory", "procedure": "P",
                         "title": "T", "decision_rule": "iso14253-1", "numbering": "{year}-{number:4}",
-                        "register": "r.sqlite", "register_seconds": 5, "release": "by-hand", "two_persons": False,
+                        "register": "", "register_seconds": 5, "release": "by-hand", "two_persons": False,
                         "may_stand": [{"finding": "tolerance.*", "reason": "R"}]},
-        "database": {"url": "postgresql://u@h/d", "password_file": "p", "schema": "nonio_a"},
+        "database": {"url": "postgresql://u@h/d", "password_file": "p", "schema": "nonio_a", "register": "nonio_b"},
     }

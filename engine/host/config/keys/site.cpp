@@ -151,6 +151,10 @@ constexpr Key alias_keys[] = {
     {.name = "why", .holds = text, .help = "Evidence for it.", .required = true},
 };
 
+constexpr TextRule schema_name = {.letters = "a-z0-9_", .not_first = "0123456789", .longest = 63};
+constexpr const char* schema_wanted =
+    "expected 1 to 63 characters of a-z, 0-9 and _, not starting with a digit, found \"{}\"";
+
 constexpr Key database_keys[] = {
     {.name = "url",
      .holds = text,
@@ -169,9 +173,14 @@ constexpr Key database_keys[] = {
      .holds = text,
      .help = "Schema of this site's tables; each site of a database has its own.",
      .otherwise = "nonio",
-     .wanted = "expected 1 to 63 characters of a-z, 0-9 and _, not starting with a digit, found "
-               "\"{}\"",
-     .text = {.letters = "a-z0-9_", .not_first = "0123456789", .longest = 63}},
+     .wanted = schema_wanted,
+     .text = schema_name},
+    {.name = "register",
+     .holds = text,
+     .help = "Another schema, for the register of certificate numbers. Default: the register is a "
+             "file, see [certificate] register.",
+     .wanted = schema_wanted,
+     .text = schema_name},
 };
 
 constexpr Key due_keys[] = {

@@ -7,80 +7,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <random>
-#include <set>
-
+#include "certificates/a_register.h"
 #include "host/config/number_pattern.h"
 #include "host/storage/database.h"
 
 namespace nonio::host::register_test {
 namespace {
-namespace fs = std::filesystem;
-
-const reading::Inputs first_data = {
-    {"campaign.toml", "aa"}, {"file x.csv", "bb"}, {"site.toml", "cc"}};
-const reading::Inputs other_readings = {
-    {"campaign.toml", "aa"}, {"file x.csv", "b2"}, {"site.toml", "cc"}};
-const std::string day = "2026-11-21";
-
-class RegisterTest : public testing::Test {
- protected:
-  RegisterTest() {
-    std::string path = (fs::temp_directory_path() / "nonio-register-XXXXXX").string();
-    site_ = ::mkdtemp(path.data());
-  }
-  ~RegisterTest() override { fs::remove_all(site_); }
-
-  certificates::Register open() const {
-    auto opened = certificates::Register::open(site_, numbering_);
-    EXPECT_TRUE(opened) << opened.error().message;
-    return std::move(*opened);
-  }
-  static evaluation::Certificate drawn(certificates::Register& r, const std::string& campaign,
-                                       const reading::Inputs& data,
-                                       const std::string& today = day) {
-    auto c = r.draw(campaign, data, today);
-    EXPECT_TRUE(c) << c.error().message;
-    return c ? *c : evaluation::Certificate{};
-  }
-  static evaluation::Certificate issued(certificates::Register& r, const std::string& campaign,
-                                        const reading::Inputs& data,
-                                        const std::string& today = day) {
-    evaluation::Certificate c = drawn(r, campaign, data, today);
-    EXPECT_FALSE(c.issued);
-    c.output = "certificate";
-    c.templates_sha256 = "tt";
-    c.issue.readings_sha256 = "rr";
-    c.results = "{}";
-    c.files = {
-        {"certificate", "certificate.pdf", std::string("%PDF\0\xFF", 6) + c.issue.number, ""},
-        {"dcc", "dcc.xml", "<?xml", "no answer"}};
-    auto done = r.issue(c, campaign, data);
-    EXPECT_TRUE(done) << done.error().message;
-    return done ? *done : evaluation::Certificate{};
-  }
-  static std::vector<std::string> files_of(const Issue& issue) {
-    std::vector<std::string> names;
-    for (const FileChange& change : issue.changes) names.push_back(change.file);
-    return names;
-  }
-  std::vector<certificates::RegisterEntry> entries() const {
-    auto all = certificates::Register::entries(site_, numbering_);
-    EXPECT_TRUE(all) << all.error().message;
-    return all ? *all : std::vector<certificates::RegisterEntry>{};
-  }
-  certificates::RegisterEntry entry(const std::string& number) const {
-    for (const certificates::RegisterEntry& e : entries())
-      if (e.number == number) return e;
-    ADD_FAILURE() << "no entry " << number;
-    return {};
-  }
-
-  fs::path site_;
-  config::Numbering numbering_;
-};
 
 TEST_F(RegisterTest, NothingIsMadeByLooking) {
   EXPECT_TRUE(entries().empty());
@@ -246,6 +178,7 @@ TEST_F(RegisterTest, TwoRunsAtOnceIssueOnce) {
 }
 
 TEST_F(RegisterTest, OnlyAFileInsideTheSiteThatIsARegister) {
+  if (on_server) GTEST_SKIP() << "of the file";
   for (const char* path : {"/tmp/x.sqlite", "../x.sqlite", "a/../../x.sqlite", ""}) {
     numbering_.register_file = path;
     EXPECT_FALSE(certificates::Register::open(site_, numbering_)) << path;
@@ -265,82 +198,8 @@ TEST_F(RegisterTest, OnlyAFileInsideTheSiteThatIsARegister) {
   EXPECT_FALSE(certificates::Register::open(site_, numbering_));
 }
 
-/// Ends the test program's child in the middle of whatever it does.
-void kill_after(pid_t child, useconds_t microseconds) {
-  ::usleep(microseconds);
-  ::kill(child, SIGKILL);
-  ::waitpid(child, nullptr, 0);
-}
-
-/// Or, on a busy machine, nothing would be tried: none would come as far as to issue one.
-template <class Entries>
-void until_one_is_issued(const Entries& entries) {
-  for (int tries = 0; tries < 1000; ++tries) {
-    const auto so_far = entries();
-    if (std::any_of(so_far.begin(), so_far.end(), [](const auto& e) { return e.state != "drawn"; }))
-      return;
-    ::usleep(10000);
-  }
-}
-
-TEST_F(RegisterTest, ProcessesAtOnceAndKilledOnesLoseAndRepeatNothing) {
-  const char* wanted = std::getenv("NONIO_SEED");
-  const unsigned seed = wanted == nullptr ? std::random_device{}() : std::atoi(wanted);
-  SCOPED_TRACE("seed " + std::to_string(seed));
-  std::mt19937 random(seed);
-  { open(); }
-  constexpr int rounds = 30, workers = 4;
-  for (int round = 0; round < rounds; ++round) {
-    std::vector<pid_t> children;
-    for (int w = 0; w < workers; ++w) {
-      const pid_t child = ::fork();
-      if (child == 0) {
-        for (int i = 0;; ++i) {
-          auto r = certificates::Register::open(site_, numbering_);
-          const std::string campaign =
-              "c" + std::to_string(round) + "-" + std::to_string(w) + "-" + std::to_string(i);
-          auto c = r->draw(campaign, first_data, day);
-          if (!c) ::_exit(1);
-          c->files = {{"certificate", "c.pdf", c->issue.number + std::string(20000, 'x'), ""}};
-          if (!r->issue(*c, campaign, first_data)) ::_exit(1);
-        }
-      }
-      children.push_back(child);
-    }
-    if (round == 0) until_one_is_issued([this] { return entries(); });
-    ::usleep(static_cast<useconds_t>(random() % 30000));
-    for (const pid_t child : children) kill_after(child, static_cast<useconds_t>(random() % 3000));
-  }
-  const auto all = entries();
-  std::set<std::string> numbers, orders;
-  std::size_t issued = 0;
-  certificates::Register r = open();
-  for (const certificates::RegisterEntry& e : all) {
-    numbers.insert(e.number);
-    if (e.state == "drawn") {
-      EXPECT_NE(e.reason, "");
-      continue;
-    }
-    ++issued;
-    orders.insert(std::to_string(e.order));
-    const auto files = r.files(e.number);
-    ASSERT_TRUE(files && files->size() == 1) << e.number;
-    EXPECT_TRUE(files->front().bytes.starts_with(e.number + "x"));
-  }
-  EXPECT_EQ(numbers.size(), all.size());
-  EXPECT_EQ(orders.size(), issued);
-  // None is missing: they are 1 to n.
-  EXPECT_EQ(*std::max_element(numbers.begin(), numbers.end(),
-                              [](const auto& a, const auto& b) {
-                                return std::stoul(a.substr(5)) < std::stoul(b.substr(5));
-                              }),
-            *config::number_text(numbering_.pattern, "2026", all.size()));
-  EXPECT_GT(issued, 0U);
-  EXPECT_EQ(r.draw("another", first_data, day)->issue.number,
-            *config::number_text(numbering_.pattern, "2026", all.size() + 1));
-}
-
 TEST_F(RegisterTest, ATransactionThatWasCutShortDidNotHappen) {
+  if (on_server) GTEST_SKIP() << "of the file's journal";
   {
     certificates::Register r = open();
     issued(r, "c1", first_data);

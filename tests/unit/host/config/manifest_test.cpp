@@ -235,6 +235,7 @@ TEST(Manifest, SiteFile) {
   ASSERT_TRUE(site->database);
   EXPECT_EQ(site->database->url, "postgresql://u@h/d");
   EXPECT_EQ(site->database->schema, "nonio");
+  EXPECT_FALSE(site->numbering.server);
   EXPECT_EQ(config::secret_files(*site, "/site"), std::vector<std::filesystem::path>{"/site/p"});
   for (const char* bad :
        {"url = \"postgresql://u:Geheim77@h/d\"", "url = \"Geheim77\"",
@@ -246,6 +247,22 @@ TEST(Manifest, SiteFile) {
         << refused.error()[0].message;
   }
   EXPECT_FALSE(config::parse_site("[limits]\nsecond = 5\n", "site.toml"));
+}
+
+TEST(Manifest, TheRegisterIsInOnePlaceAndNotInTheHistory) {
+  const auto parsed = [](const std::string& more) {
+    return config::parse_site("[database]\nurl = \"postgresql://u@h/d\"\n" + more, "site.toml");
+  };
+  const auto site = parsed("password_file = \"p\"\nregister = \"numbers\"\n");
+  ASSERT_TRUE(site && site->numbering.server);
+  EXPECT_EQ(site->numbering.server->schema, "numbers");
+  EXPECT_EQ(site->numbering.server->url, "postgresql://u@h/d");
+  EXPECT_EQ(site->numbering.server->password_file, "p");
+  EXPECT_EQ(site->database->schema, "nonio");
+  for (const char* bad :
+       {"register = \"nonio\"\n", "schema = \"a\"\nregister = \"a\"\n", "register = \"A\"\n",
+        "register = \"a;b\"\n", "register = \"a\"\n[certificate]\nregister = \"r.sqlite\"\n"})
+    EXPECT_FALSE(parsed(bad)) << bad;
 }
 
 TEST(Manifest, Signing) {

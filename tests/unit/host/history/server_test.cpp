@@ -66,6 +66,31 @@ TEST(HistoryServer, TwoSitesHaveASchemaEach) {
   ASSERT_TRUE(history::note_place(other.root(), place->server));
 }
 
+TEST(HistoryServer, ACopyOfTheOutputFolderDoesNotWriteIntoTheSameHistory) {
+  Output out("copied");
+  ASSERT_TRUE(out.store({.id = "a"}, 1, "r1"));
+  ASSERT_TRUE(history::update(out.root(), false, {"a"}, {}, nothing));
+  const fs::path copy = out.root().string() + "-copy";
+  fs::copy(out.root(), copy, fs::copy_options::recursive);
+  ASSERT_TRUE(out.store({.id = "b"}, 2, "r1"));
+  ASSERT_TRUE(history::update(out.root(), false, {"b"}, {}, nothing));
+  const std::string before = rows_of(out.root());
+  for (const bool behind : {false, true}) {
+    const auto done = history::update(copy, behind, {"a"}, {}, nothing);
+    ASSERT_FALSE(done);
+    EXPECT_NE(done.error().message.find("another copy of this output folder"), std::string::npos)
+        << done.error().message;
+    EXPECT_EQ(rows_of(out.root()), before);
+  }
+  // The first goes on; so does a copy that is taken over before the first has written again.
+  ASSERT_TRUE(history::update(out.root(), false, {"a"}, {}, nothing));
+  fs::remove_all(copy);
+  fs::copy(out.root(), copy, fs::copy_options::recursive);
+  ASSERT_TRUE(history::update(copy, false, {"a"}, {}, nothing));
+  EXPECT_FALSE(history::update(out.root(), false, {"a"}, {}, nothing));
+  fs::remove_all(copy);
+}
+
 TEST(HistoryServer, LosesTheConnectionAtAnyMomentAndIsTheOldOne) {
   Output out("gone");
   two_campaigns(out, 1, 1.0);
