@@ -13,6 +13,7 @@
 #include "host/process/channel.h"
 #include "host/process/child.h"
 #include "host/storage/files.h"
+#include "host/storage/real_folder.h"
 
 namespace nonio::host::batch {
 namespace fs = std::filesystem;
@@ -97,7 +98,7 @@ void evaluate_for(int stream, const reading::Context& context, process::SharedSt
 /// Files of the campaign, and nothing else that this user could read.
 bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const {
   std::error_code error;
-  const fs::path root = fs::path(path).is_absolute() ? fs::canonical(folder, error) : folder;
+  const fs::path root = fs::path(path).is_absolute() ? storage::real_folder(folder, error) : folder;
   const std::string inside = fs::path(path).lexically_relative(root).string();
   // A manifest may be a link to anywhere, as for the survey.
   const auto full = inside == config::manifest_name

@@ -223,9 +223,13 @@ std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders) {
     std::vector<fs::path> here;
     std::error_code error;
+    const fs::path real = fs::canonical(folder, error);
+    error.clear();  // who lists a folder that is not there says so
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
       if (it->path().extension() == ".so" && it->is_regular_file()) {
-        const fs::path path = fs::canonical(it->path(), error);
+        const bool resolved = !real.empty() && !it->is_symlink(error);
+        const fs::path path =
+            resolved ? real / it->path().filename() : fs::canonical(it->path(), error);
         if (error) break;
         if (std::find(paths.begin(), paths.end(), path) == paths.end()) here.push_back(path);
       }
@@ -248,6 +252,7 @@ void Plugins::load(const std::vector<fs::path>& folders) {
     if (!refusals[i].empty() && !refusals[i].starts_with("did not survive"))
       refusals[i] = probe(std::span(strange).subspan(i, 1)).front();
   const process::LoadingUntried loading;
+  const process::Muted muted;
   std::size_t tried = 0;
   for (const fs::path& path : paths) {
     const bool is_strange = tried < strange.size() && strange[tried] == path;

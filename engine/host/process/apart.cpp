@@ -74,6 +74,7 @@ void keep_plugins_apart(std::filesystem::path own_plugins) {
   if (where_run == Place::anywhere) where_run = Place::wanted_apart;
   std::error_code error;
   own_folder() = std::filesystem::canonical(own_plugins, error);
+  keep_freed_memory();
 }
 
 bool must_be_tried(const std::filesystem::path& plugin) {

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <map>
 
+#include "host/reading/plausibility_strokes.h"
 #include "host/storage/digest.h"
 #include "nonio/sdk/format.h"
 
@@ -357,10 +358,10 @@ void uncertain(const std::vector<Results::Analysed>& analyses, const std::string
   }
 }
 
-}  // namespace
-
+/// What the readings of a measurement say. `all`: of each measurement of the campaign.
 std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t measurement,
-                                          const std::vector<Observations>& all) {
+                                          const std::vector<Observations>& all,
+                                          const Passes& passes) {
   std::vector<Finding> out;
   const Measurement& m = campaign.measurements[measurement];
   const Observations& o = all[measurement];
@@ -382,10 +383,12 @@ std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t 
   if (m.kind == "diagonal") short_diagonal(m, o, out);
   if (m.kind == "ball-centres") implausible_centres(m, o, out);
   beyond_travel(campaign, o, out);
-  if (runs || steps) implausible_passes(o, runs, out);
-  implausible_columns(m, o, runs, out);
+  if (runs || steps) implausible_passes(passes, o, runs, out);
+  implausible_columns(m, passes, o, runs, out);
   return out;
 }
+
+}  // namespace
 
 std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Context& context,
                                            const Inputs& inputs,
@@ -401,7 +404,9 @@ std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Conte
   add("", implausible_campaign(*read.manifest, context.today));
   std::map<std::string, std::string> digest_of, first_with;
   for (const auto& [name, digest] : inputs) digest_of[name] = digest;
-  const auto twice = passes_of_another_measurement(campaign, read.observations);
+  std::vector<Passes> passes;
+  for (const Observations& o : read.observations) passes.push_back(passes_of(o));
+  const auto twice = passes_of_another_measurement(campaign, read.observations, passes);
   for (std::size_t i = 0; i < campaign.measurements.size(); ++i) {
     const Measurement& m = campaign.measurements[i];
     std::vector<Finding> findings;
@@ -420,7 +425,7 @@ std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Conte
     else
       for (const Finding& f : twice)
         if (f.measurement == m.id) findings.push_back(f);
-    for (Finding& f : implausible_readings(campaign, i, read.observations))
+    for (Finding& f : implausible_readings(campaign, i, read.observations, passes[i]))
       findings.push_back(std::move(f));
     if (m.kind == "axis") uncertain(analyses, m.id, findings);
     add(m.id, std::move(findings));

@@ -40,24 +40,6 @@ void implausible_pitch(const Campaign& campaign, std::vector<Finding>& out);
 /// The same as the readings betray it.
 void period_against_pitch(const Axis& axis, const Observations& o, std::vector<Finding>& out);
 
-/// What the readings of a measurement say. `all`: of each measurement of the campaign.
-std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t measurement,
-                                          const std::vector<Observations>& all);
-
-/// Passes that are copies, directions that are swapped or go against the order of the rows.
-void implausible_passes(const Observations& o, bool with_directions, std::vector<Finding>& out);
-
-/// Passes of which more agrees than chance allows.
-void implausible_copies(const Observations& o, std::vector<Finding>& out);
-
-/// Passes that stand in an earlier measurement of the campaign too.
-std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
-                                                   const std::vector<Observations>& all);
-
-/// Temperatures, pressure, humidity and, if wanted, times.
-void implausible_columns(const Measurement& m, const Observations& o, bool with_times,
-                         std::vector<Finding>& out);
-
 /// Centres of a ball: how far apart, and about which axis.
 void implausible_centres(const Measurement& m, const Observations& o, std::vector<Finding>& out);
 

@@ -64,7 +64,8 @@ void implausible_air(const Observations& o, std::vector<Finding>& out) {
 }
 
 /// Times against the ways that were gone, and against the order of the rows.
-void implausible_times(const Measurement& m, const Observations& o, std::vector<Finding>& out) {
+void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
+                       const Observations& o, std::vector<Finding>& out) {
   constexpr double slowest = 3600.0;                      // s for a reading
   constexpr double fastest = 5.0, fastest_angle = 600.0;  // m/s, rad/s
   std::vector<std::pair<double, double>> taken;           // time, position
@@ -96,7 +97,6 @@ void implausible_times(const Measurement& m, const Observations& o, std::vector<
                                 {"lasted", lasted, Quantity::time},
                                 {"way", way, axis.rotary ? Quantity::angle : Quantity::length}}});
   if (taken.size() != o.size()) return;
-  const auto strokes = strokes_of(o);
   std::string which;
   double torn = 0.0;
   for (const Stroke& s : strokes)
@@ -144,10 +144,10 @@ std::array<double, 3> normal_of(const std::vector<std::array<double, 3>>& centre
 
 }  // namespace
 
-void implausible_columns(const Measurement& m, const Observations& o, bool with_times,
-                         std::vector<Finding>& out) {
+void implausible_columns(const Measurement& m, const Passes& passes, const Observations& o,
+                         bool with_times, std::vector<Finding>& out) {
   implausible_air(o, out);
-  if (with_times) implausible_times(m, o, out);
+  if (with_times) implausible_times(m, passes.strokes, o, out);
 }
 
 void implausible_centres(const Measurement& m, const Observations& o, std::vector<Finding>& out) {

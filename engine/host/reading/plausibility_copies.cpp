@@ -17,10 +17,11 @@ namespace {
 /// what no machine goes below).
 class Copies {
  public:
-  Copies(const std::vector<Stroke>& strokes, bool angular)
-      : strokes_(strokes), least_scatter_(angular ? 0.01 * arcsec : 0.03 * um) {
-    for (const Stroke& s : strokes) groups_[{s.line, s.target, s.deviation}].push_back(&s);
-    step_ = step_of(strokes);
+  Copies(const Passes& passes, bool angular)
+      : strokes_(passes.strokes),
+        least_scatter_(angular ? 0.01 * arcsec : 0.03 * um),
+        step_(passes.step) {
+    for (const Stroke& s : strokes_) groups_[{s.line, s.target, s.deviation}].push_back(&s);
     scatter();
   }
 
@@ -213,7 +214,7 @@ class Copies {
   }
 
   const std::vector<Stroke>& strokes_;
-  double least_scatter_, step_ = 0.0, scatter_ = 0.0;
+  double least_scatter_, step_, scatter_ = 0.0;
   bool scatter_known_ = false;
   std::map<std::tuple<std::uint32_t, std::vector<double>, std::vector<double>>,
            std::vector<const Stroke*>>
@@ -274,15 +275,14 @@ std::optional<double> shared_readings(const Cells& one, const Cells& other) {
 
 }  // namespace
 
-void implausible_copies(const Observations& o, std::vector<Finding>& out) {
-  const auto strokes = strokes_of(o);
+void implausible_copies(const Passes& passes, const Observations& o, std::vector<Finding>& out) {
   const Quantity deviation = o.angular ? Quantity::angular_deviation : Quantity::deviation;
   const std::size_t before = out.size();
-  Copies(strokes, o.angular).find(deviation, out);
+  Copies(passes, o.angular).find(deviation, out);
   if (out.size() > before) return;
-  const double step = step_of(strokes);
+  const double step = passes.step;
   std::map<std::vector<double>, const Stroke*> seen;
-  for (const Stroke& s : strokes) {
+  for (const Stroke& s : passes.strokes) {
     const auto [at, is_new] = seen.try_emplace(s.as_taken, &s);
     if (is_new || at->second->line == s.line || !tells(s.as_taken, step)) continue;
     const auto name = [&](const Stroke& one) { return o.lines[one.line].name; };
@@ -299,16 +299,16 @@ void implausible_copies(const Observations& o, std::vector<Finding>& out) {
 }
 
 std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
-                                                   const std::vector<Observations>& all) {
+                                                   const std::vector<Observations>& all,
+                                                   const std::vector<Passes>& passes) {
   std::vector<Finding> out;
   std::map<std::vector<double>, std::size_t> seen;  // readings, measurement
   std::vector<Cells> cells(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].size() == 0 || all[i].axes.empty()) continue;
-    const auto strokes = strokes_of(all[i]);
+    const auto& [strokes, step] = passes[i];
     if (all[i].axes.size() == 1 && all[i].lines.size() == 1 && all[i].size() <= most_sorted)
       cells[i] = cells_by_run(strokes);
-    const double step = step_of(strokes);
     std::map<std::size_t, double> shared;
     for (const Stroke& s : strokes) {
       const auto [at, is_new] = seen.try_emplace(s.as_taken, i);
@@ -326,11 +326,11 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                      .measurement = m.id});
       break;
     }
-    for (const auto& [other, passes] : shared) {
+    for (const auto& [other, count] : shared) {
       const Measurement &m = campaign.measurements[i], &first = campaign.measurements[other];
       out.push_back({.id = "plausibility.readings-twice",
                      .attention = true,
-                     .evidence = {{"passes", passes, Quantity::count},
+                     .evidence = {{"passes", count, Quantity::count},
                                   {"of", static_cast<double>(strokes.size()), Quantity::count}},
                      .texts = {{"file", m.file}, {"other", first.file}, {"with", first.id}},
                      .measurement = m.id});

@@ -51,9 +51,9 @@ Reversals reversals_of(const std::vector<Stroke>& strokes) {
 }
 
 /// A run whose reversal is that of the others with the other sign, and not a little.
-void swapped(const std::vector<Stroke>& strokes, Quantity deviation, std::vector<Finding>& out) {
-  const Reversals all = reversals_of(strokes);
-  const double step = step_of(strokes);
+void swapped(const Passes& passes, Quantity deviation, std::vector<Finding>& out) {
+  const Reversals all = reversals_of(passes.strokes);
+  const double step = passes.step;
   for (const auto& [run, own] : all) {
     std::map<double, std::vector<double>> others;
     for (const auto& [other, by_target] : all)
@@ -205,8 +205,8 @@ void push_turned(Turned how, const std::string& which, std::vector<Finding>& out
 }
 
 /// One pass against the others of its direction; else all of one direction against the other.
-void turned_passes(const std::vector<Stroke>& strokes, std::vector<Finding>& out) {
-  const double step = step_of(strokes);
+void turned_passes(const Passes& passes, std::vector<Finding>& out) {
+  const auto& [strokes, step] = passes;
   std::map<int, Curve> by_direction;
   for (const Stroke& s : strokes) by_direction[s.direction].add(s);
   for (const Stroke& own : strokes) {
@@ -233,19 +233,18 @@ double size_of(const Stroke& s) {
 }
 
 /// A pass whose deviations are of another order of magnitude than those of the others.
-void another_size(const std::vector<Stroke>& strokes, Quantity deviation,
-                  std::vector<Finding>& out) {
+void another_size(const Passes& passes, Quantity deviation, std::vector<Finding>& out) {
   constexpr std::size_t fewest_readings = 6, fewest_passes = 3;
   constexpr double ratio = 8.0, chance = 1e-7;
   std::vector<std::pair<double, const Stroke*>> sizes;
-  for (const Stroke& s : strokes)
+  for (const Stroke& s : passes.strokes)
     if (s.deviation.size() >= fewest_readings) sizes.emplace_back(size_of(s), &s);
   if (sizes.size() < fewest_passes) return;
   std::vector<double> all;
   for (const auto& one : sizes) all.push_back(one.first);
   const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
   std::nth_element(all.begin(), middle, all.end());
-  const double others = *middle, step = step_of(strokes);
+  const double others = *middle, step = passes.step;
   if (step <= 0.0) return;
   for (const auto& [size, s] : sizes) {
     const double larger = std::max(size, others), smaller = std::min(size, others);
@@ -262,18 +261,18 @@ void another_size(const std::vector<Stroke>& strokes, Quantity deviation,
 
 }  // namespace
 
-void implausible_passes(const Observations& o, bool with_directions, std::vector<Finding>& out) {
-  implausible_copies(o, out);
+void implausible_passes(const Passes& passes, const Observations& o, bool with_directions,
+                        std::vector<Finding>& out) {
+  implausible_copies(passes, o, out);
   if (!with_directions || o.lines.size() > 1) return;
-  const auto strokes = strokes_of(o);
   const Quantity deviation = o.angular ? Quantity::angular_deviation : Quantity::deviation;
-  against_order(strokes, out);
-  implausible_values(strokes, o, out);
+  against_order(passes.strokes, out);
+  implausible_values(passes, o, out);
   const std::size_t before = out.size();
-  swapped(strokes, deviation, out);
-  if (out.size() == before) turned_passes(strokes, out);
-  another_size(strokes, deviation, out);
-  if (out.size() == before && o.size() <= most_sorted) implausible_halves(strokes, o.angular, out);
+  swapped(passes, deviation, out);
+  if (out.size() == before) turned_passes(passes, out);
+  another_size(passes, deviation, out);
+  if (out.size() == before && o.size() <= most_sorted) implausible_halves(passes, o.angular, out);
 }
 
 }  // namespace nonio::host::reading

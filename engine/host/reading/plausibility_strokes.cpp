@@ -76,7 +76,10 @@ std::vector<Stroke> in_order(const Observations& o, const std::vector<std::size_
 
 }  // namespace
 
+namespace {
+
 std::vector<Stroke> strokes_of(const Observations& o) {
+  if (o.axes.empty() || o.axes.front().position.size() < o.size()) return {};
   auto strokes = in_order(o, order_in_time(o));
   std::map<std::tuple<std::uint32_t, std::uint32_t, int>, bool> alone;
   if (!o.time.empty())
@@ -99,11 +102,15 @@ std::vector<Stroke> strokes_of(const Observations& o) {
   return strokes;
 }
 
+}  // namespace
+
 std::string name_of(const Stroke& s) {
   std::string name = std::to_string(s.run);
   if (s.direction != 0) name += s.direction > 0 ? " +" : " -";
   return name;
 }
+
+namespace {
 
 double step_of(const std::vector<Stroke>& strokes) {
   std::vector<double> all;
@@ -121,6 +128,14 @@ double step_of(const std::vector<Stroke>& strokes) {
                     [&](double d) { return std::fabs(d / grid - std::round(d / grid)) < 1e-4; }))
       return step > 0.0 ? std::min(step, grid) : 0.0;
   return step;
+}
+
+}  // namespace
+
+Passes passes_of(const Observations& o) {
+  Passes passes{strokes_of(o)};
+  passes.step = step_of(passes.strokes);
+  return passes;
 }
 
 void take_line_out(const std::vector<double>& at, std::vector<double>& values) {

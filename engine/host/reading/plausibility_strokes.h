@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "nonio/sdk/campaign.h"
 #include "nonio/sdk/observations.h"
+#include "nonio/sdk/results.h"
 
 namespace nonio::host::reading {
 
@@ -23,14 +25,18 @@ struct Stroke {
   bool alone_in_file = false;       ///< the same in the order of the rows
 };
 
-/// In the order in which they were begun; within each by target.
-std::vector<Stroke> strokes_of(const Observations& o);
+/// All of a measurement, in the order in which they were begun; within each by target.
+struct Passes {
+  std::vector<Stroke> strokes;
+  double step =
+      0.0;  ///< the smallest difference of two readings that are not the same; 0 if all are
+};
+
+/// None if there is no axis.
+Passes passes_of(const Observations& o);
 
 /// "3 +", of a run and direction.
 std::string name_of(const Stroke& s);
-
-/// The smallest difference of two readings that are not the same; 0 if all are.
-double step_of(const std::vector<Stroke>& strokes);
 
 /// The line of least squares out of the values at these places.
 void take_line_out(const std::vector<double>& at, std::vector<double>& values);
@@ -39,11 +45,25 @@ void take_line_out(const std::vector<double>& at, std::vector<double>& values);
 inline constexpr std::size_t most_sorted = 20000;
 
 /// Runs or targets of which one part is of another machine than the rest.
-void implausible_halves(const std::vector<Stroke>& strokes, bool angular,
-                        std::vector<Finding>& out);
+void implausible_halves(const Passes& passes, bool angular, std::vector<Finding>& out);
 
 /// A value that stands for a reading that was not taken, a pass of means, targets exchanged.
-void implausible_values(const std::vector<Stroke>& strokes, const Observations& o,
+void implausible_values(const Passes& passes, const Observations& o, std::vector<Finding>& out);
+
+/// Passes that are copies, directions that are swapped or go against the order of the rows.
+void implausible_passes(const Passes& passes, const Observations& o, bool with_directions,
                         std::vector<Finding>& out);
+
+/// Passes of which more agrees than chance allows.
+void implausible_copies(const Passes& passes, const Observations& o, std::vector<Finding>& out);
+
+/// Passes that stand in an earlier measurement of the campaign too. `passes`: of each measurement.
+std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
+                                                   const std::vector<Observations>& all,
+                                                   const std::vector<Passes>& passes);
+
+/// Temperatures, pressure, humidity and, if wanted, times.
+void implausible_columns(const Measurement& m, const Passes& passes, const Observations& o,
+                         bool with_times, std::vector<Finding>& out);
 
 }  // namespace nonio::host::reading

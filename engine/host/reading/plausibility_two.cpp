@@ -176,12 +176,11 @@ void two_reversals(const Grid& grid, double step, Quantity deviation, std::vecto
 
 }  // namespace
 
-void implausible_halves(const std::vector<Stroke>& strokes, bool angular,
-                        std::vector<Finding>& out) {
+void implausible_halves(const Passes& passes, bool angular, std::vector<Finding>& out) {
+  const auto& [strokes, step] = passes;
   if (strokes.empty()) return;
   const Quantity deviation = angular ? Quantity::angular_deviation : Quantity::deviation;
   const Grid grid = grid_of(strokes);
-  const double step = step_of(strokes);
   if (grid.targets.empty() || step <= 0.0) return;
   const std::size_t before = out.size();
   two_curves(grid, step, deviation, out);

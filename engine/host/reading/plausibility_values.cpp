@@ -179,9 +179,8 @@ void targets_against_order(const std::vector<Stroke>& strokes, Quantity position
 
 }  // namespace
 
-void implausible_values(const std::vector<Stroke>& strokes, const Observations& o,
-                        std::vector<Finding>& out) {
-  const double step = step_of(strokes);
+void implausible_values(const Passes& passes, const Observations& o, std::vector<Finding>& out) {
+  const auto& [strokes, step] = passes;
   const Quantity deviation = o.angular ? Quantity::angular_deviation : Quantity::deviation;
   targets_against_order(strokes, position_of(o.axes.front().rotary), out);
   if (step <= 0.0 || o.size() > most_sorted) return;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "host/storage/digest.h"
+#include "host/storage/real_folder.h"
 
 namespace nonio::host::storage {
 namespace fs = std::filesystem;
@@ -167,15 +168,29 @@ void ReadFile::release(std::size_t offset) {
   if (whole > released_ && ::munmap(data_ + released_, whole - released_) == 0) released_ = whole;
 }
 
-Expected<void> read_parts(const fs::path& path, const std::function<void(std::string_view)>& take) {
-  const Descriptor file = open_to_read(path);
+namespace {
+
+struct RegularFile {
+  Descriptor descriptor;
+  std::size_t size;
+};
+
+Expected<RegularFile> open_regular(const fs::path& path) {
+  Descriptor file = open_to_read(path);
   struct stat info {};
   if (!file || ::fstat(file.get(), &info) != 0) return system_error("cannot read", path);
   if (!S_ISREG(info.st_mode)) return fail("cannot read " + path.string() + ": not a file");
-  std::string buffer(std::min<std::size_t>(static_cast<std::size_t>(info.st_size) + 1, 1 << 20),
-                     '\0');
+  return RegularFile{std::move(file), static_cast<std::size_t>(info.st_size)};
+}
+
+}  // namespace
+
+Expected<void> read_parts(const fs::path& path, const std::function<void(std::string_view)>& take) {
+  const auto file = open_regular(path);
+  if (!file) return fail(file.error());
+  std::string buffer(std::min<std::size_t>(file->size + 1, 1 << 20), '\0');
   for (;;) {
-    const ssize_t n = ::read(file.get(), buffer.data(), buffer.size());
+    const ssize_t n = ::read(file->descriptor.get(), buffer.data(), buffer.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return system_error("cannot read", path);
     if (n == 0) return {};
@@ -184,14 +199,20 @@ Expected<void> read_parts(const fs::path& path, const std::function<void(std::st
 }
 
 Expected<std::string> read_file(const fs::path& path) {
-  constexpr std::uintmax_t most_at_once = 1 << 28;
+  constexpr std::size_t most_at_once = 1 << 28;
+  const auto file = open_regular(path);
+  if (!file) return fail(file.error());
   std::string bytes;
-  std::error_code error;
-  if (const std::uintmax_t size = fs::file_size(path, error); !error)
-    bytes.reserve(static_cast<std::size_t>(std::min(size, most_at_once)));
-  const auto read = read_parts(path, [&](std::string_view part) { bytes += part; });
-  if (!read) return fail(read.error());
-  return bytes;
+  // A byte more than there is: that none comes says that the file ends there.
+  for (std::size_t size = 0, room = std::min(file->size, most_at_once) + 1;; room *= 2) {
+    bytes.resize(room);
+    const auto read = read_into(file->descriptor.get(), bytes.data() + size, room - size, path);
+    if (!read) return fail(read.error());
+    size += *read;
+    if (size == room) continue;
+    bytes.resize(size);
+    return bytes;
+  }
 }
 
 fs::path results_folder(const fs::path& out, const std::string& id) {
@@ -285,13 +306,25 @@ std::string path_text(std::string_view path) {
   return out;
 }
 
+namespace {
+
+/// A plain name in a folder that is no link: there is nothing to resolve.
+bool is_plain_file_in(const fs::path& folder, const std::string& name) {
+  struct stat info {};
+  return name.find('/') == std::string::npos && name != "." && name != ".." &&
+         ::lstat((folder / name).c_str(), &info) == 0 && S_ISREG(info.st_mode);
+}
+
+}  // namespace
+
 Expected<fs::path> path_inside(const fs::path& base, const std::string& relative) {
   std::error_code error;
-  const fs::path root = fs::canonical(base, error);
+  const fs::path root = real_folder(base, error);
   if (error) return fail("cannot find the folder " + base.string() + ": " + error.message());
   if (relative.empty() || fs::path(relative).is_absolute() ||
       relative.find('\0') != std::string::npos)
     return fail("\"" + relative + "\" is not a path below the campaign's folder");
+  if (is_plain_file_in(root, relative)) return root / relative;
   const fs::path full = fs::weakly_canonical(root / relative, error);
   if (error) return fail("cannot resolve \"" + relative + "\": " + error.message());
   const fs::path below = full.lexically_relative(root);

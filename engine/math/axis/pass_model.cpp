@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "nonio/math/statistics.h"
@@ -141,7 +142,9 @@ double joined_dof(double a, double dof_a, double b, double dof_b) {
   return sum * sum / ((a > 0.0 ? a * a / dof_a : 0.0) + (b > 0.0 ? b * b / dof_b : 0.0));
 }
 
-PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::size_t> left_out) {
+namespace {
+
+PassModel fitted(const AxisTest& test, bool slopes, std::span<const std::size_t> left_out) {
   PassModel m;
   index_readings(test, m);
   m.middle = mean(test.targets);
@@ -161,6 +164,49 @@ PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::siz
   }
   sum_up(test, m, slopes);
   return m;
+}
+
+/// Whether all that a fit depends on is the same, bit for bit.
+bool same_bits(const AxisTest& a, const AxisTest& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
+  };
+  static_assert(sizeof(AxisTest::Reading) == sizeof(double) + 2 * sizeof(std::uint32_t),
+                "no padding");
+  if (!same(a.targets, b.targets) || !same(a.readings(), b.readings())) return false;
+  for (std::size_t i = 0; i < a.targets.size(); ++i)
+    if (a.plus(i).size() != b.plus(i).size() || a.minus(i).size() != b.minus(i).size())
+      return false;
+  return true;
+}
+
+struct Fitted {
+  AxisTest test;
+  bool slopes = false;
+  std::vector<std::size_t> left_out;
+  PassModel model;
+};
+
+}  // namespace
+
+// Findings, reversal and each table ask for the fits of the same few tests: two dozen times for a campaign with two
+// analyses and four controls. So the last ones are kept, and are given again for the same bits only.
+PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::size_t> left_out) {
+  constexpr std::size_t most_kept = 8, most_readings = 4096;
+  if (test.readings().empty() || test.readings().size() > most_readings)
+    return fitted(test, slopes, left_out);
+  thread_local std::vector<Fitted> kept;
+  thread_local std::size_t oldest = 0;
+  for (const Fitted& known : kept)
+    if (known.slopes == slopes && std::ranges::equal(known.left_out, left_out) &&
+        same_bits(known.test, test))
+      return known.model;
+  Fitted fresh{test, slopes, {left_out.begin(), left_out.end()}, fitted(test, slopes, left_out)};
+  if (kept.size() < most_kept) return kept.emplace_back(std::move(fresh)).model;
+  kept[oldest] = std::move(fresh);
+  const PassModel& model = kept[oldest].model;
+  oldest = (oldest + 1) % most_kept;
+  return model;
 }
 
 }  // namespace nonio::math

@@ -43,17 +43,20 @@ bool fill_blanks(const std::vector<std::uint32_t>& known, const std::vector<std:
 
 bool known_temperatures(const Observations& o, AxisReadings& r) {
   if (o.material.size() != o.size()) return false;
-  const std::size_t lines = std::max<std::size_t>(o.line.empty() ? 1 : o.lines.size(), 1);
-  std::vector<std::vector<std::uint32_t>> known(lines), blank(lines);
   bool gaps = false;
-  for (std::uint32_t i = 0; i < o.size(); ++i) {
+  for (std::size_t i = 0; i < o.size(); ++i) {
     if (!r.moved[i]) continue;
     const bool has = std::isfinite(o.material[i]);
     if (has) r.K[i] = o.material[i];
     gaps = gaps || !has;
-    (has ? known : blank)[o.line.empty() ? 0 : o.line[i]].push_back(i);
   }
-  if (gaps && !(r.duration > 0.0)) return false;  // nobody knows what lies between what
+  if (!gaps) return true;
+  if (!(r.duration > 0.0)) return false;  // nobody knows what lies between what
+  const std::size_t lines = std::max<std::size_t>(o.line.empty() ? 1 : o.lines.size(), 1);
+  std::vector<std::vector<std::uint32_t>> known(lines), blank(lines);
+  for (std::uint32_t i = 0; i < o.size(); ++i)
+    if (r.moved[i])
+      (std::isfinite(o.material[i]) ? known : blank)[o.line.empty() ? 0 : o.line[i]].push_back(i);
   const auto earlier = [&](std::uint32_t a, std::uint32_t b) { return r.t[a] < r.t[b]; };
   for (std::size_t line = 0; line < lines; ++line) {
     std::stable_sort(known[line].begin(), known[line].end(), earlier);

@@ -3,7 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
+#include <sstream>
+
 #include "axis_builder.h"
+#include "nonio/math/axis_findings.h"
+#include "nonio/math/reversal.h"
 
 namespace nonio::axis_test_test {
 namespace {
@@ -93,6 +99,55 @@ TEST(AxisTest, OnlySomeTargets) {
   EXPECT_FALSE(only.has_plus());
   ASSERT_EQ(only.minus(0).size(), 2U);
   EXPECT_EQ(only.minus(0)[0].deviation, 7.0);
+}
+
+/// What is said of a test, every digit of it.
+std::string said_of(const AxisTest& test) {
+  std::vector<Finding> findings;
+  math::drift_findings(test, findings);
+  math::suspect_findings(test, findings);
+  const math::Reversal reversal = math::assess_reversal(test);
+  std::ostringstream out;
+  out << std::hexfloat << reversal.mean << " " << reversal.u_mean << " " << reversal.p_varies;
+  for (const Finding& finding : findings) {
+    out << " " << finding.id;
+    for (const Number& number : finding.evidence) out << " " << number.value;
+  }
+  return out.str();
+}
+
+// Fits are kept for who asks again: what was asked before must not show.
+TEST(AxisTest, WhatWasAskedBeforeChangesNothing) {
+  constexpr unsigned seed = 7;
+  made::Random random(seed);
+  std::vector<AxisTest> tests;
+  for (int k = 0; k < 40; ++k) {
+    Observations o;
+    const int targets = 3 + k % 5, runs = 2 + k % 4;
+    for (int run = 1; run <= runs; ++run)
+      for (int i = 0; i < targets; ++i)
+        for (const int direction : {1, -1})
+          made::add(o, 0.1 * i, direction,
+                    1e-6 * (static_cast<double>(random() % 1000) / 100.0 + run * (k % 3)),
+                    static_cast<std::uint32_t>(run));
+    tests.push_back(AxisTest::arrange(o));
+    // The same but for one bit, one target, or the direction of one reading.
+    o.deviation[1] = std::nextafter(o.deviation[1], 1.0);
+    tests.push_back(AxisTest::arrange(o));
+    o.axes[0].position.back() += 1e-6;
+    tests.push_back(AxisTest::arrange(o));
+    o.axes[0].approach[0] = -o.axes[0].approach[0];
+    tests.push_back(AxisTest::arrange(o));
+  }
+  std::vector<std::string> forwards;
+  for (const AxisTest& test : tests) forwards.push_back(said_of(test));
+  EXPECT_GT(std::set<std::string>(forwards.begin(), forwards.end()).size(), 60U);
+  for (std::size_t k = tests.size(); k-- > 0;) {
+    EXPECT_EQ(said_of(tests[k]), forwards[k]) << "test " << k << ", seed " << seed;
+    const std::size_t other = random() % tests.size();
+    EXPECT_EQ(said_of(tests[other]), forwards[other]) << "test " << other << ", seed " << seed;
+    EXPECT_EQ(said_of(tests[k]), forwards[k]) << "again, test " << k << ", seed " << seed;
+  }
 }
 
 }  // namespace

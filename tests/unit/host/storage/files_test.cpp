@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "host/storage/digest.h"
+#include "host/storage/real_folder.h"
 
 namespace nonio::host::files_test {
 namespace fs = std::filesystem;
@@ -33,6 +34,70 @@ TEST_F(Files, PathsNeverLeaveTheFolder) {
   for (const char* bad :
        {"../secret.csv", "/etc/passwd", "link.csv", "", ".", "data/../../secret.csv"})
     EXPECT_FALSE(storage::path_inside(base, bad)) << bad;
+}
+
+TEST_F(Files, RealFoldersAreThoseOfTheMoment) {
+  const auto same = [](const fs::path& folder) {
+    std::error_code error, wanted_error;
+    const fs::path wanted = fs::canonical(folder, wanted_error);
+    EXPECT_EQ(storage::real_folder(folder, error), wanted) << folder;
+    EXPECT_EQ(error, wanted_error) << folder;
+  };
+  for (const char* name : {"one/a", "one/b", "two/a"}) fs::create_directories(folder_ / name);
+  fs::create_directory_symlink(folder_ / "two", folder_ / "link");
+  fs::create_directory_symlink(folder_ / "two", folder_ / "one/c");
+  std::ofstream(folder_ / "one/d") << "x";
+  for (const char* name : {"one/a", "one/b", "one/a", "two/a", "one/b", "link/a", "one/c", "one/d",
+                           "one/e", "one/..", "link/..", "one/a/", "two/../one/a", "."})
+    same(folder_ / name);
+  same("a");
+  // The parent is moved away, or becomes a link, between two questions.
+  same(folder_ / "one/a");
+  fs::rename(folder_ / "one", folder_ / "three");
+  same(folder_ / "one/a");
+  fs::create_directory_symlink(folder_ / "three", folder_ / "one");
+  same(folder_ / "one/a");
+  same(folder_ / "link/a");
+  fs::rename(folder_ / "two", folder_ / "four");
+  fs::remove(folder_ / "link");
+  fs::create_directory_symlink(folder_ / "four", folder_ / "link");
+  same(folder_ / "link/a");
+}
+
+TEST_F(Files, PlainNamesAreResolvedAsOthers) {
+  fs::create_directories(folder_ / "site/campaign/data");
+  std::ofstream(folder_ / "site/campaign/x.csv") << "x";
+  std::ofstream(folder_ / "secret.csv") << "x";
+  fs::create_symlink(folder_ / "secret.csv", folder_ / "site/campaign/link.csv");
+  fs::create_symlink("x.csv", folder_ / "site/campaign/own.csv");
+  fs::create_directory_symlink(folder_ / "site", folder_ / "way");
+  const fs::path real = fs::canonical(folder_) / "site/campaign";
+  for (const char* site : {"site", "way", "site", "way"}) {
+    const fs::path base = folder_ / site / "campaign";
+    for (const char* name : {"x.csv", "own.csv", "missing.csv"}) {
+      const auto found = storage::path_inside(base, name);
+      ASSERT_TRUE(found) << name;
+      EXPECT_EQ(*found, real / (std::string(name) == "own.csv" ? "x.csv" : name));
+    }
+    for (const char* bad : {"link.csv", "..", ".", ""})
+      EXPECT_FALSE(storage::path_inside(base, bad)) << bad;
+  }
+}
+
+TEST_F(Files, FilesAreReadWhole) {
+  for (const std::size_t size : {0U, 1U, 2U, 4095U, 4096U, 70000U, 1500000U}) {
+    std::string bytes(size, 'x');
+    for (std::size_t i = 0; i < size; i += 97) bytes[i] = static_cast<char>(i);
+    std::ofstream(folder_ / "file", std::ios::binary) << bytes;
+    const auto read = storage::read_file(folder_ / "file");
+    ASSERT_TRUE(read);
+    EXPECT_EQ(*read, bytes) << size;
+  }
+  const auto of_system = storage::read_file("/proc/self/status");  // its size is said to be 0
+  ASSERT_TRUE(of_system);
+  EXPECT_NE(of_system->find("VmRSS"), std::string::npos);
+  EXPECT_FALSE(storage::read_file(folder_));
+  EXPECT_FALSE(storage::read_file(folder_ / "missing"));
 }
 
 TEST_F(Files, ArtifactNames) {
