@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "host/config/manifest.h"
-#include "host/config/plain_settings.h"
 #include "host/config/toml_reader.h"
 #include "host/storage/nearest.h"
 #include "nonio/sdk/format.h"
@@ -179,7 +178,6 @@ Expected<void> flatten(const toml::table& table, const std::string& prefix, cons
 }  // namespace
 
 Expected<Settings> parse_settings(std::string_view text, const std::string& file) {
-  if (auto plain = plain_settings(text)) return *std::move(plain);
   auto root = parse_toml(text, file);
   if (!root) return fail(root.error());
   Settings settings;
