@@ -181,8 +181,36 @@ void kill_server(const Raw& raw, std::mt19937& random) {
   if (!one.empty()) ::kill(std::atoi(one.c_str()), SIGKILL);
 }
 
+class RegisterProcesses : public RegisterTest {
+ protected:
+  /// Of each of the campaigns, in the register and in its counter; nothing else is wrong with it.
+  void expect_one_number_each(unsigned processes, unsigned n) const {
+    std::set<std::string> campaigns{"first"}, found, numbers;
+    for (unsigned own = 0; own < processes; ++own)
+      for (unsigned i = 0; i < n; ++i) campaigns.insert(Client::campaign(own, i));
+    const auto all = entries();
+    for (const certificates::RegisterEntry& e : all) {
+      numbers.insert(e.number);
+      EXPECT_TRUE(found.insert(e.campaign).second) << e.campaign << " has two numbers";
+      EXPECT_NE(e.state == "drawn", e.reason.empty()) << e.number;
+    }
+    EXPECT_EQ(found, campaigns);
+    std::set<std::string> wanted;
+    for (std::size_t i = 1; i <= all.size(); ++i)
+      wanted.insert(*config::number_text(numbering_.pattern, "2026", i));
+    EXPECT_EQ(numbers, wanted);
+    EXPECT_EQ(raw().first("SELECT last FROM counters"), std::to_string(all.size()));
+    const auto audit = open().audit();
+    ASSERT_TRUE(audit) << audit.error().message;
+    std::set<std::string> wrong;
+    for (const std::string& what : audit->wrong)
+      if (what.find("is not what was issued") == what.npos) wrong.insert(what);
+    EXPECT_EQ(wrong, std::set<std::string>{});
+  }
+};
+
 /// Processes, numbers of each and kills are few here; 8, 200 and 60 by hand (CONTRIBUTING).
-TEST_F(RegisterTest, NoNumberTwiceAndNoneMissingWhateverIsKilled) {
+TEST_F(RegisterProcesses, NoNumberTwiceAndNoneMissingWhateverIsKilled) {
   const unsigned processes = from_environment("NONIO_REGISTER_PROCESSES", 4),
                  n = from_environment("NONIO_REGISTER_NUMBERS", 20),
                  kills = from_environment("NONIO_REGISTER_KILLS", 6),
@@ -223,27 +251,7 @@ TEST_F(RegisterTest, NoNumberTwiceAndNoneMissingWhateverIsKilled) {
     }
   }
   std::printf("processes killed: %u, server: %u\n", killed, of_server);
-  std::set<std::string> campaigns{"first"}, found, numbers;
-  for (unsigned own = 0; own < processes; ++own)
-    for (unsigned i = 0; i < n; ++i) campaigns.insert(Client::campaign(own, i));
-  const auto all = entries();
-  for (const certificates::RegisterEntry& e : all) {
-    numbers.insert(e.number);
-    EXPECT_TRUE(found.insert(e.campaign).second) << e.campaign << " has two numbers";
-    EXPECT_NE(e.state == "drawn", e.reason.empty()) << e.number;
-  }
-  EXPECT_EQ(found, campaigns);
-  std::set<std::string> wanted;
-  for (std::size_t i = 1; i <= all.size(); ++i)
-    wanted.insert(*config::number_text(numbering_.pattern, "2026", i));
-  EXPECT_EQ(numbers, wanted);
-  EXPECT_EQ(raw().first("SELECT last FROM counters"), std::to_string(all.size()));
-  const auto audit = open().audit();
-  ASSERT_TRUE(audit) << audit.error().message;
-  std::set<std::string> wrong;
-  for (const std::string& what : audit->wrong)
-    if (what.find("is not what was issued") == what.npos) wrong.insert(what);
-  EXPECT_EQ(wrong, std::set<std::string>{});
+  expect_one_number_each(processes, n);
 }
 
 }  // namespace
