@@ -173,7 +173,8 @@ TEST(LiveGuard, ARefusalIsSpelledInTheWordsOfTheSite) {
       std::map<std::string, std::string>{{"refused.part", "Kein Teil {part}, {other}, {part} {"}});
   const Answer answer = sentences.spelled(refused(404, "part", {{"part", "X {part}"}}));
   EXPECT_EQ(answer.status, 404);
-  EXPECT_EQ(answer.body, R"({"error":"Kein Teil X {part}, {other}, X {part} {","status":404})");
+  EXPECT_EQ(answer.body,
+            R"({"error":"Kein Teil X {part}, {other}, X {part} {","id":"part","status":404})");
   EXPECT_EQ(sentences(Said{"refused.none"}), "refused.none");
   EXPECT_EQ(sentences.spelled(refusal(422, "as it is")).body,
             R"({"error":"as it is","status":422,"lang":"en"})");
