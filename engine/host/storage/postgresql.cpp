@@ -198,7 +198,12 @@ class Postgresql final : public Connection {
 
   std::string error_words(const char* said) const {
     const bool lost = was_there_ && ::PQstatus(server_.get()) != CONNECTION_OK;
-    return name_ + ": " + in_one_line(said) + (lost ? std::string(": ") + away_words : "");
+    return lost ? lost_words(said) : name_ + ": " + in_one_line(said);
+  }
+
+  std::string lost_words(const char* said) const {
+    const std::string words = in_one_line(said == nullptr ? "" : said);
+    return name_ + ": " + (words.empty() ? "the connection is lost" : words) + ": " + away_words;
   }
 
   /// "" of what went well.
@@ -215,7 +220,7 @@ class Postgresql final : public Connection {
     // itself, without a code: the connection is lost.
     if ((was_there_ && state.empty()) || state.starts_with("08") || state == "57P01" ||
         state == "57P02" || state == "57P03")
-      return name_ + ": " + in_one_line(message == nullptr ? "" : message) + ": " + away_words;
+      return lost_words(message);
     return message == nullptr ? own_error() : error_words(message);
   }
 

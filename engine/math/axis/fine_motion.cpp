@@ -57,8 +57,8 @@ Design design_of(std::span<const Pass> passes, double period, double step) {
       const double x = p.position[i];
       out.X(row, line) = 1.0;
       out.X(row, line + 1) = 2.0 * (x - first) / (last - first) - 1.0;
-      for (int k = 1; k <= 2; ++k) {
-        const double angle = full_turn * k * x / period;
+      for (Eigen::Index k = 1; k <= 2; ++k) {
+        const double angle = full_turn * static_cast<double>(k) * x / period;
         out.X(row, lines + 2 * k - 2) = std::cos(angle);
         out.X(row, lines + 2 * k - 1) = std::sin(angle);
       }
@@ -78,6 +78,7 @@ Design design_of(std::span<const Pass> passes, double period, double step) {
 void fold(const Design& d, const Eigen::VectorXd& left, std::size_t passes, std::size_t n,
           PeriodicError& out) {
   std::vector<double> sum(n, 0.0), count(n, 0.0);
+  if (n == 0) return;
   const auto bin_of = [&](std::size_t i) {
     return static_cast<std::size_t>(std::lround(d.phase[i] * static_cast<double>(n))) % n;
   };
@@ -136,9 +137,9 @@ PeriodicError periodic_error(std::span<const Pass> passes, double period) {
   const double rss = (white.col(k) - W * beta).squaredNorm();
   const Eigen::MatrixXd C =
       normal.solve(Eigen::MatrixXd::Identity(k, k)) * (rss / static_cast<double>(W.rows() - k));
-  for (int h = 0; h < 2; ++h) {
-    const Eigen::Index c = k - waves + 2 * h;
-    auto& wave = out.harmonics[static_cast<std::size_t>(h)];
+  for (std::size_t h = 0; h < out.harmonics.size(); ++h) {
+    const Eigen::Index c = k - waves + 2 * at(h);
+    auto& wave = out.harmonics[h];
     const Eigen::Vector2d of = beta.segment<2>(c);
     wave.amplitude = of.norm();
     wave.phase = std::atan2(of[1], of[0]);
@@ -149,6 +150,7 @@ PeriodicError periodic_error(std::span<const Pass> passes, double period) {
     if (wave.amplitude < noise_alone * wave.u) wave.u *= of_noise;
   }
   const Eigen::VectorXd left = d.y - d.X.leftCols(k - waves) * beta.head(k - waves);
+  // At least twenty, as the step allows.
   const auto bins =
       static_cast<std::size_t>(std::max(steps_of_period, std::floor(period / step + 1e-3)));
   fold(d, left, passes.size(), bins, out);
