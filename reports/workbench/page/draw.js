@@ -7,7 +7,7 @@
 /// a region is chosen, said(lines) when a key moves to a reading, drawn(k, frame) after each picture, inTurn() after all
 /// of them; with it those in view come first.
 function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, said, drawn}) {
-  let data, words, n, wrong, residual, place, ends_of_lane, lines, ghost = null;
+  let data, words, n, wrong, residual, place, ends_of_lane, lines, ghost = null, named = "";
   let shown = [], range = [0, 1], pictures = [], marked = -1, by_key = false, printing = false, chosen = new Set(), turns = 0;
 
   const text = (template, places) =>
@@ -111,7 +111,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       }
       put(svg, "rect", {class: "frame", x, y, width: w, height: h});
       put(svg, "text", {x: x + w / 2, y: y + h + 31, "text-anchor": "middle"}, said.x);
-      put(svg, "text", {transform: `translate(11 ${y + h / 2}) rotate(-90)`, "text-anchor": "middle"}, said.y);
+      put(svg, "text", {transform: `translate(11 ${y + h / 2}) rotate(-90)`, "text-anchor": "middle"}, named && said.y === data.pictures[0].y ? named : said.y);
       if (this.empty) put(svg, "text", {x: x + w / 2, y: y + h / 2 - 8, "text-anchor": "middle"}, this.k === 1 ? words.one_direction : words.no_readings);
     }
     own_band() { return this.k === 1; }
@@ -371,9 +371,10 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     }
   }
 
-  /// `values`: the residuals that are drawn, if not those of the data.
-  function draw(values) {
+  /// `values`: what is drawn, if not the residuals of the data; `name`: the title of its axis.
+  function draw(values, name) {
     if (values) residual = values;
+    named = name || "";
     shown = [];
     for (let i = 0; i < n; i++)
       if (!hidden.d.has(data.direction[i]) && !hidden.r.has(data.run[i])) shown.push(i);
@@ -418,12 +419,12 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   const position = (v) => data.axis + " " + number(v, 4).replace(/[.,]?0+$/, "") + " " + data.position_unit;
   function about(i) {
     const signed = (v) => (v > 0 ? "+" : "") + number(v, 2) + " " + data.unit;
-    const d = data.direction[i];
+    const d = data.direction[i], left = named ? data.residual[i] : residual[i];
     const lines = [
       text(words.reading, {run: data.run[i], direction: d > 0 ? "+" : d < 0 ? "\u2212" : "?"}) + ", " + position(data.target[i]),
       words.deviation + " " + signed(data.deviation[i]),
-      words.model + " " + signed(data.deviation[i] - residual[i]),
-      words.residual + " " + signed(residual[i]),
+      words.model + " " + signed(data.deviation[i] - left),
+      words.residual + " " + signed(left),
     ];
     if (data.time && finite(data.time[i])) lines.push(words.time + " " + number(data.time[i] , 1) + " " + data.time_unit);
     if (data.temperature && finite(data.temperature[i])) lines.push(words.temperature + " " + number(data.temperature[i], 2) + " \u00B0C");
