@@ -57,6 +57,17 @@ Error is_gone(const RegisterPlace& place, const std::string& identity) {
                ": restore it from the backup; a new one would give numbers a second time"};
 }
 
+/// A register is not moved from a file to a server or back: a new one would begin with 1.
+Expected<void> check_is_first(const RegisterPlace& place) {
+  const auto there = storage::is_there(place.other);
+  if (!there) return fail(there.error());
+  if (!*there) return {};
+  return fail("the site has a register already (" + place.other.string() + "), and " + place.name +
+              " would be a new one that gives its numbers a second time; expected the one that is "
+              "there in site.toml. If a new register is meant, give it another [certificate] "
+              "numbering, and keep that file outside the site");
+}
+
 /// One process at a time, wherever it is.
 Expected<void> note_identity(Database& database, const RegisterPlace& place,
                              const std::string& identity) {
@@ -94,9 +105,11 @@ Expected<Database> open_on_server(const RegisterPlace& place, bool create, doubl
     return fail(place.name + ": " + durable.error().message);
   const bool there = has_tables(*database);
   if (auto well = database->take_error(); !well) return fail(well.error());
-  if (!there)
+  if (!there) {
     if (const auto known = identity_in(place); !known || !known->empty())
       return fail(known ? is_gone(place, *known) : known.error());
+    if (const auto first = check_is_first(place); create && !first) return fail(first.error());
+  }
   if (create)
     if (auto made = make_server_tables(*database, place.server->schema); !made)
       return fail(place.name + ": " + made.error().message);
@@ -106,7 +119,12 @@ Expected<Database> open_on_server(const RegisterPlace& place, bool create, doubl
 
 Expected<Database> open_file(const RegisterPlace& place, Database::Use use, double patience) {
   std::error_code error;
-  if (use == Database::Use::create) fs::create_directories(place.file.parent_path(), error);
+  if (use == Database::Use::create) {
+    const auto there = storage::is_there(place.file);
+    if (!there) return fail(there.error());
+    if (const auto first = check_is_first(place); !*there && !first) return fail(first.error());
+    fs::create_directories(place.file.parent_path(), error);
+  }
   auto database = Database::open(place.file, use, patience);
   if (!database || use != Database::Use::create) return database;
   if (auto made = make_tables(*database); !made)
@@ -117,19 +135,17 @@ Expected<Database> open_file(const RegisterPlace& place, Database::Use use, doub
 }  // namespace
 
 Expected<RegisterPlace> register_place(const fs::path& site, const config::Numbering& numbering) {
-  if (!numbering.server) {
-    const auto path = register_path(site, numbering);
-    if (!path) return fail(path.error());
-    return RegisterPlace{*path, {}, path->string()};
-  }
-  const auto& [url, password_file, schema, unused] = *numbering.server;
+  const auto path = register_path(site, numbering);
+  if (!path) return fail(path.error());
   const auto identity = storage::path_inside(site, identity_name);
   if (!identity) return fail(identity.error());
+  if (!numbering.server) return RegisterPlace{*path, {}, path->string(), *identity};
+  const auto& [url, password_file, schema, unused] = *numbering.server;
   return RegisterPlace{
       *identity,
       storage::Server{url, schema,
                       password_file.empty() ? fs::path() : fs::absolute(site / password_file)},
-      "schema " + schema + " of " + url};
+      "schema " + schema + " of " + url, *path};
 }
 
 Expected<bool> has_register(const RegisterPlace& place, double patience) {

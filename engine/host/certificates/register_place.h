@@ -16,7 +16,8 @@ namespace nonio::host::certificates {
 struct RegisterPlace {
   std::filesystem::path file{};  ///< the register; on a server: what holds its identity
   std::optional<storage::Server> server{};
-  std::string name{};  ///< for messages
+  std::string name{};             ///< for messages
+  std::filesystem::path other{};  ///< is there where the site's register is of the other kind
 };
 
 Expected<RegisterPlace> register_place(const std::filesystem::path& site,
@@ -24,7 +25,7 @@ Expected<RegisterPlace> register_place(const std::filesystem::path& site,
 /// Whether anything was entered there yet; looking makes nothing. An error if it is gone.
 Expected<bool> has_register(const RegisterPlace& place, double patience);
 /// Made with `create`. Refused: a server that may lose what it has confirmed, since it would give
-/// numbers again; the register of another site.
+/// numbers again; the register of another site; a new one where the site has one of the other kind.
 Expected<storage::Database> open_register(const RegisterPlace& place, storage::Database::Use use,
                                           double patience);
 
