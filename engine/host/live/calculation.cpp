@@ -249,11 +249,11 @@ const model::Groundwork* groundwork_of(const Bench& bench, const Tried& tried) {
   return found == bench.groundwork.end() ? nullptr : &found->second;
 }
 
-/// All of a fit but the page. What is not `whole` comes before the places where it fails.
+/// All of a fit but the page.
 std::string head_of(const Bench& bench, const PartModel& part, const model::Comparison& c,
-                    bool whole) {
+                    modelling::Extent extent) {
   const modelling::Compared both{part, c};
-  return "\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench), whole) +
+  return "\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench), extent) +
          ",\"text\":" + storage::dump(text_of(bench, part, c));
 }
 
@@ -271,7 +271,7 @@ Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> r
     const auto page = page_of(c);
     if (!page || !first) return;
     process::Parcel parcel;
-    parcel.add(head_of(bench, one->part(), c, false)).add(*page);
+    parcel.add(head_of(bench, one->part(), c, modelling::Extent::first)).add(*page);
     first(parcel.bytes());
     is_begun = true;
   };
@@ -280,7 +280,7 @@ Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> r
   auto page = is_begun ? Expected<std::string>("") : page_of(*compared);
   if (!page) return page;
   process::Parcel parcel;
-  parcel.add(head_of(bench, one->part(), *compared, true)).add(*page);
+  parcel.add(head_of(bench, one->part(), *compared, modelling::Extent::whole)).add(*page);
   return parcel.bytes();
 }
 

@@ -174,7 +174,7 @@ void put_after_table(storage::Json& json, const model::Part& part, const model::
 }
 
 storage::Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords& words,
-                            bool whole = true) {
+                            Extent extent = Extent::whole) {
   const Quantity q = c.part.deviation();
   const model::Comparison& comparison = c.comparison;
   storage::Json json = storage::Json::object();
@@ -204,7 +204,7 @@ storage::Json compared_json(const Compared& c, const Campaign& campaign, const M
   if (comparison.means > 0) json["means"] = comparison.means;
   json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
   json["warnings"] = warnings_of(c.part, comparison.fit, words);
-  if (whole) put_after_table(json, c.part.part, comparison.fit, q);
+  if (extent == Extent::whole) put_after_table(json, c.part.part, comparison.fit, q);
   return json;
 }
 
@@ -419,8 +419,8 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
 }
 
 std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words,
-                      bool whole) {
-  return storage::dump(compared_json(compared, campaign, words, whole));
+                      Extent extent) {
+  return storage::dump(compared_json(compared, campaign, words, extent));
 }
 
 std::string part_json(const Explained& explained, const Campaign& campaign,

@@ -24,10 +24,12 @@ std::size_t most_severe(const std::vector<Explained>& all);
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
                                      const ModelWords& words);
 
+/// What the page shows first goes without what a table would leave: that comes with the whole.
+enum class Extent { whole, first };
+
 /// One entry of "parts" in nonio-compare/1 and nonio-explain/1.
-/// `whole`: with what a table would leave; else it comes later.
 std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words,
-                      bool whole = true);
+                      Extent = Extent::whole);
 std::string part_json(const Explained& explained, const Campaign& campaign,
                       const ModelWords& words);
 

@@ -78,9 +78,10 @@ Design design_of(std::span<const Pass> passes, double period, double step) {
 void fold(const Design& d, const Eigen::VectorXd& left, std::size_t passes, std::size_t n,
           PeriodicError& out) {
   std::vector<double> sum(n, 0.0), count(n, 0.0);
-  if (n == 0) return;
+  // A phase that is rounded up to the whole period is the first one again.
   const auto bin_of = [&](std::size_t i) {
-    return static_cast<std::size_t>(std::lround(d.phase[i] * static_cast<double>(n))) % n;
+    const auto bin = static_cast<std::size_t>(std::lround(d.phase[i] * static_cast<double>(n)));
+    return bin < n ? bin : 0;
   };
   for (std::size_t i = 0; i < d.phase.size(); ++i)
     sum[bin_of(i)] += left(at(i)), count[bin_of(i)] += 1.0;

@@ -36,25 +36,6 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return [low - edge, high + edge];
   }
 
-  // ---- scales ----
-  function ticks(low, high, count, kind) {
-    let raw = (high - low) / count, step = 0;
-    if (kind === "turn" && raw > 10)
-      step = [15, 30, 45, 60, 90, 180, 360].find((s) => raw <= s) || 0;
-    if (kind === "whole") raw = Math.max(raw, 1);
-    if (!step) {
-      const power = Math.pow(10, Math.floor(Math.log10(raw)));
-      const whole = kind === "whole" && power <= 1;
-      step = (whole ? [1, 2, 5, 10] : [1, 2, 2.5, 5, 10]).find((s) => raw <= s * power * (1 + 1e-9)) * power;
-    }
-    let digits = 0;
-    for (let s = step; digits < 9 && Math.abs(s - Math.round(s)) > 1e-6 * s; s *= 10) digits++;
-    const list = [];
-    for (let k = Math.ceil(low / step - 1e-6); k * step <= high + 1e-6 * step; k++)
-      list.push({at: k * step, label: number(k * step, digits)});
-    return list;
-  }
-
   // ---- drawing ----
   const ns = "http://www.w3.org/2000/svg";
   function put(parent, name, attributes, content) {
@@ -94,14 +75,14 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       if (data.floor && !this.own_band())
         put(svg, "rect", {class: "band", x, y: r1(this.py(2 * data.floor)), width: w,
                           height: r1(this.py(-2 * data.floor) - this.py(2 * data.floor))});
-      for (const t of ticks(this.low, this.high, 6, "")) {
+      for (const t of nonioTicks(number, this.low, this.high, 6, "")) {
         put(svg, "line", {class: t.at === 0 ? "zero" : "rule", x1: x, x2: x + w, y1: r1(this.py(t.at)), y2: r1(this.py(t.at))});
         put(svg, "text", {x: x - 4, y: r1(this.py(t.at) + 3.5), "text-anchor": "end"}, t.label);
       }
       let free = -Infinity;
       const across = this.lanes
         ? this.lanes.map((name, m) => ({at: m + 0.5, rule: m + 1, label: name}))
-        : ticks(this.left, this.right, Math.max(2, Math.min(7, Math.round(w / 50))), kind);
+        : nonioTicks(number, this.left, this.right, Math.max(2, Math.min(7, Math.round(w / 50))), kind);
       for (const t of across) {
         const at = this.px(t.at), rule = this.px(t.rule === undefined ? t.at : t.rule), half = 3.2 * t.label.length;
         put(svg, "line", {class: "rule", x1: r1(rule), x2: r1(rule), y1: y, y2: y + h});
@@ -277,30 +258,6 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return frame;
   }
 
-  /// z with Phi(z) = p, by Newton's method from 0; Phi by its series and, far out, its continued
-  /// fraction (Abramowitz and Stegun, Handbook of Mathematical Functions, 26.2.11 and 26.2.14).
-  function quantile(p) {
-    if (p > 0.5) return -quantile(1 - p);
-    const density = (z) => Math.exp((-z * z) / 2) / Math.sqrt(2 * Math.PI);
-    const below = (z) => {
-      const x = -z;
-      if (x < 2.5) {
-        let term = x, sum = x;
-        for (let k = 1; k < 60; k++) sum += term *= (x * x) / (2 * k + 1);
-        return 0.5 - density(x) * sum;
-      }
-      let f = 0;
-      for (let k = 60; k > 0; k--) f = k / (x + f);
-      return density(x) / (x + f);
-    };
-    let z = 0;
-    for (let i = 0; i < 60; i++) {
-      const step = (below(z) - p) / density(z);
-      z -= step;
-      if (Math.abs(step) < 1e-9) break;
-    }
-    return z;
-  }
   function by_normal() {
     const order = shown.filter((i) => data.weight[i] > 0 || wrong.has(i)).sort((a, b) => residual[a] - residual[b]), m = order.length;
     const outer = 300, step = m > 1600 ? Math.floor((m - 2 * outer) / 1000) : 1;
@@ -308,7 +265,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     order.forEach((i, j) => {
       if (j >= outer && j + outer < m && j % step !== 0) return;
       kept.push(i);
-      zs.push(quantile((j + 0.5) / m));
+      zs.push(nonioQuantile((j + 0.5) / m));
     });
     const frame = new Frame(7, zs, {});
     frame.scatter(kept, zs, kept.map((i) => residual[i]));

@@ -9,7 +9,7 @@ import sys
 import urllib.parse
 
 import live_browser
-from live_browser import NONIO, SOURCE
+from live_browser import SOURCE
 from live_site_test import DATE, MACHINES, nonio
 
 live_browser.PATIENCE = 120  # it is run by hand, beside other work

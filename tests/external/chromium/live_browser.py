@@ -151,6 +151,45 @@ class LivePage(unittest.TestCase):
         self.assertNotIn("t=", self.js("location.href"), "the token does not stay in the address")
 
 
+class CampaignPage(LivePage):
+    """The page of a campaign: its states, and what is ticked."""
+
+    def open(self, server, wait="explained"):
+        self.d.get("about:blank")
+        self.d.get(server.address)
+        self.d.get_log("browser")
+        self.ready(wait)
+
+    def ready(self, state="explained"):
+        self.wait(lambda: self.js("document.body.dataset.ready") in state.split("|"), f"the page is {state}")
+
+    def verdict(self, kind):
+        self.wait(lambda: self.js("document.getElementById('verdict').classList.contains(arguments[0])", kind), f"verdict {kind}")
+        return self.text("verdict")
+
+    def rms(self):
+        return float(self.js("document.querySelector('#now .number').dataset.value"))
+
+    def ticks(self, group=None):
+        where = f"[data-group=\"{group}\"] " if group else ""
+        return self.js(f"[...document.querySelectorAll('{where}input[data-effect]')].map((e) => e.dataset.effect + (e.checked ? '' : '?'))")
+
+    def tick(self, effect):
+        before, was = self.js("document.body.dataset.version"), effect in self.ticks()
+
+        def clicked():
+            try:  # what arrives meanwhile may draw the list again
+                box = self.d.find_element(By.CSS_SELECTOR, f"input[data-effect='{effect}']")
+                self.js("arguments[0].scrollIntoView({block: 'center'})", box)
+                box.click()
+                return True
+            except StaleElementReferenceException:
+                return False
+        self.wait(clicked, effect)
+        self.wait(lambda: self.js("document.body.dataset.version") != before and (effect + ("?" if was else "")) in self.ticks(), effect)
+        self.ready()
+
+
 def main():
     if webdriver is None or program() is None or DRIVER is None:
         print("skipped: needs Chromium, chromium-driver and python3-selenium")

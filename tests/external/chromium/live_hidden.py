@@ -3,7 +3,6 @@
 in a real browser by somebody who only clicks what the page suggests: the same model and verdict as `nonio explain --auto`.
 By hand, a minute: test live.hidden asks the same of the interface every time."""
 import json
-import pathlib
 import subprocess
 import sys
 import tomllib

@@ -9,9 +9,7 @@ import os
 import pathlib
 import shutil
 import subprocess
-import sys
 import tomllib
-import unittest
 
 import live_browser
 from live_browser import By, Keys, NONIO, SOURCE, StaleElementReferenceException

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers behind the pictures of draw.js: marks of a scale, quantiles of the normal distribution.
+"use strict";
+/// Round numbers from low to high, about `count` of them: where, and number(value, digits) as the label. kind: "turn",
+/// degrees of a turn; "whole", no fractions.
+function nonioTicks(number, low, high, count, kind) {
+  let raw = (high - low) / count, step = 0;
+  if (kind === "turn" && raw > 10)
+    step = [15, 30, 45, 60, 90, 180, 360].find((s) => raw <= s) || 0;
+  if (kind === "whole") raw = Math.max(raw, 1);
+  if (!step) {
+    const power = Math.pow(10, Math.floor(Math.log10(raw)));
+    const whole = kind === "whole" && power <= 1;
+    step = (whole ? [1, 2, 5, 10] : [1, 2, 2.5, 5, 10]).find((s) => raw <= s * power * (1 + 1e-9)) * power;
+  }
+  let digits = 0;
+  for (let s = step; digits < 9 && Math.abs(s - Math.round(s)) > 1e-6 * s; s *= 10) digits++;
+  const list = [];
+  for (let k = Math.ceil(low / step - 1e-6); k * step <= high + 1e-6 * step; k++)
+    list.push({at: k * step, label: number(k * step, digits)});
+  return list;
+}
+
+/// z with Phi(z) = p, by Newton's method from 0; Phi by its series and, far out, its continued
+/// fraction (Abramowitz and Stegun, Handbook of Mathematical Functions, 26.2.11 and 26.2.14).
+function nonioQuantile(p) {
+  if (p > 0.5) return -nonioQuantile(1 - p);
+  const density = (z) => Math.exp((-z * z) / 2) / Math.sqrt(2 * Math.PI);
+  const below = (z) => {
+    const x = -z;
+    if (x < 2.5) {
+      let term = x, sum = x;
+      for (let k = 1; k < 60; k++) sum += term *= (x * x) / (2 * k + 1);
+      return 0.5 - density(x) * sum;
+    }
+    let f = 0;
+    for (let k = 60; k > 0; k--) f = k / (x + f);
+    return density(x) / (x + f);
+  };
+  let z = 0;
+  for (let i = 0; i < 60; i++) {
+    const step = (below(z) - p) / density(z);
+    z -= step;
+    if (Math.abs(step) < 1e-9) break;
+  }
+  return z;
+}

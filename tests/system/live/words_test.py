@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Words of the pages of `nonio live`, from the sources: no server, no browser."""
+import pathlib
+import re
+import tomllib
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parents[3]
+
+
+class Words(unittest.TestCase):
+    """Every word that the scripts ask for is there in every language, with the same places."""
+
+    # Words that a script puts together: what they begin with, and where the program says what may follow. None: a list
+    # in the script itself.
+    SENT = {
+        "event.kind_": ("engine/host/config/keys/logs.cpp", r"event_kinds\[\] = (.*?);", {}),
+        "run.stage_": ("engine/host/batch/run.cpp", r"tell_stage\(events, (\"\w+\")\)", {"begin"}),
+        "run.status_": ("engine/host/evaluation/status.cpp", r"to_text\(Status status\) \{(.*?)\n\}", {"none"}),
+        "release.as_": ("engine/app/release_verb.cpp", r"one_of\((\{.*?\})", {"site"}),
+        "verify.is_": ("engine/app/verify_verb.cpp", r"to_text\(sign::Check::State state\) \{(.*?)\n\}", {}),
+        "space.is_": ("engine/host/config/keys/machine_of_campaign.h", r"structures\[\] = (.*?);", {}), "space.": None, "more.is_": ("engine/model/diagnosis/foresight.cpp", r"wanted\{(.*?)\}", {}), 
+        "check.": ("engine/sign/src/*.cpp engine/host/certificates/content_check.cpp engine/host/certificates/verify.cpp engine/host/certificates/register_check.cpp", r"(?:add\(|Check check\{|State state\) \{|push_back\(\{|sign::Check\{)\s*(\"(?:signature|file|updates|signer|certificate|xml|register|content|attachments)[a-z.-]*\")", {"dcc", "dcc_none", "dcc_values", "signature_form", "signature_time", "xml_time"}),
+        "where.": ("engine/model/fit/places.cpp", r"name_of\(Factor factor\) \{(.*?)\n\}", {}),
+        "verdict.": None, "verify.": None, "x.": None, "column.": None, "key.": None, "drawn.": None, "learn.step": None, "learn.hint.": None, "site.": None,
+        "failing.": None, "kind.": None, "program.": None, "refused.": None,
+    }
+
+    def test_what_the_program_says_of_a_fit_is_what_the_page_looks_for(self):
+        """The page knows these sentences by their words: those must stand in the program's sources."""
+        script = (SOURCE / "reports/workbench/page/net.js").read_text()
+        forms = re.findall(r"\[/\^(.*?)/, \"(\w+)\"\]", script)
+        self.assertEqual(8, len(forms))
+        program = "".join(re.sub(r'"\s*\n\s*"', "", p.read_text()) for folder in ("engine/model/fit", "engine/host/live") for p in sorted((SOURCE / folder).glob("*.cpp")))
+        for form, name in forms:
+            fixed = max(re.split(r"\(\?<\w+>[^)]*\)|[$]", form), key=len).replace("\\", "").strip()
+            self.assertGreater(len(fixed), 15, name)
+            self.assertIn(fixed, program, name)
+
+    @staticmethod
+    def flat(table, before=""):
+        for key, value in table.items():
+            yield from Words.flat(value, before + key + ".") if isinstance(value, dict) else [(before + key, value)]
+
+    def test_words_are_complete(self):
+        read = lambda language: dict(self.flat(tomllib.loads((SOURCE / f"templates/words/{language}/workbench.toml").read_text())))
+        english = read("en")
+        script = "".join(p.read_text() for p in sorted((SOURCE / "reports/workbench/page").glob("*.js")))
+        script = re.sub(r"(querySelector(All)?|closest|matches)\(\"[^\"]*\"\)", "", script)  # what they ask of the page is no word
+        begun = set(re.findall(r'"([a-z]+\.[a-z_.]*)" \+ ', script)) | set(re.findall(r"`([a-z]+\.[a-z_]*)\$\{", script))
+        self.assertEqual(set(self.SENT), begun, "words that are put together")
+        asked = set(re.findall(r'"([a-z]+\.[a-z_0-9]+)"(?! \+ )', script)) - {"index.html", "due.ics"}
+        self.assertGreater(len(asked), 100)
+        self.assertEqual(set(), asked - set(english))
+        for prefix, source in self.SENT.items():
+            self.assertTrue([k for k in english if k.startswith(prefix)], prefix)
+            if source is None:
+                continue
+            values = {v for text in re.findall(source[1], "".join(p.read_text() for one in source[0].split() for p in SOURCE.glob(one)), re.S) for v in re.findall(r'"([\w. -]+)"', text)}
+            self.assertGreater(len(values), 1, f"{prefix}: {source[0]}")
+            self.assertEqual(set(), {prefix + re.sub("[ .-]", "_" if prefix != "where." else "-", v) for v in values | set(source[2])} - set(english), "what the program sends has a word")
+        made = (*self.SENT, "shell.")
+        self.assertEqual([], [k for k in english if k not in asked and not k.startswith(made)], "words that nobody asks for")
+        for language in ("de", "it"):
+            other = read(language)
+            self.assertEqual(set(english), set(other), language)
+            places = lambda text: sorted(re.findall(r"\{\w+\}", text))
+            self.assertEqual([], [k for k in english if places(english[k]) != places(other[k])], language)
+            same = [k for k in english if other[k] == english[k] and k != "shell.title" and re.search(r"[a-z]{4}.* .*[a-z]{4}", re.sub(r"\{\w+\}", "", english[k]))]
+            self.assertEqual([], same, f"{language}: not translated")
+
+
+if __name__ == "__main__":
+    unittest.main()
