@@ -25,6 +25,13 @@ std::string element(std::string_view name, std::string_view inner, std::string_v
   return out;
 }
 
+/// A table that may be wider than a phone: it is scrolled by keys too.
+std::string wide_table(std::string_view rows, const std::string& heading) {
+  return element(
+      "div", element("table", rows),
+      "class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" + html(heading) + "\"");
+}
+
 std::string title_of(const Source& source) {
   return source.words.get("model.heading", {{"part", source.fit.part}});
 }
@@ -86,7 +93,7 @@ std::string parameters(const Source& source) {
     rows += "<tr>" + element("td", html(row.effect)) + element("td", html(row.name)) +
             element("td", html(row.meaning)) + element("td", row.value, "class=\"number\"") +
             element("td", row.U, "class=\"number\"") + element("td", html(row.unit)) + "</tr>\n";
-  std::string out = element("div", element("table", rows), "class=\"scroll\"");
+  std::string out = wide_table(rows, words.get("model.parameters"));
   for (const std::string& text :
        {correlated_parameters(fit, words), fit_in_words(fit, source.in.results, words)})
     if (!text.empty()) out += element("p", html(text));
@@ -132,7 +139,7 @@ std::string candidates(const Source& source) {
     std::string head = element("th", html(words.get("model.effect")));
     for (const char* title : {"evidence", "rms_after", "left_out_after", "smallest"})
       head += element("th", html(words.get(std::string("model.") + title)), "class=\"number\"");
-    out += element("div", element("table", "<tr>" + head + "</tr>\n" + rows), "class=\"scroll\"");
+    out += wide_table("<tr>" + head + "</tr>\n" + rows, words.get("model.candidates"));
   }
   if (const std::string text = no_sign(source.fit, source.in.templates, language); !text.empty())
     out += element("p", html(text));
