@@ -29,10 +29,12 @@ void put(std::string& page, std::string_view place, std::string_view text) {
 
 std::map<std::string, std::string> words(const Templates& templates, const std::string& language) {
   std::map<std::string, std::string> out;
-  const auto table = templates.tables.find("words/" + language + "/workbench");
-  if (table == templates.tables.end()) return out;
-  for (const auto& [key, value] : table->second.values)
-    if (const auto* text = std::get_if<std::string>(&value)) out[key] = *text;
+  for (const char* file : {"workbench", "workbench-site"}) {
+    const auto table = templates.tables.find("words/" + language + "/" + file);
+    if (table == templates.tables.end()) continue;
+    for (const auto& [key, value] : table->second.values)
+      if (const auto* text = std::get_if<std::string>(&value)) out[key] = *text;
+  }
   return out;
 }
 

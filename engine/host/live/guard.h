@@ -51,8 +51,8 @@ struct Route {
   std::size_t most = most_body;  ///< bytes of it
 };
 
-/// A sentence for a person: its name in words/<language>/workbench.toml, and what stands for its
-/// {places}.
+/// A sentence for a person: its name in words/<language>/workbench.toml or workbench-site.toml, and
+/// what stands for its {places}.
 struct Said {
   std::string name;
   std::vector<std::pair<std::string, std::string>> places{};

@@ -389,7 +389,7 @@ class SitePage(live_browser.LivePage):
         self.assertGreater(self.js("document.querySelectorAll('#verified > li:first-child tbody tr').length"), 10)
         self.assertEqual("false", self.js("String(document.querySelector('#verified > li:first-child details').open)"))
         names = self.js("[...document.querySelectorAll('#verified tbody th')].map((e) => [e.title, e.textContent])")
-        own = set(tomllib.loads((SOURCE / "templates/words/de/workbench.toml").read_text())["check"].values())
+        own = set(tomllib.loads((SOURCE / "templates/words/de/workbench-site.toml").read_text())["check"].values())
         self.assertEqual([], [(id_, name) for id_, name in names if name.removeprefix("DCC: ") not in own], "each check has its name")
         self.assertIn("DCC: ", {name[:5] for _, name in names})
         self.assertGreater(self.js("document.querySelectorAll('#verified > .fails .check-fails').length"), 0)

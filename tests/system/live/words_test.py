@@ -43,7 +43,8 @@ class Words(unittest.TestCase):
             yield from Words.flat(value, before + key + ".") if isinstance(value, dict) else [(before + key, value)]
 
     def test_words_are_complete(self):
-        read = lambda language: dict(self.flat(tomllib.loads((SOURCE / f"templates/words/{language}/workbench.toml").read_text())))
+        read = lambda language: {k: v for name in ("workbench", "workbench-site") for k, v in self.flat(
+            tomllib.loads((SOURCE / f"templates/words/{language}/{name}.toml").read_text()))}
         english = read("en")
         script = "".join(p.read_text() for p in sorted((SOURCE / "reports/workbench/page").glob("*.js")))
         script = re.sub(r"(querySelector(All)?|closest|matches)\(\"[^\"]*\"\)", "", script)  # what they ask of the page is no word
