@@ -67,7 +67,5 @@ std::string_view morning_js() { return embedded::morning_js; }
 std::string_view morning_css() { return embedded::morning_css; }
 std::string_view uplot_js() { return embedded::uplot_js; }
 std::string_view uplot_css() { return embedded::uplot_css; }
-std::string_view draw_js() { return embedded::draw_js; }
-std::string_view draw_css() { return embedded::draw_css; }
 
 }  // namespace nonio::workbench

@@ -32,8 +32,4 @@ std::string_view morning_css();
 std::string_view uplot_js();
 std::string_view uplot_css();
 
-/// The drawing code alone (page/draw.js, page/draw.css), which the page from disk embeds.
-std::string_view draw_js();
-std::string_view draw_css();
-
 }  // namespace nonio::workbench
