@@ -161,7 +161,7 @@ PeriodicError periodic_error(std::span<const Pass> passes, double period) {
 namespace {
 
 constexpr double same_size = 1e-3;     // of a step: targets are printed to a digit
-constexpr double followed_from = 0.5;  // of the commanded step
+constexpr double followed_from = 0.5;  // of the commanded step; docs/constants.md, A21
 
 /// Which way over which place: the scatter of one step is that about the mean of its place.
 using Place = std::tuple<long long, int, bool>;
