@@ -12,7 +12,9 @@
 #include <cstdlib>
 #include <ctime>
 #include <iostream>
+#include <map>
 #include <thread>
+#include <type_traits>
 
 #include "host/config/site_files.h"
 #include "host/config/template_files.h"
@@ -185,9 +187,29 @@ class Checker {
   }
 
  private:
+  /// The samples of a number, made and read once.
   void seed(std::uint64_t number) {
+    const auto [place, anew] = made_.try_emplace(number);
+    Made& made = place->second;
+    if (anew) {
+      made.sources = kit::made_sources(number);
+      // a reader that is being checked need not know the samples that are made for the program's
+      for (const kit::Source& s : made.sources)
+        if (auto sample = kit::open_source(s, own_.readers()))
+          made.samples.push_back(std::move(*sample));
+    }
     bench_.seed = number;
-    bench_.sources = kit::made_sources(number);
+  }
+
+  /// Their results by the program's own plugins: here, since each check needs them in a child of
+  /// its own.
+  void evaluate() {
+    Made& made = made_.at(bench_.seed);
+    if (std::exchange(made.evaluated, true)) return;
+    Bench own = bench_;
+    own.effects = own_.effects();
+    own.analyses = own_.analyses();
+    for (kit::Sample& s : made.samples) s.results = kit::results_of(s, own);
   }
 
   /// A line of `load`: "reader csv". Of each kind the plugins are counted.
@@ -210,6 +232,7 @@ class Checker {
   template <class Plugin>
   void run_all(const std::string& plugin, const std::vector<kit::Check<Plugin>>& checks,
                std::vector<Plugin> Brought::*kind, std::size_t index) {
+    wants_results_ = std::is_same_v<Plugin, Output> || std::is_same_v<Plugin, Controller>;
     for (const auto& c : kit::info_checks())
       run(plugin, c.name, [&](Bench& b) { return c.run((brought_.*kind)[index].info, b); });
     run_of(plugin, checks, kind, index);
@@ -282,6 +305,7 @@ class Checker {
   PluginCheck in_child(const std::string& plugin, const std::string& name,
                        const std::function<Verdict(Bench&)>& work) {
     PluginCheck result{shown_path_.string(), plugin, name, CheckState::passed, {}, bench_.seed};
+    if (wants_results_) evaluate();
     process::SharedStatus stage, answer;
     if (!stage.valid() || !answer.valid()) {
       result.state = CheckState::crashed;
@@ -354,10 +378,10 @@ class Checker {
     bench_.effects = joined(brought_.effects, own_.effects());
     bench_.analyses = joined(brought_.analyses, own_.analyses());
     bench_.stage("reading the samples");
-    // a reader that is being checked need not know the samples that are made for the program's
-    for (const kit::Source& s : bench_.sources)
-      if (auto sample = kit::open_source(s, own_.readers()))
-        bench_.samples.push_back(std::move(*sample));
+    bench_.sources = std::move(made_.at(bench_.seed).sources);
+    bench_.samples = std::move(made_.at(bench_.seed).samples);
+    if (!brought_.analyses.empty() || !brought_.effects.empty())
+      for (kit::Sample& s : bench_.samples) s.results.reset();  // they may say something else
     for (const kit::Source& s : cases_)
       if (auto sample = kit::open_source(s, bench_.readers))
         bench_.samples.push_back(std::move(*sample));
@@ -405,6 +429,13 @@ class Checker {
   const std::function<void(const PluginCheck&)>& tell_;
   loader::Plugins own_;
   Bench bench_;
+  struct Made {
+    std::vector<kit::Source> sources;
+    std::vector<kit::Sample> samples;
+    bool evaluated = false;
+  };
+  std::map<std::uint64_t, Made> made_;  ///< by the seed
+  bool wants_results_ = false;          ///< the plugin that is being checked writes results
   std::vector<kit::Source> cases_;
   fs::path path_, shown_path_;  ///< the second as it was given
   std::size_t hung_ = 0;        ///< checks of one plugin that did not come back

@@ -135,6 +135,7 @@ Settings settings_for(const Controller& controller, const Sample& sample) {
 }
 
 Results results_of(const Sample& s, const Bench& bench) {
+  if (s.results) return *s.results;
   Results results;
   const auto add = [&](const Analysis& a, const Measurement* m, const auto& call) {
     auto evaluation = process::guarded("analysis " + a.info.name, call);

@@ -163,6 +163,7 @@ std::string id_of(const std::string& text) {
 }
 
 Sample renamed(Sample s, const std::string& text) {
+  s.results.reset();
   replace_texts(s.campaign, text);
   for (std::size_t i = 0; i < s.campaign.measurements.size(); ++i) {
     s.campaign.measurements[i].id = id_of(text) + std::to_string(i);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +31,7 @@ struct Sample {
   Campaign campaign;
   config::RawOptions options;
   std::vector<Observations> observations;
+  std::optional<Results> results{};  ///< of the program's own plugins, where they are known
 
   const Observations& of(const Measurement& m) const {
     return observations[static_cast<std::size_t>(&m - campaign.measurements.data())];
@@ -107,7 +109,7 @@ Settings settings_for(const Info& info, const Sample& sample);
 Settings settings_for(const Output& output, const Sample& sample);
 /// Beside these, the numbers of the axes by their places.
 Settings settings_for(const Controller& controller, const Sample& sample);
-/// All that the program's own analyses and its model say of a sample.
+/// All that the analyses and the model say of a sample: what is known, else they are asked.
 Results results_of(const Sample& sample, const Bench& bench);
 
 }  // namespace nonio::host::plugin_check::kit
