@@ -322,7 +322,8 @@ TEST(WorstLine, WhatOneLineDoesNotGiveIsNotGiven) {
 TEST(WorstLine, OneLineIsSaid) {
   Made m = made();
   pass(m, "only", 1e-6, um);
-  const Finding* f = finding(evaluated(worst(), m), "worst-line.one-line");
+  const Evaluation e = evaluated(worst(), m);
+  const Finding* f = finding(e, "worst-line.one-line");
   ASSERT_NE(f, nullptr);
   EXPECT_TRUE(f->attention);
 }

@@ -205,7 +205,8 @@ inline Coverages lengths_coverage(int count, std::uint64_t seed) {
   Random r(seed);
   for (int i = 0; i < count; ++i) {
     const MadeLengths one = gauging(r, 3e-6, 1, 1, 1);
-    if (const auto* v = value(evaluated(lengths(), one.test), "E0_max"); v != nullptr && v->U)
+    const auto alone = evaluated(lengths(), one.test);
+    if (const auto* v = value(alone, "E0_max"); v != nullptr && v->U)
       out["one error"].add(std::fabs(v->value - one.error.front()) <= *v->U);
     const MadeLengths m = gauging(r, 3e-6);
     const auto e = evaluated(lengths(), m.test, {{"mpe_E0_um", 1.7}, {"mpe_E0_divisor", 333.0}});
