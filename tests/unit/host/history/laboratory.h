@@ -34,11 +34,15 @@ struct Made {
   std::string certificate{};
   std::string status = "ok";
   std::string A = "7.5", decision = "conforms";
+  bool manifest_read = false;  ///< of a campaign that failed: its machine and date are known
   std::string json() const {
     const auto number = [](double x) { return std::to_string(x); };
     if (status == "failed")
-      return "{\n \"schema\": \"nonio-results/1\",\n \"campaign\": {\"id\": \"" + id +
-             "\"},\n \"status\": \"failed\",\n \"errors\": [{\"message\": \"no readings\"}],\n "
+      return "{\n \"schema\": \"nonio-results/1\",\n \"campaign\": {\"id\": \"" + id + "\"" +
+             (manifest_read
+                  ? ", \"date\": \"" + day + "\", \"machine\": {\"asset\": \"" + asset + "\"}"
+                  : "") +
+             "},\n \"status\": \"failed\",\n \"errors\": [{\"message\": \"no readings\"}],\n "
              "\"analyses\": []\n}\n";
     return "{\n \"schema\": \"nonio-results/1\",\n \"campaign\": {\"id\": \"" + id +
            "\", \"date\": \"" + day + "\", " +

@@ -177,6 +177,18 @@ TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
   EXPECT_GT(lines, 24U * 500U);
 }
 
+/// A machine was not calibrated by a campaign without results.
+TEST_F(KeptMachinesTest, AFailedCampaignMovesNoDueDate) {
+  told_.due = {{"", 6}};
+  store({.id = "good", .day = "2026-01-05"}, "r1");
+  const std::string before = end_night("2026-02-01").at("due.ics");
+  EXPECT_NE(before.find("20260705"), std::string::npos) << before;
+  store({.id = "bad", .day = "2026-05-05", .status = "failed", .manifest_read = true}, "r2");
+  Said after = end_night("2026-06-01");
+  EXPECT_NE(after["due.ics"].find("20260705"), std::string::npos) << after["due.ics"];
+  EXPECT_EQ(after["due.ics"].find("20261105"), std::string::npos) << after["due.ics"];
+}
+
 TEST_F(KeptMachinesTest, AreUsed) {
   for (int k = 0; k < 12; ++k)
     store({.id = "c" + std::to_string(k),
