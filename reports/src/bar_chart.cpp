@@ -89,6 +89,11 @@ class BarSetter {
     title->draw(canvas_, 0, 0, 0);
     y_ = -title->height() - 2;
     double x = 0;
+    const auto is_said = [](const BarChart::Series& s) { return !s.legend.empty(); };
+    if (std::none_of(chart_.series.begin(), chart_.series.end(), is_said) && !chart_.line) {
+      y_ -= 3;
+      return {};
+    }
     for (const auto& [legend, colour] : chart_.series)
       if (auto ok = draw_legend(legend, colour, false, x); !ok) return ok;
     if (chart_.line)

@@ -76,7 +76,8 @@ std::string words_of(const Drawn& source) {
   Object out;
   for (const char* name :
        {"rms_now", "without", "without_cv", "not_refitted", "reading", "deviation", "model",
-        "residual", "time", "temperature", "line", "suspect", "reversal"})
+        "residual", "time", "temperature", "line", "suspect", "reversal", "polar_title",
+        "polar_says", "rest_title", "rest_says"})
     out.text(name, source.words.get(std::string("page.") + name));
   out.text("no_readings", source.words.get("picture.no_readings"));
   out.text("one_direction", source.words.get("picture.reversal.none"));
@@ -118,6 +119,36 @@ std::string without_of(const ModelFit& fit, const std::string& effect,
   return out.done();
 }
 
+/// First and second axis of a circle's plane, and its radius, m; 0: no circle.
+struct CircleOf {
+  std::string axes;
+  double radius = 0.0;
+};
+CircleOf circle_of(const Campaign& campaign, const std::string& id) {
+  CircleOf out;
+  for (const Measurement& m : campaign.measurements) {
+    if (m.id != id || m.kind != "circle") continue;
+    for (const auto& [axis, from] : m.from)
+      if (const auto to = m.to.find(axis); to != m.to.end() && to->second != from)
+        out = {axis + out.axes, to->second - from};
+      else
+        out.axes += axis;
+  }
+  return out;
+}
+
+/// Of each measurement its radius in mm, 0 where it is no circle; the axes of the first plane.
+void put_circles(Object& out, const Drawn& source) {
+  if (!has_circles(source.campaign, source.fit)) return;
+  std::string axes;
+  out.raw("circles", list(source.fit.measurements, [&](std::string& text, const std::string& id) {
+            const CircleOf circle = circle_of(source.campaign, id);
+            if (axes.empty()) axes = circle.axes;
+            append_number(text, circle.radius * unit_of(Quantity::length).per_si);
+          }));
+  out.text("circle_axes", axes);
+}
+
 std::vector<std::size_t> all_rows(std::size_t n) {
   std::vector<std::size_t> rows(n);
   std::iota(rows.begin(), rows.end(), std::size_t{0});
@@ -132,6 +163,11 @@ std::string lanes_text(const ModelFit& fit) {
 }
 
 }  // namespace
+
+bool has_circles(const Campaign& campaign, const ModelFit& fit) {
+  return std::any_of(fit.measurements.begin(), fit.measurements.end(),
+                     [&](const std::string& id) { return circle_of(campaign, id).radius > 0.0; });
+}
 
 Kept kept_readings(const std::vector<double>& values, std::size_t most) {
   Kept kept;
@@ -184,6 +220,7 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   out.text("time_unit", source.pictures[static_cast<std::size_t>(ResidualPlot::time)].time_unit);
   out.raw("lanes", lanes_text(fit));
   out.number("measurements", static_cast<double>(fit.measurements.size()));
+  put_circles(out, source);
   out.number("period", period_of(fit) * across);
   out.number("floor", fit.floor ? *fit.floor * per_si : std::nan(""));
   out.raw("words", words_of(source));

@@ -106,8 +106,28 @@ struct Named {
   std::string name, axis;
 };
 
+/// Of a circle: another way to measure, so another quantity beside that of axis runs and diagonals.
+/// What is not linear in the readings (G, H, F, amplitudes, spikes) is none of them.
+std::optional<Named> named_of_circle(const std::string& value, const Measurement& m) {
+  std::string plane;
+  for (const char letter : {'X', 'Y', 'Z'})
+    for (const auto& [axis, at] : m.from)
+      if (axis.front() == letter) plane += letter;
+  if (value == "scale_mismatch" || value == "servo_mismatch")
+    return Named{value + ':' + plane, plane};
+  if (value == "D") return Named{"radius:" + plane, plane};
+  if (value.size() == 3 && value[1] == '0') return Named{"squareness:" + plane + ".circle", plane};
+  if (value.starts_with("bow_")) return Named{"bow:" + value.substr(4), value.substr(6)};
+  for (const auto& [begin, name] : {std::pair("B_", "B_circle"), std::pair("lateral_", "lateral")})
+    if (value.starts_with(begin)) return Named{name, value.substr(std::string(begin).size())};
+  return std::nullopt;
+}
+
 std::optional<Named> named(const Results::Analysed& a, const std::string& value,
                            const Campaign& campaign) {
+  if (a.plugin == "circle")
+    for (const Measurement& m : campaign.measurements)
+      if (m.id == a.measurement) return named_of_circle(value, m);
   static const std::map<char, std::string> pairs{{'A', "YZ"}, {'B', "XZ"}, {'C', "XY"}};
   if (value.size() == 3 && value[1] == '0' && pairs.contains(value[0]))
     return Named{"squareness:" + pairs.at(value[0]), pairs.at(value[0])};
@@ -129,6 +149,21 @@ bool is_set_up(const Results::Analysed& a, const std::string& name) {
   for (const Value& v : a.evaluation.values)
     if (v.name == direction->second) return std::fabs(v.value) > 0.7;
   return true;
+}
+
+/// Circles are compared at one place, with one radius and one feed.
+void put_conditions(FollowedQuantity& to, const Campaign& campaign, const Measurement& m) {
+  if (m.kind != "circle") return;
+  std::map<std::string, double> at = m.at;
+  for (const auto& [axis, centre] : m.from) {
+    at[axis] = centre;
+    if (const auto end = m.to.find(axis); end != m.to.end() && end->second != centre)
+      to.numbers.emplace_back("radius", printed(end->second - centre, Quantity::length));
+  }
+  if (m.feed) to.numbers.emplace_back("feed", *m.feed * 60e3);  // mm/min, as the manifest has it
+  if (const std::string on = compensation_of(campaign.machine, m); !on.empty())
+    to.texts.emplace_back("compensation", on);
+  to.texts.emplace_back("at", joined(at));
 }
 
 /// Values with a budget: what the instrument has in common is in its contributions.
@@ -155,7 +190,7 @@ std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaig
     put_common(q, variance, instrument_source(campaign.instrument), std::sqrt(shared));
     q.u = std::sqrt(variance);
     for (const Measurement& m : campaign.measurements)
-      if (m.id == a.measurement) q.state = found_or_left(m);
+      if (m.id == a.measurement) q.state = found_or_left(m), put_conditions(q, campaign, m);
     if (q.state.empty()) q.state = "as-found";
     variances.push_back(variance);
     if (q.u > 0.0)

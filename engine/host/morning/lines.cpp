@@ -200,6 +200,9 @@ bool comes_before(const MorningLine& a, const MorningLine& b) {
 std::string kind_of(const std::string& quantity) {
   const auto is = [&](const char* begin) { return quantity.starts_with(begin); };
   if (is("B_mean") || is("backlash")) return "reversal";
+  for (const char* of_circle :
+       {"B_circle", "bow:", "lateral", "radius:", "scale_mismatch", "servo_mismatch"})
+    if (is(of_circle)) return "circle";
   if (is("scale")) return "scale";
   if (is("curve") || is("pitch-curve")) return "curve";
   if (is("turn")) return "turn";

@@ -35,8 +35,9 @@ std::string difference(const Json& a, const Json& b) {
       !near(number_at(a, "from"), number_at(b, "from"), span) ||
       !near(number_at(a, "to"), number_at(b, "to"), span))
     return "span";
-  for (const auto& [key, why] : {std::pair("at", "place"), std::pair("across", "across"),
-                                 std::pair("model", "model"), std::pair("period", "period")}) {
+  for (const auto& [key, why] :
+       {std::pair("at", "place"), std::pair("across", "across"), std::pair("model", "model"),
+        std::pair("period", "period"), std::pair("radius", "radius"), std::pair("feed", "feed")}) {
     const Json one = a.value(key, Json()), other = b.value(key, Json());
     const bool same = one.is_number() && other.is_number()
                           ? near(one.get<double>(), other.get<double>(), one.get<double>())

@@ -23,7 +23,8 @@ struct FollowedSeries {
   /// Numbers of the same quantity before this series began, which cannot be joined.
   struct Apart {
     std::size_t result = 0;
-    std::string why;  ///< id of the word: span, place, across, model, period, other
+    std::string why;  ///< id of the word: span, place, across, model, period, radius,
+                      ///< feed, other
   };
   std::vector<Apart> apart{};
   nonio::history::Series series;

@@ -151,6 +151,15 @@ Json quantity_json(double value, bool rotary) {
           {"unit", unit_of(deviation_of(rotary)).symbol}};
 }
 
+/// An error along an axis as readings sense it that look in another direction, as `explain` has it.
+double sensed(const Seen& seen, const EffectSpec& e, const Axis& place, std::size_t i) {
+  const std::size_t k = coordinate_of(place.name);
+  if (seen.part == nullptr || e.effect.instances || seen.table.axes.size() < 2 || place.rotary ||
+      k > 2)
+    return 1.0;
+  return seen.table.sense_of(i)[k];
+}
+
 /// Adds the effect to the rows that show it, and tells it in `truth`.
 Expected<void> add_effect(const EffectSpec& e, const Specification& s, const std::vector<Seen>& all,
                           std::vector<Observations>& rows, Json& truth, storage::Random random) {
@@ -169,8 +178,9 @@ Expected<void> add_effect(const EffectSpec& e, const Specification& s, const std
     if (!e.effect.curve && columns->size() != e.linear.size())
       return fail(e.name + ": its plugin gives " + std::to_string(columns->size()) +
                   " columns for " + std::to_string(e.linear.size()) + " parameters");
-    const std::vector<double> part = deviation_of_columns(e, *columns, random);
+    std::vector<double> part = deviation_of_columns(e, *columns, random);
     for (std::size_t i = 0; i < part.size(); ++i) {
+      part[i] *= sensed(seen, e, *place, i);
       if (!std::isfinite(part[i])) return fail(e.name + " gives no finite deviation");
       rows[seen.from[i].first].deviation[seen.from[i].second] += seen.sign * part[i];
     }

@@ -28,12 +28,11 @@ class CycleReader {
                                        : c_.is("diagonal")      ? "diagonal"
                                        : c_.is("step-diagonal") ? "step-diagonal"
                                        : c_.is("ball-centres")  ? "ball-centres"
+                                       : c_.is("circle")        ? "circle"
                                                                 : "rtcp");
     read_steps();
-    if (!c_.is("step-diagonal")) {
-      read_targets();
-      read_order();
-    }
+    if (!c_.is("step-diagonal") && !c_.is("circle")) read_targets();
+    if (!c_.is("step-diagonal")) read_order();
     if (const auto runs = reader_.integer("runs")) c_.runs = static_cast<std::uint32_t>(*runs);
     read_times();
     c_.noise = (angular ? reader_.number("noise_arcsec", 1.0 / arcsec_per_rad)
@@ -61,12 +60,12 @@ class CycleReader {
                                          storage::suggestion(id, ids));
       return false;
     }
-    static constexpr std::array made{"axis",          "straightness", "diagonal",
-                                     "step-diagonal", "ball-centres", "rtcp"};
+    static constexpr std::array made{"axis",         "straightness", "diagonal", "step-diagonal",
+                                     "ball-centres", "rtcp",         "circle"};
     if (std::find(made.begin(), made.end(), c_.measurement.kind) == made.end()) {
       reader_.error("measurement",
                     "expected a measurement of kind axis, straightness, diagonal, step-diagonal, "
-                    "ball-centres or rtcp, found " +
+                    "ball-centres, rtcp or circle, found " +
                         c_.measurement.kind);
       return false;
     }
@@ -196,9 +195,22 @@ class CycleReader {
   }
 
   void read_times() {
+    if (c_.is("circle")) return read_circle();
     const char* feed = c_.axis.rotary ? "feed_deg_per_min" : "feed_mm_per_min";
     c_.feed = reader_.number(feed, unit_ / 60.0).value_or(c_.axis.rotary ? 0.1 : 0.05);
     c_.dwell = reader_.number("dwell_s").value_or(c_.dwell);
+    c_.pause = reader_.number("pause_s").value_or(c_.pause);
+    c_.timed = reader_.flag("times").value_or(true);
+  }
+
+  /// The feed is the measurement's own; nothing waits on the way.
+  void read_circle() {
+    if (const auto readings = reader_.integer("readings"))
+      c_.readings = static_cast<std::uint32_t>(*readings);
+    if (!c_.measurement.feed)
+      reader_.error("measurement", "has no feed_mm_per_min, which a simulated circle needs");
+    c_.feed = c_.measurement.feed.value_or(1.0);
+    c_.dwell = reader_.number("dwell_s").value_or(0.0);
     c_.pause = reader_.number("pause_s").value_or(c_.pause);
     c_.timed = reader_.flag("times").value_or(true);
   }

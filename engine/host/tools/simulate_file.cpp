@@ -54,6 +54,16 @@ std::string ball_row(const CycleSpec& c, const Observations& o, std::size_t i,
   return text + "," + micrometres(e[0]) + "," + o.lines[o.line[i]].name;
 }
 
+/// Angles go from the first axis of the plane, which comes first, towards the second.
+std::string circle_row(const Observations& o, std::size_t i, double e) {
+  const auto& n = o.sense_of(i);
+  const double x = n[coordinate_of(o.axes[0].axis)], y = n[coordinate_of(o.axes[1].axis)];
+  const double angle = std::atan2(y, x) * deg_per_rad;
+  const bool counter_clockwise = x * o.axes[1].approach[i] - y * o.axes[0].approach[i] > 0.0;
+  return std::to_string(o.run[i]) + (counter_clockwise ? ",+," : ",-,") +
+         fixed_text(angle < 0.0 ? angle + 360.0 : angle, 4) + "," + micrometres(e);
+}
+
 }  // namespace
 
 std::size_t readings_in_row(const CycleSpec& c) {
@@ -64,6 +74,8 @@ std::string header_of(const CycleSpec& c) {
   std::string text;
   if (c.is("step-diagonal")) {
     text = "run,diagonal,step,moved,deviation_um";
+  } else if (c.is("circle")) {
+    text = "run,direction,angle_deg,deviation_um";
   } else if (of_ball(c)) {
     text = "run,direction,angle_deg,x_mm,y_mm,z_mm";
     if (c.is("rtcp"))
@@ -83,6 +95,8 @@ std::string row_of(const CycleSpec& c, const Observations& o, std::size_t i,
   std::string text;
   if (c.is("step-diagonal")) {
     text = step_row(c, o, i, e[0]);
+  } else if (c.is("circle")) {
+    text = circle_row(o, i, e[0]);
   } else if (of_ball(c)) {
     text = ball_row(c, o, i, e);
   } else {
@@ -95,7 +109,7 @@ std::string row_of(const CycleSpec& c, const Observations& o, std::size_t i,
            shortest(printed(at, position_of(o.angular))) + "," +
            fixed_text(printed(e[0], deviation_of(o.angular)), 3);
   }
-  if (c.timed) text += "," + fixed_text(o.time[i], 1);
+  if (c.timed) text += "," + fixed_text(o.time[i], c.is("circle") ? 3 : 1);
   if (c.temperature) text += "," + fixed_text(o.material[i], 2);
   return text + "\n";
 }

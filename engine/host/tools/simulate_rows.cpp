@@ -143,6 +143,54 @@ Expected<Observations> in_steps(const Specification& s, const CycleSpec& c) {
   return o;
 }
 
+/// Each run counter-clockwise, then clockwise; lines as the reader of the file names them. No
+/// reading is at a reversal itself.
+Expected<Observations> on_circle(const CycleSpec& c) {
+  Observations o;
+  o.measurement = c.measurement.id;
+  std::array<std::string, 2> axis;
+  std::array<double, 2> centre{};
+  double radius = 0.0;
+  for (const auto& [name, from] : c.measurement.from) {
+    const double way = c.measurement.to.at(name) - from;
+    const std::size_t k = way != 0.0 ? 0 : 1;
+    axis[k] = name, centre[k] = from;
+    if (k == 0) radius = way;
+  }
+  const std::size_t u = coordinate_of(axis[0]), v = coordinate_of(axis[1]);
+  if (u > 2 || v > 2 || !(radius > 0.0))
+    return fail("measurement \"" + c.measurement.id +
+                "\": expected `plane`, `radius_mm` and `centre` of the circle");
+  o.axes = {{axis[0], false, {}, {}}, {axis[1], false, {}, {}}};
+  const double step = 2.0 * std::numbers::pi / c.readings;
+  const auto way_of = [](double speed) { return speed > 0.0 ? std::int8_t{1} : std::int8_t{-1}; };
+  Clock clock(c);
+  for (std::uint32_t run = 1; run <= c.runs; ++run)
+    for (const double d : {c.direction, -c.direction}) {
+      if (d != c.direction && !c.pendulum) continue;
+      if (!o.lines.empty()) clock.pause();
+      for (std::uint32_t j = 0; j < c.readings; ++j) {
+        const double t = step * ((d > 0.0 ? j : c.readings - 1 - j) + 0.5), x = std::cos(t),
+                     y = std::sin(t);
+        o.axes[0].position.push_back(centre[0] + radius * x);
+        o.axes[1].position.push_back(centre[1] + radius * y);
+        o.axes[0].approach.push_back(way_of(-d * y));
+        o.axes[1].approach.push_back(way_of(d * x));
+        std::array<double, 3> sense{};
+        sense[u] = x, sense[v] = y;
+        o.sense.push_back(sense);
+        o.run.push_back(run);
+        o.line.push_back(static_cast<std::uint32_t>(o.lines.size()));
+        o.deviation.push_back(0.0);
+        clock.reading(o, radius * step);
+      }
+      o.lines.push_back({c.measurement.id + (d > 0.0 ? " +" : " -") +
+                             (run == 1 ? "" : " run " + std::to_string(run)),
+                         o.sense.back()});
+    }
+  return o;
+}
+
 /// Against a square the readings rise by its set-up on the line of the first axis, fall by it on
 /// the other, and have its error there (math/square.h: b1 + b2 = t + g).
 void put_square(const Specification& s, const CycleSpec& c, Observations& o) {
@@ -161,7 +209,8 @@ void Clock::reading(Observations& o, double way) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   if (!first_) t_ += way / c_.feed + c_.dwell;
   first_ = false;
-  o.time.push_back(c_.timed ? std::round(t_ * 10.0) / 10.0 : unknown);
+  const double ticks = c_.is("circle") ? 1000.0 : 10.0;  // of a second
+  o.time.push_back(c_.timed ? std::round(t_ * ticks) / ticks : unknown);
   o.material.push_back(c_.temperature ? material(*c_.temperature, t_) : unknown);
 }
 
@@ -172,6 +221,7 @@ Expected<Observations> rows_of(const Specification& s, const CycleSpec& c,
     with.targets = targets;
     return rotary_rows(s, with);
   }
+  if (c.is("circle")) return on_circle(c);
   if (c.is("step-diagonal")) return in_steps(s, c);
   auto o = along(s, c, targets);
   if (o && c.is("straightness")) put_square(s, c, *o);

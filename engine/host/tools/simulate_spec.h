@@ -36,6 +36,7 @@ struct CycleSpec {
   };
   std::optional<Course> temperature;
   std::uint32_t steps = 0;                    ///< of a diagonal or step diagonal; 0: targets
+  std::uint32_t readings = 720;               ///< of a circle, on a turn
   double set_up = 0.0;                        ///< of a straightedge against the axis, rad
   std::vector<std::array<double, 3>> balls;   ///< with the rotary axis at 0, m
   std::vector<std::array<double, 3>> senses;  ///< of gauges, unit vectors

@@ -129,10 +129,12 @@ std::string test_parameters(const Source& source, const pages::Measured& m) {
   };
   const double per_minute = 60.0;
   const Quantity travel = position_of(m.rotary);
-  add("feed", t.feed.has_value(),
-      with("test.feed", "feed",
-           quantity(source, t.feed.value_or(0) * per_minute, travel,
-                    m.rotary ? "°/min" : "mm/min")));
+  // That of a circle stands with its readings.
+  if (t.kind != "circle" || !t.feed)
+    add("feed", t.feed.has_value(),
+        with("test.feed", "feed",
+             quantity(source, t.feed.value_or(0) * per_minute, travel,
+                      m.rotary ? "°/min" : "mm/min")));
   add("dwell", t.dwell.has_value(),
       with("test.dwell", "dwell", quantity(source, t.dwell.value_or(0), Quantity::time)), moves);
   add("over_travel", t.over_travel.has_value(),

@@ -179,7 +179,7 @@ dcc::About about_of(const std::vector<Source>& sources, const char* release) {
     about.words[dcc::name_of(a)] = words_of(sources, a);
     for (const Value& v : a.evaluation.values)
       about.meaning[v.name] = in_all(sources, [&](const Source& s) {
-        return s.words.get_or("value." + pages::without_rule(v.name), "");
+        return pages::meaning_of(s, pages::without_rule(v.name));
       });
   }
   about.lowest = word(sources, "conditions.lowest");

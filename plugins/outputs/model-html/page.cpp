@@ -243,6 +243,11 @@ std::string choices(const Source& source) {
 
 std::string nine(const Source& source) {
   std::string out;
+  if (workbench::has_circles(source.in.campaign, source.fit))
+    for (const char* name : {"polar", "rest"})
+      out += "<figure id=\"picture-" + std::string(name) +
+             "\" hidden>\n<figcaption><b></b></figcaption>\n<svg role=\"img\"></svg>\n"
+             "<figcaption><p></p></figcaption>\n</figure>\n";
   for (std::size_t i = 0; i < source.pictures.size(); ++i) {
     const PictureWords& p = source.pictures[i];
     const std::string title = html(p.title);

@@ -5,10 +5,10 @@
 /// figure(k): the element of picture k; tip: what shows a reading; hidden: {d: directions, r: runs}, sets.
 /// Where a caller wants them: elsewhere(k) where it draws picture k itself, pick(row) and brushed(rows) when a reading or
 /// a region is chosen, said(lines) when a key moves to a reading, drawn(k, frame) after each picture, inTurn() after all
-/// of them; with it those in view come first.
+/// of them; with it those in view come first. Circles have two pictures more, "polar" and "rest" (polar.js).
 function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, said, drawn}) {
   let data, words, n, wrong, residual, place, ends_of_lane, lines, ghost = null, named = "";
-  let shown = [], range = [0, 1], pictures = [], marked = -1, by_key = false, printing = false, chosen = new Set(), turns = 0;
+  let shown = [], range = [0, 1], pictures = [], marked = -1, by_key = false, printing = false, chosen = new Set(), turns = 0, looks = false;
 
   const text = (template, places) =>
     template.replace(/\{(\w+)\}/g, (all, name) => (name in places ? places[name] : all));
@@ -329,8 +329,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   }
 
   /// `values`: what is drawn, if not the residuals of the data; `name`: the title of its axis.
-  function draw(values, name) {
-    if (values) residual = values;
+  function draw(values, name, only) {
+    if (values) [residual, looks] = [values, only === true];
     named = name || "";
     shown = [];
     for (let i = 0; i < n; i++)
@@ -360,6 +360,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
         setTimeout(next);
         return;
       }
+      pictures.push(...nonioPolar({figure, data, rows: shown, put, number, text, value: (i) => (looks ? NaN : named ? data.residual[i] : residual[i])}));
       mark(marked);
       select(chosen);
       if (inTurn) inTurn();

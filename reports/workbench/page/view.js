@@ -10,6 +10,10 @@ const view = (() => {
       svg("svg", {role: "application", "aria-labelledby": `picture-${k}-title`, "aria-describedby": "picture-help", tabindex: 0}),
       el("figcaption", {}, el("p", {id: `picture-${k}-says`})));
   }
+  /// Of circles; hidden where there are none.
+  function polarFigure(name) {
+    return el("figure", {id: "picture-" + name, hidden: true}, el("figcaption", {}, el("b")), svg("svg", {role: "application", "aria-describedby": "picture-help", tabindex: 0}), el("figcaption", {}, el("p")));
+  }
   function header() {
     return el("header", {},
       el("div", {class: "who"}, net.base ? el("a", {href: "/", id: "back"}, "\u2190 " + say("site.back")) : null, el("h1", {id: "campaign"}), el("p", {id: "machine", class: "muted"})),
@@ -38,7 +42,7 @@ const view = (() => {
         el("div", {id: "drawn"}), el("p", {id: "legend", class: "muted"}), el("p", {id: "legend-ghost", class: "muted"}),
         el("p", {id: "picture-help", class: "muted"}, say("pictures.help")),
         el("div", {id: "region"}),
-        el("div", {class: "pictures"}, ...Array.from({length: 9}, (_, k) => pictureFigure(k)))),
+        el("div", {class: "pictures"}, polarFigure("polar"), polarFigure("rest"), ...Array.from({length: 9}, (_, k) => pictureFigure(k)))),
       el("section", {id: "space", hidden: true, "aria-labelledby": "space-title"}, el("h2", {id: "space-title"}, say("space.title")), el("div", {id: "space-view"})),
       section("readings", "readings.title", el("div", {id: "readings-list"})));
   }

@@ -224,7 +224,7 @@
     const over = shown.preview || (state.model.includes(shown.effect) ? null : shown.effect), says = over && (all.find((f) => f.effect === over) || shown.fit.page.effects.find((e) => e.name === over));
     pictures.ghost(says && says.says.length === shown.fit.page.residual.length ? says.says : null);
     const data = shown.fit.page;
-    pictures.draw(values(), shown.looks || shown.drawing !== "residual" ? `${data.words.deviation} / ${data.unit}` : "");
+    pictures.draw(values(), shown.looks || shown.drawing !== "residual" ? `${data.words.deviation} / ${data.unit}` : "", shown.looks);
     by("legend-ghost").textContent = says ? say("legend.ghost", {effect: over}) : "";
   }
   const figureOf = (where) => {

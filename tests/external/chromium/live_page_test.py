@@ -534,6 +534,25 @@ class Page(live_browser.CampaignPage):
         self.wait(lambda: count() >= n)
         self.no_complaints()
 
+    def test_circles_are_drawn_as_a_ball_bar_draws_them(self):
+        self.open(self.serve(self.campaign(SOURCE / "samples/site/40-circles")), "fitted|explained")
+        lines = lambda name: [self.js(f"document.querySelectorAll('#picture-{name} path.line.{look}').length") for look in ("plus", "minus", "mean")]
+        self.wait(lambda: lines("polar") == [1, 1, 2], "both directions, and the model in each")
+        self.assertEqual([1, 1, 0], lines("rest"))
+        title = self.js("document.querySelector('#picture-polar b').textContent")
+        self.assertEqual(title, "Circles, 5 \u00B5m a division")
+        for look, low, high in (("plus", 9.2, 11), ("minus", 17.7, 20)):  # G of the sample: 9.2 and 17.8 um
+            path = self.js(f"document.querySelector('#picture-polar path.line.{look}').getAttribute('d')")
+            numbers = [float(v) for v in re.findall(r"[\d.]+", path)]
+            radii = [((x - 160) ** 2 + (y - 160) ** 2) ** 0.5 / 19.5 * 5 for x, y in zip(numbers[::2], numbers[1::2])]
+            self.assertEqual(720, len(radii))
+            self.assertTrue(low < max(radii) - min(radii) < high, (look, max(radii) - min(radii)))
+        self.js("document.querySelector('#picture-polar svg').focus()")
+        self.press(Keys.HOME)
+        self.assertIn("circle.csv, line", self.js("document.getElementById('tip').innerText"))
+        self.assertGreaterEqual(self.js("document.querySelectorAll('figure .chosen').length"), 3, "marked in the others too")
+        self.no_complaints()
+
     def test_numbers_of_all_samples_are_those_of_compare_and_explain(self):
         """Against the server's own answers, which test live.numbers holds against `nonio compare` and `explain`."""
         sources = [s for s in sorted((SOURCE / "samples/site").iterdir()) if (s / "campaign.toml").exists()]

@@ -111,6 +111,42 @@ class Certificate(SigningTest):
         self.issue()
         self.assertEqual(self.results("adjusted")["certificate"]["number"], "S-0001")
 
+    @needs("pdftotext", "xmllint")
+    def test_a_circle(self):
+        """Its values and its path on the first page, its causes by their symbols; in the DCC each value has a name."""
+        shutil.rmtree(self.site / "adjusted")
+        folder = self.site / "40-circles"
+        shutil.copytree(SAMPLE.parent / "site" / "40-circles", folder)
+        manifest = folder / "campaign.toml"
+        text = manifest.read_text()
+        for old, more in (('customer = "Esempio Quaranta S.r.l."', 'customer_address = "Via degli Esempi 40, 35100 Padova"'),
+                          ('serial = "S-0140"', 'description = "Vertical machining centre"\ncondition = "In use"'),
+                          ("drift_um = 0.8", '[certificate]\ncustomer_data = ["machine.serial"]\nconditions = "20.1 to 20.4 degC"')):
+            self.assertIn(old, text)
+            text = text.replace(old, f"{old}\n{more}")
+        manifest.write_text(text + 'outputs = ["json", "certificate"]\n')
+        self.run_nonio(expect=0)
+        run(NONIO, "release", folder, "--by", "B. Sample",
+            *(part for finding in self.findings() for part in ("--reason", f"{finding}=as found")))
+        pdf, dcc = (self.out / "40-circles" / f"certificate.{kind}" for kind in ("pdf", "xml"))
+        pages = run("pdftotext", "-layout", pdf, "-").stdout.split("\f")
+        for words in ("G ccw", "G b", "17,80", "C0Y", "Percorso circolare", "/ Circular path"):
+            self.assertIn(words, pages[0])
+        self.assertEqual(pages[1].count("1000 mm/min"), 2)  # once in each language
+        for words in ("Cause, ciascuna da sola / Causes, each alone", "servo mismatch  ", "Inversione di X / Reversal of X"):
+            self.assertIn(words, pages[1])
+        names = {v: run("xmllint", "--xpath", f"string(//*[local-name()='quantity'][.//*[local-name()='content']='{v}'])", dcc).stdout
+                 for v in ("G_b", "B_X", "lateral_Y", "bow_EYX", "cyclic_X", "centre_X", "spike_Y")}
+        for value, words in (("G_b", "Bidirectional circular deviation"), ("B_X", "Reversal of X"), ("lateral_Y", "Lateral play of Y"),
+                             ("bow_EYX", "Bow EYX over the diameter"), ("cyclic_X", "Cyclic error of X, amplitude"),
+                             ("centre_X", "Least-squares centre, X"), ("spike_Y", "Reversal spike of Y")):
+            self.assertIn(words, names[value])
+        self.assert_holds(pdf, dcc)
+        if (SCHEMAS / "catalog.xml").exists():
+            done = run("xmllint", "--nonet", "--noout", "--schema", SCHEMAS / "dcc/v3.3.0/dcc.xsd", dcc, check=False,
+                       env={**os.environ, "XML_CATALOG_FILES": str(SCHEMAS / "catalog.xml")})
+            self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_a_changed_page_is_seen(self):
         pdf = self.issue().read_bytes()
         at = pdf.index(b"stream\r\n") + 40

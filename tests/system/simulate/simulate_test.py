@@ -216,5 +216,70 @@ class EveryKind(unittest.TestCase):
         self.assertFalse((self.root / "site" / "none").exists())
 
 
+class Circles(unittest.TestCase):
+    """A ball bar on a machine with known errors: each cause comes back within its U."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.root = pathlib.Path(self.folder.name)
+        self.text = SAMPLE.with_name("ball-bar.toml").read_text("utf-8")
+
+    def made(self, text, expect=0):
+        spec = self.root / "spec.toml"
+        spec.write_text(text, "utf-8")
+        done = nonio("simulate", spec, "--out", self.root / "site" / "bar")
+        self.assertEqual(done.returncode, expect, done.stderr)
+        return done
+
+    def results(self):
+        done = nonio("run", self.root / "site", "--out", self.root / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads((self.root / "out" / "ball-bar" / "results.json").read_text("utf-8"))
+
+    def test_what_was_put_in_comes_out(self):
+        self.made(self.text)
+        results = self.results()
+        values = next(a["values"] for a in results["analyses"] if a["plugin"] == "circle")
+        truth = {"C0Y": 30.0, "scale_mismatch": 25.0, "B_X": -5.0, "B_Y": -1.5, "servo_mismatch": 6e-3 / (1000 / 60),
+                 "cyclic_X": 1.0, "lateral_X": 0.0, "lateral_Y": 0.0, "bow_EYX": 0.0, "bow_EXY": 0.0}
+        for name, wanted in truth.items():
+            self.assertLess(abs(values[name]["value"] - wanted), values[name]["U"], name)
+            self.assertLess(values[name]["U"], 4.0, name)  # of any size it would be within it
+        # The history follows what is linear in the readings, with the same values and U.
+        followed = {(f["axis"], f["quantity"]): f for f in results["followed"]}
+        for key, name in ((("XY", "squareness:XY.circle"), "C0Y"), (("XY", "scale_mismatch:XY"), "scale_mismatch"),
+                          (("XY", "servo_mismatch:XY"), "servo_mismatch"), (("X", "B_circle"), "B_X"),
+                          (("Y", "B_circle"), "B_Y"), (("X", "lateral"), "lateral_X"), (("X", "bow:EYX"), "bow_EYX")):
+            f, v = followed.pop(key), values[name]
+            self.assertEqual(f["value"], v["value"], name)
+            u = (f["u"] ** 2 + sum(c["u"] ** 2 for c in f["common"])) ** 0.5
+            self.assertAlmostEqual(u * v["k"] / v["U"], 1.0, places=3, msg=name)
+            self.assertEqual(f["conditions"], {"radius": 150.0, "feed": 1000.0, "at": "X=400.000000 Y=250.000000 Z=120.000000"})
+        self.assertEqual(set(followed), {("Y", "lateral"), ("Y", "bow:EXY")})
+
+    def test_one_direction_and_the_lines_of_the_file(self):
+        servo = '[[effect]]\nname = "servo-mismatch:XY"\nw_um = 6.0\n'
+        one_way = self.text.replace(servo, "").replace("runs = 2", 'runs = 1\norder = "unidirectional"\ndirection = "-"')
+        self.assertIn("no measurement shows it", self.made(one_way + servo, expect=2).stderr)
+        self.made(one_way)
+        lines = (self.root / "site" / "bar" / "circle.csv").read_text("utf-8").splitlines()[1:]
+        self.assertEqual(lines[0], "run,direction,angle_deg,deviation_um,time_s")
+        rows = [line.split(",") for line in lines[1:]]
+        self.assertEqual((len(rows), {r[1] for r in rows}), (720, {"-"}))
+        self.assertEqual((rows[0][2], rows[-1][2]), ("359.7500", "0.2500"))
+        self.assertAlmostEqual(float(rows[-1][4]), 2 * 3.14159265 * 150 / 1000 * 60 * 719 / 720, delta=0.01)
+        # Squareness and servo mismatch are one column; what can be told is told.
+        values = next(a["values"] for a in self.results()["analyses"] if a["plugin"] == "circle")
+        self.assertNotIn("C0Y", values)
+        self.assertLess(abs(values["B_X"]["value"] + 5.0), values["B_X"]["U"])
+
+    def test_refusals(self):
+        for old, new, says in (("feed_mm_per_min = 1000\n", "", "feed_mm_per_min"), ("readings = 720", "readings = 5", "24 to 100000"),
+                               ("readings = 720", "targets_mm = [0, 1]", "targets_mm"), ("c_urad", "c_um", "c_um")):
+            self.assertIn(old, self.text)
+            self.assertIn(says, self.made(self.text.replace(old, new), expect=2).stderr)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -8,14 +8,17 @@ constexpr Words from_0 = "expected a number from 0";
 // A cycle is of one of these, by the kind of its measurement and axis.
 constexpr Words with_mm[] = {"linear", "straightness", "diagonal"};
 constexpr Words with_deg[] = {"rotary", "ball-centres", "rtcp"};
-constexpr Words in_um[] = {"linear",        "straightness", "diagonal",
-                           "step-diagonal", "ball-centres", "rtcp"};
+constexpr Words in_um[] = {"linear",       "straightness", "diagonal", "step-diagonal",
+                           "ball-centres", "rtcp",         "circle"};
 constexpr Words moving_mm[] = {"linear", "straightness", "diagonal", "step-diagonal"};
 constexpr Words by_targets[] = {"linear",   "rotary",       "straightness",
                                 "diagonal", "ball-centres", "rtcp"};
+constexpr Words in_order[] = {"linear",       "rotary", "straightness", "diagonal",
+                              "ball-centres", "rtcp",   "circle"};
 constexpr Words stepwise[] = {"diagonal", "step-diagonal"};
 constexpr Words step_diagonal_cycle[] = {"step-diagonal"}, straightness_cycle[] = {"straightness"};
-constexpr Words with_balls[] = {"ball-centres", "rtcp"}, rtcp_cycle[] = {"rtcp"};
+constexpr Words with_balls[] = {"ball-centres", "rtcp"}, rtcp_cycle[] = {"rtcp"},
+                circle_cycle[] = {"circle"};
 constexpr Key misreading_keys[] = {
     {.name = "fraction",
      .holds = number,
@@ -90,14 +93,15 @@ constexpr Key cycle_keys[] = {
              by_targets, "%"),
     of_kinds({.name = "order",
               .holds = text,
-              .help = "Each run upwards and then downwards, or all runs in one direction.",
+              .help = "Each run upwards and then downwards (a circle counter-clockwise and then "
+                      "clockwise), or all runs in one direction.",
               .choices = orders},
-             by_targets),
+             in_order),
     of_kinds({.name = "direction",
               .holds = text,
-              .help = "Direction of unidirectional runs.",
+              .help = "Direction of unidirectional runs; of a circle + is counter-clockwise.",
               .choices = directions},
-             by_targets),
+             in_order),
     of_kinds({.name = "steps",
               .holds = whole,
               .help = "Equal steps along a diagonal, in place of targets; of a step diagonal the "
@@ -106,6 +110,13 @@ constexpr Key cycle_keys[] = {
               .least = 1,
               .most = 10000},
              stepwise),
+    of_kinds({.name = "readings",
+              .holds = whole,
+              .help = "Readings of a turn, evenly spaced. Default: 720.",
+              .wanted = "expected 24 to 100000 readings",
+              .least = 24,
+              .most = 100000},
+             circle_cycle),
     of_kinds({.name = "set_up_urad",
               .holds = number,
               .help = "Angle at which the straightedge or beam stood to the axis: a slope of the "

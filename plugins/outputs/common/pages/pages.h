@@ -42,6 +42,9 @@ std::string symbol(std::string_view name);
 
 /// "A" of "iso-1988:A", a value of a rule.
 std::string without_rule(const std::string& name);
+/// What a value is, in words; of one that names another measurement or an axis ("distance_C") with
+/// its name. Empty where there is no word.
+std::string meaning_of(const Source& source, const std::string& name);
 
 /// A given number, tolerance or uncertainty: as short as it is, "20" and not "20.00".
 std::string plain_number(const Source&, double si, Quantity);

@@ -164,6 +164,14 @@ const Number* number_of(const Finding& f, std::string_view name) {
   return it == f.evidence.end() ? nullptr : &*it;
 }
 
+/// Of a certificate, which may be in two languages: by the symbols of the table above it.
+std::string label_of(const Source& source, const Finding& f, std::string_view cause) {
+  if (!source.certificate)
+    return source.words.get("cause." + std::string(cause), {{"axis", text_of(f, "axis")}});
+  const std::string name = text_of(f, "name");
+  return symbol(name.empty() ? "spike_" + text_of(f, "axis") : name);
+}
+
 /// The significant causes, the largest first.
 std::optional<BarChart> causes(const Source& source, const Results::Analysed& a) {
   constexpr std::string_view prefix = "circle.";
@@ -176,18 +184,17 @@ std::optional<BarChart> causes(const Source& source, const Results::Analysed& a)
     // The sum of all causes is without spikes, as the sentence below says.
     if (share != nullptr && f.id != "circle.spikes")
       text += "  (" + fixed_text(100.0 * share->value, 0) + " %)";
-    rows.emplace_back(um, BarChart::Row{source.words.get("cause." + f.id.substr(prefix.size()),
-                                                         {{"axis", text_of(f, "axis")}}),
+    rows.emplace_back(um, BarChart::Row{label_of(source, f, f.id.substr(prefix.size())),
                                         {{um, std::move(text)}}});
   }
   if (rows.empty()) return {};
   std::stable_sort(rows.begin(), rows.end(),
                    [](const auto& one, const auto& other) { return one.first > other.first; });
   BarChart chart;
-  chart.title = source.words.get("plot.causes");
+  chart.title = source.words.get(source.certificate ? "plot.causes_short" : "plot.causes");
   chart.x_title = source.words.get("plot.causes_axis");
   chart.language = source.language();
-  chart.series = {{source.words.get("plot.causes_axis"), source.look.style.plus}};
+  chart.series = {{"", source.look.style.plus}};
   for (auto& [um, row] : rows) chart.rows.push_back(std::move(row));
   return chart;
 }

@@ -14,6 +14,16 @@ namespace nonio::pages {
 
 using namespace reports;
 
+std::string meaning_of(const Source& source, const std::string& name) {
+  const std::string known = source.words.get_or("value." + name, "");
+  if (!known.empty()) return known;
+  const std::size_t end = name.find('_');
+  if (end == std::string::npos) return "";
+  const std::string key = "value_of." + name.substr(0, end);
+  if (source.words.get_or(key, "").empty()) return "";
+  return source.words.get(key, {{"id", name.substr(end + 1)}});
+}
+
 namespace {
 
 const Value* value_of(const Measured& m, std::string_view name) {
@@ -42,17 +52,6 @@ struct Shape {
   bool decision = false, own_units = false;
   std::string unit;
 };
-
-/// What a value is, in words; of one that names another measurement ("distance_C") with its name.
-std::string meaning_of(const Source& source, const std::string& name) {
-  const std::string known = source.words.get_or("value." + name, "");
-  if (!known.empty()) return known;
-  const std::size_t end = name.find('_');
-  if (end == std::string::npos) return "";
-  const std::string key = "value_of." + name.substr(0, end);
-  if (source.words.get_or(key, "").empty()) return "";
-  return source.words.get(key, {{"id", name.substr(end + 1)}});
-}
 
 bool left_out(const Source& source, const Value& v) { return source.certificate && !v.U; }
 

@@ -60,6 +60,12 @@ void merge(Plot& a, const Plot& b) {
     join(a.curves[i].legend, b.curves[i].legend);
 }
 
+/// The labels of its rows have to be the same in both.
+void merge(BarChart& a, const BarChart& b) {
+  join(a.title, b.title);
+  join(a.x_title, b.x_title, " · ");
+}
+
 Block merged(Block a, const Block& b) {
   if (auto* heading = std::get_if<Heading>(&a.what)) {
     join(heading->text, std::get<Heading>(b.what).text);
@@ -75,6 +81,8 @@ Block merged(Block a, const Block& b) {
     merge(*table, std::get<Table>(b.what));
   } else if (auto* plot = std::get_if<Plot>(&a.what)) {
     merge(*plot, std::get<Plot>(b.what));
+  } else if (auto* chart = std::get_if<BarChart>(&a.what)) {
+    merge(*chart, std::get<BarChart>(b.what));
   } else if (auto* note = std::get_if<Note>(&a.what)) {
     const Note& other = std::get<Note>(b.what);
     join(note->title, other.title);

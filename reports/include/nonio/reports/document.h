@@ -130,7 +130,7 @@ struct Plot {
 /// them against.
 struct BarChart {
   struct Series {
-    std::string legend;
+    std::string legend;  ///< empty: of one series the title of the axis says it
     Colour colour{};
   };
   struct Bar {

@@ -121,7 +121,13 @@ inline nonio::math::CircleModel model(const Mill& m, bool both = true) {
 /// Shares of causes within 2 u of the truth.
 struct Coverage {
   int within = 0, all = 0;
+  double squares = 0.0;  ///< of (found - true)/u
   double share() const { return 100.0 * within / all; }
+  double rms() const { return std::sqrt(squares / all); }
+  Coverage& operator+=(const Coverage& other) {
+    within += other.within, all += other.all, squares += other.squares;
+    return *this;
+  }
 };
 
 /// Of so many circles, by cause; the amplitude of the wave of X last.
@@ -133,7 +139,8 @@ inline std::vector<Coverage> coverage(int circles, const Noise& noise, std::uint
     const auto fit = nonio::math::fit_causes(circle(m, noise, random), model(m));
     if (!fit) return {};
     const auto count = [&](std::size_t k, double found, double u, double wanted) {
-      ++out[k].all, out[k].within += std::fabs(found - wanted) <= 2.0 * u ? 1 : 0;
+      const double off = (found - wanted) / u;
+      out[k] += {std::fabs(off) <= 2.0 ? 1 : 0, 1, off * off};
     };
     const auto wanted = truth(m);
     for (std::size_t k = 0; k < wanted.size(); ++k) {

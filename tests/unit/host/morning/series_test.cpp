@@ -52,6 +52,32 @@ TEST(MorningSeries, OtherPlacesAndModelsAreOthers) {
   EXPECT_EQ(std::count_if(series.begin(), series.end(), [](const auto& s) { return s.ended; }), 0);
 }
 
+TEST(MorningSeries, CirclesStandBesideDiagonalsAndAreComparedWithTheirLike) {
+  MadeMachine m("S-1");
+  m.follow("XY", "squareness:XY", {1, 1, 1}, 0.1, "{}");
+  m.follow("XY", "squareness:XY.circle", eight, 0.1,
+           R"({"radius":150.0,"feed":1000.0,"at":"X=400 Y=250"})");
+  auto& results = m.stored().results;
+  for (std::size_t i = 7; i < 9; ++i)
+    results[i].conditions = R"({"radius":100.0,"feed":1000.0,"at":"X=400 Y=250"})";
+  for (std::size_t i = 9; i < 11; ++i)
+    results[i].conditions = R"({"radius":100.0,"feed":5000.0,"at":"X=400 Y=250"})";
+  const auto series = m.series();
+  ASSERT_EQ(series.size(), 4U);
+  EXPECT_EQ(series[0].quantity, "squareness:XY");
+  EXPECT_FALSE(series[0].ended);  // circles do not end what diagonals began
+  EXPECT_TRUE(series[0].apart.empty());
+  EXPECT_EQ(series[1].results.size(), 4U);
+  EXPECT_TRUE(series[1].ended);
+  ASSERT_EQ(series[2].apart.size(), 4U);
+  EXPECT_EQ(series[2].apart[0].why, "radius");
+  ASSERT_EQ(series[3].apart.size(), 6U);
+  EXPECT_EQ(series[3].apart.back().why, "feed");
+  // An event of an axis concerns what its circles say.
+  m.events() = {{"2020-09-01", "S-1", "Y", "crash", "vice", "", 1}};
+  EXPECT_EQ(m.series()[1].kinds, std::vector<std::string>{"crash"});
+}
+
 TEST(MorningSeries, ATableIsAStepThatIsKnown) {
   MadeMachine m("S-1");
   m.follow("X", "scale", eight, 0.1);

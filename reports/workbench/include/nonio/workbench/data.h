@@ -23,6 +23,9 @@ struct Drawn {
   std::array<reports::PictureWords, 9> pictures;
 };
 
+/// Whether the part has circles, which have pictures of their own (page/polar.js).
+bool has_circles(const Campaign&, const ModelFit&);
+
 inline constexpr std::size_t most_readings = 20000;
 
 /// The readings that a page holds: all, or of many a sample, and with it those with the largest
