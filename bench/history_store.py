@@ -44,10 +44,10 @@ def results(rng, campaign, machine, day):
             "outputs": []}
 
 
-def write(out, campaign, night, rng, kinds, machines):
+def write(out, campaign, night, rng, kinds, machines, day=None):
     folder = out / campaign
     folder.mkdir()
-    day = f"{2021 + rng.randrange(5)}-{1 + rng.randrange(12):02}-{1 + rng.randrange(28):02}"
+    day = day or f"{2021 + rng.randrange(5)}-{1 + rng.randrange(12):02}-{1 + rng.randrange(28):02}"
     text = kinds[rng.randrange(len(kinds))].replace("CAMPAIGN", campaign).replace("MACHINE", f"S-{rng.randrange(machines):04}").replace("DAY", day)
     (folder / "results.json").write_text(text)
     (folder / "run.json").write_text(json.dumps({
@@ -76,8 +76,8 @@ def main():
         subprocess.run([program, "rebuild", out], check=True)
         subprocess.run([program, "morning", out, TEMPLATES], check=True)
         new = [f"n{i:03}" for i in range(100)]
-        for campaign in new:
-            write(out, campaign, 2, rng, kinds, machines)
+        for campaign in new:  # measured after all others, as what comes to a night is
+            write(out, campaign, 2, rng, kinds, machines, "2026-03-19")
         subprocess.run([program, "update", out, *new], check=True)
         subprocess.run([program, "morning", out, TEMPLATES], check=True)
         subprocess.run([program, "morning", out, TEMPLATES], check=True)
