@@ -161,9 +161,15 @@ class Samples(unittest.TestCase):
         self.assertLess(abs(found["E"] - 12.0), 1.0)
 
     def test_step_diagonals_have_their_largest_error(self):
-        for campaign, steps, largest in (("15-step-diagonal", 40, ("60.000", "6.800")),
-                                         ("16-step-diagonal", 30, ("58.000", "8.700"))):
+        for campaign, steps, travel, step, largest in (
+                ("15-step-diagonal", 40, (800, 600, 600), (20, 15, 15), ("60.000", "6.800")),
+                ("16-step-diagonal", 30, (900, 720, 720), (30, 24, 24), ("58.000", "8.700"))):
+            self.assertEqual(tuple(t / steps for t in travel), step)
+            with open(os.path.join(SITE, campaign, "campaign.toml"), encoding="utf-8") as opened:
+                self.assertIn("to = { X = %d, Y = %d, Z = %d }" % travel, opened.read())
             for occasion, wanted in zip(("00", "final"), largest):
+                program = expected(campaign)[("step-diagonal", "SD " + occasion, "D_max")]
+                self.assertEqual("%.3f" % program, wanted)
                 with open(os.path.join(SITE, campaign, "sd-%s.csv" % occasion), encoding="utf-8") as opened:
                     rows = list(csv.DictReader(line for line in opened if not line.startswith("#")))
                 self.assertEqual(len(rows), 4 * 3 * steps)

@@ -111,6 +111,28 @@ class Interpreter(unittest.TestCase):
             self.same(folder / f"program-gcode-{name}.ngc",
                       to_and_fro(stops, [start - OVER], [start + N * step + OVER]), axes=(axis,))
 
+    def test_every_row_of_the_table_of_plans(self):
+        """Each triple that fits has its programs; steps by the triple itself, not by what the verb says of them."""
+        folder = tempfile.TemporaryDirectory(prefix="nonio-rs274-")
+        self.addCleanup(folder.cleanup)
+        table = [NONIO, "plan", "table", "--x", "4000", "--y", "3000", "--max-step", "400", "--least-cover", "0.99",
+                 "--over-travel", f"{OVER}", "--runs", f"{RUNS}", "--json"]
+        done = subprocess.run([*table, "--program", folder.name, "--control", "gcode", "--set", f"dwell_s={DWELL}"],
+                              check=True, capture_output=True, text=True, timeout=60)
+        rows = json.loads(done.stdout)["rows"]
+        self.assertGreater(len(rows), 2)
+        for i, row in enumerate(rows):
+            a, b, c, n = (row[k] for k in "abcn")
+            self.assertEqual(a * a + b * b, c * c)
+            step = (a * row["q"], b * row["q"])
+            programs = pathlib.Path(folder.name) / f"{i + 1:02}-{a}-{b}-{c}"
+            self.same(programs / "program-gcode-D1.ngc", line((OVER, OVER), step, n))
+            self.same(programs / "program-gcode-D2.ngc", line((OVER, OVER + n * step[1]), (step[0], -step[1]), n))
+            for axis, name in enumerate("XY"):
+                stops = [[OVER + k * step[axis]] for k in range(n + 1)]
+                self.same(programs / f"program-gcode-{name}.ngc",
+                          to_and_fro(stops, [0.0], [2 * OVER + n * step[axis]]), axes=(axis,))
+
     def test_step_diagonals(self):
         folder = self.write("--set", "programs=step-diagonals", "--set", f"steps={STEPS}")
         self.assertEqual(len(list(folder.iterdir())), 4)

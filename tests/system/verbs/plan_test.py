@@ -44,6 +44,22 @@ class Triples(VerbTest):
                 (["--x", 12000, "--y", 9000, "--max-step", 500, "--max-points", 31], (4, 3, 5, 125, 24))):
             self.assertEqual(self.first(*args), plan, args)
 
+    def test_plans_of_the_sources_to_the_millimetre(self):
+        """Steps and lengths as the sources print them, and the ratio of the second machine's legs."""
+        for args, steps, lengths, n, q in (
+                (["--x", 12000, "--y", 9000, "--max-step", 400], (400, 300, 500), (12000, 9000, 15000), 30, 100),
+                (["--x", 19760, "--y", 7680, "--max-step", 500], (494, 192, 530), (19760, 7680, 21200), 40, 2),
+                (["--x", 4000, "--y", 4000, "--max-step", 250], (119, 120, 169), (3927, 3960, 5577), 33, 1),
+                (["--x", 20000, "--y", 12000, "--max-step", 500, "--hypotenuse", 299], (392, 231, 455),
+                 (19992, 11781, 23205), 51, 7)):
+            row = self.rows(*args)[0]
+            self.assertEqual(tuple(row["step_" + k] for k in "xyd"), steps)
+            self.assertEqual(tuple(row["length_" + k] for k in "xyd"), lengths)
+            self.assertEqual((row["n"], row["q"]), (n, q))
+        self.assertEqual(2 * 40, 80)  # the whole multiple of 247-96-265
+        self.assertEqual(["%.3f" % (19760 / 7680), "%.3f" % (20000 / 12000), "%.3f" % (56 / 33)],
+                         ["2.573", "1.667", "1.697"])
+
     def test_names_units_and_reasons(self):
         whole = self.json_of("plan", "triples", "--x", 12000, "--y", 9000, "--max-step", 500, "--max-points", 31)
         row = whole["rows"][0]
@@ -142,14 +158,28 @@ class LookUpTable(VerbTest):
         self.assertEqual(cost, sorted(cost))
 
     def test_programs_of_every_row(self):
-        out = self.site / "programs"
-        table = ["plan", "table", "--x", 4000, "--y", 3000, "--max-step", 400, "--least-cover", 0.99]
+        table = ["plan", "table", "--x", 4000, "--y", 3000, "--max-step", 400, "--least-cover", 0.99, "--over-travel", 10]
         rows = self.json_of(*table)["rows"]
-        self.nonio(*table, "--program", out, "--control", "gcode")
-        folders = sorted(p.name for p in out.iterdir())
-        self.assertEqual(folders, [f"{i + 1:02}-{r['a']}-{r['b']}-{r['c']}" for i, r in enumerate(rows)])
-        for folder in folders:
-            self.assertTrue((out / folder / "program-gcode-D2.ngc").exists(), folder)
+        self.assertGreater(len(rows), 2)
+        visited = {}
+        for control, end in (("gcode", "ngc"), ("siemens", "mpf"), ("heidenhain", "h")):
+            out = self.site / control
+            self.nonio(*table, "--program", out, "--control", control, "--set", "runs=1")
+            folders = sorted(p.name for p in out.iterdir())
+            self.assertEqual(folders, [f"{i + 1:02}-{r['a']}-{r['b']}-{r['c']}" for i, r in enumerate(rows)])
+            for folder, r in zip(folders, rows):
+                found = visited.setdefault(folder, {})
+                for name in ("X", "Y", "D1", "D2"):
+                    text = (out / folder / f"program-{control}-{name}.{end}").read_text()
+                    at, stops = {}, []
+                    for line in text.splitlines():
+                        if re.match(r"(G1|\d+ L) ", line):
+                            at.update({axis: float(v) for axis, v in re.findall(r" ([XY])([+-]?[\d.]+)", line)})
+                            stops.append(dict(at))
+                    self.assertEqual(found.setdefault(name, stops), stops, (control, folder, name))
+                last = [{"X": 10 + r["n"] * r["step_x_mm"], "Y": 10 + y * r["n"] * r["step_y_mm"]} for y in (1, 0)]
+                for name, end_of_line in zip(("D1", "D2"), last):
+                    self.assertIn({k: round(v, 6) for k, v in end_of_line.items()}, found[name])
 
     def text_of(self, pdf):
         return subprocess.run(["pdftotext", "-layout", str(pdf), "-"], capture_output=True, text=True, check=True).stdout
