@@ -311,6 +311,26 @@ class Samples(unittest.TestCase):
         self.assertAlmostEqual(program[("before-after", "X final", "left_share")], 0.0, delta=0.05)
         self.assertAlmostEqual(program[("before-after", "Y final", "left_share")], 2.0, delta=0.1)
 
+    def test_the_map_of_the_volume_is_that_of_the_machine(self):
+        """The errors that the generator put in, at the nodes of the map; good body diagonals do not show them."""
+        sys.path.insert(0, SAMPLES)
+        from in_volumes import Rolling
+        machine, rows = Rolling(), {}
+        with open(os.path.join(ROOT, "tests", "golden", "expected", "23-whole-volume", "results.txt"), encoding="utf-8") as opened:
+            for found in re.finditer(r"^analyses\[rigid-body/X1#1\]\.rows\[#(\d+)\]\.(\w+) = (.+)$", opened.read(), re.M):
+                rows.setdefault(int(found.group(1)), {})[found.group(2)] = float(found.group(3))
+        self.assertEqual(len(rows), 27)
+        zero = machine.error(*(v / 2.0 for v in machine.travel))
+        inside, largest = 0, 0.0
+        for row in rows.values():
+            true = [e - z for e, z in zip(machine.error(row["X"], row["Y"], row["Z"]), zero)]
+            largest = max(largest, math.hypot(*true))
+            inside += sum(abs(row["e_" + k] - e) <= row["U_" + k] for k, e in zip("xyz", true))
+        self.assertGreater(inside, 0.9 * 81)
+        program = expected("23-whole-volume")
+        self.assertAlmostEqual(program[("rigid-body", "X1", "V_max")], largest, delta=1.1)
+        self.assertGreater(largest, 2.5 * program[("iso230-6", "PPP", "E_d")])
+
 
 if __name__ == "__main__":
     unittest.main()
