@@ -255,6 +255,59 @@ class LookUpTable(VerbTest):
             self.assertIn(words, self.nonio("plan", "table", *args, expect=status).stderr, args)
 
 
+class Probing(VerbTest):
+    MACHINE = ["--axis", "X=0:700", "--axis", "Y=0:500", "--axis", "Z=-400:200", "--axis", "C=-5:365", "--axis", "B=-100:100"]
+    BALL = {"centre_mm": "350,250,0", "ball_mm": "530,250,-60", "radius_mm": 15, "places": 4, "approach_mm": 4, "beyond_mm": 2}
+
+    def wrote(self, expect=0, **settings):
+        out = self.site / "probing"
+        words = []
+        for key, value in {**self.BALL, **settings}.items():
+            words += ["--set", f"{key}={value}"]
+        done = self.nonio("plan", "program", *self.MACHINE, "--control", "probing", "--out", out, *words, expect=expect)
+        return done.stderr, {p.name: p.read_text().splitlines() for p in out.iterdir()} if out.exists() else {}
+
+    def test_a_touch_in_each_dialect(self):
+        at = {"linuxcnc": ["G1 X549.0 Y250.0 F1000", "G1 Z-60.0 F1000", "G38.2 X543.0 F100", "G1 X549.0 F1000",
+                           "G1 Z-37.0 F1000"],
+              "fanuc": ["G1 X549.0 Y250.0 F1000", "G1 Z-60.0 F1000", "G31 X543.0 F100",
+                        "IF [ABS[#5061-[543.0]] LT 0.002] THEN #3000=1(NO CONTACT)",
+                        "DPRNT[#5061[44]*#5062[44]*#5063[44]*0*0*0.0*0*0*0]", "G1 X549.0 F1000"],
+              "siemens": ["G1 X549.0 Y250.0 F1000", "G1 Z-60.0 F1000", "MEAS=1 G1 X543.0 Y250.0 Z-60.0 F100", "STOPRE",
+                          "IF $AC_MEA[1]==0 GOTOF NO_CONTACT",
+                          'WRITE(RC,"NONIO_C",""<<$AA_MM[X]<<" "<<$AA_MM[Y]<<" "<<$AA_MM[Z]<<" 0 0 0.0 0 0 0")',
+                          "G1 X549.0 F1000"]}
+        for dialect, wanted in at.items():
+            _, files = self.wrote(dialect=dialect)
+            lines = files["program-probing-C." + ("mpf" if dialect == "siemens" else "ngc")]
+            first = lines.index(wanted[0])
+            self.assertEqual(lines[first:first + len(wanted)], wanted)
+            touches = [line for line in lines if re.match(r"G38.2|G31|MEAS", line)]
+            self.assertEqual(len(touches), 4 * 5)
+            turns = [line for line in lines if line.startswith("G1 C")]
+            self.assertEqual(turns, [f"G1 C{90 * i}.0 F720" for i in range(4)])
+
+    def test_the_ball_goes_round_as_it_is_said(self):
+        for turns, y in (("right-handed", "430.0"), ("left-handed", "70.0")):
+            _, files = self.wrote(turns=turns)
+            lines = files["program-probing-C.ngc"]
+            self.assertEqual(lines[lines.index("G1 C90.0 F720") + 1], f"G1 X350.0 Y{y} F1000")
+        _, files = self.wrote(axis="B", centre_mm="350,0,-100", ball_mm="350,250,-20", from_deg=-90, to_deg=90, places=3)
+        lines = files["program-probing-B.ngc"]
+        self.assertEqual([lines[lines.index(f"G1 B{a} F720") + 1] for a in ("-90.0", "0.0", "90.0")],
+                         [f"G1 X{x} Y250.0 F1000" for x in ("270.0", "350.0", "430.0")])  # +Z turns towards +X
+
+    def test_what_cannot_be(self):
+        for settings, words in (({"dialect": "heidenhain"}, "no public text"), ({"centre_mm": "350,250"}, "X, Y, Z of a point"),
+                                ({"ball_mm": "1,2,x"}, "ball_mm"), ({"beyond_mm": 15}, "less than radius_mm"),
+                                ({"from_deg": 10, "to_deg": 10}, "at most 360"), ({"from_deg": -90, "to_deg": 90}, "axis C would go"),
+                                ({"ball_mm": "690,250,-60"}, "axis X would go to 709"), ({"axis": "A"}, "no rotary axis A"),
+                                ({"heights_mm": "0,300"}, "axis Z would go to")):
+            said, files = self.wrote(expect=2, **settings)
+            self.assertIn(words, said)
+            self.assertEqual(files, {}, settings)
+
+
 class RotaryPlan(VerbTest):
     def test_its_figures_are_those_of_the_theory(self):
         whole = self.json_of("plan", "rotary", "--axis", "C", "--balls", 6, "--radius", 300, "--probe-u", 10,
