@@ -19,6 +19,7 @@ import in_circles  # noqa: E402
 import in_fine  # noqa: E402
 import in_heat  # noqa: E402
 import in_space  # noqa: E402 (this folder is no package)
+import in_volumes  # noqa: E402
 from parts import (GOOD_ROOM, MADE_UP, ROTARY_CALIBRATOR, Noise, axis_measurement, behind, decimal,
                    drawn, even, linear, manifest, smooth, standard_cycle, table, targets, toml)
 
@@ -329,6 +330,7 @@ STORIES = {
     "11-missing-and-misread": missing_and_misread,
     "12-straightness": straightness,
     **in_space.STORIES,
+    **in_volumes.STORIES,
     **by_rules.STORIES,
     **in_circles.STORIES,
     **in_heat.STORIES,

@@ -161,9 +161,15 @@ class Samples(unittest.TestCase):
         self.assertLess(abs(found["E"] - 12.0), 1.0)
 
     def test_step_diagonals_have_their_largest_error(self):
-        for campaign, steps, largest in (("15-step-diagonal", 40, ("60.000", "6.800")),
-                                         ("16-step-diagonal", 30, ("58.000", "8.700"))):
+        for campaign, steps, travel, step, largest in (
+                ("15-step-diagonal", 40, (800, 600, 600), (20, 15, 15), ("60.000", "6.800")),
+                ("16-step-diagonal", 30, (900, 720, 720), (30, 24, 24), ("58.000", "8.700"))):
+            self.assertEqual(tuple(t / steps for t in travel), step)
+            with open(os.path.join(SITE, campaign, "campaign.toml"), encoding="utf-8") as opened:
+                self.assertIn("to = { X = %d, Y = %d, Z = %d }" % travel, opened.read())
             for occasion, wanted in zip(("00", "final"), largest):
+                program = expected(campaign)[("step-diagonal", "SD " + occasion, "D_max")]
+                self.assertEqual("%.3f" % program, wanted)
                 with open(os.path.join(SITE, campaign, "sd-%s.csv" % occasion), encoding="utf-8") as opened:
                     rows = list(csv.DictReader(line for line in opened if not line.startswith("#")))
                 self.assertEqual(len(rows), 4 * 3 * steps)
@@ -304,6 +310,26 @@ class Samples(unittest.TestCase):
         self.assertGreater(program[("iso230-6", "PPP final", "E_d")], program[("iso230-6", "PPP 00", "E_d")])
         self.assertAlmostEqual(program[("before-after", "X final", "left_share")], 0.0, delta=0.05)
         self.assertAlmostEqual(program[("before-after", "Y final", "left_share")], 2.0, delta=0.1)
+
+    def test_the_map_of_the_volume_is_that_of_the_machine(self):
+        """The errors that the generator put in, at the nodes of the map; good body diagonals do not show them."""
+        sys.path.insert(0, SAMPLES)
+        from in_volumes import Rolling
+        machine, rows = Rolling(), {}
+        with open(os.path.join(ROOT, "tests", "golden", "expected", "23-whole-volume", "results.txt"), encoding="utf-8") as opened:
+            for found in re.finditer(r"^analyses\[rigid-body/X1#1\]\.rows\[#(\d+)\]\.(\w+) = (.+)$", opened.read(), re.M):
+                rows.setdefault(int(found.group(1)), {})[found.group(2)] = float(found.group(3))
+        self.assertEqual(len(rows), 27)
+        zero = machine.error(*(v / 2.0 for v in machine.travel))
+        inside, largest = 0, 0.0
+        for row in rows.values():
+            true = [e - z for e, z in zip(machine.error(row["X"], row["Y"], row["Z"]), zero)]
+            largest = max(largest, math.hypot(*true))
+            inside += sum(abs(row["e_" + k] - e) <= row["U_" + k] for k, e in zip("xyz", true))
+        self.assertGreater(inside, 0.9 * 81)
+        program = expected("23-whole-volume")
+        self.assertAlmostEqual(program[("rigid-body", "X1", "V_max")], largest, delta=1.1)
+        self.assertGreater(largest, 2.5 * program[("iso230-6", "PPP", "E_d")])
 
 
 if __name__ == "__main__":

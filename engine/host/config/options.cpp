@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "host/config/manifest.h"
@@ -187,31 +188,52 @@ Expected<Settings> parse_settings(std::string_view text, const std::string& file
 
 namespace {
 
+std::vector<std::string> parted(std::string_view text) {
+  std::vector<std::string> list;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    list.emplace_back(text.substr(from, comma - from));
+    from = comma + 1;
+  }
+  return list;
+}
+
+std::optional<double> finite_number(std::string_view text) {
+  const char* const end = text.data() + text.size();
+  double number = 0.0;
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || stop != end || !std::isfinite(number)) return {};
+  return number;
+}
+
+/// Numbers between commas; what is none stays a text, which is refused where the kind is looked at.
+Setting numbers_of(std::string_view text) {
+  std::vector<double> numbers;
+  for (const std::string& part : parted(text))
+    if (const auto number = finite_number(part))
+      numbers.push_back(*number);
+    else
+      return std::string(text);
+  return numbers;
+}
+
 /// What was written on a command line, as the kind that the option has.
 Setting setting_of(std::string_view text, const Option* declared) {
   if (declared != nullptr && std::holds_alternative<std::string>(declared->default_value))
     return std::string(text);
   if (declared != nullptr &&
       (std::holds_alternative<std::vector<std::string>>(declared->default_value) ||
-       std::holds_alternative<NumberTables>(declared->default_value))) {
-    std::vector<std::string> list;
-    for (std::size_t from = 0; from <= text.size();) {
-      const std::size_t comma = std::min(text.find(',', from), text.size());
-      list.emplace_back(text.substr(from, comma - from));
-      from = comma + 1;
-    }
-    return list;
-  }
+       std::holds_alternative<NumberTables>(declared->default_value)))
+    return parted(text);
+  if (declared != nullptr && std::holds_alternative<std::vector<double>>(declared->default_value))
+    return numbers_of(text);
   if (text == "true" || text == "false") return text == "true";
   const char* const end = text.data() + text.size();
   std::int64_t whole = 0;
   if (const auto [stop, error] = std::from_chars(text.data(), end, whole);
       error == std::errc() && stop == end)
     return whole;
-  double number = 0.0;
-  if (const auto [stop, error] = std::from_chars(text.data(), end, number);
-      error == std::errc() && stop == end && std::isfinite(number))
-    return number;
+  if (const auto number = finite_number(text)) return *number;
   return std::string(text);
 }
 

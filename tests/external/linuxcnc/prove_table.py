@@ -8,7 +8,7 @@ from both sides. The axis stands at motor + error(motor): it must be at the targ
 what the error is at the reference point (0), where the table is zero.
 
 Types 0 and 1; an instrument that was not zeroed; a table that was on while it was measured (nonio
-apply); the two sides of a gantry.
+apply); the two sides of a gantry, by the plugin and by a night, whose prediction is compared.
 
 Exit status: 0 shown, 1 not so, 77 LinuxCNC is not here.
 """
@@ -421,6 +421,64 @@ def renewed():
             raise SystemExit("nonio apply: " + done.stdout)
 
 
+def night_of_a_gantry():
+    """the tables of both sides by a night of the program, and what it predicts of each: {E, B} in um"""
+    with tempfile.TemporaryDirectory(prefix="nonio-gantry-") as folder:
+        campaign = os.path.join(folder, "site", "c")
+        os.makedirs(campaign)
+        text = ('format = 1\n[campaign]\nid = "c"\n[machine]\nstructure = "gantry"\ncontrol = "linuxcnc"\n'
+                '[machine.axes.X]\nkind = "linear"\ntravel = [0, 220]\nslave = "X2"\n[machine.axes.X2]\nkind = "linear"\n'
+                '[machine.axes.Y]\nkind = "linear"\ntravel = [0, 150]\n[options.linuxcnc]\ntype = 0\n'
+                '[options.linuxcnc.axes.X]\njoint = 0\n[options.linuxcnc.axes.X2]\njoint = 1\n')
+        for n, (side, y, of) in enumerate((("master", 0, error), ("slave", 150, error_2)), 1):
+            text += ('[[measurement]]\nid = "X%d"\nkind = "axis"\naxis = "X"\nat = { Y = %d }\nside = "%s"\n'
+                     'file = "x%d.csv"\n' % (n, y, side, n))
+            with open(os.path.join(campaign, "x%d.csv" % n), "w") as f:
+                f.write("run,direction,target_mm,deviation_um\n")
+                for run_number in (1, 2):
+                    for d, order in ((+1, TARGETS), (-1, TARGETS[::-1])):
+                        for x in order:
+                            scatter = (0.3 if run_number == 1 else -0.3) * math.sin(0.37 * x + d + n)  # um, mean 0
+                            f.write("%d,%s,%g,%.9f\n" % (run_number, "+" if d > 0 else "-", x, of(x, d) * 1e3 + scatter))
+        with open(os.path.join(campaign, "campaign.toml"), "w") as f:
+            f.write(text + '[run]\nanalyses = ["iso230-2"]\noutputs = ["linuxcnc"]\n')
+        out = os.path.join(folder, "out")
+        done = subprocess.run([sys.argv[3], "run", os.path.join(folder, "site"), "--out", out, "--root"],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        try:
+            with open(os.path.join(out, "c", "results.json")) as f:
+                results = json.load(f)
+            tables = []
+            for axis in ("X", "X2"):
+                with open(os.path.join(out, "c", "linuxcnc-%s.comp" % axis)) as f:
+                    tables.append(f.read())
+        except OSError as problem:
+            raise SystemExit("nonio run: %s%s" % (done.stdout, problem))
+        predicted = [{p["name"]: p["predicted"] for t in results["tables"] if t["plugin"] == "linuxcnc"
+                      for p in t["predictions"] if p["measurement"] == "X%d" % n} for n in (1, 2)]
+        return tables, predicted
+
+
+def judge_gantry(errors, predicted, result):
+    """E and B of each side after loading, and what the sides rack: as predicted, to 0.1 um"""
+    if "problem" in result or result["errors"]:
+        return False
+    good, means = True, []
+    for n, of in enumerate(errors):
+        left = {(x, d): 1e3 * (motor + of(motor, d) - commanded)
+                for x, d, commanded, motor, joint in result["rows"] if joint == n}
+        E = max(left.values()) - min(left.values())
+        B = max(abs(left[x, +1] - left[x, -1]) for x in TARGETS)
+        before = [1e3 * of(x, d) for x in TARGETS for d in (+1, -1)]
+        print("side %d: E %.2f um before; predicted E %.4f, B %.4f um, moved E %.4f, B %.4f um" %
+              (n + 1, max(before) - min(before), predicted[n]["E"], predicted[n]["B"], E, B))
+        good = good and abs(E - predicted[n]["E"]) < 0.1 and abs(B - predicted[n]["B"]) < 0.1
+        means.append([(left[x, +1] + left[x, -1]) / 2 for x in TARGETS])
+    apart = [b - a for a, b in zip(*means)]
+    print("racking after loading: %.4f um" % (max(apart) - min(apart)))
+    return good and max(apart) - min(apart) < 0.1
+
+
 def main():
     if len(sys.argv) != 4:
         print(__doc__)
@@ -440,6 +498,10 @@ def main():
             ("a table that was on before", 1, [renewed()], [error]),
             ("a gantry pair", 0, [written(0, error), written(0, error_2)], [error, error_2])):
         good = judge(name, errors, run(tables, file_type, private)) and good
+    tables, predicted = night_of_a_gantry()
+    result = run(tables, 0, private)
+    good = judge("a gantry by a night of the program", [error, error_2], result) and good
+    good = judge_gantry([error, error_2], predicted, result) and good
     return 0 if good else 1
 
 

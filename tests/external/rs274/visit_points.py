@@ -8,6 +8,7 @@ which order and how long must be the plan, written down here once more.
 Exit status: 0 shown, 1 not so, 77 rs274 is not here.
 """
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -111,6 +112,28 @@ class Interpreter(unittest.TestCase):
             self.same(folder / f"program-gcode-{name}.ngc",
                       to_and_fro(stops, [start - OVER], [start + N * step + OVER]), axes=(axis,))
 
+    def test_every_row_of_the_table_of_plans(self):
+        """Each triple that fits has its programs; steps by the triple itself, not by what the verb says of them."""
+        folder = tempfile.TemporaryDirectory(prefix="nonio-rs274-")
+        self.addCleanup(folder.cleanup)
+        table = [NONIO, "plan", "table", "--x", "4000", "--y", "3000", "--max-step", "400", "--least-cover", "0.99",
+                 "--over-travel", f"{OVER}", "--runs", f"{RUNS}", "--json"]
+        done = subprocess.run([*table, "--program", folder.name, "--control", "gcode", "--set", f"dwell_s={DWELL}"],
+                              check=True, capture_output=True, text=True, timeout=60)
+        rows = json.loads(done.stdout)["rows"]
+        self.assertGreater(len(rows), 2)
+        for i, row in enumerate(rows):
+            a, b, c, n = (row[k] for k in "abcn")
+            self.assertEqual(a * a + b * b, c * c)
+            step = (a * row["q"], b * row["q"])
+            programs = pathlib.Path(folder.name) / f"{i + 1:02}-{a}-{b}-{c}"
+            self.same(programs / "program-gcode-D1.ngc", line((OVER, OVER), step, n))
+            self.same(programs / "program-gcode-D2.ngc", line((OVER, OVER + n * step[1]), (step[0], -step[1]), n))
+            for axis, name in enumerate("XY"):
+                stops = [[OVER + k * step[axis]] for k in range(n + 1)]
+                self.same(programs / f"program-gcode-{name}.ngc",
+                          to_and_fro(stops, [0.0], [2 * OVER + n * step[axis]]), axes=(axis,))
+
     def test_step_diagonals(self):
         folder = self.write("--set", "programs=step-diagonals", "--set", f"steps={STEPS}")
         self.assertEqual(len(list(folder.iterdir())), 4)
@@ -133,6 +156,101 @@ class Interpreter(unittest.TestCase):
         self.assertEqual(len({round(b - a, 3) for a, b in zip(up, up[1:])}), 4, up)
         start, end = round(up[0] - OVER, 3), round(up[-1] + OVER, 3)
         self.assertEqual([p[0] for p, rest in stops if rest == 0], [start] + [end, start] * RUNS)
+
+
+class Probing(unittest.TestCase):
+    """A ball on a table that is not quite where the program has it: what LinuxCNC's interpreter probes, touched here exactly,
+    logged as LinuxCNC does, and read back by the program."""
+    CENTRE, DIRECTION, RADIUS = (350.021, 249.987, 0.0), (1.1e-4, -6e-5, 1.0), 15.0
+    NOMINAL, BALL = (350.0, 250.0, 0.0), (530.0, 250.0, -60.0)
+
+    def turned(self, point, degrees):
+        """Rodrigues' formula about the true axis."""
+        size = math.sqrt(sum(d * d for d in self.DIRECTION))
+        n = [d / size for d in self.DIRECTION]
+        arm = [p - c for p, c in zip(point, self.CENTRE)]
+        along, t = sum(a * b for a, b in zip(arm, n)), math.radians(degrees)
+        cross = [n[1] * arm[2] - n[2] * arm[1], n[2] * arm[0] - n[0] * arm[2], n[0] * arm[1] - n[1] * arm[0]]
+        return [c + a * math.cos(t) + x * math.sin(t) + d * along * (1 - math.cos(t))
+                for c, a, x, d in zip(self.CENTRE, arm, cross, n)]
+
+    def touched(self, start, end, ball):
+        """Where a straight move meets the sphere."""
+        way = [b - a for a, b in zip(start, end)]
+        length = math.sqrt(sum(w * w for w in way))
+        way = [w / length for w in way]
+        to = [b - a for a, b in zip(start, ball)]
+        near = sum(a * b for a, b in zip(to, way))
+        off = sum(a * a for a in to) - near * near
+        self.assertLess(off, self.RADIUS ** 2)
+        at = near - math.sqrt(self.RADIUS ** 2 - off)
+        self.assertTrue(0 < at < length, "no contact")
+        return [a + at * w for a, w in zip(start, way)]
+
+    def probed(self, program, height):
+        """Lines of the log of a program, which must not touch anything on its way."""
+        done = subprocess.run(["rs274", "-g", program.name], cwd=program.parent, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        at, log, angles = None, [], []
+        ball = [b + o for b, o in zip(self.BALL, (0.02, -0.03, 0.01 + height))]  # not where the program has it
+        for line in done.stdout.splitlines():
+            found = re.search(r"(STRAIGHT_FEED|STRAIGHT_TRAVERSE|STRAIGHT_PROBE)\(([^)]*)\)", line)
+            if not found:
+                continue
+            to = [float(v) for v in found.group(2).split(",")][:6]
+            here = self.turned(ball, to[5])
+            if found.group(1) == "STRAIGHT_PROBE":
+                self.assertEqual(at[3:], to[3:])
+                point = self.touched(at[:3], to[:3], here)
+                log.append(" ".join(f"{v:.6f}" for v in [*point, *to[3:], 0, 0, 0]))
+                angles.append(to[5])
+                at = [*point, *to[3:]]
+                continue
+            if at is not None and at[5] == to[5]:  # a retreat begins at the contact
+                for k in range(1, 51):
+                    p = [a + (b - a) * k / 50 for a, b in zip(at[:3], to[:3])]
+                    self.assertGreaterEqual(math.dist(p, here), self.RADIUS - 1e-9, line)
+            elif at is not None:  # the table turns: the stylus is above whatever comes round
+                self.assertEqual(at[:3], to[:3])
+                self.assertGreater(at[2], here[2] + self.RADIUS + 5)
+            at = to
+        self.assertEqual(angles, [45.0 * i for i in range(8) for _ in range(5)] * 2)
+        return "\n".join(log) + "\n"
+
+    def test_touches_read_back_give_the_axis(self):
+        with tempfile.TemporaryDirectory(prefix="nonio-rs274-") as name:
+            folder = pathlib.Path(name)
+            settings = {"axis": "C", "centre_mm": "%g,%g,%g" % self.NOMINAL, "ball_mm": "%g,%g,%g" % self.BALL,
+                        "heights_mm": "0,120", "radius_mm": self.RADIUS, "runs": 2}
+            command = [NONIO, "plan", "program", "--axis", "X=0:700", "--axis", "Y=0:500", "--axis", "Z=-400:200",
+                       "--axis", "C=0:360", "--control", "probing", "--out", folder / "p"]
+            for key, value in settings.items():
+                command += ["--set", f"{key}={value}"]
+            subprocess.run(command, check=True, capture_output=True, timeout=60)
+            self.assertEqual(sorted(p.name for p in (folder / "p").iterdir()),
+                             ["program-probing-C1.ngc", "program-probing-C2.ngc"])
+            (folder / "site" / "c").mkdir(parents=True)
+            text = ('format = 1\n[campaign]\nid = "c"\n[machine.axes.C]\nkind = "rotary"\ntravel = [0, 360]\n'
+                    '[run]\nanalyses = ["rotary-kinematics"]\noutputs = ["json"]\n[options.linuxcnc-probe]\nunit = "mm"\n')
+            for i, height in ((1, 0.0), (2, 120.0)):
+                program = folder / "p" / f"program-probing-C{i}.ngc"
+                self.assertIn(f"(PROBEOPEN nonio-C{i}.txt)", program.read_text())
+                (folder / "site" / "c" / f"c{i}.txt").write_text(self.probed(program, height))
+                text += f'[[measurement]]\nid = "C{i}"\nkind = "ball-centres"\naxis = "C"\nfile = "c{i}.txt"\n'
+            (folder / "site" / "c" / "campaign.toml").write_text(text)
+            subprocess.run([NONIO, "run", folder / "site", "--out", folder / "out", "--quiet", "--root"], capture_output=True,
+                           timeout=120)
+            results = json.loads((folder / "out" / "c" / "results.json").read_text())
+        self.assertEqual(results["errors"], [])
+        found = [a["values"] for a in results["analyses"] if a["plugin"] == "rotary-kinematics"]
+        self.assertEqual(len(found), 2)
+        for values, height in zip(found, (0.0, 120.0)):
+            z = values["centre_z"]["value"]
+            self.assertAlmostEqual(z, self.BALL[2] + height, delta=0.1)
+            for axis, c, d in zip("xy", self.CENTRE, self.DIRECTION):
+                self.assertAlmostEqual(values["centre_" + axis]["value"], c + d * z, delta=1e-5)
+            for axis, d in zip("ijk", self.DIRECTION):
+                self.assertAlmostEqual(values["direction_" + axis]["value"], d, delta=1e-7)
 
 
 class SignProbe(unittest.TestCase):

@@ -44,6 +44,22 @@ class Triples(VerbTest):
                 (["--x", 12000, "--y", 9000, "--max-step", 500, "--max-points", 31], (4, 3, 5, 125, 24))):
             self.assertEqual(self.first(*args), plan, args)
 
+    def test_plans_of_the_sources_to_the_millimetre(self):
+        """Steps and lengths as the sources print them, and the ratio of the second machine's legs."""
+        for args, steps, lengths, n, q in (
+                (["--x", 12000, "--y", 9000, "--max-step", 400], (400, 300, 500), (12000, 9000, 15000), 30, 100),
+                (["--x", 19760, "--y", 7680, "--max-step", 500], (494, 192, 530), (19760, 7680, 21200), 40, 2),
+                (["--x", 4000, "--y", 4000, "--max-step", 250], (119, 120, 169), (3927, 3960, 5577), 33, 1),
+                (["--x", 20000, "--y", 12000, "--max-step", 500, "--hypotenuse", 299], (392, 231, 455),
+                 (19992, 11781, 23205), 51, 7)):
+            row = self.rows(*args)[0]
+            self.assertEqual(tuple(row["step_" + k] for k in "xyd"), steps)
+            self.assertEqual(tuple(row["length_" + k] for k in "xyd"), lengths)
+            self.assertEqual((row["n"], row["q"]), (n, q))
+        self.assertEqual(2 * 40, 80)  # the whole multiple of 247-96-265
+        self.assertEqual(["%.3f" % (19760 / 7680), "%.3f" % (20000 / 12000), "%.3f" % (56 / 33)],
+                         ["2.573", "1.667", "1.697"])
+
     def test_names_units_and_reasons(self):
         whole = self.json_of("plan", "triples", "--x", 12000, "--y", 9000, "--max-step", 500, "--max-points", 31)
         row = whole["rows"][0]
@@ -142,14 +158,28 @@ class LookUpTable(VerbTest):
         self.assertEqual(cost, sorted(cost))
 
     def test_programs_of_every_row(self):
-        out = self.site / "programs"
-        table = ["plan", "table", "--x", 4000, "--y", 3000, "--max-step", 400, "--least-cover", 0.99]
+        table = ["plan", "table", "--x", 4000, "--y", 3000, "--max-step", 400, "--least-cover", 0.99, "--over-travel", 10]
         rows = self.json_of(*table)["rows"]
-        self.nonio(*table, "--program", out, "--control", "gcode")
-        folders = sorted(p.name for p in out.iterdir())
-        self.assertEqual(folders, [f"{i + 1:02}-{r['a']}-{r['b']}-{r['c']}" for i, r in enumerate(rows)])
-        for folder in folders:
-            self.assertTrue((out / folder / "program-gcode-D2.ngc").exists(), folder)
+        self.assertGreater(len(rows), 2)
+        visited = {}
+        for control, end in (("gcode", "ngc"), ("siemens", "mpf"), ("heidenhain", "h")):
+            out = self.site / control
+            self.nonio(*table, "--program", out, "--control", control, "--set", "runs=1")
+            folders = sorted(p.name for p in out.iterdir())
+            self.assertEqual(folders, [f"{i + 1:02}-{r['a']}-{r['b']}-{r['c']}" for i, r in enumerate(rows)])
+            for folder, r in zip(folders, rows):
+                found = visited.setdefault(folder, {})
+                for name in ("X", "Y", "D1", "D2"):
+                    text = (out / folder / f"program-{control}-{name}.{end}").read_text()
+                    at, stops = {}, []
+                    for line in text.splitlines():
+                        if re.match(r"(G1|\d+ L) ", line):
+                            at.update({axis: float(v) for axis, v in re.findall(r" ([XY])([+-]?[\d.]+)", line)})
+                            stops.append(dict(at))
+                    self.assertEqual(found.setdefault(name, stops), stops, (control, folder, name))
+                last = [{"X": 10 + r["n"] * r["step_x_mm"], "Y": 10 + y * r["n"] * r["step_y_mm"]} for y in (1, 0)]
+                for name, end_of_line in zip(("D1", "D2"), last):
+                    self.assertIn({k: round(v, 6) for k, v in end_of_line.items()}, found[name])
 
     def text_of(self, pdf):
         return subprocess.run(["pdftotext", "-layout", str(pdf), "-"], capture_output=True, text=True, check=True).stdout
@@ -223,6 +253,59 @@ class LookUpTable(VerbTest):
                                     (["--x", 4000, "--y", 4000, "--max-step", 2], 1, "--max-step"),
                                     (["--x", 4000, "--y", 100, "--least-cover", 1], 1, "--least-cover")):
             self.assertIn(words, self.nonio("plan", "table", *args, expect=status).stderr, args)
+
+
+class Probing(VerbTest):
+    MACHINE = ["--axis", "X=0:700", "--axis", "Y=0:500", "--axis", "Z=-400:200", "--axis", "C=-5:365", "--axis", "B=-100:100"]
+    BALL = {"centre_mm": "350,250,0", "ball_mm": "530,250,-60", "radius_mm": 15, "places": 4, "approach_mm": 4, "beyond_mm": 2}
+
+    def wrote(self, expect=0, **settings):
+        out = self.site / "probing"
+        words = []
+        for key, value in {**self.BALL, **settings}.items():
+            words += ["--set", f"{key}={value}"]
+        done = self.nonio("plan", "program", *self.MACHINE, "--control", "probing", "--out", out, *words, expect=expect)
+        return done.stderr, {p.name: p.read_text().splitlines() for p in out.iterdir()} if out.exists() else {}
+
+    def test_a_touch_in_each_dialect(self):
+        at = {"linuxcnc": ["G1 X549.0 Y250.0 F1000", "G1 Z-60.0 F1000", "G38.2 X543.0 F100", "G1 X549.0 F1000",
+                           "G1 Z-37.0 F1000"],
+              "fanuc": ["G1 X549.0 Y250.0 F1000", "G1 Z-60.0 F1000", "G31 X543.0 F100",
+                        "IF [ABS[#5061-[543.0]] LT 0.002] THEN #3000=1(NO CONTACT)",
+                        "DPRNT[#5061[44]*#5062[44]*#5063[44]*0*0*0.0*0*0*0]", "G1 X549.0 F1000"],
+              "siemens": ["G1 X549.0 Y250.0 F1000", "G1 Z-60.0 F1000", "MEAS=1 G1 X543.0 Y250.0 Z-60.0 F100", "STOPRE",
+                          "IF $AC_MEA[1]==0 GOTOF NO_CONTACT",
+                          'WRITE(RC,"NONIO_C",""<<$AA_MM[X]<<" "<<$AA_MM[Y]<<" "<<$AA_MM[Z]<<" 0 0 0.0 0 0 0")',
+                          "G1 X549.0 F1000"]}
+        for dialect, wanted in at.items():
+            _, files = self.wrote(dialect=dialect)
+            lines = files["program-probing-C." + ("mpf" if dialect == "siemens" else "ngc")]
+            first = lines.index(wanted[0])
+            self.assertEqual(lines[first:first + len(wanted)], wanted)
+            touches = [line for line in lines if re.match(r"G38.2|G31|MEAS", line)]
+            self.assertEqual(len(touches), 4 * 5)
+            turns = [line for line in lines if line.startswith("G1 C")]
+            self.assertEqual(turns, [f"G1 C{90 * i}.0 F720" for i in range(4)])
+
+    def test_the_ball_goes_round_as_it_is_said(self):
+        for turns, y in (("right-handed", "430.0"), ("left-handed", "70.0")):
+            _, files = self.wrote(turns=turns)
+            lines = files["program-probing-C.ngc"]
+            self.assertEqual(lines[lines.index("G1 C90.0 F720") + 1], f"G1 X350.0 Y{y} F1000")
+        _, files = self.wrote(axis="B", centre_mm="350,0,-100", ball_mm="350,250,-20", from_deg=-90, to_deg=90, places=3)
+        lines = files["program-probing-B.ngc"]
+        self.assertEqual([lines[lines.index(f"G1 B{a} F720") + 1] for a in ("-90.0", "0.0", "90.0")],
+                         [f"G1 X{x} Y250.0 F1000" for x in ("270.0", "350.0", "430.0")])  # +Z turns towards +X
+
+    def test_what_cannot_be(self):
+        for settings, words in (({"dialect": "heidenhain"}, "no public text"), ({"centre_mm": "350,250"}, "X, Y, Z of a point"),
+                                ({"ball_mm": "1,2,x"}, "ball_mm"), ({"beyond_mm": 15}, "less than radius_mm"),
+                                ({"from_deg": 10, "to_deg": 10}, "at most 360"), ({"from_deg": -90, "to_deg": 90}, "axis C would go"),
+                                ({"ball_mm": "690,250,-60"}, "axis X would go to 709"), ({"axis": "A"}, "no rotary axis A"),
+                                ({"heights_mm": "0,300"}, "axis Z would go to")):
+            said, files = self.wrote(expect=2, **settings)
+            self.assertIn(words, said)
+            self.assertEqual(files, {}, settings)
 
 
 class RotaryPlan(VerbTest):

@@ -107,7 +107,7 @@ std::vector<Error> check_templates(const Templates&, const std::string& name,
 void add_before_after(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// Diagonals before and after, and their plane with its errors exaggerated.
 void add_diagonals(const Source&, const Measured&, std::vector<reports::Plot>&);
-/// The volume of step diagonals as a box of wire, its errors exaggerated.
+/// The volume of step diagonals, or of a map, as a box of wire, its errors exaggerated.
 void add_volume(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// How much larger errors are drawn: 1, 2 or 5 times a power of ten, not above `v` > 0.
 double round_factor(double v);

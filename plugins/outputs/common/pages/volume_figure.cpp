@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The volume of step diagonals as a box of wire, as it should be and as the machine draws it, its
-// errors exaggerated.
+// The volume as a box of wire, as it should be and as the machine draws it, its errors exaggerated:
+// from the curves of step diagonals, or from a map of the error at the nodes of a lattice.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,21 +38,25 @@ class Volume {
       if (v.name == "B0Z") B0Z_ = v.value;
       if (v.name == "A0Z") A0Z_ = v.value;
     }
+    if (!known()) take_map(e);
   }
 
-  /// Of three axes with their squarenesses.
+  /// Of three axes with their squarenesses, or a map.
   bool known() const {
+    if (mapped()) return true;
     return C0Y_ && B0Z_ && A0Z_ && std::all_of(axes_.begin(), axes_.end(), [](const auto& a) {
              return !a.position.empty();
            });
   }
+  /// Errors are those of a map, less that in the middle of the volume.
+  bool mapped() const { return !map_[0].empty(); }
   const std::string& name(std::size_t axis) const { return axes_[axis].name; }
   std::size_t last(std::size_t axis) const { return axes_[axis].position.size() - 1; }
   double position(std::size_t axis, std::size_t i) const { return axes_[axis].position[i]; }
   /// Positionings whose scale is not known, which are not drawn.
   std::string left_out() const {
     std::string out;
-    for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t k = 0; k < 3 && !mapped(); ++k)
       if (axes_[k].error[k].empty())
         out += (out.empty() ? "" : ", ") + ("E" + std::string(2, "XYZ"[k]));
     return out;
@@ -65,6 +69,11 @@ class Volume {
   /// A0Z +Z towards -Y).
   Vector error(const Place& p) const {
     Vector e{};
+    if (mapped()) {
+      const std::size_t i = (p[0] * (last(1) + 1) + p[1]) * (last(2) + 1) + p[2];
+      for (std::size_t k = 0; k < 3; ++k) e[k] = map_[k][i];
+      return e;
+    }
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (std::size_t along = 0; along < 3; ++along)
         if (const auto& curve = axes_[axis].error[along]; !curve.empty())
@@ -84,11 +93,31 @@ class Volume {
   static std::size_t coordinate(const std::string& name, std::size_t letter) {
     return name.size() > letter ? std::string_view("XYZ").find(name[letter]) : 3;
   }
+  /// Rows X Y Z e_x e_y e_z, X slowest, Z fastest, of every node of a lattice.
+  void take_map(const Evaluation& e) {
+    static constexpr std::array<const char*, 3> places{"X", "Y", "Z"}, errors{"e_x", "e_y", "e_z"};
+    std::array<std::vector<double>, 3> nodes;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto *at = e.rows.column(places[k]), *error = e.rows.column(errors[k]);
+      if (at == nullptr || error == nullptr) return;
+      nodes[k] = at->values;
+      std::sort(nodes[k].begin(), nodes[k].end());
+      nodes[k].erase(std::unique(nodes[k].begin(), nodes[k].end()), nodes[k].end());
+      if (nodes[k].size() < 2) return;
+    }
+    if (nodes[0].size() * nodes[1].size() * nodes[2].size() != e.rows.column("X")->values.size())
+      return;
+    for (std::size_t k = 0; k < 3; ++k) {
+      axes_[k] = {places[k], std::move(nodes[k]), {}};
+      map_[k] = e.rows.column(errors[k])->values;
+    }
+  }
   double way(std::size_t axis, const Place& p) const {
     return axes_[axis].position[p[axis]] - axes_[axis].position.front();
   }
 
   std::array<AxisErrors, 3> axes_;
+  std::array<std::vector<double>, 3> map_;
   std::optional<double> C0Y_, B0Z_, A0Z_;
 };
 
@@ -107,7 +136,8 @@ struct Largest {
 };
 
 Largest largest(const Volume& v) {
-  constexpr std::size_t parts = 8;
+  std::size_t parts = 8;
+  if (v.mapped()) parts = std::max({parts, v.last(0), v.last(1), v.last(2)});  // every node
   Largest most;
   for (std::size_t i = 0; i <= parts; ++i)
     for (std::size_t j = 0; j <= parts; ++j)
@@ -200,8 +230,9 @@ Plot volume_plot(const Source& source, const Volume& v) {
   Plot plot;
   plot.title = source.words.get("plot.volume", {{"factor", times}});
   const std::string missing = v.left_out();
-  plot.x_title =
-      extent(source, v) + " " + source.words.get("plot.volume_scale", {{"factor", times}});
+  plot.x_title = extent(source, v) + " " +
+                 source.words.get(v.mapped() ? "plot.volume_scale_middle" : "plot.volume_scale",
+                                  {{"factor", times}});
   if (!source.certificate)  // it has no U
     plot.x_title +=
         " " +

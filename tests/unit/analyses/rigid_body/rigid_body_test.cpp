@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -38,6 +39,16 @@ std::vector<RigidLine> step_campaign(const Truth& t, const Noise& noise) {
   lines.push_back(beam(t, place(.5, 0, .5), place(.5, 1, .5), 16, 1, noise));
   lines.push_back(beam(t, place(.5, .5, 0), place(.5, .5, 1), 16, 1, noise));
   return lines;
+}
+
+TEST(RigidBody, TheErrorsAreTwentyOne) {
+  const auto& names = rigid_errors();
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), 21u);
+  // Three along or across, three about each axis that moves; a paper has Ax(y) twice and Az(y) not at all.
+  for (const char axis : {'X', 'Y', 'Z'})
+    for (const char* kind : {"EX", "EY", "EZ", "EA", "EB", "EC"})
+      EXPECT_EQ(std::count(names.begin(), names.end(), std::string(kind) + axis), 1)
+          << kind << axis;
 }
 
 TEST(RigidBody, ExactReadingsGiveTheExactVolume) {

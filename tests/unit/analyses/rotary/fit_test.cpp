@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <limits>
 
 #include "table.h"
@@ -54,6 +55,32 @@ TEST(RotaryFit, DirectionIsRightHandedWithTheAngles) {
   for (auto& c : centres) c.angle = -c.angle;
   EXPECT_LT(distance(fit_rotary(centres, false)->direction, -t.direction), 1e-9);
   EXPECT_LT(distance(fit_rotary(centres, true)->direction, -t.direction), 1e-9);
+}
+
+/// Two directions that a source prints for balls 261 mm from the axis; B of 11 points on 150 deg, C of
+/// 8 on a full turn. What it makes of the first, 1.4627e-4 rad and 0.0382 mm, follows from it.
+TEST(RotaryFit, DirectionsThatASourcePrints) {
+  const auto text = [](const char* format, double value) {
+    char out[32];
+    std::snprintf(out, sizeof out, format, value);
+    return std::string(out);
+  };
+  Table b, c;
+  b.radius = c.radius = 261 * mm;
+  b.direction = Eigen::Vector3d(1.2540e-04, 1, -7.5293e-05).normalized();
+  c.direction = Eigen::Vector3d(0.000054, 0.00007, 1).normalized();
+  const auto along_b = fit_rotary(b.at(arc(-60 * deg, 90 * deg, 11)), true);
+  const auto along_c = fit_rotary(c.at(full_turn(8)), true);
+  ASSERT_TRUE(along_b && along_c);
+  const auto& d = along_b->direction;
+  const auto& e = along_c->direction;
+  EXPECT_EQ(text("%.4e", d[0] / d[1]), "1.2540e-04");
+  EXPECT_EQ(text("%.4e", d[2] / d[1]), "-7.5293e-05");
+  const double tilt = std::hypot(d[0] / d[1], d[2] / d[1]);
+  EXPECT_EQ(text("%.4e", tilt), "1.4627e-04");
+  EXPECT_EQ(text("%.4f", tilt * 261), "0.0382");
+  EXPECT_EQ(text("%.6f", e[0] / e[2]), "0.000054");
+  EXPECT_EQ(text("%.5f", e[1] / e[2]), "0.00007");
 }
 
 TEST(RotaryFit, ResidualsHaveTheirSigns) {

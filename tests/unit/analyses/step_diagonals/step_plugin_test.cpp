@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Long: cases of one plugin, with its fixtures.
 // The analysis step-diagonal from files to findings: what it gives, and what it refuses.
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iomanip>
 #include <regex>
@@ -215,6 +217,47 @@ TEST(StepDiagonal, WithAxisRunsEverythingIsGiven) {
   EXPECT_FALSE(askew->attention);
   EXPECT_EQ(finding(*result, "step-diagonal.scales-not-identified"), nullptr);
   EXPECT_EQ(finding(*result, "step-diagonal.lengths-disagree"), nullptr);
+}
+
+/// D_max is the largest of noisy readings, which leans upwards: 2,000 campaigns by
+/// NONIO_CAMPAIGNS=2000 test_step_diagonal --gtest_filter=*Covers*
+TEST(StepDiagonal, UOfTheLargestDeviationCoversTheExactMachine) {
+  const char* asked = std::getenv("NONIO_CAMPAIGNS");
+  const int campaigns = asked != nullptr ? std::atoi(asked) : 40;
+  const unsigned seed = 20261130;
+  for (const double size : {20 * um, 5 * um}) {
+    std::mt19937 rng(seed);
+    int in = 0;
+    double above = 0.0;
+    for (int i = 0; i < campaigns; ++i) {
+      Bench b;
+      const auto e = random_errors(rng, b.volume, size);
+      const auto exact = measured(e, b.volume);
+      double largest = 0.0;
+      for (const auto& pass : exact.passes)
+        for (std::size_t t = 2; t < pass.reading.size(); t += 3)
+          largest = std::max(largest, std::fabs(pass.reading[t]));
+      auto d = measured(e, b.volume, random_set_up(rng, 0.1e-3, true));
+      std::normal_distribution<double> noise(0.0, 0.5 * um);
+      for (auto& pass : d.passes) {
+        const double start = noise(rng);  // the reading before the first move has it too
+        for (double& r : pass.reading) r += noise(rng) - start;
+      }
+      b.steps(file_of(d));
+      b.axes(e, "XYZ");
+      const auto result = b.evaluated();
+      ASSERT_TRUE(result) << result.error().message;
+      const auto& v = result->values.back();
+      ASSERT_EQ(v.name, "D_max");
+      ASSERT_TRUE(v.repeatability);
+      in += std::fabs(v.value - largest) <= *v.repeatability ? 1 : 0;
+      above += (v.value - largest) / campaigns;
+    }
+    const double share = 100.0 * in / campaigns;
+    std::printf("seed %u, errors of %.0f um, noise 0.5 um: %.1f %% of %d, %.2f um too large\n",
+                seed, size / um, share, campaigns, above / um);
+    EXPECT_NEAR(share, 95.0, std::max(2.0, 300.0 * std::sqrt(0.95 * 0.05 / campaigns)));
+  }
 }
 
 TEST(StepDiagonal, WithoutLengthsThereAreNoScales) {

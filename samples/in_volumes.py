@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Stories of whole volumes: all 21 errors together, and the plan of a day at a large machine on paper."""
+import math
+
+from in_space import DIAGONALS, with_noise
+from parts import GOOD_ROOM, INTERFEROMETER, MADE_UP, Noise, linear, manifest, table
+
+
+class Rolling:
+    """A bridge of 1200 x 900 x 800 mm, its diagonal 1700 mm, whose X rolls. Errors in um and urad over t = -1..1 of each travel; the error of
+    the tool point by the formulas of docs/formulas.md, y and z from the middle of the volume."""
+    travel = (1200.0, 900.0, 800.0)
+    reversal = (-1.4, -1.0, -0.8)
+    C0Y, B0Z, A0Z = 1.5, -2.0, 1.0  # what an adjustment left
+
+    along = (lambda t: 0.8 * t + 0.5 * (1.5 * t * t - 0.5), lambda t: -0.6 * t, lambda t: 0.5 * t)
+    across = {"YX": 1.2, "ZX": -0.9, "XY": 0.8, "ZY": 1.0, "XZ": -0.6, "YZ": 0.5}  # bows
+    angles = {"AX": (20.0, 0.0), "BX": (0.8, 0.5), "CX": (-0.6, 0.7), "AY": (0.5, -0.4), "BY": (-0.7, 0.3)}
+
+    def t(self, k, place):
+        return 2.0 * place / self.travel[k] - 1.0
+
+    def bow(self, name, place):
+        t = self.t("XYZ".index(name[1]), place)
+        return self.across[name] * (1.5 * t * t - 0.5)
+
+    def angle(self, name, place):
+        t = self.t("XYZ".index(name[1]), place)
+        a, b = self.angles[name]
+        return a * t + b * (1.5 * t * t - 0.5)
+
+    def error(self, x, y, z):
+        """um along X, Y, Z of the tool point at a place in mm."""
+        up, high = (y - self.travel[1] / 2.0) / 1000.0, (z - self.travel[2] / 2.0) / 1000.0  # m, so that urad give um
+        E = [curve(self.t(k, p)) for k, (curve, p) in enumerate(zip(type(self).along, (x, y, z)))]
+        return (E[0] + self.bow("XY", y) + self.bow("XZ", z) - up * (self.angle("CX", x) + self.C0Y)
+                + high * (self.angle("BX", x) + self.angle("BY", y) + self.B0Z),
+                self.bow("YX", x) + E[1] + self.bow("YZ", z)
+                - high * (self.angle("AX", x) + self.angle("AY", y) + self.A0Z),
+                self.bow("ZX", x) + self.bow("ZY", y) + E[2] + up * self.angle("AX", x))
+
+
+def whole_volume():
+    noise, files, measurements, machine = Noise(123), {}, [], Rolling()
+    stops, size = 9, machine.travel
+
+    def add(name, places, mean, reversal, s, unit="deviation_um", **keys):
+        file = name.lower().replace(" ", "-") + ".csv"
+        text = table(with_noise(places, [1000.0 * (v - mean[0]) for v in mean], reversal, noise, s, runs=2), [MADE_UP])
+        files[file] = text.replace("deviation_um", unit)
+        measurements.append({"id": name, "file": file, **keys})
+
+    def line(k, at):
+        """Places along an axis, and the points there; `at` holds the other two."""
+        places = [round(size[k] * i / (stops - 1), 3) for i in range(stops)]
+        return places, [[p if i == k else at["XYZ"[i]] for i in range(3)] for p in places]
+
+    middle = dict(zip("XYZ", (v / 2.0 for v in size)))
+    lines = [(0, {"Y": y, "Z": z}) for y in (0.0, size[1]) for z in (0.0, size[2])]
+    lines += [(1, {"X": 600.0, "Z": z}) for z in (0.0, size[2])] + [(2, {"X": 600.0, "Y": 450.0})]
+    for number, (k, at) in enumerate(lines):
+        places, points = line(k, at)
+        add("%s%d" % ("XYZ"[k], 1 + number - (0, 4, 6)[k]), places, [machine.error(*p)[k] for p in points],
+            machine.reversal[k], 250.0, kind="axis", axis="XYZ"[k], at=at)
+    for k, at in ((0, {"Y": 0.0, "Z": 400.0}), (0, {"Y": size[1], "Z": 400.0}), (1, {"X": 600.0, "Z": 0.0}),
+                  (1, {"X": 600.0, "Z": size[2]}), (2, {"X": 600.0, "Y": 450.0})):
+        places, points = line(k, at)
+        for d in range(3):
+            if d != k:
+                askew = 12.0 * noise.normal()  # the straightedge is not quite parallel to the axis
+                mean = [machine.error(*p)[d] + askew * s / 1000.0 for p, s in zip(points, places)]
+                name = "E%s%s" % ("XYZ"[d], "XYZ"[k])
+                name += "" if k == 2 else "-low" if 0.0 in at.values() else "-high"
+                add(name, places, mean, 0.0, 350.0, kind="straightness", axis="XYZ"[k], lateral="XYZ"[d], at=at)
+    for name in Rolling.angles:
+        k = "XYZ".index(name[1])
+        places, _ = line(k, middle)
+        mean = [machine.angle(name, p) / math.radians(1.0 / 3600.0) / 1e6 for p in places]  # arcsec
+        add("E" + name, places, mean, 0.0, 60.0, "deviation_arcsec", kind="angle", axis=name[1],
+            about="XYZ"["ABC".index(name[0])], at={a: v for a, v in middle.items() if a != name[1]})
+    length = math.sqrt(sum(v * v for v in size))
+    for name, sign in DIAGONALS.items():
+        ends = [dict(zip("XYZ", (v if (s > 0) == far else 0.0 for v, s in zip(size, sign)))) for far in (False, True)]
+        u = [s * v / length for v, s in zip(size, sign)]
+        part = [i / (stops - 1.0) for i in range(stops)]
+        mean = [sum(c * e for c, e in zip(u, machine.error(*[ends[0][a] + q * (ends[1][a] - ends[0][a]) for a in "XYZ"])))
+                for q in part]
+        add(name, [round(length * q, 3) for q in part], mean, sum(abs(c) * b for c, b in zip(u, machine.reversal)), 250.0,
+            kind="diagonal", **{"from": ends[0], "to": ends[1]})
+    story = ["A machine that passed: pitch is compensated, squareness adjusted, and the four body diagonals of ISO 230-6 are",
+             "good. Yet bores at the corners of large parts are off. X rolls by 40 urad over its travel: at the edges of the table",
+             "the tool rises on one side and sinks on the other. Roll about the middle of the volume moves no body diagonal.",
+             "All errors fitted together show it, and the map says where in the volume the tool point is wrong."]
+    files["campaign.toml"] = manifest(
+        story, "23-whole-volume", "Esempio Ventitre S.p.A.", "Bergamo", "2026-06-02",
+        {"maker": "Sample Machines", "model": "BM 10", "serial": "S-0123", "structure": "bridge"},
+        {axis: linear(v) for axis, v in zip("XYZ", size)}, measurements,
+        {**INTERFEROMETER, "U_arcsec": "0.1"}, {**GOOD_ROOM, "drift_arcsec": "0.1"},
+        analyses=["iso230-6", "rigid-body"],
+        outputs=["json", "csv", "pdf-report", "volume-grid"],
+        options={"rigid-body": {"degree": "2", "parts": "2"}})
+    return files
+
+
+def plan_on_paper():
+    story = ["Before the day at a gantry of 20 m x 12 m: racks of 20 mm, a table of 100 entries in the control, 100 mm kept",
+             "free at each end. Nothing is measured yet; the night makes the plan, the sheet to take to the machine in Italian,",
+             "and the part programs of its first plan."]
+    text = manifest(story, "24-plan-on-paper", "Esempio Ventiquattro S.r.l.", "Lecco", "2026-06-08",
+                    {"maker": "Sample Machines", "model": "FP 20", "serial": "S-0124", "structure": "gantry"},
+                    {"X": linear(20000.0, 20.0), "Y": linear(12000.0, 20.0)}, [], environment=GOOD_ROOM,
+                    analyses=["triple-planner"], outputs=["json", "csv", "plan-sheet", "program-gcode"],
+                    options={"triple-planner": {"over_travel_mm": "100", "max_step_mm": "500", "max_points": "100",
+                                                "even": '"prefer"'},
+                             "plan-sheet": {"language": '"it"', "over_travel_mm": "100", "runs": "2"},
+                             "program-gcode": {"over_travel_mm": "100", "runs": "2"}})
+    return {"campaign.toml": text}
+
+
+STORIES = {
+    "23-whole-volume": whole_volume,
+    "24-plan-on-paper": plan_on_paper,
+}
