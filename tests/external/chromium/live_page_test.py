@@ -535,7 +535,9 @@ class Page(live_browser.CampaignPage):
         self.no_complaints()
 
     def test_circles_are_drawn_as_a_ball_bar_draws_them(self):
-        self.open(self.serve(self.campaign(SOURCE / "samples/site/40-circles")), "fitted|explained")
+        server = self.serve(self.campaign(SOURCE / "samples/site/40-circles"))
+        server.ask("api/parts/XYZ/picture")  # of many readings a fit takes its time
+        self.open(server, "fitted|explained")
         lines = lambda name: [self.js(f"document.querySelectorAll('#picture-{name} path.line.{look}').length") for look in ("plus", "minus", "mean")]
         self.wait(lambda: lines("polar") == [1, 1, 2], "both directions, and the model in each")
         self.assertEqual([1, 1, 0], lines("rest"))
