@@ -166,6 +166,7 @@ class Assessment::State {
     auto numbers = store_.certificates();
     if (!numbers) return fail(numbers.error());
     if (auto well = count_tests(*evaluations); !well) return well;
+    learned_from_ = learned_from(evaluations->size());
     std::map<std::string, std::vector<const history::StoredEvaluation*>> of_machine;
     for (const auto& e : *evaluations) of_machine[e.machine].push_back(&e);
     std::set<std::string> forgotten;
@@ -176,6 +177,7 @@ class Assessment::State {
       alive_();
       Assessed m{state, events.of(state.machine.name), {}, {}};
       ByteWriter rows;
+      rows(learned_from_);
       put_identity(rows, m);
       for (const history::StoredEvaluation* e : of_machine[state.machine.name]) {
         rows(e->campaign, e->sha256, e->night, e->counts, e->day > until_);
@@ -261,7 +263,7 @@ class Assessment::State {
     m.kept.series.resize(read.followed.size());
     fits_.take_asked();
     for (std::size_t k = 0; k < read.followed.size(); ++k)
-      m.kept.series[k].lesson = lesson_of(read.followed[k], fits_);
+      m.kept.series[k].lesson = lesson_of(read.followed[k], fits_, learned_from_);
     m.read = std::move(read);
     m.fitted = false;
     take_keys(m);
@@ -440,6 +442,7 @@ class Assessment::State {
   KeptMachines before_;
   Fits fits_;
   Learned learned_{};
+  std::uint64_t learned_from_ = 0;  ///< evaluations
   std::vector<Assessed> machines_{};
   std::vector<std::string> unknown_{};
   const Links links_{out_};

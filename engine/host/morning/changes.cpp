@@ -30,7 +30,6 @@ std::uint64_t step_of(std::uint64_t n) {
   return step;
 }
 std::uint64_t upwards(std::uint64_t n) { return (n + step_of(n) - 1) / step_of(n) * step_of(n); }
-std::uint64_t downwards(std::uint64_t n) { return n / step_of(n) * step_of(n); }
 
 void fit_again(FollowedSeries& s, Fits& fits) {
   s.trend = fits.trend(s.series);
@@ -132,24 +131,32 @@ void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
 
 }  // namespace
 
-Lesson lesson_of(const FollowedSeries& s, Fits& fits) {
-  Lesson out{s.quantity + " " + s.unit, s.series.points.size(), {}, fits.slope(s.series)};
-  for (const kernel::Scatter& one : kernel::scatter_of(s.series)) {
-    const auto first = s.evaluations.begin() + static_cast<std::ptrdiff_t>(one.point) - 1;
-    out.ratios.emplace_back(*std::max_element(first, first + 3), one.ratio);
-  }
+std::uint64_t learned_from(std::uint64_t evaluations) {
+  return step_of(evaluations) == 1 ? std::numeric_limits<std::uint64_t>::max()
+                                   : evaluations / step_of(evaluations) * step_of(evaluations);
+}
+
+Lesson lesson_of(const FollowedSeries& s, Fits& fits, std::uint64_t evaluations) {
+  const auto later = std::find_if(s.evaluations.begin(), s.evaluations.end(),
+                                  [&](std::uint64_t e) { return e > evaluations; });
+  kernel::Series known = s.series;
+  const auto points = static_cast<std::size_t>(later - s.evaluations.begin());
+  known.points.erase(known.points.begin() + (later - s.evaluations.begin()), known.points.end());
+  std::erase_if(known.declared, [&](const kernel::Declared& d) { return d.after + 1 >= points; });
+  Lesson out{s.quantity + " " + s.unit, s.series.points.size(), {}, {}};
+  if (known.points.empty()) return out;
+  out.slope = fits.slope(known);
+  for (const kernel::Scatter& one : kernel::scatter_of(known)) out.ratios.push_back(one.ratio);
   return out;
 }
 
 Learned learn(const std::vector<const Lesson*>& lessons) {
   std::map<std::string, std::vector<const Lesson*>> all;
-  std::uint64_t asked = 0, last = 0;
+  std::uint64_t asked = 0;
   for (const Lesson* lesson : lessons) {
     all[lesson->quantity].push_back(lesson);
     asked += lesson->points >= 3;
-    for (const auto& [evaluation, ratio] : lesson->ratios) last = std::max(last, evaluation);
   }
-  const std::uint64_t counted = downwards(last);
   Learned out;
   for (const auto& [quantity, of_quantity] : all) {
     OfQuantity& of = out.of[quantity];
@@ -157,8 +164,7 @@ Learned learn(const std::vector<const Lesson*>& lessons) {
     std::vector<double> ratios;
     for (const Lesson* lesson : of_quantity) {
       if (lesson->slope) slopes.push_back(*lesson->slope);
-      for (const auto& [evaluation, ratio] : lesson->ratios)
-        if (evaluation <= counted) ratios.push_back(ratio);
+      ratios.insert(ratios.end(), lesson->ratios.begin(), lesson->ratios.end());
     }
     of.excess = std::round(kernel::excess_of_ratios(std::move(ratios)) / excess_step) * excess_step;
     for (kernel::Slope& slope : slopes) slope.u *= of.excess;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,15 +30,18 @@ struct OfQuantity {
 struct Lesson {
   std::string quantity;  ///< and its unit
   std::uint64_t points = 0;
-  /// See `kernel::Scatter`, each with the evaluation that completed it.
-  std::vector<std::pair<std::uint64_t, double>> ratios{};
+  std::vector<double> ratios{};  ///< see `kernel::Scatter`
   std::optional<nonio::history::Slope> slope{};
 };
-Lesson lesson_of(const FollowedSeries& series, Fits& fits);
+/// From how many of the first evaluations a laboratory is learned: from all, and of 10,000 and more
+/// from the first ones, in two digits of their number. So a new campaign seldom moves what was said
+/// of all other machines.
+std::uint64_t learned_from(std::uint64_t evaluations);
+/// From the first `evaluations`: of the points before the first one that came later.
+Lesson lesson_of(const FollowedSeries& series, Fits& fits,
+                 std::uint64_t evaluations = std::numeric_limits<std::uint64_t>::max());
 
-/// By quantity and unit, for all machines of a site. In coarse steps, and of very many evaluations
-/// of the first ones, in two digits of their number: a new campaign seldom moves what was said of
-/// all other machines.
+/// By quantity and unit, for all machines of a site, in coarse steps.
 struct Learned {
   std::map<std::string, OfQuantity> of;
   double drift_below = 1.0;  ///< share of series

@@ -77,7 +77,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Another program may find out something else.
-constexpr std::string_view machines_magic = "nonio-machines/3 " NONIO_VERSION "\n";
+constexpr std::string_view machines_magic = "nonio-machines/4 " NONIO_VERSION "\n";
 constexpr const char* machines_folder = ".nonio";
 constexpr const char* machines_name = "machines";
 constexpr std::size_t digest_size = 64;

@@ -127,18 +127,35 @@ TEST(MorningChanges, ScatterAndSlopesAreLearnedFromTheLaboratory) {
 }
 
 TEST(MorningChanges, OfVeryManyCampaignsTheNewestWait) {
-  // The excess of 100,000 campaigns or more is that of the first 100,000, until there are 110,000.
-  const auto excess = [](std::uint64_t first, std::uint64_t last) {
-    morning::Lesson lesson{"B_mean um", 8, {}, {}};
-    for (std::uint64_t i = 0; i < 50; ++i) lesson.ratios.emplace_back(first - i, 0.454936);
-    for (std::uint64_t i = 0; i < 150; ++i) lesson.ratios.emplace_back(last - i, 4 * 0.454936);
-    return morning::learn({&lesson}).of.at("B_mean um").excess;
+  // 100,000 campaigns or more are judged by the first 100,000, until there are 110,000.
+  EXPECT_EQ(morning::learned_from(100'000), 100'000U);
+  EXPECT_EQ(morning::learned_from(109'999), 100'000U);
+  EXPECT_EQ(morning::learned_from(110'000), 110'000U);
+  EXPECT_EQ(morning::learned_from(12'345), 12'000U);
+  EXPECT_GE(morning::learned_from(9'999), 1'000'000'000U);
+}
+
+TEST(MorningChanges, WhatCameLaterTeachesNothing) {
+  std::mt19937_64 random(17);
+  std::cout << "seed 17\n";
+  auto values = around(random, 8, 0.1);
+  const auto series = [](const std::vector<double>& v) {
+    MadeMachine m("S-1", v.size());
+    m.follow("X", "B_mean", v, 0.1);
+    morning::FollowedSeries s = m.assessed().followed.front();
+    s.evaluations.resize(v.size());
+    std::iota(s.evaluations.begin(), s.evaluations.end(), std::uint64_t{1});
+    return s;
   };
-  EXPECT_DOUBLE_EQ(excess(100'000, 100'150), 1.0);
-  EXPECT_DOUBLE_EQ(excess(100'000, 109'999), 1.0);
-  EXPECT_DOUBLE_EQ(excess(100'000, 110'149), 1.0);  // one of them is among the first 110,000
-  EXPECT_DOUBLE_EQ(excess(100'000, 110'000), 2.0);
-  EXPECT_DOUBLE_EQ(excess(9'000, 9'999), 2.0);
+  morning::Fits fits;
+  const morning::Lesson known = morning::lesson_of(series(values), fits);
+  for (const double later : {5.0, -9.0, 7.0, 40.0}) values.push_back(later);
+  const morning::Lesson first = morning::lesson_of(series(values), fits, 8);
+  ASSERT_TRUE(known.slope && first.slope);
+  EXPECT_EQ(first.ratios, known.ratios);
+  EXPECT_NEAR(first.slope->b, known.slope->b, 1e-9 * std::fabs(known.slope->u));
+  EXPECT_NE(morning::lesson_of(series(values), fits).ratios, known.ratios);
+  EXPECT_EQ(morning::lesson_of(series(values), fits, 0).slope.has_value(), false);
 }
 
 TEST(MorningChanges, ANightChargesATestOnce) {
