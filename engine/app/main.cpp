@@ -45,9 +45,8 @@ void block_pipe_signal() {
 #ifdef NONIO_SANITIZED
 /// The search for leaks stops its own process, which one with plugin code is not permitted to do: it would wait for ever.
 /// The programs of the unit tests search.
-extern "C" int __lsan_is_turned_off() {
-  return 1;
-}  // NOLINT(bugprone-reserved-identifier): the sanitizer's name
+// NOLINTNEXTLINE(bugprone-reserved-identifier): the sanitizer's name
+extern "C" int __lsan_is_turned_off() { return 1; }
 #endif
 
 int main(int argc, char** argv) try {

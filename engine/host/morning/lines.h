@@ -28,8 +28,8 @@ struct Known {
 /// within that new before known, then the largest first. One cause is told once.
 std::vector<reports::MorningLine> lines_of(const Known& known);
 
-/// Of a quantity: reversal, scale, curve, turn, cyclic, scatter, squareness, straightness, centre, circle,
-/// parameter. Its words are `term.what` and `term.look`.
+/// Of a quantity: reversal, scale, curve, turn, cyclic, scatter, squareness, straightness, centre,
+/// circle, parameter. Its words are `term.what` and `term.look`.
 std::string kind_of(const std::string& quantity);
 
 /// The axis of a series, out of its quantity (backlash:X.b) where it has none.
