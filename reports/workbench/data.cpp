@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
@@ -137,16 +138,16 @@ CircleOf circle_of(const Campaign& campaign, const std::string& id) {
   return out;
 }
 
-/// Of each measurement its radius in mm, 0 where it is no circle; the axes of the first plane.
+/// Of each measurement its radius in mm, 0 where it is no circle; the axes, if all are in one plane.
 void put_circles(Object& out, const Drawn& source) {
   if (!has_circles(source.campaign, source.fit)) return;
-  std::string axes;
+  std::set<std::string> planes;
   out.raw("circles", list(source.fit.measurements, [&](std::string& text, const std::string& id) {
             const CircleOf circle = circle_of(source.campaign, id);
-            if (axes.empty()) axes = circle.axes;
+            if (circle.radius > 0.0) planes.insert(circle.axes);
             append_number(text, circle.radius * unit_of(Quantity::length).per_si);
           }));
-  out.text("circle_axes", axes);
+  out.text("circle_axes", planes.size() == 1 ? *planes.begin() : "");
 }
 
 std::vector<std::size_t> all_rows(std::size_t n) {
