@@ -81,7 +81,7 @@ def main():
         subprocess.run([program, "update", out, *new], check=True)
         subprocess.run([program, "morning", out, TEMPLATES], check=True)
         subprocess.run([program, "morning", out, TEMPLATES], check=True)
-        for name in ("history.sqlite", "index.html", ".nonio/machines", ".nonio/trends"):
+        for name in ("history.sqlite", "index.html", ".nonio/machines.sqlite"):
             if (out / name).exists():
                 print(f"{name}: {(out / name).stat().st_size / 1e6:.1f} MB")
     finally:

@@ -70,10 +70,12 @@ AXES = {"X": linear(800.0), "Y": linear(500.0)}
 
 def both_ways():
     story = ["A milling machine makes pockets that are oval at 45 degrees. A ball bar, both directions: squareness is the",
-             "same oval in both, servo mismatch turns with the direction, X has lost motion, Y sticks when it reverses."]
+             "same oval in both, servo mismatch turns with the direction, X has lost motion, Y sticks when it reverses.",
+             "The customer allows a circular deviation of 25 um, which the machine keeps, and a squareness of 30 urad: it does not."]
+    limits = {"tolerance_um": {"G_ccw": 25.0, "G_cw": 25.0}, "tolerance_urad": {"C0Y": 30.0}}
     return {"circle.csv": text(rows(Mill(), Noise(140), (1, -1)), MADE_UP),
             "campaign.toml": manifest(story, "40-circles", "Esempio Quaranta S.r.l.", "Padova", "2026-06-10", MACHINE,
-                                      AXES, [{"id": "C1", "file": "circle.csv", **CIRCLE}], instrument=BAR,
+                                      AXES, [{"id": "C1", "file": "circle.csv", **CIRCLE, **limits}], instrument=BAR,
                                       environment=SHOP, analyses=["circle"])}
 
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
@@ -138,16 +137,18 @@ CircleOf circle_of(const Campaign& campaign, const std::string& id) {
   return out;
 }
 
-/// Of each measurement its radius in mm, 0 where it is no circle; the axes, if all are in one plane.
+/// Of each measurement its radius in mm and its plane, 0 and "" where it is no circle.
 void put_circles(Object& out, const Drawn& source) {
   if (!has_circles(source.campaign, source.fit)) return;
-  std::set<std::string> planes;
-  out.raw("circles", list(source.fit.measurements, [&](std::string& text, const std::string& id) {
-            const CircleOf circle = circle_of(source.campaign, id);
-            if (circle.radius > 0.0) planes.insert(circle.axes);
-            append_number(text, circle.radius * unit_of(Quantity::length).per_si);
+  const auto& all = source.fit.measurements;
+  out.raw("circles", list(all, [&](std::string& text, const std::string& id) {
+            append_number(text,
+                          circle_of(source.campaign, id).radius * unit_of(Quantity::length).per_si);
           }));
-  out.text("circle_axes", planes.size() == 1 ? *planes.begin() : "");
+  out.raw("circle_axes", list(all, [&](std::string& text, const std::string& id) {
+            const CircleOf circle = circle_of(source.campaign, id);
+            text += json(circle.radius > 0.0 ? circle.axes : std::string());
+          }));
 }
 
 std::vector<std::size_t> all_rows(std::size_t n) {

@@ -92,16 +92,20 @@ void add_curves(reports::SiteHistory& site, const fs::path& out,
   }
 }
 
-/// What the night writes to those whom `[mail]` names; empty if nothing asks for it.
-Expected<std::string> mail_text(const reports::SiteHistory& site, const reading::Context& context,
+/// What the night writes to those whom `[mail]` names; empty if nothing asks for it. Leaves `site` as it
+/// was.
+Expected<std::string> mail_text(reports::SiteHistory& site, const reading::Context& context,
                                 const std::string& language) {
   if (!context.site.mail) return std::string();
-  reports::SiteHistory grave = site;
-  std::erase_if(grave.lines, [&](const reports::MorningLine& line) {
+  std::vector<reports::MorningLine> all = site.lines;
+  std::erase_if(site.lines, [&](const reports::MorningLine& line) {
     return !is_reason_for_mail(line, context.site.mail->on);
   });
-  if (grave.lines.empty()) return std::string();
-  return reports::morning_text(grave, context.templates, language, grave.lines.size());
+  auto text = site.lines.empty()
+                  ? Expected<std::string>()
+                  : reports::morning_text(site, context.templates, language, site.lines.size());
+  site.lines = std::move(all);
+  return text;
 }
 
 /// The language of the site where its words are there.
@@ -127,7 +131,7 @@ Expected<Texts> texts_of(reports::SiteHistory site, const reading::Context& cont
 /// All machines anew, with the error curves that stand in each campaign's results.json.
 Expected<Texts> small_morning(const fs::path& out, const reading::Context& context,
                               const morning::Tonight& tonight, const std::function<void()>& alive) {
-  auto site = morning::assess(out, tonight, alive, morning::Keep::yes);
+  auto site = morning::assess(out, tonight, alive, morning::Keep::trends);
   if (!site) return fail(site.error());
   add_curves(*site, out, alive);
   auto pages = reports::site_pages(*site, context.templates, language_of_pages(context));
@@ -202,7 +206,7 @@ Expected<Texts> large_morning(const fs::path& out, const reading::Context& conte
   if (auto written = write_lists(out, std::move(*lists)); !written) return fail(written.error());
   assessment->keep();
   alive();
-  return texts_of(assessment->site(), context);
+  return texts_of(std::move(*assessment).take_site(), context);
 }
 
 }  // namespace

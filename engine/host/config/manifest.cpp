@@ -199,6 +199,22 @@ void read_circle(TableReader& reader, Measurement& m) {
     if (!m.from.contains(axis)) m.at[axis] = position;
 }
 
+/// A result has one limit, in the unit of its key.
+void read_tolerances(TableReader& reader, Measurement& m) {
+  for (const Quantity q : {Quantity::deviation, Quantity::small_angle, Quantity::angular_deviation,
+                           Quantity::deviation_per_length}) {
+    const std::string key = tolerance_key(q);
+    for (const auto& [result, limit] : reader.number_table(key, 1.0 / unit_of(q).per_si)) {
+      const bool known = std::any_of(m.tolerances.begin(), m.tolerances.end(),
+                                     [&](const Tolerance& t) { return t.result == result; });
+      if (known)
+        reader.error(key + "." + result, "expected one limit of " + result + ", found a second");
+      else
+        m.tolerances.push_back({result, limit, q});
+    }
+  }
+}
+
 Measurement read_measurement(TableReader& reader) {
   Measurement m;
   m.id = reader.text("id");
@@ -231,6 +247,7 @@ Measurement read_measurement(TableReader& reader) {
     m.foot = reader.number("foot_mm", mm);
   }
   if (m.kind == "thermal" || m.kind == "spindle") m.foot = reader.number("sensor_distance_mm", mm);
+  read_tolerances(reader, m);
   m.exclude = reader.integers("exclude");
   m.exclude_reason = reader.text("exclude_reason");
   for (const auto& [axis, position] : reader.number_table("from", mm)) m.from[axis] = position;

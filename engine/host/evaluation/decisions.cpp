@@ -18,33 +18,55 @@ Decision decide(double value, double U, double tolerance, std::string_view rule)
 
 namespace {
 
-/// One decision for each value of this name; empty if there is none.
-std::vector<Conformity> decisions_on(const Campaign& campaign,
-                                     const std::vector<Results::Analysed>& analyses,
-                                     const Axis& axis, const std::string& measurement,
-                                     const std::string& name, double tolerance) {
-  std::vector<Conformity> out;
+/// A limit, and of what it is one.
+struct Held {
+  std::string measurement, axis;
+  Tolerance tolerance;
+};
+
+Conformity decided(const Campaign& campaign, const Held& held, const std::string& plugin,
+                   const Value& v) {
+  Conformity c{.measurement = held.measurement,
+               .axis = held.axis,
+               .plugin = plugin,
+               .name = v.name,
+               .tolerance = held.tolerance.limit,
+               .quantity = v.quantity,
+               .decision = Decision::cannot_be_decided,
+               .reason = "no-uncertainty"};
+  if (!v.U || !(*v.U > 0.0)) return c;
+  c.decision =
+      decide(std::fabs(v.value), *v.U, held.tolerance.limit, campaign.certificate.decision_rule);
+  c.reason = c.decision == Decision::cannot_be_decided ? "near-limit" : "";
+  return c;
+}
+
+/// One decision for each value of this name and unit; false if there is none.
+bool add_decisions(const Campaign& campaign, const std::vector<Results::Analysed>& analyses,
+                   const Held& held, std::vector<Conformity>& out) {
+  const std::size_t before = out.size();
   for (const Results::Analysed& a : analyses)
-    for (const Value& v : a.evaluation.values) {
-      if (a.measurement != measurement || v.name != name) continue;
-      Conformity c{.measurement = measurement,
-                   .axis = axis.name,
-                   .plugin = a.plugin,
-                   .name = name,
-                   .tolerance = tolerance,
-                   .quantity = v.quantity,
-                   .decision = Decision::cannot_be_decided,
-                   .reason = {}};
-      if (v.U && *v.U > 0.0) {
-        c.decision =
-            decide(std::fabs(v.value), *v.U, tolerance, campaign.certificate.decision_rule);
-        if (c.decision == Decision::cannot_be_decided) c.reason = "near-limit";
-      } else {
-        c.reason = "no-uncertainty";
-      }
-      out.push_back(std::move(c));
-    }
-  return out;
+    for (const Value& v : a.evaluation.values)
+      if (a.measurement == held.measurement && v.name == held.tolerance.result &&
+          unit_of(v.quantity).symbol == unit_of(held.tolerance.quantity).symbol)
+        out.push_back(decided(campaign, held, a.plugin, v));
+  return out.size() > before;
+}
+
+Conformity without_value(const Held& held) {
+  return {held.measurement,
+          held.axis,
+          "",
+          held.tolerance.result,
+          held.tolerance.limit,
+          held.tolerance.quantity,
+          Decision::cannot_be_decided,
+          "no-value"};
+}
+
+bool has_own(const Measurement& m, const std::string& result) {
+  return std::any_of(m.tolerances.begin(), m.tolerances.end(),
+                     [&](const Tolerance& t) { return t.result == result; });
 }
 
 }  // namespace
@@ -53,17 +75,38 @@ std::vector<Conformity> held_against_tolerances(const Campaign& campaign,
                                                 const std::vector<Results::Analysed>& analyses) {
   std::vector<Conformity> out;
   for (const Axis& axis : campaign.machine.axes)
-    for (const auto& [name, tolerance] : axis.tolerance) {
-      const std::size_t before = out.size();
+    for (const auto& [name, limit] : axis.tolerance) {
+      const Tolerance tolerance{name, limit, deviation_of(axis.rotary)};
+      bool any = false;
       for (const Measurement& m : campaign.measurements)
         if (m.axis == axis.name && m.kind == "axis")
-          for (Conformity& c : decisions_on(campaign, analyses, axis, m.id, name, tolerance))
-            out.push_back(std::move(c));
-      if (out.size() == before)
-        out.push_back({"", axis.name, "", name, tolerance, deviation_of(axis.rotary),
-                       Decision::cannot_be_decided, "no-value"});
+          any |= has_own(m, name) ||
+                 add_decisions(campaign, analyses, {m.id, axis.name, tolerance}, out);
+      if (!any) out.push_back(without_value({"", axis.name, tolerance}));
+    }
+  for (const Measurement& m : campaign.measurements)
+    for (const Tolerance& tolerance : m.tolerances) {
+      const Held held{m.id, m.kind == "axis" ? m.axis : "", tolerance};
+      if (!add_decisions(campaign, analyses, held, out)) out.push_back(without_value(held));
     }
   return out;
+}
+
+void report_other_units(const Work& work, const std::vector<Results::Analysed>& analyses) {
+  for (const Measurement& m : work.campaign().measurements)
+    for (const Tolerance& t : m.tolerances)
+      for (const Results::Analysed& a : analyses)
+        for (const Value& v : a.evaluation.values) {
+          if (a.measurement != m.id || v.name != t.result ||
+              unit_of(v.quantity).symbol == unit_of(t.quantity).symbol)
+            continue;
+          const std::string unit(unit_of(v.quantity).symbol);
+          work.report(work.error_at(
+              "measurement." + m.id + "." + tolerance_key(t.quantity) + "." + t.result,
+              "expected a limit in the unit of the result, which " + a.plugin + " gives in " +
+                  (unit.empty() ? "no unit" : unit) + ", found one in " +
+                  std::string(unit_of(t.quantity).symbol)));
+        }
 }
 
 }  // namespace nonio::host::evaluation

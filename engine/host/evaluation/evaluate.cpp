@@ -102,6 +102,7 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
     doubts = open_doubts(work, results.analyses);
   }
   for (Remark& note : unevaluated(out.read, results)) results.notes.push_back(std::move(note));
+  report_other_units(work, results.analyses);
   if (failed()) return out;
   out.evaluated.followed = followed_of(out.read, results);
   results.conformity = held_against_tolerances(work.campaign(), results.analyses);

@@ -130,6 +130,9 @@ std::vector<Remark> unevaluated(const reading::ReadCampaign& read, const Results
 std::vector<Conformity> held_against_tolerances(const Campaign& campaign,
                                                 const std::vector<Results::Analysed>& analyses);
 
+/// Tolerances of measurements in another unit than the result that they name.
+void report_other_units(const Work& work, const std::vector<Results::Analysed>& analyses);
+
 /// The controllers and outputs that are asked for and apply; notes how their options are written
 /// now. Nothing after an error.
 struct WantedPlugins {

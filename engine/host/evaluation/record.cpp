@@ -224,14 +224,17 @@ std::vector<KnownFinding> known_findings(const Results& results, const Templates
   for (const auto& a : results.analyses) take(a.evaluation.findings);
   for (const auto& o : results.outputs) take(o.result.findings);
   for (const Conformity& c : results.conformity)
-    if (c.decision != Decision::conforms)
-      out.push_back({c.measurement, "tolerance." + c.axis + "." + c.name + "." + c.plugin,
-                     c.name + " of axis " + c.axis + ": " + to_text(c.decision), true,
-                     english ? ""
-                             : words("tolerance",
-                                     {{"name", c.name},
-                                      {"axis", c.axis},
-                                      {"decision", words.of("decision", to_text(c.decision))}})});
+    if (c.decision != Decision::conforms) {
+      const std::string decision = words.of("decision", to_text(c.decision));
+      out.push_back(
+          {c.measurement,
+           "tolerance." + (c.axis.empty() ? "" : c.axis + ".") + c.name + "." + c.plugin,
+           c.name + (c.axis.empty() ? "" : " of axis " + c.axis) + ": " + to_text(c.decision), true,
+           english ? ""
+           : c.axis.empty()
+               ? c.name + ": " + decision
+               : words("tolerance", {{"name", c.name}, {"axis", c.axis}, {"decision", decision}})});
+    }
   return out;
 }
 

@@ -252,7 +252,7 @@ void put_conformity(storage::JsonWriter& json, const std::vector<Conformity>& al
   for (const Conformity& c : all) {
     json.begin_object();
     put_text(json, "measurement", c.measurement);
-    json.member("axis", c.axis);
+    put_text(json, "axis", c.axis);
     put_text(json, "plugin", c.plugin);
     json.member("name", c.name);
     json.member("tolerance", printed(c.tolerance, c.quantity));

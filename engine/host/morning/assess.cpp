@@ -53,14 +53,17 @@ std::string page_of(const fs::path& out, const reports::MachineHistory& machine)
 class Assessment::State {
  public:
   State(const fs::path& out, const Tonight& tonight, const std::function<void()>& alive,
-        history::StoreReader store, KeptMachines kept, const config::SiteLogs* entered)
+        history::StoreReader store, Kept use_kept, const config::SiteLogs* entered)
       : out_(out),
         tonight_(tonight),
         alive_(alive),
         store_(std::move(store)),
         entered_(entered),
-        before_(std::move(kept)),
-        fits_(Fits::kept_in(out)) {}
+        kept_(out) {
+    if (use_kept == Kept::ignored) return;
+    before_ = kept_.machines();
+    nights_ = kept_.nights();
+  }
 
   Expected<void> make() {
     auto logs = store_.logs();
@@ -106,22 +109,27 @@ class Assessment::State {
     struct stat info {};
     KeptMachine::Page& page = machines_[i].kept.page;
     page = {};
+    machines_[i].is_new = true;
     if (::stat(page_of(out_, site.machines[i]).c_str(), &info) == 0)
       page = {page_key(i, templates), static_cast<std::uint64_t>(info.st_size), changed(info)};
     machines_[i].described.reset();
   }
 
-  void keep() {
-    keep_trends();
-    KeptMachines now;
-    now.nights = std::move(before_.nights);
-    now.bytes = before_.bytes;
-    for (Assessed& m : machines_) now.machines.emplace(m.state.machine.name, std::move(m.kept));
-    now.keep_in(out_);
-  }
-  void keep_trends() {
-    for (const Assessed& m : machines_) fits_.retain(m.kept.fits);
-    fits_.keep_in(out_);
+  /// `what`: all that was found out, or only trends.
+  void keep(Keep what) {
+    KeptMachines::Changes changes;
+    const bool all = what == Keep::all;
+    for (const auto& [name, kept] : before_) changes.gone.insert(name);
+    for (Assessed& m : machines_) {
+      const std::string& name = m.state.machine.name;
+      changes.gone.erase(name);
+      const bool trends = m.fits && m.fits->is_new();
+      if (!trends && !(all && m.is_new)) continue;
+      changes.machines.push_back({name, all && m.is_new ? &m.kept : nullptr,
+                                  trends ? std::optional(m.fits->kept()) : std::nullopt});
+    }
+    if (all && nights_are_new_) changes.nights = nights_;
+    kept_.keep(changes);
   }
 
   std::size_t count() const { return machines_.size(); }
@@ -147,6 +155,8 @@ class Assessment::State {
     std::vector<config::Event> events;
     std::vector<std::string> campaigns;  ///< those that count
     KeptMachine kept;
+    bool is_new = false;                    ///< `kept` is other than it was before
+    std::optional<Fits> fits{};             ///< as soon as it is read
     std::optional<AssessedMachine> read{};  ///< out of the store, if it had to be
     bool fitted = false;                    ///< `read` has its trends
     std::vector<std::vector<Adjusted>> adjusted{};
@@ -175,7 +185,8 @@ class Assessment::State {
     note_unknown(*states, events);
     for (const history::MachineState& state : *states) {
       alive_();
-      Assessed m{state, events.of(state.machine.name), {}, {}};
+      Assessed m{
+          .state = state, .events = events.of(state.machine.name), .campaigns = {}, .kept = {}};
       ByteWriter rows;
       rows(learned_from_);
       put_identity(rows, m);
@@ -189,9 +200,10 @@ class Assessment::State {
                       [&](const std::string& id) { return forgotten.contains(id); }))
         continue;  // everything of it was said to be gone on purpose
       const std::string key = storage::sha256(rows.take());
-      if (const auto kept = before_.machines.find(state.machine.name);
-          kept != before_.machines.end() && kept->second.rows == key)
+      if (const auto kept = before_.find(state.machine.name);
+          kept != before_.end() && kept->second.rows == key)
         m.kept = std::move(kept->second);
+      m.is_new = m.kept.rows != key;
       m.kept.rows = key;
       machines_.push_back(std::move(m));
     }
@@ -236,8 +248,8 @@ class Assessment::State {
     std::optional<std::uint64_t> first;
     for (auto& [night, bytes] : of_night) {
       const std::string key = storage::sha256(bytes.take());
-      const auto kept = before_.nights.find(night);
-      const bool same = kept != before_.nights.end() && kept->second.made_from == key;
+      const auto kept = nights_.find(night);
+      const bool same = kept != nights_.end() && kept->second.made_from == key;
       nights[night] = {key, same ? kept->second.asked : 0};
       if (!same && !first) first = night;
     }
@@ -249,7 +261,8 @@ class Assessment::State {
         at->second.asked = found == counted->end() ? 0 : found->second;
       }
     }
-    before_.nights = std::move(nights);
+    nights_are_new_ = first || nights.size() != nights_.size();
+    nights_ = std::move(nights);
     return {};
   }
 
@@ -259,19 +272,13 @@ class Assessment::State {
     AssessedMachine read{m.state, std::move(*stored), m.events, {}, {}};
     read.followed = followed_series(read.stored, read.events);
     read.shown = shown_series(read.stored);
-    m.kept.fits.clear();
     m.kept.series.resize(read.followed.size());
-    fits_.take_asked();
+    if (!m.fits) m.fits = Fits::of(kept_.trends_of(m.state.machine.name));
     for (std::size_t k = 0; k < read.followed.size(); ++k)
-      m.kept.series[k].lesson = lesson_of(read.followed[k], fits_, learned_from_);
+      m.kept.series[k].lesson = lesson_of(read.followed[k], *m.fits, learned_from_);
     m.read = std::move(read);
     m.fitted = false;
-    take_keys(m);
     return {};
-  }
-
-  void take_keys(Assessed& m) {
-    for (std::string& key : fits_.take_asked()) m.kept.fits.push_back(std::move(key));
   }
 
   Expected<void> learn_all() {
@@ -287,15 +294,13 @@ class Assessment::State {
   }
 
   void fit_series(Assessed& m) {
-    fits_.take_asked();
     for (std::size_t k = 0; k < m.read->followed.size(); ++k) {
       KeptMachine::Series& kept = m.kept.series[k];
       kept.manner = manner_of(kept.lesson.quantity, learned_);
-      fit(m.read->followed[k], kept.manner, fits_);
+      fit(m.read->followed[k], kept.manner, *m.fits);
       kept.tests = tests_of(m.read->followed[k]);
     }
     m.fitted = true;
-    take_keys(m);
   }
 
   Expected<void> fit_all() {
@@ -310,6 +315,7 @@ class Assessment::State {
       if (!m.read)
         if (auto well = read(m); !well) return well;
       fit_series(m);
+      m.is_new = true;
     }
     return {};
   }
@@ -320,7 +326,7 @@ class Assessment::State {
     for (const Assessed& m : machines_)
       for (const KeptMachine::Series& s : m.kept.series) tests.push_back(&s.tests);
     std::map<std::uint64_t, std::uint64_t> asked;
-    for (const auto& [night, of] : before_.nights) asked[night] = of.asked;
+    for (const auto& [night, of] : nights_) asked[night] = of.asked;
     auto p = adjusted_by_night(tests, asked);
     std::size_t next = 0;
     for (Assessed& m : machines_) {
@@ -339,6 +345,7 @@ class Assessment::State {
           interval_facts(*m.read, months_of_rule(m.state.machine.name, logs_));
       m.kept.stood = key;
       m.kept.date = tonight_.date;
+      m.is_new = true;
       m.read.reset();
     }
     return {};
@@ -370,13 +377,11 @@ class Assessment::State {
     if (!m.read)
       if (auto well = read(m); !well) return well;
     if (!m.fitted) fit_series(m);
-    fits_.take_asked();
     for (std::size_t k = 0; k < m.read->followed.size(); ++k) {
       tell(m.read->followed[k], m.adjusted[k]);
-      drop_untold(m.read->followed[k], fits_);
+      drop_untold(m.read->followed[k], *m.fits);
     }
-    ask_others(*m.read, fits_);
-    take_keys(m);
+    ask_others(*m.read, *m.fits);
     const Due due = due_of(*m.read, logs_);
     m.described = describe(*m.read, out_, due.day, due.why);
     m.fitted = false;
@@ -439,8 +444,10 @@ class Assessment::State {
   history::StoreReader store_;
   const config::SiteLogs* entered_;
   history::StoredLogs logs_{};
-  KeptMachines before_;
-  Fits fits_;
+  KeptMachines kept_;
+  std::map<std::string, KeptMachine> before_{};
+  std::map<std::uint64_t, KeptMachines::Night> nights_{};
+  bool nights_are_new_ = false;
   Learned learned_{};
   std::uint64_t learned_from_ = 0;  ///< evaluations
   std::vector<Assessed> machines_{};
@@ -461,9 +468,7 @@ Expected<Assessment> Assessment::of(const fs::path& out, const Tonight& tonight,
                                     const config::SiteLogs* entered) {
   auto store = history::StoreReader::open(out);
   if (!store) return fail(store.error());
-  auto state =
-      std::make_unique<State>(out, tonight, alive, std::move(*store),
-                              kept == Kept::used ? KeptMachines::in(out) : KeptMachines(), entered);
+  auto state = std::make_unique<State>(out, tonight, alive, std::move(*store), kept, entered);
   if (auto made = state->make(); !made) return fail(made.error());
   return Assessment(std::move(state));
 }
@@ -480,7 +485,7 @@ bool Assessment::has_page(std::size_t machine, const std::string& templates) con
 void Assessment::note_page(std::size_t machine, const std::string& templates) {
   state_->note_page(machine, templates);
 }
-void Assessment::keep() { state_->keep(); }
+void Assessment::keep() { state_->keep(Keep::all); }
 
 Expected<reports::SiteHistory> assess(const fs::path& out, const Tonight& tonight,
                                       const std::function<void()>& alive, Keep keep) {
@@ -489,13 +494,15 @@ Expected<reports::SiteHistory> assess(const fs::path& out, const Tonight& tonigh
   return std::move(*made).take_whole(keep);
 }
 
+reports::SiteHistory Assessment::take_site() && { return std::move(state_->site); }
+
 Expected<reports::SiteHistory> Assessment::take_whole(Keep keep) && {
   for (std::size_t i = 0; i < state_->count(); ++i) {
     auto machine = whole(i);
     if (!machine) return fail(machine.error());
     state_->site.machines[i] = std::move(*machine);
   }
-  if (keep == Keep::yes) state_->keep_trends();
+  if (keep != Keep::nothing) state_->keep(keep);
   return std::move(state_->site);
 }
 

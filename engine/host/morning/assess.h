@@ -14,18 +14,19 @@
 /// history's store and of what the night knows: the same bytes for the same store and night.
 namespace nonio::host::morning {
 
-/// Whether trends that were computed stay in OUT/.nonio/trends for the next time: for a night,
-/// which has the folder to itself.
-enum class Keep { no, yes };
+/// What stays in OUT/.nonio/machines.sqlite for the next time: for a night, which has the folder to
+/// itself.
+enum class Keep { nothing, trends, all };
 
 /// The machines with their series, what changed, what they will be at their next calibration, and
 /// the lines that ask for a decision, in their order. `alive` is called now and then. An error if
 /// there is no store that this program reads.
 Expected<reports::SiteHistory> assess(const std::filesystem::path& out, const Tonight& tonight,
-                                      const std::function<void()>& alive, Keep keep = Keep::no);
+                                      const std::function<void()>& alive,
+                                      Keep keep = Keep::nothing);
 
 /// The same for sites with very many campaigns: machines of which nothing is new since the night
-/// before are not read again (OUT/.nonio/machines), and come without their series.
+/// before are not read again (OUT/.nonio/machines.sqlite), and come without their series.
 class Assessment {
  public:
   enum class Kept { ignored, used };
@@ -48,6 +49,7 @@ class Assessment {
   void note_page(std::size_t machine, const std::string& templates);
   /// For the next night.
   void keep();
+  reports::SiteHistory take_site() &&;
   /// With all series of all machines.
   Expected<reports::SiteHistory> take_whole(Keep keep) &&;
 

@@ -139,10 +139,8 @@ std::uint64_t learned_from(std::uint64_t evaluations) {
 Lesson lesson_of(const FollowedSeries& s, Fits& fits, std::uint64_t evaluations) {
   const auto later = std::find_if(s.evaluations.begin(), s.evaluations.end(),
                                   [&](std::uint64_t e) { return e > evaluations; });
-  kernel::Series known = s.series;
-  const auto points = static_cast<std::size_t>(later - s.evaluations.begin());
-  known.points.erase(known.points.begin() + (later - s.evaluations.begin()), known.points.end());
-  std::erase_if(known.declared, [&](const kernel::Declared& d) { return d.after + 1 >= points; });
+  const kernel::Series known =
+      first_points(s, static_cast<std::size_t>(later - s.evaluations.begin()));
   Lesson out{s.quantity + " " + s.unit, s.series.points.size(), {}, {}};
   if (known.points.empty()) return out;
   out.slope = fits.slope(known);

@@ -6,18 +6,12 @@
 
 #include "host/morning/bytes.h"
 #include "host/storage/digest.h"
-#include "host/storage/files.h"
 
 namespace nonio::host::morning {
 namespace kernel = nonio::history;
-namespace fs = std::filesystem;
 
 namespace {
 
-/// Another program may come to another trend of the same series.
-constexpr std::string_view magic = "nonio-trends/2\n";
-constexpr const char* kept_folder = ".nonio";
-constexpr const char* kept_name = "trends";
 constexpr std::size_t key_size = 64;
 
 /// Everything that has a say in a trend.
@@ -87,33 +81,19 @@ bool fits_in(const kernel::Trend& t, const kernel::Series& s) {
 
 }  // namespace
 
-Fits Fits::kept_in(const fs::path& out) {
+Fits Fits::of(std::string_view kept) {
   Fits fits;
-  const fs::path path = out / kept_folder / kept_name;
-  std::error_code error;
-  if (!fs::exists(path, error)) return fits;
-  const auto file = storage::read_file(path);
-  if (!file || file->size() < magic.size() + key_size) return fits;
-  const std::string_view all(*file);
-  // A digest at the end: what is damaged is none.
-  const std::string_view body = all.substr(0, all.size() - key_size);
-  if (!body.starts_with(magic) || storage::sha256(body) != all.substr(body.size())) return fits;
-  ByteReader r(body.substr(magic.size()));
+  ByteReader r(kept);
   while (r.well() && !r.at_end()) {
-    const std::string key(r.text(key_size));
-    const auto size = r.get<std::uint64_t>();
-    fits.kept_.emplace(key, Kept{std::string(r.text(size)), false});
+    std::string key(r.text(key_size));
+    std::string bytes;
+    r(bytes);
+    fits.kept_.emplace(std::move(key), Kept{std::move(bytes), false});
   }
   return r.well() ? std::move(fits) : Fits();
 }
 
-void Fits::retain(const std::vector<std::string>& keys) {
-  for (const std::string& key : keys)
-    if (const auto found = kept_.find(key); found != kept_.end()) found->second.used = true;
-}
-
 Fits::Kept* Fits::find(const std::string& key) {
-  asked_.push_back(key);
   const auto found = kept_.find(key);
   if (found == kept_.end()) return nullptr;
   found->second.used = true;
@@ -147,23 +127,19 @@ std::optional<kernel::Slope> Fits::slope(const kernel::Series& series) {
   return slope;
 }
 
-void Fits::keep_in(const fs::path& out) const {
-  const bool all_used =
-      std::all_of(kept_.begin(), kept_.end(), [](const auto& kept) { return kept.second.used; });
-  if (computed_ == 0 && all_used) return;
-  std::vector<const std::string*> keys;
-  for (const auto& [key, kept] : kept_)
-    if (kept.used) keys.push_back(&key);
-  std::sort(keys.begin(), keys.end(), [](const auto* a, const auto* b) { return *a < *b; });
-  std::string body(magic);
-  for (const std::string* key : keys) {
-    ByteWriter w;
-    w.put(kept_.at(*key).bytes);
-    body += *key + w.take();
+bool Fits::is_new() const {
+  return computed_ > 0 || std::any_of(kept_.begin(), kept_.end(),
+                                      [](const auto& kept) { return !kept.second.used; });
+}
+
+std::string Fits::kept() const {
+  ByteWriter w;
+  for (const auto& [key, kept] : kept_) {
+    if (!kept.used) continue;
+    w.put_raw(key);
+    w.put(kept.bytes);
   }
-  body += storage::sha256(body);
-  [[maybe_unused]] const auto kept =
-      storage::publish(out / kept_folder, {{kept_name, std::move(body)}});
+  return w.take();
 }
 
 }  // namespace nonio::host::morning

@@ -3,7 +3,6 @@
 
 #include "host/morning/bytes.h"
 #include "host/storage/digest.h"
-#include "host/storage/files.h"
 
 namespace nonio {
 
@@ -76,11 +75,29 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Another program may find out something else.
-constexpr std::string_view machines_magic = "nonio-machines/4 " NONIO_VERSION "\n";
-constexpr const char* machines_folder = ".nonio";
-constexpr const char* machines_name = "machines";
+using storage::Database;
+
+constexpr const char* kept_folder = ".nonio";
+constexpr const char* machines_name = "machines.sqlite";
+/// Another program may find out something else, and come to another trend of the same series.
+constexpr std::string_view machines_version = "5 " NONIO_VERSION, trends_version = "3";
 constexpr std::size_t digest_size = 64;
+constexpr double patience = 5.0;  // s; without the file a night takes longer
+
+constexpr const char* tables =
+    "CREATE TABLE version(of TEXT PRIMARY KEY, is_ TEXT NOT NULL);"
+    "CREATE TABLE machine(name TEXT PRIMARY KEY, found BLOB NOT NULL, trends BLOB NOT NULL);"
+    "CREATE TABLE night(found BLOB NOT NULL)";
+
+std::string signed_bytes(std::string body) { return storage::sha256(body) + body; }
+
+/// The bytes behind their digest; none if they are others.
+std::optional<std::string_view> body_of(const std::string& bytes) {
+  if (bytes.size() < digest_size) return std::nullopt;
+  const std::string_view body = std::string_view(bytes).substr(digest_size);
+  if (storage::sha256(body) != bytes.substr(0, digest_size)) return std::nullopt;
+  return body;
+}
 
 }  // namespace
 
@@ -123,45 +140,123 @@ void fields(Io& io, T& p) { io(p.made_from, p.size, p.changed); }
 
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, KeptMachine>
-void fields(Io& io, T& m) { io(m.rows, m.series, m.fits, m.stood, m.date, m.standing, m.page); }
+void fields(Io& io, T& m) { io(m.rows, m.series, m.stood, m.date, m.standing, m.page); }
 
-KeptMachines KeptMachines::in(const fs::path& out) {
-  const fs::path path = out / machines_folder / machines_name;
+KeptMachines::KeptMachines(fs::path out) : out_(std::move(out)) {
   std::error_code error;
-  if (!fs::exists(path, error)) return {};
-  const auto file = storage::read_file(path);
-  if (!file || file->size() < machines_magic.size() + digest_size) return {};
-  const std::string_view all(*file);
-  const std::string_view body = all.substr(0, all.size() - digest_size);
-  if (!body.starts_with(machines_magic) || storage::sha256(body) != all.substr(body.size()))
-    return {};
-  ByteReader r(body.substr(machines_magic.size()));
-  KeptMachines kept;
-  kept.bytes = file->size();
-  r.each([&] {
-    auto& [made_from, asked] = kept.nights[r.get<std::uint64_t>()];
-    r(made_from, asked);
-  });
-  r.each([&] {
-    std::string name;
-    r(name);
-    r(kept.machines[name]);
-  });
-  return r.well() && r.at_end() ? kept : KeptMachines{};
+  if (fs::exists(out_ / kept_folder / machines_name, error)) open();
 }
 
-void KeptMachines::keep_in(const fs::path& out) const {
-  ByteWriter w;
-  w.reserve(bytes + bytes / 8);
-  w.put_raw(machines_magic);
-  w.put(static_cast<std::uint64_t>(nights.size()));
-  for (const auto& [number, night] : nights) w(number, night.made_from, night.asked);
-  w.put(static_cast<std::uint64_t>(machines.size()));
-  for (const auto& [name, machine] : machines) w(name, machine);
-  std::string body = w.take();
-  body += storage::sha256(body);
-  [[maybe_unused]] const auto kept =
-      storage::publish(out / machines_folder, {{machines_name, std::move(body)}});
+void KeptMachines::open() {
+  auto file = Database::open(out_ / kept_folder / machines_name, Database::Use::write, patience);
+  if (!file) return;
+  file_ = std::move(*file);
+  if (!is_readable()) file_.reset();
+}
+
+bool KeptMachines::is_readable() {
+  if (file_->first("SELECT is_ FROM version WHERE of = 'trends'") != trends_version) return false;
+  has_machines_ = file_->first("SELECT is_ FROM version WHERE of = 'machines'") == machines_version;
+  return static_cast<bool>(file_->take_error());
+}
+
+std::map<std::string, KeptMachine> KeptMachines::machines() {
+  std::map<std::string, KeptMachine> out;
+  if (!file_ || !has_machines_) return out;
+  std::vector<Database::Row> rows;
+  std::string last;
+  do {  // some at a time: all of them are as many bytes again
+    rows = file_->rows("SELECT name, found FROM machine WHERE name > ? ORDER BY name LIMIT 64",
+                       {last});
+    for (const Database::Row& row : rows) {
+      last = row[0];
+      const auto body = body_of(row[1]);
+      if (!body) continue;
+      ByteReader r(*body);
+      KeptMachine machine;
+      r(machine);
+      if (r.well() && r.at_end()) out.emplace_hint(out.end(), row[0], std::move(machine));
+    }
+  } while (!rows.empty());
+  if (!file_->take_error()) file_.reset();
+  return out;
+}
+
+std::map<std::uint64_t, KeptMachines::Night> KeptMachines::nights() {
+  std::map<std::uint64_t, Night> out;
+  if (!file_ || !has_machines_) return out;
+  for (const Database::Row& row : file_->rows("SELECT found FROM night")) {
+    const auto body = body_of(row[0]);
+    if (!body) continue;
+    ByteReader r(*body);
+    const auto number = r.get<std::uint64_t>();
+    r(out[number].made_from, out[number].asked);
+  }
+  if (!file_->take_error()) file_.reset();
+  return out;
+}
+
+std::string KeptMachines::trends_of(const std::string& machine) {
+  if (!file_) return {};
+  const std::string bytes = file_->first("SELECT trends FROM machine WHERE name = ?", {machine});
+  if (!file_->take_error()) file_.reset();
+  return std::string(body_of(bytes).value_or(""));
+}
+
+void KeptMachines::make_anew() {
+  const fs::path path = out_ / kept_folder / machines_name;
+  std::error_code ignored;
+  for (const char* end : {"", "-journal"}) fs::remove(path.string() + end, ignored);
+  auto made = Database::open(path, Database::Use::create, patience);
+  if (!made) return;
+  file_ = std::move(*made);
+  file_->script(tables);
+  file_->put("INSERT INTO version VALUES('trends', ?)", {trends_version});
+}
+
+void KeptMachines::keep(const Changes& changes) {
+  if (changes.machines.empty() && changes.gone.empty() && !changes.nights) return;
+  if (!file_) make_anew();  // it is not there, or not to be read
+  if (!file_) return;
+  if (put(changes)) return;
+  file_.reset();
+  make_anew();  // what can be read and not written would stay as it is for ever
+}
+
+Expected<void> KeptMachines::put(const Changes& changes) {
+  Database::Transaction transaction(*file_);
+  if (!has_machines_) {
+    file_->put("UPDATE machine SET found = x''");
+    file_->put("DELETE FROM night");
+    file_->put("INSERT OR REPLACE INTO version VALUES('machines', ?)", {machines_version});
+  }
+  for (const Changes::Of& of : changes.machines) {
+    file_->put("INSERT OR IGNORE INTO machine VALUES(?, x'', x'')", {of.machine});
+    if (of.kept != nullptr) {
+      ByteWriter w;
+      w(*of.kept);
+      const std::string bytes = signed_bytes(w.take());
+      file_->put("UPDATE machine SET found = ? WHERE name = ?",
+                 {Database::Blob{bytes}, of.machine});
+    }
+    if (of.trends) {
+      const std::string bytes = signed_bytes(*of.trends);
+      file_->put("UPDATE machine SET trends = ? WHERE name = ?",
+                 {Database::Blob{bytes}, of.machine});
+    }
+  }
+  for (const std::string& name : changes.gone)
+    file_->put("DELETE FROM machine WHERE name = ?", {name});
+  if (changes.nights) {
+    file_->put("DELETE FROM night");
+    for (const auto& [number, night] : *changes.nights) {
+      ByteWriter w;
+      w(number, night.made_from, night.asked);
+      const std::string bytes = signed_bytes(w.take());
+      file_->put("INSERT INTO night VALUES(?)", {Database::Blob{bytes}});
+    }
+  }
+  return transaction.end();
 }
 
 std::string bytes_of(const std::vector<reports::MorningLine>& lines) {

@@ -4,11 +4,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "host/morning/changes.h"
 #include "host/morning/standing.h"
+#include "host/storage/database.h"
 
 namespace nonio::host::morning {
 
@@ -22,9 +25,8 @@ struct KeptMachine {
     SeriesTests tests;  ///< of that trend
   };
   std::vector<Series> series{};
-  std::vector<std::string> fits{};  ///< keys
-  std::string stood{};              ///< digest of all that goes into `standing`, but the date
-  std::string date{};               ///< of the night
+  std::string stood{};  ///< digest of all that goes into `standing`, but the date
+  std::string date{};   ///< of the night
   Standing standing{};
   struct Page {
     std::string made_from{};
@@ -34,20 +36,46 @@ struct KeptMachine {
   Page page{};
 };
 
-/// All of a site, in OUT/.nonio/machines. They change no result: what is not there, is damaged or of
-/// another version is found out again.
-struct KeptMachines {
-  std::map<std::string, KeptMachine> machines{};
+/// All of a site, in OUT/.nonio/machines.sqlite: of each machine what was found out, and its trends.
+/// They change no result: what is not there, is damaged or of another version is found out again.
+/// Trouble with the file is no error.
+class KeptMachines {
+ public:
   struct Night {
     std::string made_from{};  ///< digest of its evaluations
     std::uint64_t asked = 0;
   };
-  std::map<std::uint64_t, Night> nights{};
-  std::size_t bytes = 0;  ///< that they took when they were read
 
-  static KeptMachines in(const std::filesystem::path& out);
-  /// Not being able to is no error.
-  void keep_in(const std::filesystem::path& out) const;
+  explicit KeptMachines(std::filesystem::path out);
+
+  std::map<std::string, KeptMachine> machines();
+  std::map<std::uint64_t, Night> nights();
+  /// What `Fits::kept` returned for the machine.
+  std::string trends_of(const std::string& machine);
+
+  /// What a night adds. All of it comes into the file, or nothing.
+  struct Changes {
+    struct Of {
+      std::string machine;
+      const KeptMachine* kept = nullptr;    ///< null: as it was, or nothing
+      std::optional<std::string> trends{};  ///< none: as they were
+    };
+    std::vector<Of> machines;
+    std::set<std::string> gone;  ///< machines
+    /// All of them, where any is another.
+    std::optional<std::map<std::uint64_t, Night>> nights{};
+  };
+  void keep(const Changes& changes);
+
+ private:
+  void open();
+  bool is_readable();
+  void make_anew();
+  Expected<void> put(const Changes& changes);
+
+  std::filesystem::path out_;
+  std::optional<storage::Database> file_;
+  bool has_machines_ = false;  ///< of this version
 };
 
 /// The same bytes, the same values.

@@ -155,18 +155,24 @@ class OfMachine {
 
   // ---- limits
 
+  /// What was not measured along one axis is one matter for each analysis: a circle, a spindle.
+  const std::string& place_of(const ShownSeries& s) const {
+    return s.axis.empty() ? m_.stored.results[s.judged.back()].source : s.axis;
+  }
+
   /// Of each axis: the worst of what does not conform, or what cannot be decided.
   void judged() {
     std::map<std::string, std::vector<const ShownSeries*>> out, open, good, anew;
     for (const ShownSeries& s : m_.shown) {
       const history::StoredResult& last = m_.stored.results[s.judged.back()];
       if (!last.tolerance || s.ended) continue;
+      const std::string& of = place_of(s);
       if (last.decision == does_not_conform)
-        out[s.axis].push_back(&s);
+        out[of].push_back(&s);
       else if (!last.decision.empty() && last.decision != conforms)
-        open[s.axis].push_back(&s);
+        open[of].push_back(&s);
       else if (is_fixed(s))
-        (is_judged_alike(s) ? good : anew)[s.axis].push_back(&s);
+        (is_judged_alike(s) ? good : anew)[of].push_back(&s);
     }
     for (auto& [axis, all] : out) add(beyond(axis, all));
     for (auto& [axis, all] : open)
@@ -218,7 +224,7 @@ class OfMachine {
                      [&](const auto* a, const auto* b) { return share(*a) > share(*b); });
     const ShownSeries& worst = *all.front();
     const auto& last = m_.stored.results[worst.judged.back()];
-    MorningLine l = line(kind, finding, worst.axis);
+    MorningLine l = line(kind, finding, place_of(worst));
     l.axis = worst.axis;
     l.quantity = worst.quantity;
     l.unit = quantity_of_unit(worst.unit);

@@ -68,12 +68,27 @@ std::string instrument_in(const StoredResult& r) {
   return {};
 }
 
-std::uint64_t seed_of(const StoredMachine& m, const std::vector<std::size_t>& results) {
-  std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a
-  for (const std::size_t i : results)
+/// FNV-1a, up to each of the results.
+std::vector<std::uint64_t> seeds_of(const StoredMachine& m,
+                                    const std::vector<std::size_t>& results) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  std::vector<std::uint64_t> out;
+  for (const std::size_t i : results) {
     for (const std::string* text : {&m.campaigns[m.results[i].campaign].id, &m.results[i].quantity})
       for (const char c : *text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash;
+    out.push_back(hash);
+  }
+  return out;
+}
+
+/// A campaign's u is itself an estimate, of few runs: one that is small by chance would make a
+/// step of its noise. So half of each variance is the median of those of the series.
+void pool(std::vector<kernel::Point>& points) {
+  std::vector<double> variances;
+  for (const kernel::Point& p : points) variances.push_back(p.u * p.u);
+  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+  std::nth_element(variances.begin(), middle, variances.end());
+  for (kernel::Point& p : points) p.u = std::sqrt((p.u * p.u + *middle) / 2.0);
 }
 
 /// As found before as left, on one day; within a campaign in the order of its manifest.
@@ -245,21 +260,13 @@ class Joining {
       s.series.points.push_back(std::move(p));
       s.night = std::max(s.night, c.night);
       s.evaluations.push_back(static_cast<std::uint64_t>(c.evaluation));
+      s.stated_u.push_back(*r.u_repeat);
     }
     pool(s.series.points);
-    s.series.seed = seed_of(m_, results);
+    s.seeds = seeds_of(m_, results);
+    s.series.seed = s.seeds.back();
     s.series.own_slope = true;
     return s;
-  }
-
-  /// A campaign's u is itself an estimate, of few runs: one that is small by chance would make a
-  /// step of its noise. So half of each variance is the median of those of the series.
-  static void pool(std::vector<kernel::Point>& points) {
-    std::vector<double> variances;
-    for (const kernel::Point& p : points) variances.push_back(p.u * p.u);
-    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-    std::nth_element(variances.begin(), middle, variances.end());
-    for (kernel::Point& p : points) p.u = std::sqrt((p.u * p.u + *middle) / 2.0);
   }
 
   const StoredMachine& m_;
@@ -317,6 +324,18 @@ std::vector<std::size_t> deciding(const StoredMachine& m, const std::vector<std:
 }
 
 }  // namespace
+
+kernel::Series first_points(const FollowedSeries& s, std::size_t count) {
+  kernel::Series known = s.series;
+  if (count >= known.points.size()) return known;
+  known.points.resize(count);
+  std::erase_if(known.declared, [&](const kernel::Declared& d) { return d.after + 1 >= count; });
+  if (count == 0) return known;
+  for (std::size_t i = 0; i < count; ++i) known.points[i].u = s.stated_u[i];
+  pool(known.points);
+  known.seed = s.seeds[count - 1];
+  return known;
+}
 
 std::vector<ShownSeries> shown_series(const StoredMachine& machine) {
   std::vector<ShownSeries> out;

@@ -20,6 +20,8 @@ struct FollowedSeries {
   std::string axis, quantity, unit;
   std::vector<std::size_t> results;          ///< of the points: indices into StoredMachine::results
   std::vector<std::uint64_t> evaluations{};  ///< of the points
+  std::vector<double> stated_u{};            ///< of the points, before they were pooled
+  std::vector<std::uint64_t> seeds{};        ///< of the series up to each of its points
   /// Numbers of the same quantity before this series began, which cannot be joined.
   struct Apart {
     std::size_t result = 0;
@@ -52,6 +54,9 @@ struct ShownSeries {
 /// All that is followed of a machine, by axis and quantity. `events`: those of this machine.
 std::vector<FollowedSeries> followed_series(const history::StoredMachine& machine,
                                             const std::vector<config::Event>& events);
+
+/// The series as it was when it had only its first `count` points: no later one moves it.
+nonio::history::Series first_points(const FollowedSeries& series, std::size_t count);
 
 std::vector<ShownSeries> shown_series(const history::StoredMachine& machine);
 

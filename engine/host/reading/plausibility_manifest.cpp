@@ -41,6 +41,16 @@ void axis_statements(const Axis& a, std::vector<Statement>& all) {
                      Quantity::deviation});
 }
 
+/// The same of one measurement: as widely as an angle or slope is a length over a metre.
+void tolerance_statements(const Measurement& m, std::vector<Statement>& all) {
+  for (const Tolerance& t : m.tolerances) {
+    const bool angle = t.quantity == Quantity::angular_deviation;
+    const double unit = angle ? arc_second : micrometre;
+    all.push_back({"measurement." + m.id + "." + tolerance_key(t.quantity) + "." + t.result,
+                   t.limit, 1e-3 * unit, (angle ? 600.0 : 1000.0) * unit, t.quantity});
+  }
+}
+
 /// What a certificate prints of how a test was made.
 void test_statements(const Campaign& c, const Measurement& m, std::vector<Statement>& all) {
   const std::string key = "measurement." + m.id + ".";
@@ -89,7 +99,10 @@ std::vector<Statement> statements(const Campaign& c) {
   all.push_back(
       {"environment.drift_minutes", e.drift_time, 1 * minutes, 10080 * minutes, Quantity::time});
   for (const Axis& a : c.machine.axes) axis_statements(a, all);
-  for (const Measurement& m : c.measurements) test_statements(c, m, all);
+  for (const Measurement& m : c.measurements) {
+    tolerance_statements(m, all);
+    test_statements(c, m, all);
+  }
   return all;
 }
 

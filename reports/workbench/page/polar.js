@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Circles as a ball bar draws them: readings and model enlarged about a ring, and what remains about another. The page
-// from disk and the live one draw with this code.
+// Circles as a ball bar draws them: readings and model enlarged about a ring, and what remains about another; each
+// plane by itself, one below the other. The page from disk and the live one draw with this code.
 "use strict";
 /// figure(name): "polar" or "rest", or nothing; put: as draw.js has it; value(i): what remains of reading i, NaN where
 /// there is no model yet; rows: the readings that are shown. Gives the two pictures, or none.
@@ -39,6 +39,7 @@ function nonioPolar({figure, data, rows, put, value, number, text}) {
   let modelled = true;
   for (const path of paths.values()) {
     path.sort((a, b) => a.t - b.t);
+    path.plane = data.circle_axes[data.measurement[path[0].i]];
     const look = data.direction[path[0].i] > 0 ? "plus" : "minus", [a, b, c] = centred(path, (i) => data.deviation[i]);
     const off = (p) => data.deviation[p.i] - a * Math.cos(p.t) - b * Math.sin(p.t) - c;
     modelled = modelled && path.every((p) => finite(value(p.i)));
@@ -47,6 +48,7 @@ function nonioPolar({figure, data, rows, put, value, number, text}) {
     curves.rest.push({look, path, r: path.map((p) => value(p.i))});
   }
   if (!modelled) curves.model = curves.rest = [];
+  const planes = [...new Set([...paths.values()].map((path) => path.plane))];
 
   /// um of a ring: three rings hold the largest of them.
   function division(all) {
@@ -65,19 +67,23 @@ function nonioPolar({figure, data, rows, put, value, number, text}) {
     holder.querySelector("figcaption b").textContent = text(data.words[name + "_title"], places);
     [...holder.querySelectorAll("figcaption p")].pop().textContent = text(says, places);
     svg.setAttribute("aria-label", text(data.words[name + "_title"], places));
-    svg.setAttribute("viewBox", `0 0 ${size} ${size}`);
+    svg.setAttribute("viewBox", `0 0 ${size} ${size * planes.length}`);
     svg.replaceChildren();
-    const frame = {svg, k: name, x: 0, y: 0, w: size, h: size, points: []};
-    for (let k = 1; k <= 7; k++) put(svg, "circle", {class: k === 4 ? "zero" : "rule ring", cx: middle, cy: middle, r: k * ring});
-    for (const d of [`M4 ${middle}H${size - 4}`, `M${middle} 4V${size - 4}`]) put(svg, "path", {class: "rule", d});
-    for (const [k, axis] of [...data.circle_axes].entries())
-      put(svg, "text", k === 0 ? {x: size - 2, y: middle - 4, "text-anchor": "end"} : {x: middle + 4, y: 11}, "+" + axis);
-    const at = (p, r) => [middle + (4 + r / each) * ring * Math.cos(p.t), middle - (4 + r / each) * ring * Math.sin(p.t)];
+    const frame = {svg, k: name, x: 0, y: 0, w: size, h: size * planes.length, points: []};
+    for (const [row, plane] of planes.entries()) {
+      const top = row * size, y = top + middle;
+      for (let k = 1; k <= 7; k++) put(svg, "circle", {class: k === 4 ? "zero" : "rule ring", cx: middle, cy: y, r: k * ring});
+      for (const d of [`M4 ${y}H${size - 4}`, `M${middle} ${top + 4}V${top + size - 4}`]) put(svg, "path", {class: "rule", d});
+      put(svg, "text", {x: size - 2, y: y - 4, "text-anchor": "end"}, "+" + plane[0]);
+      put(svg, "text", {x: middle + 4, y: top + 11}, "+" + plane[1]);
+    }
+    const at = (p, r, top) => [middle + (4 + r / each) * ring * Math.cos(p.t), top + middle - (4 + r / each) * ring * Math.sin(p.t)];
     for (const {look, path, r} of all) {
+      const top = planes.indexOf(path.plane) * size;
       let d = "", last = NaN;
       path.forEach((p, j) => {
         if (!finite(r[j])) return;
-        const [x, y] = at(p, r[j]);
+        const [x, y] = at(p, r[j], top);
         d += (p.t - last < 0.2 ? "L" : "M") + r1(x) + " " + r1(y);
         last = p.t;
         if (look !== "mean") frame.points.push([x, y, p.i]);

@@ -555,6 +555,22 @@ class Page(live_browser.CampaignPage):
         self.assertGreaterEqual(self.js("document.querySelectorAll('figure .chosen').length"), 3, "marked in the others too")
         self.no_complaints()
 
+    def test_circles_of_two_planes_are_drawn_apart(self):
+        folder = self.campaign(SOURCE / "samples/site/40-circles")
+        manifest = folder / "campaign.toml"
+        manifest.write_text(manifest.read_text() + '[[measurement]]\nid = "C2"\nfile = "circle.csv"\nkind = "circle"\nplane = "YZ"\n'
+                            "radius_mm = 150\ncentre = { X = 400, Y = 250, Z = 200 }\n")
+        server = self.serve(folder)
+        server.ask("api/parts/XYZ/picture")
+        self.open(server, "fitted|explained")
+        picture = "document.querySelector('#picture-polar svg')"
+        self.wait(lambda: self.js(f"{picture}.querySelectorAll('path.line.plus').length") == 2)
+        self.assertEqual("0 0 320 640", self.js(f"{picture}.getAttribute('viewBox')"))
+        self.assertEqual(["+X", "+Y", "+Y", "+Z"], self.js(f"[...{picture}.querySelectorAll('text')].map((t) => t.textContent)"))
+        tops = self.js(f"[...{picture}.querySelectorAll('path.line.plus')].map((p) => p.getBBox().y)")
+        self.assertTrue(0 < tops[0] < 320 < tops[1] < 640, tops)
+        self.no_complaints()
+
     def test_numbers_of_all_samples_are_those_of_compare_and_explain(self):
         """Against the server's own answers, which test live.numbers holds against `nonio compare` and `explain`."""
         sources = [s for s in sorted((SOURCE / "samples/site").iterdir()) if (s / "campaign.toml").exists()]

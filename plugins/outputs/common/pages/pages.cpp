@@ -339,6 +339,8 @@ Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
     texts.emplace_back(key + "lateral", one.lateral);
     texts.emplace_back(key + "file", one.file);
     texts.emplace_back(key + "exclude_reason", one.exclude_reason);
+    for (const Tolerance& limit : one.tolerances)
+      texts.emplace_back(key + tolerance_key(limit.quantity), limit.result);
   }
   for (const auto& [key, text] : texts)
     if (auto printable = check_text(text, fonts, key); !printable) {

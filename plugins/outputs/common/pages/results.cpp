@@ -187,7 +187,7 @@ std::vector<std::string> undecided(const Source& source) {
   const auto is_held = [&](const std::string& measurement, const std::string& name) {
     const auto& all = source.in.results.conformity;
     return std::any_of(all.begin(), all.end(), [&](const Conformity& k) {
-      return k.measurement == measurement && k.name == name &&
+      return k.measurement == measurement && k.name == name && k.reason != "no-value" &&
              !(source.certificate && k.reason == "no-uncertainty");
     });
   };
@@ -202,21 +202,33 @@ std::vector<std::string> undecided(const Source& source) {
   };
   std::string not_measured;
   std::vector<std::string> sentences;
+  const auto add_missing = [&](const Measurement& m, const std::vector<std::string>& limited) {
+    std::string names;
+    for (const std::string& name : limited)
+      if (!is_held(m.id, name) && !is_held_with(m.id, name))
+        names += (names.empty() ? "" : ", ") + symbol(name);
+    if (!names.empty())
+      sentences.push_back(w.get("undecided.no_result", {{"measurement", m.id}, {"names", names}}));
+  };
   for (const Axis& axis : c.machine.axes) {
     if (axis.tolerance.empty()) continue;
     bool measured = false;
     for (const Measurement& m : c.measurements) {
       if (m.axis != axis.name || m.kind != "axis") continue;
       measured = true;
-      std::string names;
-      for (const auto& [name, limit] : axis.tolerance)
-        if (!is_held(m.id, name) && !is_held_with(m.id, name))
-          names += (names.empty() ? "" : ", ") + symbol(name);
-      if (!names.empty())
-        sentences.push_back(
-            w.get("undecided.no_result", {{"measurement", m.id}, {"names", names}}));
+      std::vector<std::string> names;
+      for (const auto& [name, limit] : axis.tolerance) names.push_back(name);
+      add_missing(m, names);
     }
     if (!measured) not_measured += (not_measured.empty() ? "" : ", ") + axis.name;
+  }
+  for (const Measurement& m : c.measurements) {
+    std::vector<std::string> names;
+    for (const Tolerance& t : m.tolerances)
+      if (m.kind != "axis" || !c.machine.axis(m.axis) ||
+          !c.machine.axis(m.axis)->tolerance.contains(t.result))
+        names.push_back(t.result);
+    add_missing(m, names);
   }
   if (!not_measured.empty())
     sentences.push_back(w.get("undecided.not_measured", {{"axes", not_measured}}));

@@ -76,6 +76,27 @@ TEST(Manifest, EverythingArrivesInSi) {
   EXPECT_EQ(m->options.at("iso230-2").at("edition").line, 29u);
 }
 
+TEST(Manifest, AMeasurementHasLimitsOfItsOwn) {
+  std::string text = whole;
+  const std::string kind = "kind = \"axis\"\n";
+  text.replace(text.find(kind), kind.size(),
+               kind + "tolerance_um = { E = 4 }\ntolerance_um_per_m = { slope = 12.5 }\n");
+  const auto m = config::parse_manifest(text, "campaign.toml");
+  ASSERT_TRUE(m);
+  const auto& limits = m->campaign.measurements[0].tolerances;
+  ASSERT_EQ(limits.size(), 2U);
+  EXPECT_EQ(limits[0].result + " " + limits[1].result, "E slope");
+  EXPECT_DOUBLE_EQ(limits[0].limit, 4e-6);
+  EXPECT_DOUBLE_EQ(limits[1].limit, 12.5e-6);
+  EXPECT_EQ(limits[1].quantity, Quantity::deviation_per_length);
+  text.replace(text.find("slope"), 5, "E");
+  const auto twice = config::parse_manifest(text, "campaign.toml");
+  ASSERT_FALSE(twice);
+  EXPECT_NE(twice.error()[0].message.find("expected one limit of E, found a second"),
+            std::string::npos)
+      << twice.error()[0].message;
+}
+
 TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
   struct Row {
     const char *good, *bad, *wanted;

@@ -8,8 +8,11 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <tuple>
 
 #include "host/evaluation/evaluate.h"
+#include "host/evaluation/evaluation.h"
+#include "host/evaluation/results_json.h"
 #include "host/storage/nearest.h"
 #include "nonio/sdk/format.h"
 
@@ -40,6 +43,66 @@ TEST(Decision, UpperLimitAfterIlacG8) {
     EXPECT_EQ(decide(nan, 1.0, 10.0, rule), Decision::cannot_be_decided) << rule;
     EXPECT_EQ(decide(8.0, nan, 10.0, rule), Decision::cannot_be_decided) << rule;
   }
+}
+
+/// A campaign of one axis X with limits A and B, of which one line has a limit A of its own, and a circle.
+struct Limits {
+  Campaign campaign;
+  std::vector<Results::Analysed> analyses;
+
+  Limits() {
+    Axis x{.name = "X"};
+    x.tolerance = {{"A", 10e-6}, {"B", 4e-6}};
+    campaign.machine.axes = {x};
+    for (const auto& [id, kind, axis] :
+         {std::tuple("low", "axis", "X"), {"high", "axis", "X"}, {"C1", "circle", ""}}) {
+      Measurement m;
+      m.id = id, m.kind = kind, m.axis = axis;
+      campaign.measurements.push_back(m);
+    }
+    campaign.measurements[1].tolerances = {{"A", 30e-6}};
+    campaign.measurements[2].tolerances = {{"G", 8e-6}, {"C0Y", 20e-6, Quantity::small_angle}};
+    add("low", "iso230-2", "A", 20e-6);
+    add("high", "iso230-2", "A", 20e-6);
+    add("C1", "circle", "G", -7.5e-6);
+    add("C1", "circle", "C0Y", -40e-6, Quantity::small_angle);
+  }
+
+  void add(const char* measurement, const char* plugin, const char* name, double value,
+           Quantity quantity = Quantity::deviation) {
+    Results::Analysed a;
+    a.plugin = plugin, a.measurement = measurement;
+    a.evaluation.values = {{.name = name, .value = value, .quantity = quantity, .U = 1e-6}};
+    analyses.push_back(std::move(a));
+  }
+
+  std::string decided() const {
+    std::string all;
+    for (const Conformity& c : host::evaluation::held_against_tolerances(campaign, analyses))
+      all += c.measurement + "|" + c.axis + "|" + c.plugin + "|" + c.name + " " +
+             host::evaluation::to_text(c.decision) + (c.reason.empty() ? "" : ", " + c.reason) +
+             "\n";
+    return all;
+  }
+};
+
+TEST(Decision, AMeasurementIsHeldAgainstItsOwnLimits) {
+  const Limits limits;
+  EXPECT_EQ(limits.decided(),
+            "low|X|iso230-2|A does not conform\n"
+            "|X||B cannot be decided, no-value\n"
+            "high|X|iso230-2|A conforms\n"
+            "C1||circle|G cannot be decided, near-limit\n"
+            "C1||circle|C0Y does not conform\n");
+}
+
+TEST(Decision, ALimitInAnotherUnitHoldsNothing) {
+  Limits limits;
+  limits.campaign.measurements[2].tolerances = {{"C0Y", 50e-6}, {"absent", 1e-6}};
+  EXPECT_NE(limits.decided().find("C1|||C0Y cannot be decided, no-value\n"
+                                  "C1|||absent cannot be decided, no-value\n"),
+            std::string::npos)
+      << limits.decided();
 }
 
 TEST(Format, AResultHasTheDigitsThatItsUncertaintyAllows) {

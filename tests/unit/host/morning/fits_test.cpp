@@ -2,22 +2,16 @@
 #include "host/morning/fits.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <fstream>
 #include <sstream>
 
 #include "made.h"
 
 namespace nonio::test::fits_test {
 namespace {
-namespace fs = std::filesystem;
 
 class MorningFits : public ::testing::Test {
  protected:
-  MorningFits() { fs::create_directories(out_ / ".nonio"); }
-  ~MorningFits() override { fs::remove_all(out_); }
-
   /// What a site says of itself, by what is kept.
   std::size_t night(std::uint64_t seed, std::size_t more = 0) {
     std::mt19937_64 random(seed);
@@ -28,10 +22,11 @@ class MorningFits : public ::testing::Test {
       if (k == 5 && more > 0) m.stored().results.back().value += 0.01;
       machines.push_back(m.assessed());
     }
-    morning::Fits fits = morning::Fits::kept_in(out_);
+    morning::Fits fits = morning::Fits::of(kept_);
     morning::learn(machines, fits);
     morning::find_changes(machines, {}, fits, not_asked);
-    fits.keep_in(out_);
+    EXPECT_EQ(fits.is_new(), fits.kept() != kept_);
+    kept_ = fits.kept();
     said_.str("");
     for (const auto& m : machines)
       for (const auto& s : m.followed) {
@@ -47,7 +42,7 @@ class MorningFits : public ::testing::Test {
     return fits.computed();
   }
 
-  const fs::path out_ = fs::temp_directory_path() / ("nonio-fits-" + std::to_string(::getpid()));
+  std::string kept_;
   std::ostringstream said_;
 };
 
@@ -57,7 +52,7 @@ TEST_F(MorningFits, AreComputedOnceAndChangeNothing) {
   EXPECT_GE(first, 12U);
   EXPECT_EQ(night(21), 0U);
   EXPECT_EQ(said_.str(), said);
-  fs::remove(out_ / ".nonio" / "trends");
+  kept_.clear();
   EXPECT_EQ(night(21), first);
   EXPECT_EQ(said_.str(), said);
 }
@@ -67,22 +62,22 @@ TEST_F(MorningFits, OneNewCampaignIsOneNewTrend) {
   EXPECT_EQ(night(21, 1), 2U);  // its trend and its slope
 }
 
-TEST_F(MorningFits, WhatIsDamagedIsNone) {
+TEST_F(MorningFits, WhatNobodyAsksForIsNotKept) {
+  night(21);
+  const std::size_t size = kept_.size();
+  night(22);
+  EXPECT_LT(kept_.size(), 2 * size - 1000);
+}
+
+TEST_F(MorningFits, WhatIsCutOffIsNone) {
   const std::size_t first = night(21);
-  const std::string said = said_.str();
-  const fs::path path = out_ / ".nonio" / "trends";
-  std::ostringstream bytes;
-  bytes << std::ifstream(path, std::ios::binary).rdbuf();
-  for (const std::size_t at : {std::size_t{3}, std::size_t{100}, bytes.str().size() / 2}) {
-    std::string spoiled = bytes.str();
-    spoiled[at] = static_cast<char>(spoiled[at] ^ 1);
-    std::ofstream(path, std::ios::binary) << spoiled;
-    EXPECT_EQ(night(21), first) << at;
+  const std::string said = said_.str(), whole = kept_;
+  for (const std::size_t size :
+       {std::size_t{1}, std::size_t{70}, whole.size() / 2, whole.size() - 1}) {
+    kept_ = whole.substr(0, size);
+    EXPECT_EQ(night(21), first) << size;
     EXPECT_EQ(said_.str(), said);
   }
-  std::ofstream(path, std::ios::binary) << bytes.str().substr(0, bytes.str().size() / 2);
-  EXPECT_EQ(night(21), first);
-  EXPECT_EQ(said_.str(), said);
 }
 
 }  // namespace

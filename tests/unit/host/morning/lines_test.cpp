@@ -100,6 +100,20 @@ TEST(MorningLines, OneCauseIsToldOnce) {
   EXPECT_NEAR(*l.limit, 8e-6, 1e-12);
 }
 
+TEST(MorningLines, WhatHasNoAxisIsOneLineForEachAnalysis) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("", "G_ccw", flat(9.0, 9.0), "circle");
+  m.judge("", "G_cw", flat(10.0, 10.0), "circle");
+  m.judge("", "sync_X", flat(9.5, 9.5), "spindle");
+  lab.machines.push_back(std::move(m));
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].id + " " + lines[0].quantity, "morning.out:S-42:circle G_cw");
+  EXPECT_EQ(lines[1].id + " " + lines[1].quantity, "morning.out:S-42:spindle sync_X");
+  EXPECT_EQ(lines[0].axis + lines[1].axis, "");
+}
+
 TEST(MorningLines, WhatConformsAndChangedIsAChange) {
   Laboratory lab;
   lab.machines.push_back(hit(6.0, -5.5));

@@ -62,12 +62,13 @@ class MadeMachine {
 
   /// A result with a limit of 8 um, U = 0.5 um, judged.
   void judge(const std::string& axis, const std::string& quantity,
-             const std::vector<double>& values) {
+             const std::vector<double>& values, const std::string& source = "") {
     for (std::size_t i = 0; i < values.size(); ++i)
       stored_.results.push_back({.campaign = i,
                                  .measurement = axis,
                                  .axis = axis,
                                  .quantity = quantity,
+                                 .source = source,
                                  .unit = "um",
                                  .state = "as-found",
                                  .decision = values[i] > 8.5   ? "does not conform"

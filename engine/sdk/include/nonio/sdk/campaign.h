@@ -116,6 +116,18 @@ struct CertificateTexts {
   std::string decision_rule{};    ///< iso14253-1, ilac-g8-simple, ilac-g8-guarded
 };
 
+/// An upper limit of the magnitude of a result.
+struct Tolerance {
+  std::string result;  ///< its name
+  double limit = 0.0;  ///< SI
+  Quantity quantity = Quantity::deviation;
+};
+
+/// The key of the manifest that gives it.
+inline std::string tolerance_key(Quantity q) {
+  return "tolerance" + std::string(unit_of(q).suffix);
+}
+
 struct Measurement {
   std::string id;
   std::string kind;  ///< axis, straightness, angle, diagonal, step-diagonal, ball-centres, ...
@@ -145,6 +157,8 @@ struct Measurement {
   std::optional<double> foot{};  ///< m, of a level or mirror that was moved by its own length
   std::string square{};          ///< of a straightness: the square on whose face it was read
   bool square_turned = false;    ///< after the square was turned over about one of its faces
+  /// Of this measurement's results. They hold in place of those of its axis with the same name.
+  std::vector<Tolerance> tolerances{};
 };
 
 /// State of the machine in which something was measured: "final". Empty: it holds for every state.

@@ -161,7 +161,7 @@ enum class Decision { conforms, does_not_conform, cannot_be_decided };
 
 /// One tolerance of the manifest held against one result.
 struct Conformity {
-  std::string measurement, axis, plugin, name;
+  std::string measurement, axis, plugin, name;  ///< axis: empty where none was measured
   double tolerance = 0.0;
   Quantity quantity = Quantity::deviation;
   Decision decision = Decision::cannot_be_decided;
