@@ -132,9 +132,11 @@ class Certificate(SigningTest):
         pages = run("pdftotext", "-layout", pdf, "-").stdout.split("\f")
         for words in ("G ccw", "G b", "17,80", "C0Y", "Percorso circolare", "/ Circular path"):
             self.assertIn(words, pages[0])
+        for words in ("conforme / conforms", "non conforme / does not conform"):
+            self.assertIn(words, pages[0])
         self.assertEqual(pages[1].count("1000 mm/min"), 2)  # once in each language
         for words in ("Cause, ciascuna da sola / Causes, each alone", "servo mismatch  ", "Inversione di X / Reversal of X"):
-            self.assertIn(words, pages[1])
+            self.assertIn(words, pages[1] + pages[2])
         names = {v: run("xmllint", "--xpath", f"string(//*[local-name()='quantity'][.//*[local-name()='content']='{v}'])", dcc).stdout
                  for v in ("G_b", "B_X", "lateral_Y", "bow_EYX", "cyclic_X", "centre_X", "spike_Y")}
         for value, words in (("G_b", "Bidirectional circular deviation"), ("B_X", "Reversal of X"), ("lateral_Y", "Lateral play of Y"),
