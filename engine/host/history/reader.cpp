@@ -23,7 +23,7 @@ std::optional<double> perhaps(const std::string& text) {
 }
 
 template <class T>
-T whole_of(const std::string& text) {
+T whole_of(std::string_view text) {
   T out = 0;
   std::from_chars(text.data(), text.data() + text.size(), out);
   return out;
@@ -229,9 +229,10 @@ Expected<std::map<std::string, std::string>> StoreReader::machine_of_campaigns()
 
 Expected<std::vector<StoredEvaluation>> StoreReader::evaluations() {
   std::vector<StoredEvaluation> out;
-  for (Database::Row& r : database_.rows(evaluations_sql))
-    out.push_back({std::move(r[0]), std::move(r[1]), std::move(r[2]), std::move(r[3]),
+  database_.each(evaluations_sql, {}, [&](const std::vector<std::string_view>& r) {
+    out.push_back({std::string(r[0]), std::string(r[1]), std::string(r[2]), std::string(r[3]),
                    whole_of<std::uint64_t>(r[4]), r[5].empty()});
+  });
   if (auto well = database_.take_error(); !well) return fail(well.error());
   return out;
 }

@@ -92,9 +92,9 @@ constexpr const char* tables =
 std::string signed_bytes(std::string body) { return storage::sha256(body) + body; }
 
 /// The bytes behind their digest; none if they are others.
-std::optional<std::string_view> body_of(const std::string& bytes) {
+std::optional<std::string_view> body_of(std::string_view bytes) {
   if (bytes.size() < digest_size) return std::nullopt;
-  const std::string_view body = std::string_view(bytes).substr(digest_size);
+  const std::string_view body = bytes.substr(digest_size);
   if (storage::sha256(body) != bytes.substr(0, digest_size)) return std::nullopt;
   return body;
 }
@@ -163,21 +163,14 @@ bool KeptMachines::is_readable() {
 std::map<std::string, KeptMachine> KeptMachines::machines() {
   std::map<std::string, KeptMachine> out;
   if (!file_ || !has_machines_) return out;
-  std::vector<Database::Row> rows;
-  std::string last;
-  do {  // some at a time: all of them are as many bytes again
-    rows = file_->rows("SELECT name, found FROM machine WHERE name > ? ORDER BY name LIMIT 64",
-                       {last});
-    for (const Database::Row& row : rows) {
-      last = row[0];
-      const auto body = body_of(row[1]);
-      if (!body) continue;
-      ByteReader r(*body);
-      KeptMachine machine;
-      r(machine);
-      if (r.well() && r.at_end()) out.emplace_hint(out.end(), row[0], std::move(machine));
-    }
-  } while (!rows.empty());
+  file_->each("SELECT name, found FROM machine", {}, [&](const std::vector<std::string_view>& row) {
+    const auto body = body_of(row[1]);
+    if (!body) return;
+    ByteReader r(*body);
+    KeptMachine machine;
+    r(machine);
+    if (r.well() && r.at_end()) out.emplace(row[0], std::move(machine));
+  });
   if (!file_->take_error()) file_.reset();
   return out;
 }

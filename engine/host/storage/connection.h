@@ -21,6 +21,13 @@ class Connection {
 
   virtual std::string rows(const char* sql, std::span<const Database::Value> values,
                            std::vector<Database::Row>& rows) = 0;
+  virtual std::string each(const char* sql, std::span<const Database::Value> values,
+                           const Database::Take& take) {
+    std::vector<Database::Row> all;
+    std::string trouble = rows(sql, values, all);
+    for (const Database::Row& row : all) take({row.begin(), row.end()});
+    return trouble;
+  }
   /// The error may come with a later call.
   virtual std::string put(const char* sql, std::span<const Database::Value> values) = 0;
   virtual std::string script(const std::string& sql) = 0;

@@ -76,6 +76,10 @@ std::vector<Database::Row> Database::rows(const char* sql, std::initializer_list
   return rows;
 }
 
+void Database::each(const char* sql, std::initializer_list<Value> values, const Take& take) {
+  if (!failed()) error_ = connection_->each(sql, {values.begin(), values.size()}, take);
+}
+
 void Database::put(const char* sql, std::initializer_list<Value> values) {
   if (!failed()) error_ = connection_->put(sql, {values.begin(), values.size()});
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -55,6 +56,9 @@ class Database {
   /// The rows of one statement whose `?` are these values. NULL comes as "", a double in the fewest
   /// digits that give it back. A statement is prepared once and kept.
   std::vector<Row> rows(const char* sql, std::initializer_list<Value> values = {});
+  /// The same, each row as it comes: what `take` gets is gone after it. It may not use the database.
+  using Take = std::function<void(const std::vector<std::string_view>& row)>;
+  void each(const char* sql, std::initializer_list<Value> values, const Take& take);
   /// The first column of the first row; "" if there is none.
   std::string first(const char* sql, std::initializer_list<Value> values = {});
   /// A statement without rows. A server gets many of them in one go, so that an error may show

@@ -28,9 +28,10 @@ void bind(sqlite3_stmt* statement, int place, const Value& value) {
     ::sqlite3_bind_blob64(statement, place, bytes.data(), bytes.size(), SQLITE_STATIC);
 }
 
-std::string sqlite_cell(sqlite3_stmt* statement, int column) {
+/// Until the next step of the statement; a double as `real`.
+std::string_view sqlite_cell(sqlite3_stmt* statement, int column, std::string& real) {
   if (::sqlite3_column_type(statement, column) == SQLITE_FLOAT)
-    return shortest(::sqlite3_column_double(statement, column));
+    return real = shortest(::sqlite3_column_double(statement, column));
   const auto* bytes = static_cast<const char*>(::sqlite3_column_blob(statement, column));
   return {bytes == nullptr ? "" : bytes,
           static_cast<std::size_t>(::sqlite3_column_bytes(statement, column))};
@@ -42,15 +43,25 @@ class Sqlite final : public Connection {
 
   std::string rows(const char* sql, std::span<const Value> values,
                    std::vector<Database::Row>& rows) override {
+    return each(sql, values, [&](const std::vector<std::string_view>& row) {
+      rows.emplace_back(row.begin(), row.end());
+    });
+  }
+
+  std::string each(const char* sql, std::span<const Value> values,
+                   const Database::Take& take) override {
     sqlite3_stmt* statement = prepared(sql);
     if (statement == nullptr) return error();
     int place = 0;
     for (const Value& value : values) bind(statement, ++place, value);
+    const auto columns = static_cast<std::size_t>(::sqlite3_column_count(statement));
+    std::vector<std::string_view> row(columns);
+    std::vector<std::string> reals(columns);
     int step = SQLITE_ROW;
     while ((step = ::sqlite3_step(statement)) == SQLITE_ROW) {
-      Database::Row& row = rows.emplace_back();
-      for (int i = 0; i < ::sqlite3_column_count(statement); ++i)
-        row.push_back(sqlite_cell(statement, i));
+      for (std::size_t i = 0; i < columns; ++i)
+        row[i] = sqlite_cell(statement, static_cast<int>(i), reals[i]);
+      take(row);
     }
     std::string trouble = step == SQLITE_DONE ? std::string() : error();
     // What is bound is not ours for longer than this call; a statement at rest holds no lock.
