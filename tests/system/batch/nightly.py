@@ -110,7 +110,7 @@ def rows_of(store):
 
 
 def tree(folder):
-    """Every file below a folder with its bytes, of the history its rows."""
+    """Every file below a folder with its bytes, of a database its rows."""
     folder = pathlib.Path(folder)
-    return {str(p.relative_to(folder)): rows_of(p) if p.name == "history.sqlite" else p.read_bytes()
+    return {str(p.relative_to(folder)): rows_of(p) if p.suffix == ".sqlite" else p.read_bytes()
             for p in folder.rglob("*") if p.is_file()}

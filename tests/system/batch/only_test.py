@@ -43,9 +43,9 @@ class OnlyTest(NightTest):
                 shutil.copytree(self.kept / folder.name, folder)
 
     def whole(self):
-        """Every file of the output folder but the history, which keeps times of its pages."""
+        """Every file of the output folder but the databases, which keep times of pages."""
         return {str(p.relative_to(self.out)): p.read_bytes() for p in sorted(self.out.rglob("*"))
-                if p.is_file() and not p.name.startswith("history.sqlite") and p.name != "lock"}
+                if p.is_file() and ".sqlite" not in p.name and p.name != "lock"}
 
     def state(self):
         return json.loads((self.out / ".nonio/night.json").read_text())
