@@ -74,7 +74,7 @@ int main(int argc, char** argv) try {
   add("Every night",
       {run_verb(common), night_verb(common), status_verb(common), morning_verb(common)});
   add("Campaigns", {apart(new_verb(common)), apart(import_verb(common)), apart(show_verb(common)),
-                    open_verb(common), apart(schema_verb(common))});
+                    open_verb(common), get_verb(common), apart(schema_verb(common))});
   add("The machines over the years", {query_verb(common), history_verb(common), event_verb(common),
                                       ack_verb(common), forget_verb(common)});
   add("Certificates", {release_verb(common), certificates_verb(common), apart(verify_verb(common)),

@@ -6,6 +6,7 @@
 
 #include "host/batch/night_plan.h"
 #include "host/batch/night_state.h"
+#include "host/batch/packed_shard.h"
 #include "progress.h"
 #include "run_common.h"
 #include "verbs.h"
@@ -117,6 +118,8 @@ int cancel_night(const NightWish& wish, const Common& common) {
   if (plan && !*plan) return complain(verb, batch::read_plan(wish.out).error().message);
   const auto lock = batch::OutputLock::take(wish.out, batch::OutputLock::Use::planned);
   if (!lock) return complain(verb, lock.error().message);
+  if (const auto kept = batch::keep_packs(wish.out); !kept)
+    return complain(verb, kept.error().message);
   if (const auto removed = batch::remove_plan(wish.out); !removed)
     return complain(verb, removed.error().message);
   if (!common.quiet)

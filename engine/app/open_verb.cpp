@@ -16,6 +16,7 @@
 #include "colour.h"
 #include "host/evaluation/record.h"
 #include "host/storage/files.h"
+#include "host/storage/pack.h"
 #include "results_folder.h"
 #include "verbs.h"
 
@@ -72,7 +73,7 @@ Expected<fs::path> document_of_night(const fs::path& out, const Common& common) 
 }
 
 Expected<fs::path> document(const OpenWish& wish, const Common& common) {
-  const fs::path folder = !wish.folder.empty()                ? fs::path(wish.folder)
+  const fs::path folder = !wish.folder.empty()                ? results_at(wish.folder)
                           : what_holds(".") != Holds::nothing ? fs::path(".")
                                                               : fs::path(wish.out);
   switch (what_holds(folder)) {
@@ -129,6 +130,12 @@ int open(const OpenWish& wish, const Common& common) {
   if (!found) return complain(verb, text_of(found.error()));
   std::error_code error;
   const fs::path path = fs::absolute(*found).lexically_normal();
+  if (const auto packed = host::storage::in_pack(path))
+    return complain(verb,
+                    path.filename().string() + " is in the pack " + packed->pack.string() +
+                        "; `nonio get " + path.parent_path().filename().string() +
+                        " --out OUT` writes it out",
+                    exit_failed);
   if (!fs::is_regular_file(path, error))
     return complain(verb, "there is no " + path.string() + "; `nonio run` makes it anew",
                     exit_failed);
@@ -155,7 +162,7 @@ Verb open_verb(Common& common) {
       .name = "open",
       .summary = "Opens a report on the desktop and prints its path",
       .arguments = joined(
-          {existing(
+          {takes(
                Takes::folder,
                {"OUT|OUT/ID|CAMPAIGN", &wish->folder,
                 "Results of a nightly run or of one campaign, or a campaign (default: the current\n"

@@ -4,6 +4,7 @@
 #include "host/evaluation/evaluate.h"
 #include "host/evaluation/record.h"
 #include "host/storage/files.h"
+#include "host/storage/pack.h"
 
 namespace nonio::app {
 namespace fs = std::filesystem;
@@ -11,9 +12,24 @@ namespace fs = std::filesystem;
 Holds what_holds(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder / host::config::manifest_name, error)) return Holds::campaign;
-  if (fs::exists(folder / host::evaluation::results_name, error)) return Holds::results;
+  if (host::storage::is_there(folder / host::evaluation::results_name).value_or(false))
+    return Holds::results;
   if (fs::exists(folder / "summary.json", error)) return Holds::night;
   return Holds::nothing;
+}
+
+fs::path results_at(const fs::path& folder) {
+  if (what_holds(folder) != Holds::nothing) return folder;
+  fs::path path = fs::absolute(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  const fs::path above = path.parent_path();
+  for (const fs::path& out : {above, above.parent_path()}) {  // OUT/ID, OUT/ab/ID
+    const std::string id = path.filename().string();
+    if (host::storage::own_folder(out, id) != path) continue;
+    if (fs::path place = host::storage::results_folder(out, id); host::storage::in_pack(place))
+      return place;
+  }
+  return folder;
 }
 
 std::string holds_nothing(const fs::path& folder) {

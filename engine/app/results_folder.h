@@ -12,6 +12,8 @@ namespace nonio::app {
 enum class Holds { campaign, results, night, nothing };
 Holds what_holds(const std::filesystem::path& folder);
 
+/// OUT/ID, or where a pack has its results.
+std::filesystem::path results_at(const std::filesystem::path& folder);
 /// "results.json, summary.json or campaign.toml" was wanted in a folder: the complaint.
 std::string holds_nothing(const std::filesystem::path& folder);
 

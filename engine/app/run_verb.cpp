@@ -51,7 +51,7 @@ void print_night_plan(const host::batch::Night& night, bool json) {
 constexpr const char* not_given = "not given";
 
 struct RunWish {
-  std::string site, out;
+  std::string site, out, scratch;
   std::string shard = not_given;
   host::batch::RunOptions options;
 };
@@ -61,7 +61,8 @@ std::string take_shard(RunWish& wish) {
   host::batch::RunOptions& options = wish.options;
   if (options.force || options.verify_results || options.dry_run || !options.date.empty() ||
       !options.only.empty())
-    return "--shard goes with --jobs alone: whether and when campaigns are done is planned "
+    return "--shard goes with --jobs and --pack alone: whether and when campaigns are done is "
+           "planned "
            "(nonio night plan --help)";
   const char* const end = wish.shard.data() + wish.shard.size();
   const auto number = std::from_chars(wish.shard.data(), end, options.shard);
@@ -110,6 +111,11 @@ int run_night(RunWish& wish, const Common& common) {
     return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   if (!options.only.empty() && (options.force || !options.date.empty()))
     return complain(verb, "--only goes with neither --force nor --date");
+  if (wish.shard == not_given && (options.pack || !wish.scratch.empty()))
+    return complain(verb, "--pack and --scratch are of a shard; expected --shard i/S with them");
+  if (!wish.scratch.empty() && !options.pack)
+    return complain(verb, "--scratch is where a packed shard works; expected --pack with it");
+  options.scratch = wish.scratch;
   if (wish.shard != not_given) {
     if (const auto wrong = take_shard(wish); !wrong.empty()) return complain(verb, wrong);
     prepare_run(options, wish.site, wish.out, common);
@@ -160,6 +166,15 @@ Verb run_verb(Common& common) {
            {"--shard", &wish->shard,
             "i/S: only part i = 0 .. S-1 of a night that `nonio night plan` has planned for S\n"
             "parts; on any host that has SITE and DIR, in any order, also several times"},
+           {"--pack", &options.pack,
+            "With --shard: do the campaigns in a folder of this host and hand their results over "
+            "as\n"
+            "one file in DIR/.nonio/packs. Every verb reads them there; `nonio get` writes them "
+            "out"},
+           existing(Takes::folder,
+                    {"--scratch", &wish->scratch,
+                     "With --pack: the folder of this host (default: TMPDIR, or /tmp). "
+                     "It needs room\nfor the results of the shard, twice"}),
            root_argument(options),
            templates_argument(common)},
           common_arguments(common)),

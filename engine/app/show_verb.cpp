@@ -336,7 +336,7 @@ class Page {
 
 int show(const ShowWish& wish, const Common& common) {
   const char* const verb = "nonio show";
-  const fs::path folder = wish.folder;
+  const fs::path folder = results_at(wish.folder);
   const Holds holds = what_holds(folder);
   if (holds == Holds::night)
     return complain(verb, folder.string() + " holds the results of a night; expected " +
@@ -364,10 +364,10 @@ Verb show_verb(Common& common) {
   auto wish = std::make_shared<ShowWish>();
   return {.name = "show",
           .summary = "Shows values, decisions and findings of one campaign in the terminal",
-          .arguments = joined({required(existing(Argument::Takes::folder,
-                                                 {"CAMPAIGN|OUT/ID", &wish->folder,
-                                                  "A campaign (evaluated now, nothing is written), "
-                                                  "or its results from a nightly run"})),
+          .arguments = joined({required(takes(Argument::Takes::folder,
+                                              {"CAMPAIGN|OUT/ID", &wish->folder,
+                                               "A campaign (evaluated now, nothing is written), "
+                                               "or its results from a nightly run"})),
                                templates_argument(common)},
                               common_arguments(common)),
           .footer =

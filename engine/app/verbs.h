@@ -27,6 +27,7 @@ Verb plan_verb(Common& common);
 Verb plugin_verb(Common& common);
 Verb plugins_verb(Common& common);
 Verb query_verb(Common& common);
+Verb get_verb(Common& common);
 Verb history_verb(Common& common);
 Verb release_verb(Common& common);
 Verb restamp_verb(Common& common);

@@ -52,7 +52,7 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
     });
     if (now != id_of.end() && now->second == e.id) continue;
     if (now != id_of.end() && e.failed)
-      notes.push_back(storage::results_folder(out, e.id).string() + " is left over: it says that " +
+      notes.push_back(storage::own_folder(out, e.id).string() + " is left over: it says that " +
                       e.folder + " failed, which is the campaign " + std::string(now->second) +
                       " now");
     else if (now != id_of.end())

@@ -35,11 +35,11 @@ void tidy_root(const fs::path& out) {
 
 Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
   tidy_root(out);
-  if (resumed) return tidy_below(out, storage::results_folder(out, "a") != out / "a");
+  if (resumed) return tidy_below(out, storage::own_folder(out, "a") != out / "a");
   for (const CampaignState& c : night.campaigns) {
     if (process::is_stop_requested()) return fail("interrupted");
     if (c.action == CampaignState::Action::done && c.is_campaign)
-      if (auto tidied = tidy(storage::results_folder(out, c.id)); !tidied) return tidied;
+      if (auto tidied = tidy(storage::own_folder(out, c.id)); !tidied) return tidied;
   }
   return {};
 }

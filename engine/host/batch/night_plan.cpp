@@ -303,25 +303,28 @@ Expected<std::vector<Listed>> read_rest(const fs::path& out, const NightPlan& pl
 }
 
 Expected<void> write_shard_record(const fs::path& out, const NightPlan& plan, std::uint64_t shard,
-                                  const std::vector<ShardResult>& results) {
+                                  const ShardRecord& record) {
   Json json = {{"schema", record_schema},
                {"plan", plan.id},
                {"shard", shard},
                {"list_sha256", plan.shards[shard].sha256},
                {"campaigns", Json::array()}};
-  for (const ShardResult& r : results) {
+  if (record.pack)
+    json["pack"] = {
+        {"name", record.pack->name}, {"bytes", record.pack->size}, {"sha256", record.pack->sha256}};
+  for (const ShardResult& r : record.results) {
     Json one = {{"id", r.campaign}, {"status", to_text(r.status)}};
     if (r.status == evaluation::Status::none) one["status"] = "left to the merge";
     if (!r.stored) one["stored"] = false;
+    if (r.packed) one["packed"] = true;
     if (!r.errors.empty()) one["errors"] = errors_json(r.errors);
     json["campaigns"].push_back(std::move(one));
   }
   return storage::publish(folder_of(out, plan), {{shard_record_name(shard), storage::dump(json)}});
 }
 
-Expected<std::optional<std::vector<ShardResult>>> read_shard_record(const fs::path& out,
-                                                                    const NightPlan& plan,
-                                                                    std::uint64_t shard) {
+Expected<std::optional<ShardRecord>> read_shard_record(const fs::path& out, const NightPlan& plan,
+                                                       std::uint64_t shard) {
   const fs::path path = folder_of(out, plan) / shard_record_name(shard);
   const auto text = storage::read_file(path);
   if (!text) {
@@ -329,24 +332,32 @@ Expected<std::optional<std::vector<ShardResult>>> read_shard_record(const fs::pa
     if (there && !*there) return std::nullopt;
     return fail(text.error());
   }
-  std::vector<ShardResult> results;
+  ShardRecord record;
   try {
     const Json json = Json::parse(*text);
     if (json.at("schema") != record_schema || json.at("plan") != plan.id ||
         json.at("shard") != shard || json.at("list_sha256") != plan.shards[shard].sha256)
       return fail(path.string() + " is of another plan; run the shard again");
+    if (json.contains("pack")) {
+      const Json& pack = json["pack"];
+      record.pack = storage::PackFile{pack.at("name").get<std::string>(),
+                                      pack.at("bytes").get<std::uint64_t>(),
+                                      pack.at("sha256").get<std::string>()};
+      if (!storage::is_pack_name(record.pack->name)) throw std::runtime_error("no name of a pack");
+    }
     for (const Json& one : json.at("campaigns")) {
       ShardResult r;
       r.campaign = one.at("id").get<std::string>();
       r.status = status_in(one.at("status"));
       r.stored = one.value("stored", true);
+      r.packed = one.value("packed", false);
       if (one.contains("errors")) r.errors = errors_in(one["errors"]);
-      results.push_back(std::move(r));
+      record.results.push_back(std::move(r));
     }
   } catch (const std::exception& e) {
     return fail(path.string() + " is damaged (" + e.what() + "); run the shard again");
   }
-  return results;
+  return record;
 }
 
 std::uint64_t reported(const fs::path& out, const NightPlan& plan) {

@@ -10,6 +10,7 @@
 
 #include "host/batch/run.h"
 #include "host/reading/context.h"
+#include "host/storage/packed_results.h"
 
 namespace nonio::host::batch {
 
@@ -66,15 +67,20 @@ Expected<std::vector<Listed>> read_rest(const std::filesystem::path& out, const 
 struct ShardResult {
   std::string campaign;
   evaluation::Status status = evaluation::Status::none;  ///< none: it is left to the merge
-  bool stored = true;  ///< false: it failed, and its failure could not be written either
+  bool stored = true;   ///< false: it failed, and its failure could not be written either
+  bool packed = false;  ///< its results are in the pack of the shard
   std::vector<Error> errors{};
+};
+struct ShardRecord {
+  std::vector<ShardResult> results;
+  std::optional<storage::PackFile> pack{};
 };
 /// Written last by whoever does the shard; two who do it write the same.
 Expected<void> write_shard_record(const std::filesystem::path& out, const NightPlan& plan,
-                                  std::uint64_t shard, const std::vector<ShardResult>& results);
+                                  std::uint64_t shard, const ShardRecord& record);
 /// None if the shard has not reported.
-Expected<std::optional<std::vector<ShardResult>>> read_shard_record(
-    const std::filesystem::path& out, const NightPlan& plan, std::uint64_t shard);
+Expected<std::optional<ShardRecord>> read_shard_record(const std::filesystem::path& out,
+                                                       const NightPlan& plan, std::uint64_t shard);
 /// How many shards have reported.
 std::uint64_t reported(const std::filesystem::path& out, const NightPlan& plan);
 

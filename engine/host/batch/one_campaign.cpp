@@ -176,7 +176,7 @@ Answer do_campaign(const SiteWork& site, const RegisterState& state, std::size_t
   } catch (const std::exception& e) {
     stage.set(stage.get() + ": " + e.what());
   }
-  storage::remove_leftovers(storage::results_folder(site.options.out, site.campaigns[index].id));
+  storage::remove_leftovers(storage::own_folder(site.options.out, site.campaigns[index].id));
   return Answer::not_stored;
 }
 

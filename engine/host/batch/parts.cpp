@@ -11,12 +11,15 @@
 #include <thread>
 
 #include "host/batch/leftovers.h"
+#include "host/batch/packed_shard.h"
 #include "host/batch/read_apart.h"
 #include "host/batch/runner.h"
 #include "host/batch/set_up.h"
 #include "host/batch/shown_histories.h"
 #include "host/certificates/numbering.h"
+#include "host/evaluation/results_files.h"
 #include "host/storage/files.h"
+#include "host/storage/pack.h"
 
 namespace nonio::host::batch {
 namespace fs = std::filesystem;
@@ -80,9 +83,10 @@ bool take_stored(const fs::path& out, std::uint64_t night, CampaignState& c) {
   return true;
 }
 
-std::vector<ShardResult> results_of(const fs::path& out, std::uint64_t night,
-                                    const std::vector<CampaignState>& campaigns) {
-  std::vector<ShardResult> results;
+ShardRecord record_of(const fs::path& out, std::uint64_t night,
+                      const std::vector<CampaignState>& campaigns) {
+  ShardRecord record;
+  std::vector<ShardResult>& results = record.results;
   for (const CampaignState& c : campaigns) {
     results.push_back({c.id, c.status});
     if (c.action == Action::todo) results.back().status = evaluation::Status::none;
@@ -91,7 +95,7 @@ std::vector<ShardResult> results_of(const fs::path& out, std::uint64_t night,
     CampaignState stored = c;
     results.back().stored = take_stored(out, night, stored);
   }
-  return results;
+  return record;
 }
 
 std::string numbers_text(const std::vector<std::uint64_t>& numbers) {
@@ -113,6 +117,63 @@ auto with_patience(std::chrono::steady_clock::time_point until, const Try& try_i
       return got;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
+}
+
+/// What the shard has handed over before, in place of doing it.
+void take_reported(const ShardRecord& record, std::vector<CampaignState>& campaigns) {
+  for (std::size_t i = 0; i < campaigns.size() && i < record.results.size(); ++i) {
+    const ShardResult& r = record.results[i];
+    if (r.status == evaluation::Status::none) continue;
+    campaigns[i].action = Action::done;
+    campaigns[i].status = r.status;
+    campaigns[i].errors = r.errors;
+  }
+}
+
+/// The campaigns of a shard, the first `own` of the night's. An error without a word of the night: it was refused, or
+/// interrupted.
+Expected<void> do_part(const RunOptions& options, const RunEvents& events, const NightPlan& plan,
+                       std::size_t own, Night& night) {
+  RunOptions where = options;
+  std::optional<PackedShard> packed;
+  if (options.pack) {
+    if (const auto record = reported_pack(options.out, plan, options.shard)) {
+      night.campaigns.resize(own);
+      take_reported(*record, night.campaigns);
+      events.planned(own, 0);
+      return {};
+    }
+    auto begun = PackedShard::begin(options, night.campaigns);
+    if (!begun) return fail(begun.error());
+    packed.emplace(std::move(*begun));
+    where.out = packed->out();
+  }
+  std::size_t to_do = own;
+  for (std::size_t i = 0; i < own && !packed; ++i)
+    if (take_stored(options.out, plan.night.number, night.campaigns[i])) --to_do;
+  events.planned(own, to_do);
+  if (to_do > 0) {  // else no plugin is loaded
+    const auto place = set_up(options);
+    if (!place) return fail(place.error());
+    if (const auto same = check_made_with(plan, (*place)->context); !same) return same;
+    NightState state;
+    state.number = plan.night.number;
+    state.date = plan.night.date;
+    ReleaseDesk desk;
+    desk.plugins = &*(*place)->host;
+    desk.elsewhere = true;
+    if (!do_campaigns(where, events, (*place)->context, state, desk, night.campaigns))
+      return fail("");
+  }
+  night.campaigns.resize(own);
+  night.error = "not reported";
+  ShardRecord record = record_of(where.out, plan.night.number, night.campaigns);
+  if (packed)
+    if (auto handed = packed->hand_over(options, plan, record); !handed) return handed;
+  if (auto written = write_shard_record(options.out, plan, options.shard, record); !written)
+    return written;
+  night.error.clear();
+  return {};
 }
 
 }  // namespace
@@ -139,31 +200,23 @@ Night run_shard(const RunOptions& options, const RunEvents& events) {
   const std::size_t own = listed->size();
   night.campaigns = states_of(std::move(*listed), false);
   storage::take_own_names(own_token());
-  std::size_t to_do = 0;
-  for (std::size_t i = 0; i < own; ++i)
-    if (!take_stored(options.out, plan->night.number, night.campaigns[i])) ++to_do;
-  events.planned(own, to_do);
-  if (to_do > 0) {  // else no plugin is loaded
-    const auto place = set_up(options);
-    if (!place) return refuse(place.error().message);
-    if (const auto same = check_made_with(*plan, (*place)->context); !same)
-      return refuse(same.error().message);
-    NightState state;
-    state.number = plan->night.number;
-    state.date = plan->night.date;
-    ReleaseDesk desk;
-    desk.plugins = &*(*place)->host;
-    desk.elsewhere = true;
-    if (!do_campaigns(options, events, (*place)->context, state, desk, night.campaigns))
-      return refuse({});
+  if (const auto done = do_part(options, events, *plan, own, night); !done) {
+    if (night.error.empty()) return refuse(done.error().message);
+    night.error = done.error().message + "; run the shard again";
   }
-  night.campaigns.resize(own);
-  const auto written =
-      write_shard_record(options.out, *plan, options.shard,
-                         results_of(options.out, plan->night.number, night.campaigns));
-  if (!written) night.error = written.error().message + "; run the shard again";
   return night;
 }
+
+namespace {
+
+/// What this night has stored in a pack, into the folder of the campaign.
+Expected<void> take_in_of(const fs::path& out, std::uint64_t night, const std::string& id) {
+  const auto record = evaluation::read_record(storage::results_folder(out, id));
+  if (!record || record->night != night) return {};
+  return evaluation::take_in(out, id);
+}
+
+}  // namespace
 
 Expected<void> plan_shards(const RunOptions& options, const reading::Context& context,
                            const NightState& state, bool register_read, std::size_t own_notes,
@@ -171,19 +224,21 @@ Expected<void> plan_shards(const RunOptions& options, const reading::Context& co
   const bool any = std::any_of(night.campaigns.begin(), night.campaigns.end(),
                                [](const CampaignState& c) { return c.action == Action::todo; });
   if (auto removed = remove_plan(options.out); !removed) return removed;
+  if (auto swept = storage::sweep_packs(options.out); !swept) return swept;
   if (state.resumed)  // of a run or a plan that was cut short
     if (auto tidied = tidy_all(night, options.out, true); !tidied) return tidied;
   for (const CampaignState& c : night.campaigns) {
     if (!state.resumed || c.action != Action::todo || !c.is_campaign) continue;
     // Its shard would take what this night has stored before for its own.
-    const fs::path folder = storage::results_folder(options.out, c.id);
+    if (auto taken = take_in_of(options.out, state.number, c.id); !taken) return taken;
+    const fs::path folder = storage::own_folder(options.out, c.id);
     const auto record = evaluation::read_record(folder);
     if (!record || record->night != state.number) continue;
-    std::error_code error;
-    fs::rename(folder / evaluation::record_name, folder / evaluation::record_before_name, error);
-    if (error)
+    if (auto aside = storage::rename_file(folder / evaluation::record_name,
+                                          folder / evaluation::record_before_name);
+        !aside)
       return fail("cannot put aside " + (folder / evaluation::record_name).string() + ": " +
-                  error.message());
+                  aside.error().message);
   }
   HistoryUpdate history(options, context);
   if (auto begun = history.begin(); !begun) return begun;
@@ -205,11 +260,78 @@ Expected<void> plan_shards(const RunOptions& options, const reading::Context& co
   return {};
 }
 
-static bool is_of(const std::vector<ShardResult>& record, const std::vector<Listed>& list) {
+namespace {
+
+bool is_of(const std::vector<ShardResult>& record, const std::vector<Listed>& list) {
   return std::equal(
       record.begin(), record.end(), list.begin(), list.end(),
       [](const ShardResult& r, const Listed& l) { return r.campaign == l.campaign.id; });
 }
+
+/// A shard's list and what it has reported.
+struct Reported {
+  std::vector<Listed> listed;
+  ShardRecord record;
+};
+
+using Until = std::chrono::steady_clock::time_point;
+
+/// Its record, with a pack that is whole. None, and why, if it has not reported.
+std::optional<ShardRecord> sound_record(const fs::path& out, const NightPlan& plan,
+                                        std::uint64_t shard, std::string& why) {
+  auto record = read_shard_record(out, plan, shard);
+  if (!record) why = record.error().message;
+  if (!record || !*record) return std::nullopt;
+  if ((*record)->pack)
+    if (const auto sound = storage::check_handed_over(out, *(*record)->pack); !sound) {
+      why = sound.error().message;
+      return std::nullopt;
+    }
+  return std::move(*record);
+}
+
+Expected<std::vector<Reported>> reported_by_all(const fs::path& out, const NightPlan& plan,
+                                                Until until) {
+  std::vector<Reported> all;
+  std::vector<std::uint64_t> silent;
+  std::string why;
+  for (std::uint64_t shard = 0; shard < plan.shards.size(); ++shard) {
+    auto listed = read_shard_list(out, plan, shard);
+    if (!listed) return fail(listed.error());
+    auto record = with_patience(until, [&] { return sound_record(out, plan, shard, why); });
+    if (process::is_stop_requested()) return fail("");
+    if (!record || !is_of(record->results, *listed))
+      silent.push_back(shard);
+    else
+      all.push_back({std::move(*listed), std::move(*record)});
+  }
+  if (silent.empty()) return all;
+  return fail(std::string("not complete: ") + (silent.size() == 1 ? "shard " : "shards ") +
+              numbers_text(silent) + " of " + std::to_string(plan.shards.size()) +
+              (silent.size() == 1 ? " has" : " have") + " not reported" +
+              (why.empty() ? "" : " (" + why + ")") + "; run `nonio run SITE --out OUT --shard " +
+              std::to_string(silent.front()) + "/" + std::to_string(plan.shards.size()) +
+              "`, and so on, then `nonio night merge OUT` again");
+}
+
+/// What became of the campaigns of a shard; those without results that should be there are added to `missing`.
+void take_results(const fs::path& out, const NightPlan& plan, std::uint64_t shard, Until until,
+                  Reported& reported, std::vector<std::string>& missing) {
+  for (std::size_t i = 0; i < reported.listed.size(); ++i) {
+    CampaignState& c = reported.listed[i].campaign;
+    const ShardResult& result = reported.record.results[i];
+    const bool left = result.status == evaluation::Status::none;
+    const bool stored = with_patience(left || !result.stored ? Until{} : until,
+                                      [&] { return take_stored(out, plan.night.number, c); });
+    if (stored || left) continue;
+    if (result.stored) missing.push_back(c.id + " (shard " + std::to_string(shard) + ")");
+    c.action = Action::done;
+    c.status = result.status;
+    c.errors = result.errors;
+  }
+}
+
+}  // namespace
 
 Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& night) {
   const auto until = std::chrono::steady_clock::now() +
@@ -217,49 +339,24 @@ Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& n
                          std::chrono::duration<double>(options.patience));
   auto all = read_rest(options.out, plan);
   if (!all) return fail(all.error());
-  std::vector<std::uint64_t> silent;
-  std::vector<std::string> missing;
-  std::string why;
   for (Listed& one : *all) {  // of a merge that was cut short
     CampaignState& c = one.campaign;
     if (c.action == Action::todo && c.status != evaluation::Status::failed)
       take_stored(options.out, plan.night.number, c);
   }
-  for (std::uint64_t shard = 0; shard < plan.shards.size(); ++shard) {
-    auto listed = read_shard_list(options.out, plan, shard);
-    if (!listed) return fail(listed.error());
-    const auto record = with_patience(until, [&] {
-      auto read = read_shard_record(options.out, plan, shard);
-      return read ? std::move(*read) : (why = read.error().message, std::nullopt);
-    });
+  auto reported = reported_by_all(options.out, plan, until);
+  if (!reported) return fail(reported.error());
+  std::vector<const ShardRecord*> records;
+  for (const Reported& r : *reported) records.push_back(&r.record);
+  if (auto accepted = accept_packs(options.out, plan, records); !accepted) return accepted;
+  std::vector<std::string> missing;
+  for (std::uint64_t shard = 0; shard < reported->size(); ++shard) {
+    Reported& one = (*reported)[shard];
+    take_results(options.out, plan, shard, until, one, missing);
     if (process::is_stop_requested()) return fail("");
-    if (!record || !is_of(*record, *listed)) {
-      silent.push_back(shard);
-      continue;
-    }
-    for (std::size_t i = 0; i < listed->size(); ++i) {
-      CampaignState& c = (*listed)[i].campaign;
-      const ShardResult& result = (*record)[i];
-      const bool left = result.status == evaluation::Status::none;
-      const bool stored = with_patience(left || !result.stored ? decltype(until){} : until, [&] {
-        return take_stored(options.out, plan.night.number, c);
-      });
-      if (stored || left) continue;
-      if (result.stored) missing.push_back(c.id + " (shard " + std::to_string(shard) + ")");
-      c.action = Action::done;
-      c.status = result.status;
-      c.errors = result.errors;
-    }
-    std::move(listed->begin(), listed->end(), std::back_inserter(*all));
+    std::move(one.listed.begin(), one.listed.end(), std::back_inserter(*all));
+    one = {};
   }
-  const std::string of = " of " + std::to_string(plan.shards.size());
-  if (!silent.empty())
-    return fail(std::string("not complete: ") + (silent.size() == 1 ? "shard " : "shards ") +
-                numbers_text(silent) + of + (silent.size() == 1 ? " has" : " have") +
-                " not reported" + (why.empty() ? "" : " (" + why + ")") +
-                "; run `nonio run SITE --out OUT --shard " + std::to_string(silent.front()) + "/" +
-                std::to_string(plan.shards.size()) +
-                "`, and so on, then `nonio night merge OUT` again");
   if (!missing.empty())
     return fail("not complete: the results of " + missing.front() +
                 (missing.size() == 1 ? " are"

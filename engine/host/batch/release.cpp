@@ -226,7 +226,7 @@ class Releaser {
     out_.state = Released::State::issued;
     if (const auto files = opened->files(out_.entry.number))
       for (const evaluation::IssuedFile& f : *files)
-        out_.files.push_back(storage::results_folder(options_.out, id_) / f.name);
+        out_.files.push_back(storage::own_folder(options_.out, id_) / f.name);
     if (!campaigns.front().errors.empty()) out_.why = campaigns.front().errors.front().message;
     return std::move(out_);
   }

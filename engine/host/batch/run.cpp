@@ -15,6 +15,7 @@
 #include "host/batch/night_plan.h"
 #include "host/batch/night_state.h"
 #include "host/batch/one_again.h"
+#include "host/batch/packed_shard.h"
 #include "host/batch/parts.h"
 #include "host/batch/read_apart.h"
 #include "host/batch/refused.h"
@@ -286,6 +287,10 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
           settle_folders(options.out, context.site.hashed_folders, options.dry_run);
       !settled)
     return refuse(settled.error().message);
+  if (const auto sound = storage::check_catalogue(options.out); !sound)
+    return refuse(sound.error().message);
+  if (options.step == RunOptions::Step::plan)
+    if (const auto kept = keep_packs(options.out); !kept) return refuse(kept.error().message);
   std::optional<NightPlan> planned;
   if (options.step == RunOptions::Step::merge) {
     auto read = read_plan(options.out);
@@ -326,9 +331,11 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
   leave_out_new(*state, night.campaigns);
   tell_stage(events, "pages");
   const auto closed = close_night(night, options, events, context, *state);
-  if (closed && planned)
-    if (const auto removed = remove_plan(options.out); !removed)
-      night.error = removed.error().message;
+  if (closed && planned) {
+    auto gone = remove_plan(options.out);
+    if (gone) gone = storage::sweep_packs(options.out);
+    if (!gone) night.error = gone.error().message;
+  }
   if (closed) return;
   tidy_root(options.out);
   if (process::is_stop_requested()) return refuse({});

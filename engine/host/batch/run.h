@@ -34,6 +34,9 @@ struct RunOptions {
   /// Of a night that is done in parts; `whole`: it is not.
   enum class Step { whole, plan, shard, merge } step = Step::whole;
   std::uint64_t shard = 0, shards = 0;  ///< which of how many
+  bool pack = false;                    ///< the shard hands its results over as one file
+  std::filesystem::path
+      scratch{};          ///< where it does them before; empty: the system's folder for such
   double patience = 0.0;  ///< s, for results of other hosts to appear here; of a merge
 };
 

@@ -152,7 +152,7 @@ class Runner {
   void stop() {
     for (Worker& w : workers_) {
       w.end();
-      storage::remove_leftovers(storage::results_folder(options_.out, campaigns_[w.campaign()].id));
+      storage::remove_leftovers(storage::own_folder(options_.out, campaigns_[w.campaign()].id));
     }
     workers_.clear();
     const auto deadline = Worker::Clock::now() + std::chrono::seconds(10);
@@ -162,7 +162,7 @@ class Runner {
     }
     committer_.end();
     for (const Committer::Given& g : committer_.pending())
-      storage::remove_leftovers(storage::results_folder(options_.out, campaigns_[g.campaign].id));
+      storage::remove_leftovers(storage::own_folder(options_.out, campaigns_[g.campaign].id));
   }
 
   /// What needs the register that another process keeps to itself is done when all else is, or by

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "host/evaluation/results_files.h"
 #include "host/evaluation/results_json.h"
 #include "host/history/earlier.h"
 #include "host/storage/digest.h"
@@ -28,15 +29,12 @@ evaluation::RecordedFile recorded(const Artifact& a) {
 /// tells a night that is resumed why the campaign is done.
 Expected<void> write_record(const fs::path& folder, const evaluation::Record& record) {
   const std::string unfinished = std::string(".") + evaluation::record_name;
-  if (auto written =
-          storage::write_temporaries(folder, {{unfinished, evaluation::to_json(record)}});
-      !written)
+  const std::string text = evaluation::to_json(record);
+  if (auto written = storage::write_temporaries(folder, {{unfinished, text}}); !written)
     return written;
-  std::error_code error;
   const fs::path path = storage::temporary_path(folder, evaluation::record_name);
-  fs::rename(storage::temporary_path(folder, unfinished), path, error);
-  if (error) return fail("cannot write " + path.string() + ": " + error.message());
-  return {};
+  return storage::rename_file(storage::temporary_path(folder, unfinished), path,
+                              [&] { return storage::read_file(path).value_or("") == text; });
 }
 
 /// What the record says of the nights before.
@@ -57,10 +55,11 @@ Expected<void> look_back(const fs::path& folder, evaluation::Record& record) {
 
 Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
                      const reading::Context& context, const StoreNote& note) {
-  const fs::path folder = storage::results_folder(out, e.campaign.id);
+  const fs::path folder = storage::own_folder(out, e.campaign.id);
   if (std::error_code error; fs::exists(folder / config::manifest_name, error))
     return fail("the output folder " + folder.string() +
                 " is itself a campaign; nothing was written");
+  if (auto taken = evaluation::take_in(out, e.campaign.id); !taken) return taken;
   evaluation::Record record;
   record.folder = storage::path_text(note.folder);
   record.night = note.night.number;
@@ -150,10 +149,7 @@ class Move {
   void put_old_aside() {
     std::error_code error;
     const bool there = fs::exists(fs::symlink_status(folder_ / evaluation::record_name, error));
-    if (there)
-      rename(folder_ / evaluation::record_name, folder_ / evaluation::record_before_name, [&] {
-        return storage::is_there(folder_ / evaluation::record_before_name).value_or(false);
-      });
+    if (there) rename(folder_ / evaluation::record_name, folder_ / evaluation::record_before_name);
     if (there && done_ && storage::has_own_names()) {
       const auto moved = evaluation::last_record(folder_);
       if (moved && *moved && (*moved)->record.night >= record_.night) {
@@ -200,10 +196,8 @@ class Move {
     for (const auto* looked : {&aside, &kept, &whole})
       if (!*looked) return fail(looked->error());
     if (!*aside) return {};
-    if (*kept && !*whole)
-      fs::rename(before, last_good / evaluation::record_name, error);
-    else
-      fs::remove(before, error);
+    if (*kept && !*whole) return storage::rename_file(before, last_good / evaluation::record_name);
+    fs::remove(before, error);
     if (error) return fail("cannot remove " + before.string() + ": " + error.message());
     return {};
   }
@@ -239,14 +233,10 @@ class Move {
     if (done_) fs::remove_all(path, error);
     if (error) give_up("cannot remove " + path.string() + ": " + error.message());
   }
-  /// `is_there`: asked where the file is said not to be there. On a network file system the answer
-  /// to a request that was done may be lost, and the request that is sent again finds nothing.
-  void rename(const fs::path& from, const fs::path& to,
-              const std::function<bool()>& is_there = {}) {
-    std::error_code error;
-    if (done_) fs::rename(from, to, error);
-    if (error == std::errc::no_such_file_or_directory && is_there && is_there()) return;
-    if (error) give_up("cannot write " + to.string() + ": " + error.message());
+  void rename(const fs::path& from, const fs::path& to, const std::function<bool()>& is_ours = {}) {
+    if (!done_) return;
+    if (const auto renamed = storage::rename_file(from, to, is_ours); !renamed)
+      give_up(renamed.error().message);
   }
   /// The old results as they are, or nothing of them: some may be there already, and where storing
   /// others was cut short some may be gone.
@@ -260,7 +250,8 @@ class Move {
       if (!is_result(f.name) || storage::sha256_of_file(to / f.name).value_or("") == f.sha256)
         continue;
       if (storage::sha256_of_file(folder_ / f.name).value_or("") != f.sha256) return remove_all(to);
-      rename(folder_ / f.name, to / f.name);
+      rename(folder_ / f.name, to / f.name,
+             [&] { return storage::sha256_of_file(to / f.name).value_or("") == f.sha256; });
     }
   }
 
@@ -289,7 +280,7 @@ std::vector<Expected<void>> commit(const fs::path& out, const std::vector<Staged
       if (!m.moved() && m.done()) (m.*step)();
   };
   for (const Staged& c : campaigns)
-    moves.emplace_back(storage::results_folder(out, c.id), night, sound(c));
+    moves.emplace_back(storage::own_folder(out, c.id), night, sound(c));
   flush();
   each(&Move::read_back);
   each(&Move::put_old_aside);

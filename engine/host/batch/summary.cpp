@@ -170,9 +170,10 @@ struct Lists {
       if (since.number != record->night)
         line += "; " + words("failed-since", {{"night", night_words(since, words)}});
     }
-    const std::string folder =
-        (results / evaluation::last_good_name).lexically_relative(out).generic_string();
-    if (const auto good = evaluation::read_record(out / folder)) {
+    const std::string folder = (storage::own_folder(out, c.id) / evaluation::last_good_name)
+                                   .lexically_relative(out)
+                                   .generic_string();
+    if (const auto good = evaluation::read_record(results / evaluation::last_good_name)) {
       const evaluation::NightOf night{good->night, good->date};
       entry["last_good"] = night_json(night);
       entry["last_good"]["status"] = to_text(good->status);
@@ -321,7 +322,7 @@ void write_json(storage::Spool& out, const Night& night, Lists& lists, const std
     storage::Json one = {
         {"campaign", d.campaign},
         {"file",
-         (storage::results_folder(out_folder, d.campaign).lexically_relative(out_folder) / d.file)
+         (storage::own_folder(out_folder, d.campaign).lexically_relative(out_folder) / d.file)
              .generic_string()}};
     if (!d.replaces.empty()) one["replaces"] = d.replaces;
     waiting.push_back(std::move(one));

@@ -21,9 +21,8 @@ std::string digest_in(const evaluation::Record& record, const std::string& name)
   return {};
 }
 
-bool is_younger(const struct stat& a, const struct stat& b) {
-  return std::pair(a.st_mtim.tv_sec, a.st_mtim.tv_nsec) >
-         std::pair(b.st_mtim.tv_sec, b.st_mtim.tv_nsec);
+bool is_younger(const storage::Written& a, const storage::Written& b) {
+  return std::pair(a.seconds, a.nanoseconds) > std::pair(b.seconds, b.nanoseconds);
 }
 
 }  // namespace
@@ -98,7 +97,7 @@ ChangeDetector::Last ChangeDetector::last_of(const std::string& id) {
 /// Where storing tonight's results was cut short: why the campaign was done. The files that would
 /// tell are no longer those of the night before.
 std::string ChangeDetector::staged_reason(const CampaignState& state) const {
-  const auto staged = evaluation::staged_record(storage::results_folder(in_.out, state.id));
+  const auto staged = evaluation::staged_record(storage::own_folder(in_.out, state.id));
   return staged && *staged && (*staged)->night == in_.night ? (*staged)->reason : "";
 }
 
@@ -175,15 +174,15 @@ void ChangeDetector::look_at_outputs(const CampaignState& state, const evaluatio
                                      std::vector<std::string>& why) {
   const fs::path folder = storage::results_folder(in_.out, state.id);
   signs_.reading(folder.string());
-  struct stat written {};
-  if (::stat((folder / evaluation::record_name).c_str(), &written) != 0) return;
+  const auto written = storage::record_written_at(folder);
+  if (!written || !*written) return;
   for (const evaluation::RecordedFile& f : record.files) {
     const fs::path path = folder / f.name;
-    struct stat now {};
-    if (::stat(path.c_str(), &now) != 0)
+    const auto now = storage::written_at(path);
+    if (!now || !*now)
       why.push_back(f.name + " is missing from the output");
-    else if (static_cast<std::uint64_t>(now.st_size) != f.size ||
-             ((in_.verify_results || is_younger(now, written)) &&
+    else if ((*now)->size != f.size ||
+             ((in_.verify_results || is_younger(**now, **written)) &&
               digest_with_signs(path).value_or(config::absent) != f.sha256))
       why.push_back(f.name + " was changed in the output");
   }

@@ -174,9 +174,9 @@ std::optional<Record> record_in(const std::string& bytes) {
 
 /// None if there is no such file, or if it is not a record.
 Expected<std::optional<Record>> record_at(const fs::path& path) {
-  std::error_code error;
-  if (fs::symlink_status(path, error).type() == fs::file_type::not_found) return std::nullopt;
-  if (error) return fail("cannot read " + path.string() + ": " + error.message());
+  const auto there = storage::is_there(path);
+  if (!there) return fail(there.error());
+  if (!*there) return std::nullopt;
   const auto bytes = storage::read_file(path);
   if (!bytes) return fail(bytes.error());
   return record_in(*bytes);

@@ -21,6 +21,7 @@
 #include "host/live/site_run.h"
 #include "host/live/tool.h"
 #include "host/storage/files.h"
+#include "host/storage/pack.h"
 #include "host/storage/scratch_folder.h"
 
 namespace nonio::host::live {
@@ -301,6 +302,9 @@ Answer SiteService::state() {
 
 /// Of a folder only what lies there as a plain file, by its name.
 bool is_plain_file_in(const fs::path& folder, const std::string& name) {
+  if (storage::in_pack(folder))
+    return (storage::is_artifact_name(name) || name == evaluation::results_name) &&
+           storage::is_there(folder / name).value_or(false);
   std::error_code failed;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
     std::error_code ignored;

@@ -230,13 +230,15 @@ Quantity quantity_of_unit(const std::string& symbol) {
 double si(double shown, Quantity quantity) { return shown / unit_of(quantity).per_si; }
 
 Links::Links(const fs::path& out)
-    : root_((out / "").native()), hashed_(storage::results_folder(out, "a") != out / "a") {}
+    : root_((out / "").native()), hashed_(storage::own_folder(out, "a") != out / "a") {}
 
 std::string Links::of(const std::string& campaign) const {
   std::string folder = campaign + "/";
-  if (hashed_)
-    folder = storage::results_folder(root_, campaign).native().substr(root_.size()) + "/";
-  const bool report = ::access((root_ + folder + "report.pdf").c_str(), F_OK) == 0;
+  if (hashed_) folder = storage::own_folder(root_, campaign).native().substr(root_.size()) + "/";
+  bool report = ::access((root_ + folder + "report.pdf").c_str(), F_OK) == 0;
+  if (!report)  // a pack may have it
+    report =
+        storage::is_there(storage::results_folder(root_, campaign) / "report.pdf").value_or(false);
   return folder + (report ? "report.pdf" : evaluation::results_name);
 }
 

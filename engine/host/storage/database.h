@@ -38,9 +38,10 @@ class Database {
   using Value = std::variant<std::int64_t, std::string_view, Blob, double, Null>;
   using Row = std::vector<std::string>;
 
-  enum class Use { write, create };
+  enum class Use { write, create, read };
   static constexpr double usual_patience = 60.0;
-  /// Made if it is not there with Use::create. Whoever finds it locked waits up to `patience`
+  /// Made if it is not there with Use::create. With Use::read nothing is written, no lock is taken and
+  /// no journal is looked for: for a file that nobody changes, and that may come from anywhere. Whoever finds it locked waits up to `patience`
   /// seconds; the error is then one of which `is_locked` is true.
   static Expected<Database> open(const std::filesystem::path& path, Use use,
                                  double patience = usual_patience);

@@ -10,9 +10,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "host/storage/digest.h"
+#include "host/storage/pack.h"
 #include "host/storage/real_folder.h"
 
 namespace nonio::host::storage {
@@ -185,9 +187,29 @@ Expected<RegularFile> open_regular(const fs::path& path) {
 
 }  // namespace
 
+namespace {
+
+/// Of a path that leads into a pack; none if it leads elsewhere.
+std::optional<Expected<std::string>> read_from_pack(const fs::path& path) {
+  const auto at = opener() ? std::nullopt : in_pack(path);
+  if (!at) return std::nullopt;
+  auto bytes = read_packed(*at);
+  if (!bytes) return fail(bytes.error());
+  if (!*bytes) return fail("cannot read " + path.string() + ": the pack has no such file");
+  return std::move(**bytes);
+}
+
+}  // namespace
+
 Expected<void> read_parts(const fs::path& path, const std::function<void(std::string_view)>& take) {
   const auto file = open_regular(path);
-  if (!file) return fail(file.error());
+  if (!file) {
+    const auto packed = read_from_pack(path);
+    if (!packed) return fail(file.error());
+    if (!*packed) return fail(packed->error());
+    take(**packed);
+    return {};
+  }
   std::string buffer(std::min<std::size_t>(file->size + 1, 1 << 20), '\0');
   for (;;) {
     const ssize_t n = ::read(file->descriptor.get(), buffer.data(), buffer.size());
@@ -201,7 +223,10 @@ Expected<void> read_parts(const fs::path& path, const std::function<void(std::st
 Expected<std::string> read_file(const fs::path& path) {
   constexpr std::size_t most_at_once = 1 << 28;
   const auto file = open_regular(path);
-  if (!file) return fail(file.error());
+  if (!file) {
+    auto packed = read_from_pack(path);
+    return packed ? std::move(*packed) : fail(file.error());
+  }
   std::string bytes;
   // A byte more than there is: that none comes says that the file ends there.
   for (std::size_t size = 0, room = std::min(file->size, most_at_once) + 1;; room *= 2) {
@@ -215,44 +240,18 @@ Expected<std::string> read_file(const fs::path& path) {
   }
 }
 
-fs::path results_folder(const fs::path& out, const std::string& id) {
-  if (::access((out / hashed_mark).c_str(), F_OK) != 0) return out / id;
-  return out / sha256(id).substr(0, 2) / id;
-}
-
-namespace {
-
-/// `take` each folder in a folder, which may be missing.
-void each_folder_in(const fs::path& folder, std::error_code& error,
-                    const std::function<void(const fs::path&)>& take) {
-  std::error_code here;
-  fs::directory_iterator it(folder, here);
-  if (here == std::errc::no_such_file_or_directory) return;
-  for (; !here && it != fs::directory_iterator(); it.increment(here))
-    if (it->is_directory(here)) take(it->path());
-  if (here) error = here;
-}
-
-}  // namespace
-
-Expected<void> each_results_folder(const fs::path& out,
-                                   const std::function<void(const fs::path&)>& take) {
-  const bool hashed = results_folder(out, "a") != out / "a";
-  std::error_code error;
-  each_folder_in(out, error, [&](const fs::path& folder) {
-    if (!hashed)
-      take(folder);
-    else if (folder.filename().string().size() == 2)
-      each_folder_in(folder, error, take);
-  });
-  if (error) return fail("cannot list the output folder " + out.string() + ": " + error.message());
-  return {};
-}
-
 Expected<bool> is_there(const fs::path& path) {
   struct stat info {};
   if (::lstat(path.c_str(), &info) == 0) return true;
-  if (errno == ENOENT || errno == ENOTDIR) return false;
+  const int code = errno;
+  if (code == ENOENT || code == ENOTDIR) {
+    const auto packed = in_pack(path);
+    if (!packed) return false;
+    const auto size = size_packed(*packed);
+    if (!size) return fail(size.error());
+    return size->has_value();
+  }
+  errno = code;
   return system_error("cannot look at", path);
 }
 
@@ -359,13 +358,32 @@ fs::path temporary_path(const fs::path& folder, const std::string& name) {
   return folder / ("." + name + temporary_suffix());
 }
 
-Expected<void> rename_temporaries(const fs::path& folder, const std::vector<std::string>& names) {
+Expected<void> rename_file(const fs::path& from, const fs::path& to,
+                           const std::function<bool()>& is_ours) {
+  struct stat before {};
+  struct stat after {};
+  const bool known = !is_ours && ::lstat(from.c_str(), &before) == 0;
+  if (::rename(from.c_str(), to.c_str()) == 0) return {};
+  const int code = errno;
+  if (code == ENOENT && is_ours && is_ours()) return {};
+  if (code == ENOENT && known && ::lstat(to.c_str(), &after) == 0 &&
+      before.st_dev == after.st_dev && before.st_ino == after.st_ino)
+    return {};
+  errno = code;
+  return system_error("cannot write", to);
+}
+
+Expected<void> rename_temporaries(const fs::path& folder, const std::vector<std::string>& names,
+                                  const std::function<bool(const std::string&)>& is_ours) {
   for (const std::string& name : names) {
     // The others are under their names for good before the last one is.
     if (&name == &names.back() && names.size() > 1)
       if (auto flushed = flush_folder(folder); !flushed) return flushed;
-    if (::rename(temporary_path(folder, name).c_str(), (folder / name).c_str()) != 0)
-      return system_error("cannot write", folder / name);
+    std::function<bool()> this_is_ours;
+    if (is_ours) this_is_ours = [&] { return is_ours(name); };
+    if (auto renamed = rename_file(temporary_path(folder, name), folder / name, this_is_ours);
+        !renamed)
+      return renamed;
   }
   return flush_folder(folder);
 }
@@ -424,7 +442,13 @@ Expected<void> publish(const fs::path& folder, const std::vector<Artifact>& file
   // After the files: a journal that was committed for them holds the new folder already.
   if (done && *is_new) done = flush_folder(fs::absolute(folder).parent_path());
   const std::vector<std::string> names = names_of(files);
-  if (done) done = rename_temporaries(folder, names);
+  const auto is_ours = [&](const std::string& name) {
+    const auto file =
+        std::find_if(files.begin(), files.end(), [&](const Artifact& a) { return a.name == name; });
+    const auto now = read_file(folder / name);
+    return file != files.end() && now && *now == file->bytes;
+  };
+  if (done) done = rename_temporaries(folder, names, is_ours);
   if (!done) remove_temporaries(folder, names);
   return done;
 }

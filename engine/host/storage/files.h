@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/storage/packed_results.h"
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/results.h"
 
@@ -66,16 +67,7 @@ Expected<std::string> read_file(const std::filesystem::path& path);
 /// A file that people write (campaign.toml, site.toml): refused above 1 MB, by its size and unread.
 Expected<std::string> read_small_file(const std::filesystem::path& path);
 
-/// Where the results of a campaign are: OUT/<id>, or OUT/ab/<id> in an output folder whose
-/// campaigns lie by the first two digits of the SHA-256 of their ids.
-std::filesystem::path results_folder(const std::filesystem::path& out, const std::string& id);
-/// Every folder in which results of a campaign may lie, in no order; an output folder that is not
-/// there has none.
-Expected<void> each_results_folder(const std::filesystem::path& out,
-                                   const std::function<void(const std::filesystem::path&)>& take);
-/// Beside the night's own files; there in such an output folder.
-inline constexpr const char* hashed_mark = ".nonio/hashed";
-
+/// A path may lead into a pack (pack.h): `read_file`, `read_parts` and `is_there` take it as any other.
 /// Whether there is something, a link that leads nowhere included; an error if that cannot be told.
 Expected<bool> is_there(const std::filesystem::path& path);
 
@@ -114,11 +106,18 @@ void drop_cached(const std::filesystem::path& path);
 Expected<bool> disk_gives_back(const std::filesystem::path& path, std::uint64_t size,
                                std::string_view sha256);
 
+/// Gives a file another name. On a network file system the answer to a request that was done may be lost, and the
+/// request that is sent again finds no such file: that is not believed, but looked into. `is_ours` says whether the
+/// file that is there under the new name has the right bytes; without it, whether it is the same one (inode).
+Expected<void> rename_file(const std::filesystem::path& from, const std::filesystem::path& to,
+                           const std::function<bool()>& is_ours = {});
+
 /// `publish` in two steps, for what is written elsewhere: the name to write and flush it under, and
 /// the renaming of such files.
 std::filesystem::path temporary_path(const std::filesystem::path& folder, const std::string& name);
 Expected<void> rename_temporaries(const std::filesystem::path& folder,
-                                  const std::vector<std::string>& names);
+                                  const std::vector<std::string>& names,
+                                  const std::function<bool(const std::string& name)>& is_ours = {});
 
 /// Removes files under temporary names whose names are known: the folder need not be listed.
 void remove_temporaries(const std::filesystem::path& folder, const std::vector<std::string>& names);

@@ -6,11 +6,13 @@
 namespace nonio::host::storage {
 namespace fs = std::filesystem;
 
-ScratchFolder::ScratchFolder(const std::string& purpose) {
+ScratchFolder::ScratchFolder(const std::string& purpose, const fs::path& below) {
   std::error_code error;
   // mkdtemp puts letters of its own in the place of each X.
   std::string name =
-      (fs::temp_directory_path(error) / ("nonio-" + purpose + "-" + std::string(6, 'X'))).string();
+      ((below.empty() ? fs::temp_directory_path(error) : fs::absolute(below, error)) /
+       ("nonio-" + purpose + "-" + std::string(6, 'X')))
+          .string();
   if (!error && ::mkdtemp(name.data()) != nullptr) path_ = name;
 }
 

@@ -9,8 +9,8 @@ namespace nonio::host::storage {
 /// A folder for a moment, of this user alone; gone with the object.
 class ScratchFolder {
  public:
-  /// Below the system's folder for such, "nonio-<purpose>-...".
-  explicit ScratchFolder(const std::string& purpose);
+  /// Below this folder, or the system's for such (TMPDIR): "nonio-<purpose>-...".
+  explicit ScratchFolder(const std::string& purpose, const std::filesystem::path& below = {});
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   ~ScratchFolder();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <sqlite3.h>
 
+#include <cctype>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -118,11 +120,40 @@ class Sqlite final : public Connection {
   std::string path_;
 };
 
+/// A path in an address of SQLite, where some characters mean something.
+std::string address_of(const std::filesystem::path& path) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string address = "file:";
+  const std::filesystem::path whole = std::filesystem::absolute(path);
+  for (const char c : whole.native()) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain =
+        std::isalnum(byte) != 0 || std::string_view("/._-").find(c) != std::string_view::npos;
+    address += plain ? std::string(1, c) : std::string{'%', digits[byte >> 4U], digits[byte & 15U]};
+  }
+  return address + "?immutable=1";
+}
+
+Expected<std::unique_ptr<Connection>> connect_to_read(const std::filesystem::path& path) {
+  sqlite3* file = nullptr;
+  const int opened = ::sqlite3_open_v2(address_of(path).c_str(), &file,
+                                       SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+  std::unique_ptr<Connection> connection = std::make_unique<Sqlite>(file, path);
+  if (file == nullptr) return fail("no memory for " + path.string());
+  if (opened != SQLITE_OK) return fail(path.string() + ": " + ::sqlite3_errmsg(file));
+  for (const char* pragma :
+       {"PRAGMA trusted_schema = OFF", "PRAGMA cell_size_check = ON", "PRAGMA mmap_size = 0"})
+    if (const std::string trouble = connection->put(pragma, {}); !trouble.empty())
+      return fail(trouble);
+  return connection;
+}
+
 }  // namespace
 
 Expected<std::unique_ptr<Connection>> connect_sqlite(const std::filesystem::path& path,
                                                      Database::Use use, double patience) {
   sqlite3* file = nullptr;
+  if (use == Database::Use::read) return connect_to_read(path);
   const int flags = SQLITE_OPEN_READWRITE | (use == Database::Use::create ? SQLITE_OPEN_CREATE : 0);
   const int opened = ::sqlite3_open_v2(path.c_str(), &file, flags, nullptr);
   auto connection = std::make_unique<Sqlite>(file, path);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loaded before the C library (LD_PRELOAD): the n-th call of one of its functions fails, counted
 // over all processes of a night. NONIO_FAULT = FUNCTION:N:ERRNO[:TIMES], or FUNCTION:N:KILL, which
-// ends the main process by SIGKILL instead, or write:N:LOST, which says that it was written, or
+// ends the main process by SIGKILL instead, or rename:N:REPLAY, which does it and says ENOENT, as NFS does where an answer was
+// lost, or write:N:LOST, which says that it was written, or
 // write:N:LATE, of which the kernel finds out later that the disk did not take it: syncfs fails
 // then as Linux does it, once for each descriptor that was open before and for none that was opened
 // after. NONIO_FAULT_IN = main: only the calls of the main process count; = confining: only those
@@ -64,6 +65,7 @@ int wanted = -1;
 long from = 0, times = 1;
 constexpr int lost = 0x10000;              // of a disk that says it has what it has not
 constexpr int late = 0x20000;              // of a disk that says afterwards that it has not
+constexpr int replay = 0x40000;            // done, and said not to be
 std::atomic<long>* disk_failed = nullptr;  // shared by the processes
 bool told[1024];                           // descriptors that do not hear of it (any more)
 int code = 0;                              // 0: kill
@@ -110,10 +112,11 @@ __attribute__((constructor)) void begin() {
     return;
   for (int i = 0; i < functions; ++i)
     if (std::strcmp(names[i], name) == 0) wanted = i;
-  code = std::strcmp(what, "KILL") == 0   ? 0
-         : std::strcmp(what, "LOST") == 0 ? lost
-         : std::strcmp(what, "LATE") == 0 ? late
-                                          : std::atoi(what);
+  code = std::strcmp(what, "KILL") == 0     ? 0
+         : std::strcmp(what, "LOST") == 0   ? lost
+         : std::strcmp(what, "LATE") == 0   ? late
+         : std::strcmp(what, "REPLAY") == 0 ? replay
+                                            : std::atoi(what);
   const char* const in = std::getenv("NONIO_FAULT_IN");
   main_only = in != nullptr && std::strcmp(in, "main") == 0;
   confining_only = in != nullptr && std::strcmp(in, "confining") == 0;
@@ -188,7 +191,12 @@ int syncfs(int fd) noexcept {
   return fails(Syncfs) || hears_of_the_disk(fd) ? -1 : real<int (*)(int)>("syncfs")(fd);
 }
 int rename(const char* a, const char* b) noexcept {
-  return fails(Rename) ? -1 : real<int (*)(const char*, const char*)>("rename")(a, b);
+  const bool fault = fails(Rename);
+  if (fault && code != replay) return -1;
+  const int done = real<int (*)(const char*, const char*)>("rename")(a, b);
+  if (!fault || done != 0) return done;
+  errno = ENOENT;
+  return -1;
 }
 int unlink(const char* path) noexcept {
   return fails(Unlink) ? -1 : real<int (*)(const char*)>("unlink")(path);

@@ -22,7 +22,7 @@ SHIM = os.environ["NONIO_FAULT_SHIM"]
 CALLS = {
     "open": (6, ["EIO", "EMFILE", "ENOSPC", "EACCES"]), "read": (4, ["EIO", "ESTALE"]),
     "write": (8, ["ENOSPC", "EIO", "EDQUOT"]), "fsync": (4, ["EIO", "ENOSPC"]), "syncfs": (8, ["EIO", "ENOSPC"]),
-    "rename": (12, ["EIO", "ENOSPC", "EACCES"]), "unlink": (8, ["EPERM", "EIO"]), "mkdir": (3, ["ENOSPC"]),
+    "rename": (12, ["EIO", "ENOSPC", "EACCES", "ENOENT"]), "unlink": (8, ["EPERM", "EIO"]), "mkdir": (3, ["ENOSPC"]),
     "mmap": (2, ["ENOMEM"]), "malloc": (20, ["ENOMEM"]), "fork": (6, ["EAGAIN", "ENOMEM"]),
     "flock": (1, ["ENOLCK"]), "stat": (6, ["EIO", "ESTALE"]), "fflush": (3, ["ENOSPC"]),
     "socketpair": (2, ["EMFILE"]), "opendir": (2, ["EMFILE"]), "readdir": (0, ["EIO"]),
@@ -169,6 +169,23 @@ class Faults(NightTest):
             for n in range(max(1, last - (2 if call == "fork" else 8)), last + 1):
                 why, _ = self.wrong(night, f"{call}:{n}:{code}:{times}")
                 bad += [f"{night}/{call}:{n}:{code}:{times}: {why}"] if why else []
+        self.assertFalse(bad, "\n".join(bad))
+
+    def test_a_rename_that_was_done_and_is_said_not_to_be(self):
+        """NFS sends a request again whose answer was lost, and finds nothing: every rename of a night, one of them, all of them."""
+        bad = []
+        for night in NIGHTS:
+            n = self.counts[night, "all"]["rename"]
+            for fault in [f"rename:1:REPLAY:{10 * n}", *(f"rename:{i}:REPLAY:1" for i in range(1, n + 1, max(1, n // 3)))]:
+                out = self.begin(night, "out")
+                done = self.night(night, out, {"NONIO_FAULT": fault})
+                if done.returncode != 0 or tree(out) != self.references[night]:
+                    bad.append(f"{night}/{fault}: status {done.returncode}, {self.differences(tree(out), self.references[night])}, "
+                               + done.stderr.strip()[-300:])
+        # What was not done is not believed because it might have been.
+        for n in (1, 5, self.counts["changed", "all"]["rename"]):
+            why, _ = self.wrong("changed", f"rename:{n}:{errno.ENOENT}:1")
+            bad += [why] if why else []
         self.assertFalse(bad, "\n".join(bad))
 
     def test_random_faults(self):

@@ -160,7 +160,7 @@ class Shards(NightTest):
         for wrong in ("", "2/2", "x/2", "1/", "1", "0/0", "1/2/3"):
             done = self.nonio("run", self.site, "--out", self.out, "--shard", wrong, expect=2)
             self.assertIn("expected i/S", done.stderr, wrong)
-        self.assertIn("goes with --jobs alone", self.shard(0, 2, "--force", expect=2).stderr)
+        self.assertIn("goes with --jobs and --pack alone", self.shard(0, 2, "--force", expect=2).stderr)
         self.plan(2, "--date", "2026-11-01")
         self.assertIn("planned for 2 shards", self.shard(0, 3, expect=2).stderr)
         self.assertIn("not merged yet", self.run_nonio(expect=2).stderr)

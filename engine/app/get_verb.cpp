@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// `nonio get`: the results of campaigns out of packs, or from wherever they lie, into folders.
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "host/batch/night_state.h"
+#include "host/config/manifest.h"
+#include "host/evaluation/results_files.h"
+#include "host/storage/digest.h"
+#include "host/storage/files.h"
+#include "host/storage/pack.h"
+#include "verbs.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+namespace storage = host::storage;
+namespace evaluation = host::evaluation;
+
+namespace {
+
+constexpr const char* get_name = "nonio get";
+
+struct GetWish {
+  std::vector<std::string> ids;
+  std::string out, to;
+  bool all = false, list = false;
+};
+
+/// Where the results of a campaign lie, as a person calls it.
+std::string place_of(const fs::path& folder) {
+  const auto packed = storage::in_pack(folder);
+  return packed ? "pack " + packed->pack.filename().string() : "folder " + folder.string();
+}
+
+Expected<std::vector<std::string>> ids_of(const GetWish& wish) {
+  std::vector<std::string> ids = wish.ids;
+  for (const std::string& id : ids)
+    if (!host::config::is_campaign_id(id)) return fail("\"" + id + "\" is no id of a campaign");
+  const auto take = [&](const fs::path& folder) {
+    const bool wanted = wish.list || !wish.to.empty() || storage::in_pack(folder);
+    const std::string id = folder.filename().string();
+    if (wanted && host::config::is_campaign_id(id) &&
+        storage::is_there(folder / evaluation::record_name).value_or(true))
+      ids.push_back(id);
+  };
+  if (wish.all || (wish.list && ids.empty()))
+    if (const auto listed = storage::each_results_folder(wish.out, take); !listed)
+      return fail(listed.error());
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+Expected<std::vector<evaluation::RecordedFile>> files_of(const GetWish& wish, const std::string& id,
+                                                         fs::path& folder) {
+  folder = storage::results_folder(wish.out, id);
+  auto files = evaluation::results_files(folder);
+  if (files && files->empty()) return fail("there are no results of " + id + " in " + wish.out);
+  return files;
+}
+
+void print_list(const std::string& id, const fs::path& folder,
+                const std::vector<evaluation::RecordedFile>& files, bool each_file, bool json) {
+  std::uint64_t bytes = 0;
+  for (const auto& f : files) bytes += f.size;
+  if (json) {
+    Json line = {{"schema", "nonio-get/1"},  {"id", id},
+                 {"place", folder.string()}, {"packed", storage::in_pack(folder).has_value()},
+                 {"bytes", bytes},           {"files", Json::array()}};
+    for (const auto& f : files)
+      line["files"].push_back({{"name", f.name}, {"bytes", f.size}, {"sha256", f.sha256}});
+    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+    return;
+  }
+  std::cout << id << ": " << files.size() << " files, " << bytes << " bytes, " << place_of(folder)
+            << "\n";
+  if (!each_file) return;
+  for (const auto& f : files)
+    std::cout << "  " << f.sha256 << "  " << f.size << "  " << f.name << "\n";
+}
+
+/// Every file in a folder as it was written, or nothing: what is there already has these bytes or stays.
+Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
+                                const std::vector<evaluation::RecordedFile>& files) {
+  const std::string below = std::string(evaluation::last_good_name) + "/";
+  std::vector<Artifact> good, own;
+  for (const auto& f : files) {
+    auto bytes = evaluation::read_result(from, f);
+    if (!bytes) return fail(bytes.error());
+    const fs::path path = to / f.name;
+    const auto there = storage::is_there(path);
+    if (!there) return fail(there.error());
+    if (*there) {
+      const auto now = storage::sha256_of_file(path);
+      if (!now || *now != f.sha256)
+        return fail(path.string() +
+                    " is there and has other bytes; nothing was written. Expected "
+                    "--to with a folder without it");
+      continue;
+    }
+    const bool is_good = f.name.starts_with(below);
+    (is_good ? good : own)
+        .push_back({is_good ? f.name.substr(below.size()) : f.name, std::move(*bytes)});
+  }
+  if (auto put = storage::publish(to / evaluation::last_good_name, good); !put)
+    return fail(put.error());
+  if (auto put = storage::publish(to, own); !put) return fail(put.error());
+  return good.size() + own.size();
+}
+
+/// False if something is damaged or in the way; it says what.
+bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
+  fs::path folder;
+  const auto files = files_of(wish, id, folder);
+  if (!files) return complain(get_name, files.error().message), false;
+  if (wish.list) return print_list(id, folder, *files, !wish.ids.empty(), common.json), true;
+  const fs::path to = wish.to.empty() ? storage::own_folder(wish.out, id) : fs::path(wish.to) / id;
+  std::error_code error;
+  const bool in_place = to == folder || fs::equivalent(to, folder, error);
+  const auto written = in_place ? Expected<std::size_t>(0) : write_out(folder, to, *files);
+  if (!written) return complain(get_name, written.error().message), false;
+  if (common.json)
+    std::cout << Json{{"schema", "nonio-get/1"},
+                      {"id", id},
+                      {"place", folder.string()},
+                      {"folder", to.string()},
+                      {"written", *written}}
+                     .dump(-1, ' ', false, Json::error_handler_t::replace)
+              << "\n";
+  else if (!common.quiet)
+    std::cout << to.string() << ": " << *written << " of " << files->size() << " files written"
+              << (in_place ? ": the results lie there" : "") << "\n";
+  return true;
+}
+
+int get(const GetWish& wish, const Common& common) {
+  if (wish.ids.empty() && !wish.all && !wish.list)
+    return complain(get_name, "expected the ids of campaigns, --all, or --list");
+  if (!wish.ids.empty() && wish.all)
+    return complain(get_name, "--all is every campaign; expected no ids with it");
+  if (!wish.to.empty() && wish.list)
+    return complain(get_name, "--list writes nothing; expected no --to with it");
+  const auto ids = ids_of(wish);
+  if (!ids) return complain(get_name, ids.error().message);
+  std::optional<host::batch::OutputLock> lock;
+  if (!wish.list && wish.to.empty()) {  // the folders count from then on
+    auto taken = host::batch::OutputLock::take(wish.out);
+    if (!taken) return complain(get_name, taken.error().message);
+    lock.emplace(std::move(*taken));
+  }
+  bool well = true;
+  for (const std::string& id : *ids) well = get_one(wish, id, common) && well;
+  return well ? exit_done : exit_failed;
+}
+
+}  // namespace
+
+Verb get_verb(Common& common) {
+  auto wish = std::make_shared<GetWish>();
+  using Takes = Argument::Takes;
+  return {
+      .name = "get",
+      .summary = "Writes the results of campaigns out of packs into folders, or lists them",
+      .arguments =
+          {{"ID", &wish->ids, "Ids of campaigns"},
+           required(existing(Takes::folder, {"--out", &wish->out, "Output folder of `nonio run`"})),
+           takes(
+               Takes::folder,
+               {"--to", &wish->to,
+                "Write FOLDER/ID, and leave the output folder as it is. Without it: OUT/ID, where\n"
+                "the links of the pages lead; that folder counts from then on, not the pack"}),
+           {"--all", &wish->all, "Every campaign that lies in a pack; with --to every campaign"},
+           {"--list", &wish->list,
+            "Write nothing: say where the results lie; with ids also each file, its size "
+            "and\nSHA-256"},
+           {"--json", &common.json, "Machine-readable output on stdout"},
+           {"--quiet", &common.quiet, "No output unless something is wrong"}},
+      .footer =
+          "A shard with --pack hands the results of its campaigns over as one file. `nonio show`,\n"
+          "`query`, `history`, `morning`, `live` and the next night read them there. A program "
+          "that\n"
+          "wants files, or a person who follows a link of a page, needs them in folders.\n\n"
+          "Each file is compared with its SHA-256 in run.json; a damaged one is named, with its "
+          "pack\n"
+          "and campaign, and its campaign is not written. A file that is there with other bytes "
+          "stays.\n"
+          "Without Nonio: sqlite3 -A -xf OUT/.nonio/packs/NAME.sqlar (compare the digests "
+          "yourself).\n\n"
+          "Exit status: 0 done; 1 some campaign was not written; 2 usage or configuration.\n\n"
+          "Examples: nonio get 09-tolerances --out out --to /tmp/to-look-at\n"
+          "          nonio get --list --out out\n"
+          "          nonio get --all --out out",
+      .run = [wish, &common] { return get(*wish, common); }};
+}
+
+}  // namespace nonio::app
