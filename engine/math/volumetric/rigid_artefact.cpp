@@ -15,9 +15,9 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-constexpr double no_lever = 1e-6;   // of the size of an artefact: a turn that moves no ball
-constexpr double no_plane = 1e-3;   // of the size: balls on one line do not say how it is turned
-constexpr double least_u = 1e-9;    // m, m/m; what is stated counts with no smaller one
+constexpr double no_lever = 1e-6;  // of the size of an artefact: a turn that moves no ball
+constexpr double no_plane = 1e-3;  // of the size: balls on one line do not say how it is turned
+constexpr double least_u = 1e-9;   // m, m/m; what is stated counts with no smaller one
 
 Vector3d vector_of(const Corner& c) { return {c[0], c[1], c[2]}; }
 

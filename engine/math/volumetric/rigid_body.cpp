@@ -223,7 +223,8 @@ Expected<RigidSolution> solve_rigid_body(const std::vector<RigidLine>& lines, co
     if (std::find(known.begin(), known.end(), name) == known.end())
       return fail("expected an error such as EXX, EYX or C0Y, found \"" + name + "\"");
   const std::size_t highest = allowed_degree(lines, box);
-  RigidFit best = fit_rigid_body(lines, box, wish.errors, wish.degree > 0 ? wish.degree : least_degree);
+  RigidFit best =
+      fit_rigid_body(lines, box, wish.errors, wish.degree > 0 ? wish.degree : least_degree);
   for (std::size_t d = least_degree + 1; wish.degree == 0 && d <= highest; ++d)
     if (RigidFit next = fit_rigid_body(lines, box, wish.errors, d); next.price < best.price)
       best = std::move(next);
@@ -234,8 +235,8 @@ Expected<RigidSolution> solve_rigid_body(const std::vector<RigidLine>& lines, co
   for (const RigidTerm& term : best.terms) out.degree = std::max(out.degree, term.degree);
   out.unknowns = best.terms.size();
   out.rank = static_cast<std::size_t>(best.solved.rank);
-  out.readings = static_cast<std::size_t>(
-      std::count(best.table.stated.begin(), best.table.stated.end(), 0.0));
+  out.readings =
+      static_cast<std::size_t>(std::count(best.table.stated.begin(), best.table.stated.end(), 0.0));
   for (Index k = 0; k < best.solved.sigma.size(); ++k)
     out.singular.push_back(best.solved.sigma[0] > 0.0 ? best.solved.sigma[k] / best.solved.sigma[0]
                                                       : 0.0);

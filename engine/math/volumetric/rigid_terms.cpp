@@ -184,8 +184,7 @@ std::vector<RigidTerm> rigid_terms(const RigidBox& box, const std::vector<std::s
 
 RigidRows rows_of(const RigidLine& line, const std::vector<RigidTerm>& terms, const RigidBox& box) {
   RigidRows out;
-  const bool zero =
-      line.kind != RigidLine::Kind::point && line.kind != RigidLine::Kind::stated;
+  const bool zero = line.kind != RigidLine::Kind::point && line.kind != RigidLine::Kind::stated;
   const bool reversed = zero && both_ways(line);
   const Corner far = farthest_way(line), travel = travel_of(line);
   for (std::size_t i = 0; i < line.readings.size(); ++i) {
@@ -196,7 +195,8 @@ RigidRows rows_of(const RigidLine& line, const std::vector<RigidTerm>& terms, co
     if (zero) own.push_back(1.0);
     if (reversed) own.push_back(line.readings[i].way / 2.0);
     const Corner way = way_of(line, i);
-    if (line.kind == RigidLine::Kind::across && line.own_slope) own.push_back(dot_product(way, travel));
+    if (line.kind == RigidLine::Kind::across && line.own_slope)
+      own.push_back(dot_product(way, travel));
     if (line.kind == RigidLine::Kind::mirror)
       for (const Corner& side : across_of(line.readings[i].sense))
         own.push_back(dot_product(way, side));

@@ -113,11 +113,10 @@ struct ScaleInputs {
 ScaleInputs scale_of(const AnalysisInput& in) {
   const double rectangle = 1.0 / (2.0 * std::sqrt(3.0));
   const auto get = [&](const char* name) { return in.options.number(name); };
-  const double distance =
-      std::fabs(in.campaign.environment.temperature_difference.value_or(0.0));
+  const double distance = std::fabs(in.campaign.environment.temperature_difference.value_or(0.0));
   return {get("artefact_U_per_m_um") * per_um_per_m / 2.0,
-          rectangle * get("artefact_temperature_range_K") *
-              get("artefact_expansion_um_per_m_K") * per_K,
+          rectangle * get("artefact_temperature_range_K") * get("artefact_expansion_um_per_m_K") *
+              per_K,
           rectangle * distance * get("artefact_expansion_range_um_per_m_K") * per_K};
 }
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lines.h"
 
-#include "artefacts.h"
-#include "nonio/math/square.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
+
+#include "artefacts.h"
+#include "nonio/math/square.h"
 
 namespace nonio::rigid_body {
 
@@ -83,7 +83,7 @@ std::optional<math::SquareLines> on_square(const Campaign& c, const Measurement&
 struct Reader {
   const AnalysisInput& in;
   Lines& out;
-  std::size_t unknowns = 0;                 ///< that lines share
+  std::size_t unknowns = 0;                    ///< that lines share
   std::map<std::string, std::size_t> named{};  ///< of squares: set-ups and errors
 
   std::size_t unknown(const std::string& name) {

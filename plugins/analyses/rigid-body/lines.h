@@ -18,18 +18,18 @@ struct Stated {
 
 struct Lines {
   std::vector<math::RigidLine> lines;
-  std::vector<math::BudgetLine> budget;        ///< one for each line, readings in the same order
-  std::vector<std::string> groups;             ///< kinds of measurements with readings
-  std::vector<bool> angular;                   ///< of each group
-  std::vector<std::string> used;               ///< ids
-  std::vector<const Observations*> tables;     ///< of these
-  std::vector<std::string> left_out, centred;  ///< ids: of no use here; taken through the middle
+  std::vector<math::BudgetLine> budget;          ///< one for each line, readings in the same order
+  std::vector<std::string> groups;               ///< kinds of measurements with readings
+  std::vector<bool> angular;                     ///< of each group
+  std::vector<std::string> used;                 ///< ids
+  std::vector<const Observations*> tables;       ///< of these
+  std::vector<std::string> left_out, centred;    ///< ids: of no use here; taken through the middle
   std::vector<std::size_t> measurement_of_line;  ///< into `used`
   std::vector<Stated> stated;
   std::vector<std::string> uncalibrated;  ///< artefacts without a certificate
   std::vector<std::string> free_slope;    ///< lines on a square of which nobody states the error
   std::vector<Finding> findings;
-  math::Corner low{}, high{};                  ///< that holds all readings
+  math::Corner low{}, high{};  ///< that holds all readings
 
   /// Number of a group of readings that have one scatter.
   std::size_t group_of(const std::string& kind, bool angle);

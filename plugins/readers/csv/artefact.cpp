@@ -16,9 +16,9 @@ constexpr std::size_t most_rows = 20000, longest_name = 20;
 Expected<void> sound_name(const std::string& name, const Table& table, std::size_t row,
                           const char* column) {
   if (!name.empty() && name.size() <= longest_name && name.find(' ') == name.npos) return {};
-  return fail(at_line(table.line[row], column,
-                      "expected the name of a ball, up to 20 characters without a blank, found \"" +
-                          name + "\""));
+  return fail(at_line(
+      table.line[row], column,
+      "expected the name of a ball, up to 20 characters without a blank, found \"" + name + "\""));
 }
 
 /// Lines of balls: three each, along X, Y and Z, whose names are that of the ball and x, y or z.
@@ -77,8 +77,8 @@ Expected<Observations> centres_of(const ReadInput& input, const Table& table) {
   for (std::size_t row = 0; row < table.size(); ++row) {
     if (auto sound = sound_name(balls[row], table, row, "ball"); !sound) return fail(sound.error());
     const auto number = run == nullptr ? 1L : std::lround((*run)[row]);
-    if (auto first = once.see(balls[row] + " " + std::to_string(number), table, row,
-                              "a ball and run");
+    if (auto first =
+            once.see(balls[row] + " " + std::to_string(number), table, row, "a ball and run");
         !first)
       return fail(first.error());
     const auto centre = centre_in(table, row);
@@ -170,8 +170,8 @@ Expected<Observations> read_artefact_certificate(const ReadInput& input) {
                                                         {"y_mm", Kind::place, true},
                                                         {"z_mm", Kind::place, true},
                                                         {"U_um", Kind::place, true}});
-  auto obs = table ? certificate_of(input, *table, lengths)
-                   : Expected<Observations>(fail(table.error()));
+  auto obs =
+      table ? certificate_of(input, *table, lengths) : Expected<Observations>(fail(table.error()));
   return in_file(obs ? complete(std::move(*obs)) : std::move(obs), input);
 }
 

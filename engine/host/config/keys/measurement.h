@@ -7,11 +7,14 @@
 namespace nonio::host::config::declared {
 
 inline constexpr Words axis_runs[] = {"axis"};
-inline constexpr Choice measurement_kinds[] = {
-    {"axis"},         {"straightness"}, {"angle"},        {"diagonal"}, {"step-diagonal"},
-    {"ball-centres"}, {"rtcp"},         {"observations"}, {"circle"},   {"thermal"},
-    {"spindle"},      {"lengths"},      {"artefact"},     {"artefact-certificate"},
-    {"ballbar"}};
+inline constexpr Choice measurement_kinds[] = {{"axis"},          {"straightness"},
+                                               {"angle"},         {"diagonal"},
+                                               {"step-diagonal"}, {"ball-centres"},
+                                               {"rtcp"},          {"observations"},
+                                               {"circle"},        {"thermal"},
+                                               {"spindle"},       {"lengths"},
+                                               {"artefact"},      {"artefact-certificate"},
+                                               {"ballbar"}};
 inline constexpr Choice on_or_off[] = {{"on"}, {"off"}};
 inline constexpr Choice adjustments[] = {{"before"}, {"after"}};
 inline constexpr Choice listed_orders[] = {{"pendulum"}, {"as-listed"}, {"unknown"}};

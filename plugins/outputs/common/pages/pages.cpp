@@ -180,9 +180,9 @@ std::string heading_of(const Source& source, const Measured& m) {
   if (measurement.kind == "ball-centres")
     return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
   if (measurement.kind == "artefact" || measurement.kind == "artefact-certificate")
-    return ids(words.get(
-        measurement.kind == "artefact" ? "measurement.artefact" : "measurement.artefact_certificate",
-        {{"artefact", measurement.lateral}}));
+    return ids(words.get(measurement.kind == "artefact" ? "measurement.artefact"
+                                                        : "measurement.artefact_certificate",
+                         {{"artefact", measurement.lateral}}));
   if (measurement.kind == "circle")
     return words.get(
         "measurement.of",

@@ -107,8 +107,7 @@ Observations run_of_axis(const Truth& t, std::size_t axis, const Noise& noise) {
 }
 
 Measurement& add_axis(Workshop& w, const Truth& t, std::size_t axis, const Noise& noise) {
-  Measurement& m =
-      w.add(std::string(1, "XYZ"[axis]), "axis", run_of_axis(t, axis, noise));
+  Measurement& m = w.add(std::string(1, "XYZ"[axis]), "axis", run_of_axis(t, axis, noise));
   m.axis = std::string(1, "XYZ"[axis]);
   for (std::size_t k = 0; k < 3; ++k)
     if (k != axis) m.at[std::string(1, "XYZ"[k])] = place(.5, .5, .5)[k];
@@ -266,7 +265,7 @@ struct Coverage {
 struct Scenario {
   const char* name;
   double s, U_ball, U_scale, K;  ///< scatter, certificate, scale, range of the thermometers
-  bool laser, square;
+  bool laser, square, certificate = true;
 };
 
 Workshop campaign_of(const Scenario& scenario, const Truth& t, std::mt19937_64& random) {
@@ -274,8 +273,8 @@ Workshop campaign_of(const Scenario& scenario, const Truth& t, std::mt19937_64& 
   std::uniform_real_distribution<double> even(-0.5, 0.5);
   const Noise noise{&random, scenario.s};
   const auto stated = plate(balls_a_side, 0.5);
-  const double alpha = 11.5e-6, scale = scenario.U_scale / 2.0 * normal(random) +
-                                        alpha * scenario.K * even(random);
+  const double alpha = 11.5e-6,
+               scale = scenario.U_scale / 2.0 * normal(random) + alpha * scenario.K * even(random);
   auto balls = stated;
   for (Vector& b : balls) {
     for (int k = 0; k < 3; ++k) b[k] += scenario.U_ball / 2.0 * normal(random);
@@ -285,7 +284,8 @@ Workshop campaign_of(const Scenario& scenario, const Truth& t, std::mt19937_64& 
   Workshop w;
   for (const Pose& pose : poses_of_plate())
     w.add(pose.id, "artefact", probed_on(t, balls, pose, noise, 2, -machine_thermometer));
-  w.add("certificate", "artefact-certificate", certificate_of(stated, scenario.U_ball / 2.0));
+  if (scenario.certificate)
+    w.add("certificate", "artefact-certificate", certificate_of(stated, scenario.U_ball / 2.0));
   w.campaign.environment.temperature_range = scenario.K;
   w.with("artefact_U_per_m_um", scenario.U_scale * 1e6);
   w.with("artefact_temperature_range_K", scenario.K);
@@ -330,6 +330,7 @@ TEST(Artefact, WholeBudgetCoversTheExactMachine) {
       {"scatter", 0.5 * um, 0.2 * um, 0.2 * um, 0.001, false, false},
       {"certificate", 0.1 * um, 1.2 * um, 0.2 * um, 0.001, false, false},
       {"scale", 0.2 * um, 0.2 * um, 8 * um, 0.001, false, false},
+      {"unknown balls, laser", 0.4 * um, 20 * um, 0.0, 0.001, true, false, false},
       {"all, laser and square", 0.4 * um, 0.8 * um, 1 * um, 0.001, true, true}};
   std::map<std::string, Coverage> covered;
   for (int i = 0; i < campaigns; ++i)

@@ -18,8 +18,8 @@ extern "C" const nonio::PluginEntry nonio_plugin;
 /// Artefacts and squares on the exact machine, and the campaign that the plugin gets of them.
 namespace rigid_workshop {
 
-using nonio::Observations;
 using machine::Vector;
+using nonio::Observations;
 
 /// Where the axes stand when the tool is at a place: the inverse of the exact machine.
 inline Vector commanded(const machine::Errors& errors, const Vector& place) {
@@ -51,19 +51,19 @@ inline Pose pose_in(const std::string& id, int first, int second, const Vector& 
 inline std::vector<Vector> plate(int n, double size) {
   std::vector<Vector> out;
   for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j)
-      out.emplace_back(size * i / (n - 1), size * j / (n - 1), 0.0);
+    for (int j = 0; j < n; ++j) out.emplace_back(size * i / (n - 1), size * j / (n - 1), 0.0);
   return out;
 }
 
 /// Poses of a plate of 0.5 m that reach every edge of the volume.
 inline std::vector<Pose> poses_of_plate() {
   const double a = 0.002;
-  return {pose_in("P1", 0, 1, {0.01, 0.02, 0.01}, a),    pose_in("P2", 0, 1, {0.29, 0.07, 0.01}, -a),
-          pose_in("P3", 0, 1, {0.01, 0.05, 0.58}, a),    pose_in("P4", 0, 1, {0.29, 0.02, 0.58}, a),
-          pose_in("P5", 0, 2, {0.01, 0.01, 0.03}, -a),   pose_in("P6", 0, 2, {0.28, 0.58, 0.06}, a),
-          pose_in("P7", 1, 2, {0.01, 0.04, 0.05}, a),    pose_in("P8", 1, 2, {0.78, 0.05, 0.02}, -a),
-          pose_in("P9", 1, 2, {0.40, 0.02, 0.05}, 2 * a)};
+  return {
+      pose_in("P1", 0, 1, {0.01, 0.02, 0.01}, a),    pose_in("P2", 0, 1, {0.29, 0.07, 0.01}, -a),
+      pose_in("P3", 0, 1, {0.01, 0.05, 0.58}, a),    pose_in("P4", 0, 1, {0.29, 0.02, 0.58}, a),
+      pose_in("P5", 0, 2, {0.01, 0.01, 0.03}, -a),   pose_in("P6", 0, 2, {0.28, 0.58, 0.06}, a),
+      pose_in("P7", 1, 2, {0.01, 0.04, 0.05}, a),    pose_in("P8", 1, 2, {0.78, 0.05, 0.02}, -a),
+      pose_in("P9", 1, 2, {0.40, 0.02, 0.05}, 2 * a)};
 }
 
 inline std::string ball_name(std::size_t b) { return "b" + std::to_string(b + 1); }
@@ -76,7 +76,8 @@ inline Observations probed_on(const Truth& t, const std::vector<Vector>& balls, 
   o.axes = {{"X", false, {}, {}}, {"Y", false, {}, {}}, {"Z", false, {}, {}}};
   for (std::size_t b = 0; b < balls.size(); ++b)
     for (int k = 0; k < 3; ++k)
-      o.lines.push_back({ball_name(b) + " " + "xyz" [k], {k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0.}});
+      o.lines.push_back({ball_name(b) + " " + "xyz" [k],
+                         { k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0. }});
   for (int run = 1; run <= runs; ++run)
     for (std::size_t b = 0; b < balls.size(); ++b) {
       Vector at = commanded(t.errors, pose.turn * balls[b] + pose.shift) * (1.0 + stretched);
@@ -98,7 +99,8 @@ inline Observations certificate_of(const std::vector<Vector>& balls, double u) {
   o.axes = {{"certificate", false, {}, {}}};
   for (std::size_t b = 0; b < balls.size(); ++b)
     for (int k = 0; k < 3; ++k) {
-      o.lines.push_back({ball_name(b) + " " + "xyz" [k], {k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0.}});
+      o.lines.push_back({ball_name(b) + " " + "xyz" [k],
+                         { k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0. }});
       o.line.push_back(static_cast<std::uint32_t>(3 * b) + static_cast<std::uint32_t>(k));
       o.axes[0].position.push_back(static_cast<double>(b + 1));
       o.deviation.push_back(balls[b][k]);
