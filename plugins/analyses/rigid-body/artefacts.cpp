@@ -143,7 +143,10 @@ void take_artefact(const AnalysisInput& in, const std::string& name, std::size_t
     const Measurement& m = in.campaign.measurements[i];
     const Observations& o = (*in.all)[i];
     if (m.lateral != name || o.size() == 0) continue;
-    if (m.kind == "artefact-certificate") put_certificate(o, a);
+    if (m.kind == "artefact-certificate") {
+      put_certificate(o, a);
+      out.certificates.push_back(m.id);
+    }
     if (m.kind == "artefact" && of_state(in, m)) placements.push_back(probed(m, o, a));
   }
   for (const Probed& p : placements) a.placements.push_back(p.placement);

@@ -26,6 +26,7 @@ struct Lines {
   std::vector<std::string> left_out, centred;    ///< ids: of no use here; taken through the middle
   std::vector<std::size_t> measurement_of_line;  ///< into `used`
   std::vector<Stated> stated;
+  std::vector<std::string> certificates;  ///< ids of measurements that state something
   std::vector<std::string> uncalibrated;  ///< artefacts without a certificate
   std::vector<std::string> free_slope;    ///< lines on a square of which nobody states the error
   std::vector<Finding> findings;

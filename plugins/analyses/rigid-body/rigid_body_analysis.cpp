@@ -184,6 +184,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   for (Finding& f : w.out.findings) f.measurement = in.measurement.id;
   if (w.lines.lines.empty() || moving == 0) return std::move(w.out);
   w.out.uses = w.lines.used;
+  w.out.uses.insert(w.out.uses.end(), w.lines.certificates.begin(), w.lines.certificates.end());
   std::erase(w.out.uses, in.measurement.id);
   RigidWish wish{w.lines.low, w.lines.high, in.options.texts("errors"),
                  static_cast<std::size_t>(in.options.integer("degree")),
