@@ -3,7 +3,7 @@
 import math
 
 from in_space import DIAGONALS, with_noise
-from parts import GOOD_ROOM, INTERFEROMETER, MADE_UP, Noise, linear, manifest, table
+from parts import GOOD_ROOM, INTERFEROMETER, MADE_UP, PROBE, Noise, linear, manifest, table
 
 
 class Rolling:
@@ -102,6 +102,71 @@ def whole_volume():
     return files
 
 
+class Crooked:
+    """A machining centre of 800 x 600 x 500 mm after a collision; its errors as those of Rolling."""
+    travel = (800.0, 600.0, 500.0)
+    C0Y, B0Z, A0Z = 31.0, -4.0, 3.0
+
+    along = (lambda t: 2.0 * t + 0.8 * (1.5 * t * t - 0.5), lambda t: -1.5 * t, lambda t: 1.0 * t)
+    across = {"YX": 1.5, "ZX": -1.2, "XY": 0.9, "ZY": 1.1, "XZ": -0.8, "YZ": 0.7}
+    angles = {"AX": (3.0, 0.5), "BX": (-2.0, 0.8), "CX": (2.5, -0.7), "AY": (1.5, -0.4), "BY": (-1.2, 0.3)}
+
+    t, bow, angle, error = Rolling.t, Rolling.bow, Rolling.angle, Rolling.error
+
+    def shown(self, place):
+        """Where the axes stand when the tool is at a place, mm."""
+        at = list(place)
+        for _ in range(4):
+            at = [p - e / 1000.0 for p, e in zip(place, self.error(*at))]
+        return at
+
+
+def turned(angles, v):
+    """Small and large turns about X, Y and Z, one after the other, of a vector; degrees."""
+    for k, angle in enumerate(angles):
+        c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        i, j = (k + 1) % 3, (k + 2) % 3
+        v = [c * v[n] - s * v[j] if n == i else s * v[i] + c * v[j] if n == j else v[n] for n in range(3)]
+    return v
+
+
+def ball_plate():
+    """Placements: turns about X, Y, Z and the place of the first ball."""
+    noise, files, measurements, machine = Noise(125), {}, [], Crooked()
+    placements = {"flat-low": ((0.1, 0.0, 0.2), (8, 12, 15)), "flat-low-right": ((0.0, 0.1, -0.2), (390, 188, 15)),
+                  "flat-high": ((-0.1, 0.1, 0.1), (9, 180, 488)), "flat-high-right": ((0.1, 0.1, 0.1), (391, 12, 488)),
+                  "front": ((90.1, 0.0, 0.2), (12, 14, 20)), "front-right": ((90.0, 0.1, -0.1), (388, 13, 85)),
+                  "back": ((90.0, 0.1, 0.1), (390, 588, 22)), "left": ((90.1, 0.0, 90.1), (10, 15, 18)),
+                  "middle": ((90.0, 0.1, 89.9), (400, 185, 80)), "right": ((89.9, -0.1, 90.0), (790, 180, 20))}
+    stated = {"b%d%d" % (i, j): (100.0 * i + 0.02 * noise.normal(), 100.0 * j + 0.02 * noise.normal(), 0.02 * noise.normal())
+              for i in range(5) for j in range(5)}
+    stated = {name: tuple(round(v, 4) for v in place) for name, place in stated.items()}
+    # What the certificate does not know: each place by 0.2 um, the scale by 0.3 um/m.
+    true = {name: [v * (1.0 + 0.3e-6) + 0.0002 * noise.normal() for v in place] for name, place in stated.items()}
+    for name, (angles, corner) in placements.items():
+        rows = []
+        for ball, place in true.items():
+            at = machine.shown([c + v for c, v in zip(corner, turned(angles, place))])
+            rows.append("%s,%s" % (ball, ",".join("%.4f" % (v + 0.0004 * noise.normal()) for v in at)))
+        files[name + ".csv"] = "# %s\nball,x_mm,y_mm,z_mm\n%s\n" % (MADE_UP, "\n".join(rows))
+        measurements.append({"id": name, "kind": "artefact", "artefact": "plate 400", "file": name + ".csv"})
+    files["certificate.csv"] = "# %s\nball,x_mm,y_mm,z_mm,U_um\n%s\n" % (MADE_UP, "\n".join(
+        "%s,%.4f,%.4f,%.4f,0.4" % (ball, *place) for ball, place in stated.items()))
+    measurements.append({"id": "certificate", "kind": "artefact-certificate", "artefact": "plate 400", "file": "certificate.csv"})
+    story = ["A machining centre after a collision, in a shop without a laser. A calibrated ball plate is probed in ten",
+             "placements with the machine's own probe, none of them aligned. Y has turned by 31 urad towards X: squareness and",
+             "the map of the volume come from the balls alone. What the machine's angles of Z do, no ball on a short stylus shows."]
+    files["campaign.toml"] = manifest(
+        story, "25-ball-plate", "Esempio Venticinque S.r.l.", "Vicenza", "2026-06-15",
+        {"maker": "Sample Machines", "model": "VMC 8", "serial": "S-0125"},
+        {axis: linear(v) for axis, v in zip("XYZ", machine.travel)}, measurements, PROBE, GOOD_ROOM,
+        analyses=["rigid-body"], outputs=["json", "csv", "pdf-report", "volume-grid"],
+        options={"rigid-body": {"degree": "2", "parts": "2", "artefact_U_per_m_um": "0.6",
+                                "artefact_expansion_um_per_m_K": "11.5", "artefact_temperature_range_K": "0.2",
+                                "artefact_expansion_range_um_per_m_K": "1.0"}})
+    return files
+
+
 def plan_on_paper():
     story = ["Before the day at a gantry of 20 m x 12 m: racks of 20 mm, a table of 100 entries in the control, 100 mm kept",
              "free at each end. Nothing is measured yet; the night makes the plan, the sheet to take to the machine in Italian,",
@@ -120,4 +185,5 @@ def plan_on_paper():
 STORIES = {
     "23-whole-volume": whole_volume,
     "24-plan-on-paper": plan_on_paper,
+    "25-ball-plate": ball_plate,
 }

@@ -246,6 +246,7 @@ Measurement read_measurement(TableReader& reader) {
     m.lateral = reader.text("about");
     m.foot = reader.number("foot_mm", mm);
   }
+  if (m.kind == "artefact" || m.kind == "artefact-certificate") m.lateral = reader.text("artefact");
   if (m.kind == "thermal" || m.kind == "spindle") m.foot = reader.number("sensor_distance_mm", mm);
   read_tolerances(reader, m);
   m.exclude = reader.integers("exclude");

@@ -108,7 +108,8 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
     o.notes.push_back(
         {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
   // A path, a time and an angle have no targets to come back to; lengths are those of the artefact.
-  if (m.kind == "circle" || m.kind == "thermal" || m.kind == "spindle" || m.kind == "lengths")
+  if (m.kind == "circle" || m.kind == "thermal" || m.kind == "spindle" || m.kind == "lengths" ||
+      m.kind.starts_with("artefact"))
     return;
   if (const std::size_t moved = join_targets(o); moved > 0)
     o.notes.push_back(

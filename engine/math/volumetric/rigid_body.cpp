@@ -7,7 +7,7 @@
 #include <set>
 
 #include "functional.h"
-#include "rigid_terms.h"
+#include "rigid_fit.h"
 
 namespace nonio::math {
 
@@ -21,154 +21,7 @@ using Eigen::VectorXd;
 constexpr double changes_nothing = 1e-6;  // of a result, by what is open
 constexpr double shows_nothing = 1e-9;    // of a column, in the volume
 constexpr double same_share = 1e-6;
-constexpr std::size_t rounds = 20;
 constexpr std::size_t places = 21;  // of a curve
-
-/// Readings, their terms and the set-up, in one matrix each.
-struct Table {
-  MatrixXd terms, set_up;
-  VectorXd value;
-  std::vector<std::size_t> group;
-  std::size_t groups = 0;
-};
-
-Table table_of(const std::vector<RigidLine>& lines, const std::vector<RigidTerm>& terms,
-               const RigidBox& box) {
-  std::vector<RigidRows> rows;
-  std::size_t readings = 0, set_up = 0;
-  for (const RigidLine& line : lines) {
-    rows.push_back(rows_of(line, terms, box));
-    readings += line.readings.size();
-    set_up += rows.back().set_up.empty() ? 0 : rows.back().set_up.front().size();
-  }
-  Table t{MatrixXd::Zero(at(readings), at(terms.size())),
-          MatrixXd::Zero(at(readings), at(set_up)),
-          VectorXd(at(readings)),
-          {},
-          0};
-  Index row = 0, own = 0;
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    for (std::size_t i = 0; i < lines[l].readings.size(); ++i, ++row) {
-      for (std::size_t k = 0; k < terms.size(); ++k) t.terms(row, at(k)) = rows[l].terms[i][k];
-      const auto& mine = rows[l].set_up[i];
-      for (std::size_t k = 0; k < mine.size(); ++k) t.set_up(row, own + at(k)) = mine[k];
-      t.value[row] = lines[l].readings[i].value;
-      t.group.push_back(lines[l].group);
-      t.groups = std::max(t.groups, lines[l].group + 1);
-    }
-    if (!rows[l].set_up.empty()) own += at(rows[l].set_up.front().size());
-  }
-  return t;
-}
-
-/// An orthonormal basis of columns, whatever their rank.
-MatrixXd basis_of(MatrixXd columns) {
-  for (Index k = 0; k < columns.cols(); ++k)
-    if (const double size = columns.col(k).norm(); size > 0.0) columns.col(k) /= size;
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(columns);
-  qr.setThreshold(1e-9);
-  return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
-}
-
-/// One least-squares fit with the readings divided by the scatter of their groups.
-struct Solved {
-  VectorXd x, residual;  ///< residual: of the readings divided by their scatter
-  MatrixXd V, map;       ///< kept right vectors; unknowns by readings
-  VectorXd sigma;        ///< all, falling
-  MatrixXd right;        ///< all right vectors
-  VectorXd leverage;
-  Index rank = 0, set_up = 0;
-};
-
-Solved solve_once(const Table& t, const std::vector<double>& scatter) {
-  VectorXd root(t.value.size());
-  for (Index i = 0; i < root.size(); ++i)
-    root[i] = 1.0 / scatter[t.group[static_cast<std::size_t>(i)]];
-  const MatrixXd Q = basis_of(root.asDiagonal() * t.set_up);
-  MatrixXd A = root.asDiagonal() * t.terms;
-  VectorXd y = root.cwiseProduct(t.value);
-  A -= Q * (Q.transpose() * A).eval();
-  y -= Q * (Q.transpose() * y).eval();
-  // A = H R with few columns: the singular values of R are those of A.
-  const Eigen::HouseholderQR<MatrixXd> qr(A);
-  const Index small = std::min(A.rows(), A.cols());
-  const MatrixXd R = qr.matrixQR().topRows(small).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<MatrixXd> svd(R, Eigen::ComputeFullV);
-  Solved s;
-  s.sigma = VectorXd::Zero(A.cols());
-  s.sigma.head(svd.singularValues().size()) = svd.singularValues();
-  s.right = svd.matrixV();
-  while (s.rank < small && s.sigma[s.rank] > rank_below * s.sigma[0]) ++s.rank;
-  s.V = s.right.leftCols(s.rank);
-  const VectorXd inverse = s.sigma.head(s.rank).cwiseInverse();
-  const MatrixXd U = A * s.V * inverse.asDiagonal();
-  s.x = s.V * inverse.cwiseProduct(U.transpose() * y);
-  s.residual = y - A * s.x;
-  s.map = s.V * inverse.asDiagonal() * U.transpose() * root.asDiagonal();
-  s.leverage = U.rowwise().squaredNorm() + Q.rowwise().squaredNorm();
-  s.set_up = Q.cols();
-  return s;
-}
-
-struct Scatter {
-  std::vector<double> s, dof;
-};
-
-/// s of each group from the residuals; where nothing is left of a group, that of the others.
-Scatter scatter_of(const Table& t, const Solved& solved, const std::vector<double>& used) {
-  Scatter out{std::vector<double>(t.groups, 0.0), std::vector<double>(t.groups, 0.0)};
-  for (Index i = 0; i < t.value.size(); ++i) {
-    const std::size_t g = t.group[static_cast<std::size_t>(i)];
-    out.s[g] += solved.residual[i] * solved.residual[i];
-    out.dof[g] += 1.0 - solved.leverage[i];
-  }
-  for (std::size_t g = 0; g < t.groups; ++g)
-    out.s[g] = out.dof[g] > 0.5 ? used[g] * std::sqrt(out.s[g] / out.dof[g]) : 0.0;
-  return out;
-}
-
-/// Twice the negative logarithm of the likelihood and Schwarz's price of the unknowns.
-double schwarz(const Table& t, const Solved& s, const std::vector<double>& scatter) {
-  const auto n = static_cast<double>(t.value.size());
-  double sum = s.residual.squaredNorm() + static_cast<double>(s.rank) * std::log(n);
-  for (Index i = 0; i < t.value.size(); ++i)
-    sum += 2.0 * std::log(scatter[t.group[static_cast<std::size_t>(i)]]);
-  return sum;
-}
-
-struct Fitted {
-  std::vector<RigidTerm> terms;
-  Table table;
-  Solved solved;
-  Scatter scatter;
-  double price = 0.0;
-};
-
-/// Errors of exact readings: rounding, which is no scatter.
-constexpr double no_scatter = 1e-12;
-
-Fitted fit_with(const std::vector<RigidLine>& lines, const RigidBox& box, const RigidWish& wish,
-                std::size_t degree) {
-  Fitted f;
-  f.terms = rigid_terms(box, wish.errors, degree);
-  f.table = table_of(lines, f.terms, box);
-  std::vector<double> used(f.table.groups, 1e-6);
-  for (std::size_t round = 0; round < rounds; ++round) {
-    f.solved = solve_once(f.table, used);
-    f.scatter = scatter_of(f.table, f.solved, used);
-    double change = 0.0;
-    std::vector<double> next = used;
-    for (std::size_t g = 0; g < used.size(); ++g) {
-      if (f.scatter.dof[g] > 0.5) next[g] = std::max(f.scatter.s[g], no_scatter);
-      change = std::max(change, std::fabs(std::log(next[g] / used[g])));
-    }
-    if (change < 1e-4) break;
-    used = next;
-  }
-  f.scatter.s = used;
-  f.price = schwarz(f.table, f.solved, used);
-  return f;
-}
 
 std::string name_of(const RigidTerm& term) {
   return term.kind == RigidTerm::Kind::squareness ? term.error
@@ -177,7 +30,7 @@ std::string name_of(const RigidTerm& term) {
 
 /// The rows that the readings tell, by elimination from the left: a column that is no pivot is a
 /// sum of pivots before it.
-void find_combinations(const Fitted& f, RigidSolution& out) {
+void find_combinations(const RigidFit& f, RigidSolution& out) {
   MatrixXd R = f.solved.V.transpose();
   std::vector<Index> pivots;
   Index row = 0;
@@ -211,7 +64,7 @@ void find_combinations(const Fitted& f, RigidSolution& out) {
 }
 
 /// The terms of the direction that the readings tell least, the largest first.
-Combination weakest_of(const Fitted& f) {
+Combination weakest_of(const RigidFit& f) {
   Combination out;
   if (f.solved.rank == 0) return out;
   const VectorXd v = f.solved.V.rightCols(1);
@@ -229,13 +82,20 @@ Combination weakest_of(const Fitted& f) {
 /// What is asked of the fit, as far as it can be told.
 class Results {
  public:
-  Results(const Fitted& f, const RigidBox& box, const ReadingModel* model) : f_(f), box_(box) {
+  Results(const RigidFit& f, const RigidBox& box, const ReadingModel* model) : f_(f), box_(box) {
     const MatrixXd& V = f.solved.V;
     const VectorXd variance = f.solved.sigma.head(f.solved.rank).cwiseAbs2().cwiseInverse();
     e_.x = f.solved.x;
     e_.covariance = V * variance.asDiagonal() * V.transpose();
     e_.model = model;
-    if (model != nullptr) e_.of_readings = f.solved.map;
+    if (model == nullptr) return;
+    e_.of_readings = f.solved.map;
+    // The model has the inputs of what is stated: the repetition is that of the readings alone.
+    for (std::size_t i = 0; i < f.table.stated.size(); ++i)
+      if (const double u = f.table.stated[i]; u > 0.0) {
+        const VectorXd by = u * f.solved.map.col(at(i));
+        e_.covariance -= by * by.transpose();
+      }
     e_.dof = [this](const RowVectorXd& J) { return dof_of(J); };
   }
   const Estimator& estimator() const { return e_; }
@@ -275,6 +135,7 @@ class Results {
     std::vector<double> share(f_.scatter.s.size(), 0.0);
     for (Index i = 0; i < J.size(); ++i) {
       const std::size_t g = f_.table.group[static_cast<std::size_t>(i)];
+      if (g == share.size()) continue;  // stated
       share[g] += J[i] * J[i] * f_.scatter.s[g] * f_.scatter.s[g];
     }
     double sum = 0.0, fourth = 0.0;
@@ -285,7 +146,7 @@ class Results {
     return fourth > 0.0 ? sum * sum / fourth : std::numeric_limits<double>::infinity();
   }
 
-  const Fitted& f_;
+  const RigidFit& f_;
   const RigidBox& box_;
   Estimator e_;
 };
@@ -306,7 +167,7 @@ void put_curve(const Results& r, const RigidBox& box, const RigidTerm& term, Rig
   out.curves.push_back(std::move(curve));
 }
 
-void put_results(const Fitted& f, const RigidBox& box, const RigidWish& wish,
+void put_results(const RigidFit& f, const RigidBox& box, const RigidWish& wish,
                  const ReadingModel* model, RigidSolution& out) {
   const Results r(f, box, model);
   std::string last;
@@ -345,7 +206,8 @@ std::size_t allowed_degree(const std::vector<RigidLine>& lines, const RigidBox& 
     if (!(box.length(k) > 0.0)) continue;
     std::set<long> seen;
     for (const RigidLine& line : lines)
-      for (const RigidReading& r : line.readings) seen.insert(std::lround(1e4 * box.part(k, r.at)));
+      for (const RigidReading& r : line.readings)
+        if (line.kind != RigidLine::Kind::stated) seen.insert(std::lround(1e4 * box.part(k, r.at)));
     least = std::min(least, seen.size() / 2);
   }
   return std::max(least, least_degree);
@@ -361,9 +223,10 @@ Expected<RigidSolution> solve_rigid_body(const std::vector<RigidLine>& lines, co
     if (std::find(known.begin(), known.end(), name) == known.end())
       return fail("expected an error such as EXX, EYX or C0Y, found \"" + name + "\"");
   const std::size_t highest = allowed_degree(lines, box);
-  Fitted best = fit_with(lines, box, wish, wish.degree > 0 ? wish.degree : least_degree);
+  RigidFit best =
+      fit_rigid_body(lines, box, wish.errors, wish.degree > 0 ? wish.degree : least_degree);
   for (std::size_t d = least_degree + 1; wish.degree == 0 && d <= highest; ++d)
-    if (Fitted next = fit_with(lines, box, wish, d); next.price < best.price)
+    if (RigidFit next = fit_rigid_body(lines, box, wish.errors, d); next.price < best.price)
       best = std::move(next);
   if (best.solved.rank + best.solved.set_up >= best.table.value.size())
     return fail(std::to_string(best.table.value.size()) + " readings cannot determine " +
@@ -372,7 +235,8 @@ Expected<RigidSolution> solve_rigid_body(const std::vector<RigidLine>& lines, co
   for (const RigidTerm& term : best.terms) out.degree = std::max(out.degree, term.degree);
   out.unknowns = best.terms.size();
   out.rank = static_cast<std::size_t>(best.solved.rank);
-  out.readings = static_cast<std::size_t>(best.table.value.size());
+  out.readings =
+      static_cast<std::size_t>(std::count(best.table.stated.begin(), best.table.stated.end(), 0.0));
   for (Index k = 0; k < best.solved.sigma.size(); ++k)
     out.singular.push_back(best.solved.sigma[0] > 0.0 ? best.solved.sigma[k] / best.solved.sigma[0]
                                                       : 0.0);

@@ -109,6 +109,7 @@ bool both_ways(const RigidLine& line) {
 double seen(const RigidLine& line, std::size_t i, const RigidTerm& term, const RigidBox& box,
             const Corner& far) {
   const RigidReading& r = line.readings[i];
+  if (line.kind == RigidLine::Kind::stated) return 0.0;
   if (line.kind == RigidLine::Kind::angle)
     return term.kind == Kind::angle && term.axis == line.of && term.along == line.about
                ? shape_of(term, box, r.at)
@@ -183,16 +184,19 @@ std::vector<RigidTerm> rigid_terms(const RigidBox& box, const std::vector<std::s
 
 RigidRows rows_of(const RigidLine& line, const std::vector<RigidTerm>& terms, const RigidBox& box) {
   RigidRows out;
-  const bool reversed = both_ways(line);
+  const bool zero = line.kind != RigidLine::Kind::point && line.kind != RigidLine::Kind::stated;
+  const bool reversed = zero && both_ways(line);
   const Corner far = farthest_way(line), travel = travel_of(line);
   for (std::size_t i = 0; i < line.readings.size(); ++i) {
     std::vector<double> row;
     for (const RigidTerm& term : terms) row.push_back(term.scale * seen(line, i, term, box, far));
     out.terms.push_back(std::move(row));
-    std::vector<double> own{1.0};
+    std::vector<double> own;
+    if (zero) own.push_back(1.0);
     if (reversed) own.push_back(line.readings[i].way / 2.0);
     const Corner way = way_of(line, i);
-    if (line.kind == RigidLine::Kind::across) own.push_back(dot_product(way, travel));
+    if (line.kind == RigidLine::Kind::across && line.own_slope)
+      own.push_back(dot_product(way, travel));
     if (line.kind == RigidLine::Kind::mirror)
       for (const Corner& side : across_of(line.readings[i].sense))
         own.push_back(dot_product(way, side));

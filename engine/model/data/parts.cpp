@@ -45,6 +45,7 @@ class Parts {
     const std::string& kind = measurement(m).kind;
     // No effects of the model: the first two run over time and angle, the third has no places.
     if (kind == "thermal" || kind == "spindle" || kind == "lengths") return;
+    if (kind.starts_with("artefact")) return;  // rigid-body has where it stood
     if (kind == "ball-centres") {
       kind_[m] = Kind::balls;
     } else if (sensed_along_one_axis(o)) {

@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <optional>
+
+#include "artefacts.h"
+#include "nonio/math/square.h"
 
 namespace nonio::rigid_body {
 
@@ -50,16 +55,80 @@ int way_of(const Observations& o, std::size_t row) {
   return 1;
 }
 
+const Square* square_of(const Campaign& c, const std::string& name) {
+  for (const Square& s : c.squares)
+    if (s.name == name) return &s;
+  return nullptr;
+}
+
+bool certified(const Campaign& c, const std::string& name) {
+  const Square* square = square_of(c, name);
+  return square != nullptr && square->error && square->U;
+}
+
+/// The lines of a square that hold its axes against each other; none of a measurement that is not
+/// among them.
+std::optional<math::SquareLines> on_square(const Campaign& c, const Measurement& m) {
+  if (m.square.empty()) return std::nullopt;
+  for (math::SquareLines& s : math::squares_of(c)) {
+    const auto all = s.all();
+    if (std::none_of(all.begin(), all.end(),
+                     [&](std::size_t i) { return c.measurements[i].id == m.id; }))
+      continue;
+    if (s.whole() && (!s.turned.empty() || certified(c, s.square))) return std::move(s);
+  }
+  return std::nullopt;
+}
+
 struct Reader {
   const AnalysisInput& in;
   Lines& out;
+  std::size_t unknowns = 0;                    ///< that lines share
+  std::map<std::string, std::size_t> named{};  ///< of squares: set-ups and errors
 
-  std::size_t group_of(const Measurement& m) {
-    const auto found = std::find(out.groups.begin(), out.groups.end(), m.kind);
-    if (found != out.groups.end()) return static_cast<std::size_t>(found - out.groups.begin());
-    out.groups.push_back(m.kind);
-    out.angular.push_back(m.kind == "angle");
-    return out.groups.size() - 1;
+  std::size_t unknown(const std::string& name) {
+    const auto [at, fresh] = named.try_emplace(name, unknowns);
+    if (fresh) ++unknowns;
+    return at->second;
+  }
+
+  /// On the face of a square the slope is that of the axis and of the set-up, which both faces
+  /// share; the square's own error leans the second face, turned over the other way (square.h).
+  void share_square(const Measurement& m, RigidLine& line) {
+    const auto square = on_square(in.campaign, m);
+    if (!square) {
+      if (!m.square.empty()) out.free_slope.push_back(m.id);
+      return;
+    }
+    const bool first = m.axis == square->first;
+    const std::size_t k = coordinate_of(m.axis);
+    std::vector<double> way;
+    for (const auto& r : line.readings) way.push_back(r.at[k] - line.readings.front().at[k]);
+    line.own_slope = false;
+    auto turned = way;
+    for (double& w : turned) w *= first ? 1.0 : -1.0;
+    line.shared.push_back({unknown("set-up " + square->square + " " + square->first + " " +
+                                   square->second + (m.square_turned ? " turned" : "")),
+                           std::move(turned)});
+    if (first) return;
+    for (double& w : way) w *= m.square_turned ? -1.0 : 1.0;
+    line.shared.push_back({unknown("error " + square->square), std::move(way)});
+  }
+
+  /// What the certificates of the squares state.
+  void state_squares() {
+    for (const Square& square : in.campaign.squares) {
+      const auto error = named.find("error " + square.name);
+      if (error == named.end() || !certified(in.campaign, square.name)) continue;
+      RigidLine line;
+      line.kind = RigidLine::Kind::stated;
+      line.readings.push_back({{}, {}, 0, *square.error, *square.U / 2.0});
+      line.shared.push_back({error->second, {1.0}});
+      out.stated.push_back({out.lines.size(), square.name, square.name});
+      out.budget.push_back(stated_budget(1, out.lines.size()));
+      out.lines.push_back(std::move(line));
+      out.measurement_of_line.push_back(0);
+    }
   }
 
   void take(const Measurement& m, const Observations& o) {
@@ -78,7 +147,7 @@ struct Reader {
         };
         return when(a) < when(b);
       });
-    const std::size_t group = group_of(m);
+    const std::size_t group = out.group_of(m.kind, m.kind == "angle");
     for (std::uint32_t l = 0; l < o.lines.size(); ++l) {
       RigidLine line;
       line.kind = kind_of(m);
@@ -91,6 +160,7 @@ struct Reader {
                                    line.kind == RigidLine::Kind::angle ? Corner{} : o.sense_of(row),
                                    way_of(o, row), o.deviation[row]});
       if (line.readings.empty()) continue;
+      if (m.kind == "straightness") share_square(m, line);
       out.budget.push_back(budget_line(line));
       out.lines.push_back(std::move(line));
     }
@@ -127,7 +197,7 @@ void find_box(Lines& out) {
   out.high.fill(-std::numeric_limits<double>::infinity());
   for (const RigidLine& line : out.lines)
     for (const auto& r : line.readings)
-      for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t k = 0; k < 3 && line.kind != RigidLine::Kind::stated; ++k)
         if (std::isfinite(r.at[k])) {
           out.low[k] = std::min(out.low[k], r.at[k]);
           out.high[k] = std::max(out.high[k], r.at[k]);
@@ -137,7 +207,7 @@ void find_box(Lines& out) {
 }
 
 /// Places that nobody said are in the middle of the volume.
-void centre(Lines& out, std::vector<std::size_t> measurement_of_line) {
+void centre(Lines& out) {
   for (std::size_t l = 0; l < out.lines.size(); ++l) {
     bool any = false;
     for (auto& r : out.lines[l].readings)
@@ -146,7 +216,7 @@ void centre(Lines& out, std::vector<std::size_t> measurement_of_line) {
           r.at[k] = (out.low[k] + out.high[k]) / 2.0;
           any |= out.high[k] > out.low[k] && out.lines[l].kind != RigidLine::Kind::angle;
         }
-    const std::string& id = out.used[measurement_of_line[l]];
+    const std::string& id = out.used[out.measurement_of_line[l]];
     if (any && std::find(out.centred.begin(), out.centred.end(), id) == out.centred.end())
       out.centred.push_back(id);
   }
@@ -154,7 +224,16 @@ void centre(Lines& out, std::vector<std::size_t> measurement_of_line) {
 
 }  // namespace
 
+std::size_t Lines::group_of(const std::string& kind, bool angle) {
+  const auto found = std::find(groups.begin(), groups.end(), kind);
+  if (found != groups.end()) return static_cast<std::size_t>(found - groups.begin());
+  groups.push_back(kind);
+  angular.push_back(angle);
+  return groups.size() - 1;
+}
+
 bool is_taken(const Campaign& c, const Measurement& m) {
+  if (m.kind == "artefact") return true;
   if (m.kind == "diagonal" || m.kind == "step-diagonal")
     return std::all_of(m.from.begin(), m.from.end(),
                        [&](const auto& end) { return linear(c, end.first); });
@@ -164,23 +243,29 @@ bool is_taken(const Campaign& c, const Measurement& m) {
   return m.kind == "angle" && linear(c, m.axis) && coordinate_of(m.lateral) < 3 && !m.foot;
 }
 
+bool tells_squareness(const Campaign& c, const Measurement& m) {
+  return m.kind == "diagonal" || m.kind == "step-diagonal" || m.kind == "artefact" ||
+         on_square(c, m).has_value();
+}
+
 Lines lines_of(const AnalysisInput& in) {
   Lines out;
   Reader reader{in, out};
-  std::vector<std::size_t> measurement_of_line;
   for (std::size_t i = 0; in.all != nullptr && i < in.all->size(); ++i) {
     const Measurement& m = in.campaign.measurements[i];
     if (!state_of(m).empty() && state_of(m) != state_of(in.measurement)) continue;
-    if ((*in.all)[i].size() == 0) continue;
+    if ((*in.all)[i].size() == 0 || m.kind.starts_with("artefact")) continue;
     if (!is_taken(in.campaign, m)) {
       out.left_out.push_back(m.id);
       continue;
     }
     reader.take(m, (*in.all)[i]);
-    measurement_of_line.resize(out.lines.size(), out.used.size() - 1);
+    out.measurement_of_line.resize(out.lines.size(), out.used.size() - 1);
   }
+  if (in.all != nullptr) take_artefacts(in, reader.unknowns, out);
+  reader.state_squares();
   find_box(out);
-  centre(out, std::move(measurement_of_line));
+  centre(out);
   return out;
 }
 

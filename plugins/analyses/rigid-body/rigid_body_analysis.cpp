@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lines.h"
+#include "artefacts.h"
 #include "nonio/sdk/format.h"
 
 using namespace nonio;
@@ -88,6 +88,10 @@ void say_separation(Work& w) {
   if (!s.map.known()) w.say(finding("rigid-body.no-map", true, {}, {}));
 }
 
+void note(Work& w, const char* id, const char* key, const std::vector<std::string>& names) {
+  if (!names.empty()) w.out.notes.push_back({id, {}, {{key, listed_names(names)}}});
+}
+
 void put_notes(Work& w) {
   const RigidSolution& s = w.s;
   w.out.notes.push_back(
@@ -105,12 +109,10 @@ void put_notes(Work& w) {
       if (std::find(asked.begin(), asked.end(), name) == asked.end()) absent.push_back(name);
     w.out.notes.push_back({"rigid-body.taken-as-absent", {}, {{"errors", listed_names(absent)}}});
   }
-  if (!w.lines.centred.empty())
-    w.out.notes.push_back(
-        {"rigid-body.centred", {}, {{"measurements", listed_names(w.lines.centred)}}});
-  if (!w.lines.left_out.empty())
-    w.out.notes.push_back(
-        {"rigid-body.left-out", {}, {{"measurements", listed_names(w.lines.left_out)}}});
+  note(w, "rigid-body.centred", "measurements", w.lines.centred);
+  note(w, "rigid-body.left-out", "measurements", w.lines.left_out);
+  note(w, "rigid-body.free-slope", "measurements", w.lines.free_slope);
+  note(w, "rigid-body.uncalibrated", "artefacts", w.lines.uncalibrated);
 }
 
 bool angular(const std::string& error) {
@@ -178,14 +180,18 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   Work w{in, lines_of(in), {}, {}, {}};
   std::size_t moving = 0;
   for (std::size_t k = 0; k < 3; ++k) moving += w.lines.high[k] > w.lines.low[k] ? 1 : 0;
+  w.out.findings = w.lines.findings;
+  for (Finding& f : w.out.findings) f.measurement = in.measurement.id;
   if (w.lines.lines.empty() || moving == 0) return std::move(w.out);
   w.out.uses = w.lines.used;
+  w.out.uses.insert(w.out.uses.end(), w.lines.certificates.begin(), w.lines.certificates.end());
   std::erase(w.out.uses, in.measurement.id);
   RigidWish wish{w.lines.low, w.lines.high, in.options.texts("errors"),
                  static_cast<std::size_t>(in.options.integer("degree")),
                  static_cast<std::size_t>(in.options.integer("parts"))};
   const HeldLimits limits = limits_held(in.campaign, w.lines.tables);
   w.model = reading_model(in.campaign, limits.environment, w.lines.budget);
+  put_stated_inputs(in, w.lines, w.model);
   auto solution = solve_rigid_body(w.lines.lines, wish, &w.model);
   if (!solution) return fail(solution.error());
   w.s = std::move(*solution);
@@ -199,17 +205,17 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   return std::move(w.out);
 }
 
-/// Whether a diagonal belongs to a state: without one no squareness is told, and so no volume.
-bool has_diagonal(const Campaign& c, const std::string& state) {
+/// Whether a state has what tells a squareness: without it no volume is told.
+bool has_squareness(const Campaign& c, const std::string& state) {
   return std::any_of(c.measurements.begin(), c.measurements.end(), [&](const Measurement& m) {
-    return (m.kind == "diagonal" || m.kind == "step-diagonal") && is_taken(c, m) &&
+    return tells_squareness(c, m) && is_taken(c, m) &&
            (state_of(m).empty() || state_of(m) == state);
   });
 }
 
 /// The first measurement of a state; of every state where nobody names one.
 bool applies(const Campaign& c, const Measurement& of) {
-  if (!is_taken(c, of) || !has_diagonal(c, state_of(of))) return false;
+  if (!is_taken(c, of) || !has_squareness(c, state_of(of))) return false;
   const bool states = std::any_of(c.measurements.begin(), c.measurements.end(), [&](const auto& m) {
     return is_taken(c, m) && !state_of(m).empty();
   });
@@ -229,6 +235,30 @@ std::vector<Option> options() {
            {},
            0.0,
            12.0},
+          {"artefact_U_per_m_um",
+           0.0,
+           "um/m",
+           "Of artefacts: expanded uncertainty (k = 2) that grows with the length.",
+           {},
+           0.0},
+          {"artefact_expansion_um_per_m_K",
+           0.0,
+           "um/(m K)",
+           "Of artefacts: coefficient of expansion; 0: not stated.",
+           {},
+           0.0},
+          {"artefact_temperature_range_K",
+           0.0,
+           "K",
+           "Of artefacts: range of the reading error of their temperature; 0: not stated.",
+           {},
+           0.0},
+          {"artefact_expansion_range_um_per_m_K",
+           0.0,
+           "um/(m K)",
+           "Of artefacts: range of the coefficient of expansion; 0: not stated.",
+           {},
+           0.0},
           {"parts",
            std::int64_t{4},
            "",

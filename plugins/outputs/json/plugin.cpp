@@ -129,7 +129,8 @@ void measurement(std::string& out, const Measurement& m, const Observations& obs
   object.text("id", m.id);
   object.text("kind", m.kind);
   if (!m.axis.empty()) object.text("axis", m.axis);
-  if (!m.lateral.empty()) object.text("lateral", m.lateral);
+  if (!m.lateral.empty())
+    object.text(m.kind.starts_with("artefact") ? "artefact" : "lateral", m.lateral);
   object.text("file", m.file);
   if (obs.size() > 0) {
     const bool rotary = !obs.axes.empty() && obs.axes[0].rotary;

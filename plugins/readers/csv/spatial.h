@@ -34,6 +34,8 @@ Expected<Span> span_of(const Campaign& campaign, const Measurement& measurement)
 void spread(Observations& observations, const Span& span);
 
 Expected<Observations> read_step_diagonal(const ReadInput& input);
+Expected<Observations> read_artefact(const ReadInput& input);
+Expected<Observations> read_artefact_certificate(const ReadInput& input);
 Expected<Observations> read_ball_centres(const ReadInput& input);
 Expected<Observations> read_circle(const ReadInput& input);
 Expected<Observations> read_lengths(const ReadInput& input);

@@ -51,6 +51,8 @@ def campaign():
             {"id": "T1", "kind": "thermal", "file": "t.csv", "sensor_distance_mm": 120},
             {"id": "S1", "kind": "spindle", "file": "s1.csv"},
             {"id": "L1", "kind": "lengths", "file": "l.csv"},
+            {"id": "A1", "kind": "artefact", "file": "a.csv", "artefact": "plate"},
+            {"id": "A2", "kind": "artefact-certificate", "file": "a2.csv", "artefact": "plate"},
             {"id": "O", "kind": "observations", "file": "o.csv"},
             {"id": "B", "kind": "ballbar", "file": "b.b5r"}],
         "model": {"effects": ["backlash:X", "sag:X"], "compensate": "model",

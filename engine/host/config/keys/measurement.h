@@ -7,10 +7,14 @@
 namespace nonio::host::config::declared {
 
 inline constexpr Words axis_runs[] = {"axis"};
-inline constexpr Choice measurement_kinds[] = {
-    {"axis"},         {"straightness"}, {"angle"},        {"diagonal"}, {"step-diagonal"},
-    {"ball-centres"}, {"rtcp"},         {"observations"}, {"circle"},   {"thermal"},
-    {"spindle"},      {"lengths"},      {"ballbar"}};
+inline constexpr Choice measurement_kinds[] = {{"axis"},          {"straightness"},
+                                               {"angle"},         {"diagonal"},
+                                               {"step-diagonal"}, {"ball-centres"},
+                                               {"rtcp"},          {"observations"},
+                                               {"circle"},        {"thermal"},
+                                               {"spindle"},       {"lengths"},
+                                               {"artefact"},      {"artefact-certificate"},
+                                               {"ballbar"}};
 inline constexpr Choice on_or_off[] = {{"on"}, {"off"}};
 inline constexpr Choice adjustments[] = {{"before"}, {"after"}};
 inline constexpr Choice listed_orders[] = {{"pendulum"}, {"as-listed"}, {"unknown"}};
@@ -18,7 +22,8 @@ inline constexpr Choice planes[] = {{"XY"}, {"YZ"}, {"ZX"}};
 inline constexpr Choice linear_axes[] = {{"X"}, {"Y"}, {"Z"}};
 inline constexpr Words of_one_axis[] = {"axis", "straightness", "angle", "ball-centres", "rtcp"};
 inline constexpr Words straightness[] = {"straightness"}, angle[] = {"angle"},
-                       circle[] = {"circle"}, nest[] = {"thermal", "spindle"};
+                       circle[] = {"circle"}, nest[] = {"thermal", "spindle"},
+                       artefacts[] = {"artefact", "artefact-certificate"};
 inline constexpr Words diagonals[] = {"diagonal", "step-diagonal"};
 inline constexpr Words an_end = "the axis positions of that end, { X = 0, Y = 0 }";
 inline constexpr Key measurement_keys[] = {
@@ -146,6 +151,15 @@ inline constexpr Key measurement_keys[] = {
      .wanted = "expected a tolerance above 0",
      .least = 0.0,
      .above = true},
+    {.name = "artefact",
+     .holds = text,
+     .help = "Name of the artefact whose balls were probed, or whose certificate this is; the "
+             "same in every placement.",
+     .only = {"kind", artefacts},
+     .needed = {"kind", artefacts},
+     .missing = "a name of the artefact, \"plate\"",
+     .wanted = "expected up to 60 characters without / and \\",
+     .text = {.not_letters = "/\\\n\t", .longest = 60}},
     {.name = "exclude",
      .holds = wholes,
      .help = "Lines of the file whose readings are excluded from all analyses; the results "

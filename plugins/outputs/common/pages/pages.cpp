@@ -179,6 +179,10 @@ std::string heading_of(const Source& source, const Measured& m) {
     return words.get("measurement.diagonal", {{"id", measurement.id}});
   if (measurement.kind == "ball-centres")
     return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
+  if (measurement.kind == "artefact" || measurement.kind == "artefact-certificate")
+    return ids(words.get(measurement.kind == "artefact" ? "measurement.artefact"
+                                                        : "measurement.artefact_certificate",
+                         {{"artefact", measurement.lateral}}));
   if (measurement.kind == "circle")
     return words.get(
         "measurement.of",
@@ -228,7 +232,7 @@ std::string test_of(const Source& source, const Measured& m) {
            temperatures(source, "measurement.material", o.material) +
            temperatures(source, "measurement.air", o.air);
   }
-  const bool centres = m.measurement.kind == "ball-centres";
+  const bool centres = m.measurement.kind == "ball-centres" || m.measurement.kind == "artefact";
   if (m.measurement.kind == "circle")
     return circle_test(source, m) + temperatures(source, "measurement.material", o.material) +
            temperatures(source, "measurement.air", o.air);

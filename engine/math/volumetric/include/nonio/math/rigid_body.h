@@ -30,7 +30,11 @@
 /// line if it was read from both sides. Beside them, of a line read across its travel: its slope; of
 /// a step diagonal: two tilts of its mirror, and (w x n).(P - Q) theta of each angle theta about w,
 /// because the mirror turns with the tool (P: way of the reading from the first, Q: the farthest). A
-/// reading of an angle is the angle.
+/// reading of an angle is the angle. Lines may share unknowns: the place of an artefact and of its
+/// balls (rigid_artefact.h), the set-up and the error of a square.
+///
+/// What a certificate states of such an unknown is a reading too, of the set-up alone, with the
+/// standard uncertainty that is stated: it counts with its weight, and its uncertainty is in U.
 ///
 /// Columns are scaled so that a size of 1 makes at most 1 somewhere in the volume, unknowns of the
 /// set-up taken out, readings divided by the scatter of their group. Singular values below
@@ -48,14 +52,29 @@ struct RigidReading {
   Corner sense{};      ///< unit vector; of an angle all 0
   int way = 0;         ///< +1 or -1 along its line
   double value = 0.0;  ///< m or rad
+  double u = 0.0;      ///< of what is stated: standard uncertainty
 };
 
 struct RigidLine {
-  enum class Kind { along, across, mirror, angle };
+  enum class Kind {
+    along,
+    across,
+    mirror,
+    angle,
+    point,  ///< a coordinate that the machine probed: no zero of its own
+    stated  ///< of unknowns that are shared: no error of the machine
+  };
   Kind kind = Kind::along;
   std::size_t of = 0, about = 0;  ///< of an angle: axis that moves, axis of the turn
-  std::size_t group = 0;          ///< of the scatter
+  std::size_t group = 0;          ///< of the scatter; of what is stated none
   std::vector<RigidReading> readings;
+  /// An unknown of the set-up that lines have together, by its number from 0.
+  struct Shared {
+    std::size_t unknown = 0;
+    std::vector<double> of_reading;
+  };
+  std::vector<Shared> shared{};
+  bool own_slope = true;  ///< of a line across its travel
 };
 
 /// Degrees of the polynomials that are tried where none is asked for.
@@ -86,7 +105,7 @@ struct RigidCurve {
 using Combination = std::vector<std::pair<std::string, double>>;
 
 struct RigidSolution {
-  std::size_t degree = 0, unknowns = 0, rank = 0, readings = 0;
+  std::size_t degree = 0, unknowns = 0, rank = 0, readings = 0;  ///< without what is stated
   std::vector<double> singular;     ///< relative to the largest, falling, all unknowns
   std::vector<std::string> unseen;  ///< errors of which no reading shows anything
   std::vector<Combination> combinations;
@@ -102,7 +121,8 @@ struct RigidSolution {
 const std::vector<std::string>& rigid_errors();
 
 /// An error if there are fewer readings than unknowns of the set-up, or a name that is none. Lines
-/// of the model, if there is one: those given, in their order.
+/// of the model, if there is one: those given, in their order; it then has the inputs of what is
+/// stated, and u of the results is that of the repetition alone.
 Expected<RigidSolution> solve_rigid_body(const std::vector<RigidLine>&, const RigidWish&,
                                          const ReadingModel* = nullptr);
 
