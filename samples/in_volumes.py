@@ -157,7 +157,7 @@ def ball_plate():
              "placements with the machine's own probe, none of them aligned. Y has turned by 31 urad towards X: squareness and",
              "the map of the volume come from the balls alone. What the machine's angles of Z do, no ball on a short stylus shows."]
     files["campaign.toml"] = manifest(
-        story, "25-ball-plate", "Esempio Venticinque S.r.l.", "Vicenza", "2026-06-15",
+        story, "25-ball-plate", "Esempio Venticinque S.r.l.", "Vicenza", "2026-05-29",
         {"maker": "Sample Machines", "model": "VMC 8", "serial": "S-0125"},
         {axis: linear(v) for axis, v in zip("XYZ", machine.travel)}, measurements, PROBE, GOOD_ROOM,
         analyses=["rigid-body"], outputs=["json", "csv", "pdf-report", "volume-grid"],
