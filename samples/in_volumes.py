@@ -162,8 +162,8 @@ def ball_plate():
         {axis: linear(v) for axis, v in zip("XYZ", machine.travel)}, measurements, PROBE, GOOD_ROOM,
         analyses=["rigid-body"], outputs=["json", "csv", "pdf-report", "volume-grid"],
         options={"rigid-body": {"degree": "2", "parts": "2", "artefact_U_per_m_um": "0.6",
-                                "artefact_expansion_um_per_m_K": "11.5", "artefact_temperature_range_K": "0.2",
-                                "artefact_expansion_range_um_per_m_K": "1.0"}})
+                                "artefact_expansion": "11.5", "artefact_temperature_range_K": "0.2",
+                                "artefact_expansion_range": "1.0"}})
     return files
 
 

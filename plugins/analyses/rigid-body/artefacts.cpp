@@ -115,9 +115,8 @@ ScaleInputs scale_of(const AnalysisInput& in) {
   const auto get = [&](const char* name) { return in.options.number(name); };
   const double distance = std::fabs(in.campaign.environment.temperature_difference.value_or(0.0));
   return {get("artefact_U_per_m_um") * per_um_per_m / 2.0,
-          rectangle * get("artefact_temperature_range_K") * get("artefact_expansion_um_per_m_K") *
-              per_K,
-          rectangle * distance * get("artefact_expansion_range_um_per_m_K") * per_K};
+          rectangle * get("artefact_temperature_range_K") * get("artefact_expansion") * per_K,
+          rectangle * distance * get("artefact_expansion_range") * per_K};
 }
 
 void refuse(const AnalysisInput& in, const std::string& name, const math::ArtefactRefusal& why,
@@ -228,10 +227,9 @@ void put_artefact(const AnalysisInput& in, const Lines& lines, const Stated& sta
   put("artefact-length", scale.device, Distribution::normal, "artefact_U_per_m_um");
   put("artefact-temperature", scale.temperature, Distribution::rectangular,
       "artefact_temperature_range_K");
-  put("artefact-expansion", scale.expansion, Distribution::rectangular,
-      "artefact_expansion_range_um_per_m_K");
-  for (const char* key : {"artefact_expansion_um_per_m_K", "artefact_temperature_range_K",
-                          "artefact_expansion_range_um_per_m_K"})
+  put("artefact-expansion", scale.expansion, Distribution::rectangular, "artefact_expansion_range");
+  for (const char* key :
+       {"artefact_expansion", "artefact_temperature_range_K", "artefact_expansion_range"})
     if (!(in.options.number(key) > 0.0)) {
       const std::string wanted = of_options + key;
       if (std::find(model.missing.begin(), model.missing.end(), wanted) == model.missing.end())

@@ -177,8 +177,8 @@ struct Workshop {
     campaign.instrument.U_fixed = 1e-9;
     campaign.instrument.U_per_length = 1e-9;
     campaign.instrument.U_angle = 1e-9;
-    with("artefact_expansion_um_per_m_K", 11.5).with("artefact_temperature_range_K", 0.001);
-    with("artefact_expansion_range_um_per_m_K", 0.001).with("degree", std::int64_t{2});
+    with("artefact_expansion", 11.5).with("artefact_temperature_range_K", 0.001);
+    with("artefact_expansion_range", 0.001).with("degree", std::int64_t{2});
     with("parts", std::int64_t{2});
   }
   Workshop& with(const std::string& name, nonio::Setting value) {
