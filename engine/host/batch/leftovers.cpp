@@ -38,8 +38,10 @@ Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
   if (resumed) return tidy_below(out, storage::own_folder(out, "a") != out / "a");
   for (const CampaignState& c : night.campaigns) {
     if (process::is_stop_requested()) return fail("interrupted");
-    if (c.action == CampaignState::Action::done && c.is_campaign)
-      if (auto tidied = tidy(storage::own_folder(out, c.id)); !tidied) return tidied;
+    if (c.action != CampaignState::Action::done || !c.is_campaign) continue;
+    const fs::path folder = storage::own_folder(out, c.id);
+    if (storage::results_folder(out, c.id) != folder) continue;  // in a pack
+    if (auto tidied = tidy(folder); !tidied) return tidied;
   }
   return {};
 }

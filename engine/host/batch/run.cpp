@@ -274,6 +274,14 @@ Expected<void> do_planned(const RunOptions& options, const RunEvents& events, Se
   return fail("");
 }
 
+/// The output folder, before anything is looked up in it.
+Expected<void> make_ready(const RunOptions& options, const reading::Context& context) {
+  auto ready = settle_folders(options.out, context.site.hashed_folders, options.dry_run);
+  if (ready) ready = storage::check_catalogue(options.out);
+  if (ready && options.step == RunOptions::Step::plan) ready = keep_packs(options.out);
+  return ready;
+}
+
 /// The night itself, in an output folder that nobody else uses.
 void do_night(const RunOptions& options, const RunEvents& events, const std::string& site_text,
               SetUp& place, const std::optional<Known>& known, Night& night) {
@@ -283,14 +291,7 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
         process::is_stop_requested() || why.empty() ? Night::End::interrupted : Night::End::refused;
     night.error = std::move(why);
   };
-  if (const auto settled =
-          settle_folders(options.out, context.site.hashed_folders, options.dry_run);
-      !settled)
-    return refuse(settled.error().message);
-  if (const auto sound = storage::check_catalogue(options.out); !sound)
-    return refuse(sound.error().message);
-  if (options.step == RunOptions::Step::plan)
-    if (const auto kept = keep_packs(options.out); !kept) return refuse(kept.error().message);
+  if (const auto ready = make_ready(options, context); !ready) return refuse(ready.error().message);
   std::optional<NightPlan> planned;
   if (options.step == RunOptions::Step::merge) {
     auto read = read_plan(options.out);

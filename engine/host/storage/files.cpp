@@ -202,14 +202,13 @@ std::optional<Expected<std::string>> read_from_pack(const fs::path& path) {
 }  // namespace
 
 Expected<void> read_parts(const fs::path& path, const std::function<void(std::string_view)>& take) {
-  const auto file = open_regular(path);
-  if (!file) {
-    const auto packed = read_from_pack(path);
-    if (!packed) return fail(file.error());
+  if (const auto packed = read_from_pack(path)) {
     if (!*packed) return fail(packed->error());
     take(**packed);
     return {};
   }
+  const auto file = open_regular(path);
+  if (!file) return fail(file.error());
   std::string buffer(std::min<std::size_t>(file->size + 1, 1 << 20), '\0');
   for (;;) {
     const ssize_t n = ::read(file->descriptor.get(), buffer.data(), buffer.size());
@@ -222,11 +221,9 @@ Expected<void> read_parts(const fs::path& path, const std::function<void(std::st
 
 Expected<std::string> read_file(const fs::path& path) {
   constexpr std::size_t most_at_once = 1 << 28;
+  if (auto packed = read_from_pack(path)) return std::move(*packed);
   const auto file = open_regular(path);
-  if (!file) {
-    auto packed = read_from_pack(path);
-    return packed ? std::move(*packed) : fail(file.error());
-  }
+  if (!file) return fail(file.error());
   std::string bytes;
   // A byte more than there is: that none comes says that the file ends there.
   for (std::size_t size = 0, room = std::min(file->size, most_at_once) + 1;; room *= 2) {
@@ -241,17 +238,14 @@ Expected<std::string> read_file(const fs::path& path) {
 }
 
 Expected<bool> is_there(const fs::path& path) {
-  struct stat info {};
-  if (::lstat(path.c_str(), &info) == 0) return true;
-  const int code = errno;
-  if (code == ENOENT || code == ENOTDIR) {
-    const auto packed = in_pack(path);
-    if (!packed) return false;
+  if (const auto packed = in_pack(path)) {
     const auto size = size_packed(*packed);
     if (!size) return fail(size.error());
     return size->has_value();
   }
-  errno = code;
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) == 0) return true;
+  if (errno == ENOENT || errno == ENOTDIR) return false;
   return system_error("cannot look at", path);
 }
 

@@ -19,8 +19,9 @@ namespace nonio::host::storage {
 namespace fs = std::filesystem;
 
 std::optional<PackAddress> in_pack(const fs::path& path) {
+  constexpr std::string_view folder = "/.nonio/packs/";
+  static_assert(folder.substr(1, folder.size() - 2) == packs_folder);
   const std::string& text = path.native();
-  const std::string folder = "/" + std::string(packs_folder) + "/";
   const std::size_t at = text.rfind(folder);
   if (at == std::string::npos) return std::nullopt;
   const std::size_t slash = text.find('/', at + folder.size());

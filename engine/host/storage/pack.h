@@ -20,7 +20,7 @@
 /// files.h take it as any other path. Whatever is read is compared with its digest.
 namespace nonio::host::storage {
 
-inline constexpr const char* packs_folder = ".nonio/packs";
+inline constexpr std::string_view packs_folder = ".nonio/packs";
 inline constexpr const char* pack_suffix = ".sqlar";
 
 struct PackAddress {
