@@ -204,13 +204,14 @@ void read_tolerances(TableReader& reader, Measurement& m) {
   for (const Quantity q : {Quantity::deviation, Quantity::small_angle, Quantity::angular_deviation,
                            Quantity::deviation_per_length}) {
     const std::string key = tolerance_key(q);
-    for (const auto& [result, limit] : reader.number_table(key, 1.0 / unit_of(q).per_si)) {
+    for (const auto& row : reader.number_table(key, 1.0 / unit_of(q).per_si)) {
+      const std::string& result = row.first;
       const bool known = std::any_of(m.tolerances.begin(), m.tolerances.end(),
                                      [&](const Tolerance& t) { return t.result == result; });
       if (known)
         reader.error(key + "." + result, "expected one limit of " + result + ", found a second");
       else
-        m.tolerances.push_back({result, limit, q});
+        m.tolerances.push_back({result, row.second, q});
     }
   }
 }
