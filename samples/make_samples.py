@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes samples/site: constructed campaigns, each with a story (see README.md beside this file).
 
-    make_samples.py [FOLDER]        default: the folder `site` beside this file
+    make_samples.py [FOLDER]        default: the folder of this file
 
 Same bytes every time. All readings are whole numbers of 0.001 um (or 0.001 arcsec), and every
 scatter sums to zero, so that the means and reversal values below are exact. The random numbers are
 sums of uniform ones: no function of the C library whose last digit could differ between machines.
 """
+import argparse
 import math
 import os
 import sys
@@ -379,7 +380,9 @@ def write(path, text):
 
 def main():
     here = os.path.dirname(os.path.abspath(__file__))
-    folder = sys.argv[1] if len(sys.argv) > 1 else here
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", nargs="?", default=here, metavar="FOLDER")
+    folder = parser.parse_args().folder
     write(os.path.join(folder, "site", "site.toml"), SITE)
     for name, text in RECORDS.items():
         write(os.path.join(folder, "site", "machines", name + ".toml"), text)
