@@ -29,6 +29,12 @@ from browser import SKIPPED, program
 NONIO, SOURCE = (pathlib.Path(a).resolve() for a in sys.argv[1:3])  # servers run in folders of their own
 DRIVER = shutil.which("chromedriver")
 PATIENCE = 30
+TUTORIAL = SOURCE / "samples/tutorial/site/missing-effect"
+
+
+def said(verb, folder, *more):
+    got = subprocess.run([str(NONIO), verb, str(folder), "--json", *more], capture_output=True, text=True)
+    return json.loads(got.stdout)
 
 
 def browser(profile, width=1280, height=800):
@@ -153,6 +159,9 @@ class LivePage(unittest.TestCase):
 
 class CampaignPage(LivePage):
     """The page of a campaign: its states, and what is ticked."""
+
+    def campaign(self, source=TUTORIAL, name=None):
+        return pathlib.Path(shutil.copytree(source, self.folder / (name or source.name)))
 
     def open(self, server, wait="explained"):
         self.d.get("about:blank")
