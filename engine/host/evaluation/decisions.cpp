@@ -41,6 +41,10 @@ Conformity decided(const Campaign& campaign, const Held& held, const std::string
   return c;
 }
 
+bool is_in_unit_of(const Tolerance& tolerance, const Value& v) {
+  return unit_of(v.quantity).symbol == unit_of(tolerance.quantity).symbol;
+}
+
 /// One decision for each value of this name and unit; false if there is none.
 bool add_decisions(const Campaign& campaign, const std::vector<Results::Analysed>& analyses,
                    const Held& held, std::vector<Conformity>& out) {
@@ -48,7 +52,7 @@ bool add_decisions(const Campaign& campaign, const std::vector<Results::Analysed
   for (const Results::Analysed& a : analyses)
     for (const Value& v : a.evaluation.values)
       if (a.measurement == held.measurement && v.name == held.tolerance.result &&
-          unit_of(v.quantity).symbol == unit_of(held.tolerance.quantity).symbol)
+          is_in_unit_of(held.tolerance, v))
         out.push_back(decided(campaign, held, a.plugin, v));
   return out.size() > before;
 }
@@ -97,9 +101,7 @@ void report_other_units(const Work& work, const std::vector<Results::Analysed>& 
     for (const Tolerance& t : m.tolerances)
       for (const Results::Analysed& a : analyses)
         for (const Value& v : a.evaluation.values) {
-          if (a.measurement != m.id || v.name != t.result ||
-              unit_of(v.quantity).symbol == unit_of(t.quantity).symbol)
-            continue;
+          if (a.measurement != m.id || v.name != t.result || is_in_unit_of(t, v)) continue;
           const std::string unit(unit_of(v.quantity).symbol);
           work.report(work.error_at(
               "measurement." + m.id + "." + tolerance_key(t.quantity) + "." + t.result,

@@ -63,11 +63,11 @@ class ReadFile {
 /// somebody else meanwhile, so the main process reads in this way only.
 Expected<void> read_parts(const std::filesystem::path& path,
                           const std::function<void(std::string_view)>& take);
+/// Like `read_parts` and `is_there`, of a path that leads into a pack (pack.h) too.
 Expected<std::string> read_file(const std::filesystem::path& path);
 /// A file that people write (campaign.toml, site.toml): refused above 1 MB, by its size and unread.
 Expected<std::string> read_small_file(const std::filesystem::path& path);
 
-/// A path may lead into a pack (pack.h): `read_file`, `read_parts` and `is_there` take it as any other.
 /// Whether there is something, a link that leads nowhere included; an error if that cannot be told.
 Expected<bool> is_there(const std::filesystem::path& path);
 

@@ -162,53 +162,59 @@ Expected<void> PackWriter::end() {
   return database_.take_error();
 }
 
-Expected<std::optional<std::string>> read_packed(const PackAddress& at) {
-  Opened& all = opened();
-  const std::lock_guard lock(all.mutex);
-  const auto database = open_pack(all, at.pack);
-  if (!database) return fail(database.error());
-  return read_in(**database, at);
-}
+namespace {
 
-Expected<std::optional<std::uint64_t>> size_packed(const PackAddress& at) {
-  Opened& all = opened();
-  const std::lock_guard lock(all.mutex);
-  const auto database = open_pack(all, at.pack);
-  if (!database) return fail(database.error());
-  return size_in(**database, at);
-}
-
-Expected<std::vector<std::string>> names_packed(const PackAddress& folder) {
-  Opened& all = opened();
-  const std::lock_guard lock(all.mutex);
-  const auto database = open_pack(all, folder.pack);
-  if (!database) return fail(database.error());
-  const std::string from = folder.name + "/", to = folder.name + "0";  // '0' comes after '/'
-  std::vector<std::string> names;
-  for (const auto& row : (*database)->rows(
-           "SELECT name FROM sqlar WHERE name >= ? AND name < ? ORDER BY name", {from, to}))
-    names.push_back(row[0].substr(from.size()));
-  if (const std::string why = trouble_of(**database); !why.empty())
-    return fail(damaged(folder.pack, folder.name, why));
-  return names;
-}
-
-Expected<void> check_pack(const fs::path& pack) {
-  close_packs();
+/// What `use` makes of an open pack, while no other thread uses one.
+template <class Use>
+auto with_pack(const fs::path& pack, const Use& use) -> decltype(use(std::declval<Database&>())) {
   Opened& all = opened();
   const std::lock_guard lock(all.mutex);
   const auto database = open_pack(all, pack);
   if (!database) return fail(database.error());
-  const auto names = (*database)->rows("SELECT name FROM sqlar ORDER BY name");
-  if (const std::string why = trouble_of(**database); !why.empty())
+  return use(**database);
+}
+
+Expected<std::vector<std::string>> names_in(Database& database, const PackAddress& folder) {
+  const std::string from = folder.name + "/", to = folder.name + "0";  // '0' comes after '/'
+  std::vector<std::string> names;
+  for (const auto& row : database.rows(
+           "SELECT name FROM sqlar WHERE name >= ? AND name < ? ORDER BY name", {from, to}))
+    names.push_back(row[0].substr(from.size()));
+  if (const std::string why = trouble_of(database); !why.empty())
+    return fail(damaged(folder.pack, folder.name, why));
+  return names;
+}
+
+Expected<void> check_in(Database& database, const fs::path& pack) {
+  const auto names = database.rows("SELECT name FROM sqlar ORDER BY name");
+  if (const std::string why = trouble_of(database); !why.empty())
     return fail(damaged(pack, "", why));
   for (const auto& row : names)
-    if (const auto read = read_in(**database, {pack, row[0]}); !read) return fail(read.error());
-  const auto well = (*database)->rows("PRAGMA integrity_check(1)");
-  const std::string why = trouble_of(**database);
+    if (const auto read = read_in(database, {pack, row[0]}); !read) return fail(read.error());
+  const auto well = database.rows("PRAGMA integrity_check(1)");
+  const std::string why = trouble_of(database);
   if (!why.empty() || well.empty() || well[0][0] != "ok")
     return fail(damaged(pack, "", why.empty() && !well.empty() ? well[0][0] : why));
   return {};
+}
+
+}  // namespace
+
+Expected<std::optional<std::string>> read_packed(const PackAddress& at) {
+  return with_pack(at.pack, [&](Database& pack) { return read_in(pack, at); });
+}
+
+Expected<std::optional<std::uint64_t>> size_packed(const PackAddress& at) {
+  return with_pack(at.pack, [&](Database& pack) { return size_in(pack, at); });
+}
+
+Expected<std::vector<std::string>> names_packed(const PackAddress& folder) {
+  return with_pack(folder.pack, [&](Database& pack) { return names_in(pack, folder); });
+}
+
+Expected<void> check_pack(const fs::path& pack) {
+  close_packs();
+  return with_pack(pack, [&](Database& open) { return check_in(open, pack); });
 }
 
 namespace {
