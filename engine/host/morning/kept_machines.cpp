@@ -204,6 +204,7 @@ void KeptMachines::make_anew() {
   auto made = Database::open(path, Database::Use::create, patience);
   if (!made) return;
   file_ = std::move(*made);
+  has_machines_ = false;
   file_->script(tables);
   file_->put("INSERT INTO version VALUES('trends', ?)", {trends_version});
 }
