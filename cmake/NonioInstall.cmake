@@ -9,7 +9,7 @@ install(TARGETS nonio_history nonio_model nonio_pdf nonio_sign nonio_host nonio_
 get_property(late GLOBAL PROPERTY NONIO_LATE_LIBRARIES)
 install(TARGETS ${late} LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR})
 set(public sdk)
-foreach(room statistics axis uncertainty planning findings followed volumetric rotary circles compensation)
+foreach(room statistics axis uncertainty planning findings followed volumetric rotary circles heat compensation)
   list(APPEND public math/${room})
 endforeach()
 foreach(folder IN LISTS public)

@@ -5,7 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/batch/night_state.h"
+#include "host/batch/output_lock.h"
 #include "host/config/manifest.h"
 #include "host/evaluation/results_files.h"
 #include "host/storage/digest.h"

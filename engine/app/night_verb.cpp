@@ -3,10 +3,13 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "host/batch/night_plan.h"
 #include "host/batch/night_state.h"
+#include "host/batch/output_lock.h"
 #include "host/batch/packed_shard.h"
+#include "host/storage/files.h"
 #include "progress.h"
 #include "run_common.h"
 #include "verbs.h"
@@ -21,7 +24,7 @@ namespace {
 constexpr std::uint64_t most_shards = 100000;
 
 struct NightWish {
-  std::string site, out;
+  std::string site, out, alive;
   batch::RunOptions options;
 };
 
@@ -128,6 +131,24 @@ int cancel_night(const NightWish& wish, const Common& common) {
   return exit_done;
 }
 
+int unlock_night(const NightWish& wish, const Common& common) {
+  const char* const verb = "nonio night unlock";
+  std::optional<std::string> alive;
+  if (!wish.alive.empty()) {
+    auto text = host::storage::read_file(wish.alive);
+    if (!text) return complain(verb, text.error().message);
+    alive = std::move(*text);
+  }
+  const auto gone = batch::unlock(wish.out, alive);
+  if (!gone) return complain(verb, gone.error().message);
+  if (!common.quiet)
+    std::cerr << "nonio: "
+              << (gone->empty() ? "nobody uses the output folder"
+                                : "the output folder is free; it was used by " + *gone)
+              << "\n";
+  return exit_done;
+}
+
 Argument out_argument(NightWish& wish) {
   return required(existing(Argument::Takes::folder,
                            {"OUT", &wish.out, "Output folder with the planned night"}));
@@ -207,12 +228,35 @@ Verb cancel_part(Common& common) {
       .run = [wish, &common] { return cancel_night(*wish, common); }};
 }
 
+Verb unlock_part(Common& common) {
+  auto wish = std::make_shared<NightWish>();
+  using Takes = Argument::Takes;
+  return {
+      .name = "unlock",
+      .summary = "Frees an output folder whose process, on another host, is known to be gone",
+      .arguments = joined(
+          {required(existing(Takes::folder, {"OUT", &wish->out, "Output folder of `nonio run`"})),
+           existing(Takes::file,
+                    {"--alive", &wish->alive,
+                     "The scheduler's list of jobs, a job in each line: refused if its job\n"
+                     "(NONIO_JOB of its environment) is in it"})},
+          common_arguments(common)),
+      .footer =
+          "A night, a release and a merge leave their host and process in OUT/.nonio/user while "
+          "they\nwork. After a crash the same host takes the folder over by itself, also after it "
+          "started\nanew. Another host cannot know whether the first one still writes: somebody "
+          "who knows, or\na script that asked the scheduler, says so here. Refused where the "
+          "lock of the file\nsystem shows that the process lives.\n\n"
+          "Example: nonio night unlock out",
+      .run = [wish, &common] { return unlock_night(*wish, common); }};
+}
+
 }  // namespace
 
 Verb night_verb(Common& common) {
   return {.name = "night",
           .summary = "A night in parts, on one host or many: plan, shards (`run --shard`), merge",
-          .verbs = {plan_part(common), merge_part(common), cancel_part(common)}};
+          .verbs = {plan_part(common), merge_part(common), cancel_part(common), unlock_part(common)}};
 }
 
 }  // namespace nonio::app

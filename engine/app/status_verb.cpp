@@ -46,7 +46,7 @@ std::string trouble(const NightStatus& s, const StatusWish& wish) {
 
 std::string line_of(const NightStatus& s, const std::string& wrong) {
   std::string line;
-  if (s.state == NightStatus::State::running) line = night_text(s.night) + " is running; ";
+  if (s.state == NightStatus::State::running) line = night_text(s.night) + " is running (" + s.used_by + "); ";
   if (s.state == NightStatus::State::planned)
     line = night_text(s.night) + " is planned, " + std::to_string(s.reported) + " of " +
            std::to_string(s.shards) + " shards have reported; ";
@@ -75,6 +75,7 @@ int status(const StatusWish& wish, const Common& common) {
       json["shards"] = found->shards;
       json["reported"] = found->reported;
     }
+    if (!found->used_by.empty()) json["used_by"] = found->used_by;
     if (found->last)
       json["last_complete"] = {{"night", found->last->night.number},
                                {"date", found->last->night.date},

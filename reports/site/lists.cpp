@@ -5,6 +5,8 @@
 
 #include "chart.h"
 #include "html.h"
+#include "nonio/reports/number.h"
+#include "nonio/sdk/format.h"
 #include "pages.h"
 
 namespace nonio::reports::site {
@@ -143,6 +145,21 @@ std::string instruments_page(const Page& page) {
   return whole_page(page, page.words.get("site.instruments"), out);
 }
 
+namespace {
+
+std::string travel_text(const Page& page, const ModelComparison::Travel& travel) {
+  const Quantity q = travel.rotary ? Quantity::angle : Quantity::length;
+  const auto text = [&](double v) {
+    return fixed_text(v * unit_of(q).per_si, 0) + " " + unit_text(q);
+  };
+  const std::string shortest = text(travel.shortest), longest = text(travel.longest);
+  return shortest == longest
+             ? page.words.get("site.travel", {{"length", shortest}})
+             : page.words.get("site.travels", {{"shortest", shortest}, {"longest", longest}});
+}
+
+}  // namespace
+
 std::string compare_page(const Page& page) {
   std::string out;
   for (const ModelComparison& c : page.site.comparisons) {
@@ -153,10 +170,21 @@ std::string compare_page(const Page& page) {
           element("td", html(m.machine)) +
               element("td", html(value_text(page, m.value, m.u, c.unit)), "class=\"number\"") +
               element("td", html(short_number(page, m.z, Quantity::number)), "class=\"number\""));
-    const std::string title = c.model + " · " + c.axis + " · " + quantity_text(page, c.quantity);
+    std::string title = c.model + " · " + c.axis + " · " + quantity_text(page, c.quantity);
+    if (c.travel) title += " · " + travel_text(page, *c.travel);
+    std::string note;
+    if (c.count > c.machines.size())
+      note = element(
+          "p",
+          html(page.words.get("site.compare_some",
+                              {{"shown", std::to_string(c.machines.size())},
+                               {"count", std::to_string(c.count)},
+                               {"median", value_text(page, c.median, std::nullopt, c.unit)},
+                               {"spread", value_text(page, c.spread, std::nullopt, c.unit)}})),
+          "class=\"muted\"");
     out += element(
         "section",
-        element("h2", html(title)) + comparison_chart(page, c) +
+        element("h2", html(title)) + note + comparison_chart(page, c) +
             element(
                 "details",
                 element("summary", html(page.words.get("site.numbers"))) +

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/batch/night_state.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <ctime>
-#include <thread>
 #include <utility>
 
 #include "host/batch/night_plan.h"
+#include "host/batch/output_lock.h"
 #include "host/batch/read_apart.h"
 #include "host/evaluation/record.h"
 #include "host/storage/files.h"
@@ -211,19 +207,6 @@ Expected<void> end_night(const fs::path& out, const NightState& night, const Nig
   return write_state(out, night, end);
 }
 
-namespace {
-
-/// Whether a run holds the folder's lock now.
-bool is_running(const fs::path& out) {
-  const int fd = ::open((out / state_folder / "lock").c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return false;
-  const bool held = ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  ::close(fd);
-  return held;
-}
-
-}  // namespace
-
 const char* to_text(NightStatus::State state) {
   using State = NightStatus::State;
   return state == State::complete  ? "complete"
@@ -245,7 +228,9 @@ Expected<NightStatus> night_status(const fs::path& out) {
     status.last = end_in(json, "end");
     if (!status.last) status.last = NightEnd{status.night, 0, 0};
   } else {
-    status.state = is_running(out) ? NightStatus::State::running : NightStatus::State::cut_short;
+    status.used_by = user_of(out);
+    status.state =
+        status.used_by.empty() ? NightStatus::State::cut_short : NightStatus::State::running;
     if (const auto plan = find_plan(out); plan && *plan) {
       status.state = NightStatus::State::planned;
       status.shards = (*plan)->shards.size();
@@ -286,44 +271,6 @@ Expected<void> check_not_planned(const fs::path& out) {
   return fail("a night is planned in " + out.string() +
               " and not merged yet; expected its shards and `nonio night merge OUT`, or `nonio "
               "night cancel OUT` to withdraw the plan");
-}
-
-Expected<OutputLock> OutputLock::take(const fs::path& out, Use use) {
-  std::error_code error;
-  fs::create_directories(out / state_folder, error);
-  if (error) return fail("cannot use the output folder " + out.string() + ": " + error.message());
-  const fs::path path = out / state_folder / "lock";
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (fd < 0)
-    return fail("cannot use the output folder " + out.string() + ": " + std::strerror(errno));
-  // What was killed has processes that end a moment later, as soon as the disk lets them.
-  constexpr int tries = 50;
-  int code = 0;
-  for (int i = 0; i < tries; ++i) {
-    if (::flock(fd, (use == Use::shard ? LOCK_SH : LOCK_EX) | LOCK_NB) == 0) {
-      OutputLock lock(fd);
-      if (use != Use::whole) return lock;
-      if (const auto free = check_not_planned(out); !free) return fail(free.error());
-      return lock;
-    }
-    code = errno;
-    if (code != EWOULDBLOCK && code != EINTR) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
-  ::close(fd);
-  if (code == EWOULDBLOCK || code == EINTR)
-    return fail((use == Use::planned ? "a run, or a shard of one, is using the output folder "
-                                     : "another run is using the output folder ") +
-                out.string());
-  return fail("cannot lock " + path.string() + ": " + std::strerror(code) +
-              "; expected an output folder on a file system with locks (flock)");
-}
-
-OutputLock::OutputLock(OutputLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-OutputLock::~OutputLock() {
-  if (fd_ < 0) return;
-  ::flock(fd_, LOCK_UN);  // for a process that was left behind too, since a disk hangs
-  ::close(fd_);
 }
 
 }  // namespace nonio::host::batch

@@ -57,22 +57,4 @@ Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, boo
 /// An error while a night is planned and not merged yet: the next run would be refused.
 Expected<void> check_not_planned(const std::filesystem::path& out);
 
-/// Held while a run uses an output folder; an error names the trouble if another run does.
-class OutputLock {
- public:
-  enum class Use {
-    whole,    ///< refused while a night is planned, too
-    planned,  ///< makes, merges or withdraws a plan
-    shard     ///< beside other shards
-  };
-  static Expected<OutputLock> take(const std::filesystem::path& out, Use use = Use::whole);
-  OutputLock(OutputLock&& other) noexcept;
-  OutputLock& operator=(OutputLock&&) = delete;
-  ~OutputLock();
-
- private:
-  explicit OutputLock(int fd) : fd_(fd) {}
-  int fd_;
-};
-
 }  // namespace nonio::host::batch

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "host/evaluation/record.h"
 #include "nonio/sdk/error.h"
@@ -24,6 +25,7 @@ struct NightStatus {
   std::optional<NightEnd> last{};          ///< the last that is complete
   double age = 0.0;                        ///< s since the last summary was written
   std::uint64_t shards = 0, reported = 0;  ///< of a night that is planned
+  std::string used_by{};                   ///< who uses the folder now, for people; "" if nobody
 };
 
 /// complete, running, planned, cut-short

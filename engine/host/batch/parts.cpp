@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "host/batch/leftovers.h"
+#include "host/batch/output_lock.h"
 #include "host/batch/packed_shard.h"
 #include "host/batch/read_apart.h"
 #include "host/batch/runner.h"

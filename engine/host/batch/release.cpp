@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "host/batch/history_update.h"
+#include "host/batch/output_lock.h"
 #include "host/batch/runner.h"
 #include "host/batch/set_up.h"
 #include "host/batch/twins.h"

@@ -15,6 +15,7 @@
 #include "host/batch/night_plan.h"
 #include "host/batch/night_state.h"
 #include "host/batch/one_again.h"
+#include "host/batch/output_lock.h"
 #include "host/batch/packed_shard.h"
 #include "host/batch/parts.h"
 #include "host/batch/read_apart.h"

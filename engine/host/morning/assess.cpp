@@ -420,7 +420,9 @@ class Assessment::State {
         lines_of({tonight_, standings, *machine_of_campaign, *spellings, learned_.of, unknown_});
     for (const reports::MorningLine& l : site.lines) lines_[l.machine].push_back(l);
     site.instruments = joined(instruments);
-    site.comparisons = comparisons_of(site.machines);
+    std::vector<ComparedMachine> compared;
+    for (const Standing* s : standings) compared.push_back({&s->shown, &s->compared});
+    site.comparisons = comparisons_of(compared);
     return add_sparks();
   }
 

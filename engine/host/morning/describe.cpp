@@ -117,7 +117,6 @@ class Describing {
     const Quantity q = quantity_of_unit(s.unit);
     HistorySeries out{.axis = s.axis, .quantity = s.quantity, .unit = q, .points = {}, .model = ""};
     out.ended = s.ended;
-    out.ended = s.ended;
     // Definitions of A, E and R changed with the editions of the standard.
     const StoredResult& last = m_.stored.results[s.results.back()];
     for (const std::size_t i : s.results) {

@@ -14,17 +14,6 @@ template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, Finding>
 void fields(Io& io, T& f) { io(f.id, f.attention, f.evidence, f.texts, f.measurement, f.advice); }
 
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, HistoryPoint>
-void fields(Io& io, T& p) {
-  io(p.campaign, p.date, p.link, p.state, p.value, p.u, p.joined, p.why_not, p.u_common);
-}
-
-/// Of one that is only compared.
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, HistorySeries>
-void fields(Io& io, T& s) { io(s.axis, s.quantity, s.unit, s.points, s.model); }
-
 }  // namespace nonio
 
 namespace nonio::reports {
@@ -40,12 +29,11 @@ template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, IntervalProposal>
 void fields(Io& io, T& p) { io(p.months, p.method, p.axis, p.quantity, p.why); }
 
-/// Of one that is only compared.
+/// Of one without series.
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, MachineHistory>
 void fields(Io& io, T& m) {
-  io(m.id, m.maker, m.model, m.serial, m.customer, m.place, m.control, m.series, m.due, m.why_due,
-     m.file);
+  io(m.id, m.maker, m.model, m.serial, m.customer, m.place, m.control, m.due, m.why_due, m.file);
 }
 
 template <class Io, class T>
@@ -80,7 +68,7 @@ using storage::Database;
 constexpr const char* kept_folder = ".nonio";
 constexpr const char* machines_name = "machines.sqlite";
 /// Another program may find out something else, and come to another trend of the same series.
-constexpr std::string_view machines_version = "5 " NONIO_VERSION, trends_version = "3";
+constexpr std::string_view machines_version = "6 " NONIO_VERSION, trends_version = "3";
 constexpr std::size_t digest_size = 64;
 constexpr double patience = 5.0;  // s; without the file a night takes longer
 
@@ -125,9 +113,15 @@ void fields(Io& io, T& f) {
 }
 
 template <class Io, class T>
+requires std::is_same_v<std::remove_const_t<T>, ComparedValue>
+void fields(Io& io, T& v) {
+  io(v.axis, v.quantity, v.unit, v.value, v.u, v.conditions, v.travel, v.rotary);
+}
+
+template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, Standing>
 void fields(Io& io, T& s) {
-  io(s.shown, s.lines, s.months, s.instruments, s.has_results, s.judged, s.conforms, s.attention,
+  io(s.shown, s.compared, s.lines, s.months, s.instruments, s.has_results, s.judged, s.conforms, s.attention,
      s.reversal, s.interval, s.until);
 }
 

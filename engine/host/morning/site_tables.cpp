@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "host/morning/describe.h"
+#include "host/storage/json_values.h"
 
 namespace nonio::host::morning {
 
@@ -113,38 +114,96 @@ std::vector<reports::InstrumentUse> joined(
   return list;
 }
 
-const reports::HistoryPoint* compared_point(const reports::HistorySeries& s) {
-  if (s.model.empty() || s.ended) return nullptr;
-  const auto last = std::find_if(s.points.rbegin(), s.points.rend(), [](const auto& p) {
-    return p.joined && p.state != reports::HistoryPoint::State::as_left;
-  });
-  return last == s.points.rend() ? nullptr : &*last;
+std::vector<ComparedValue> compared_of(const AssessedMachine& m,
+                                       const reports::MachineHistory& described) {
+  std::vector<ComparedValue> out;
+  for (const FollowedSeries& s : m.followed) {
+    if (s.ended) continue;
+    const auto last = std::find_if(s.results.rbegin(), s.results.rend(), [&](std::size_t r) {
+      return m.stored.results[r].state != "as-left";
+    });
+    if (last == s.results.rend()) continue;
+    const history::StoredResult& r = m.stored.results[*last];
+    const Quantity q = quantity_of_unit(s.unit);
+    ComparedValue value{s.axis, s.quantity, q, si(r.value, q), si(r.u_repeat.value_or(0.0), q)};
+    storage::Json json = storage::Json::parse(r.conditions, nullptr, false);
+    if (json.is_object()) {
+      value.rotary = std::any_of(described.curves.begin(), described.curves.end(), [&](const auto& c) {
+        return c.axis == s.axis && c.rotary;
+      });
+      if (const auto from = json.find("from"), to = json.find("to");
+          from != json.end() && to != json.end() && from->is_number() && to->is_number())
+        value.travel = si(to->get<double>() - from->get<double>(),
+                          value.rotary ? Quantity::angle : Quantity::length);
+      for (const char* key : {"from", "to", "compensation"}) json.erase(key);
+      value.conditions = storage::dump_line(json);
+    }
+    out.push_back(std::move(value));
+  }
+  return out;
 }
 
-std::vector<reports::ModelComparison> comparisons_of(
-    const std::vector<reports::MachineHistory>& described) {
-  std::map<std::tuple<std::string, std::string, std::string, Quantity>, reports::ModelComparison>
+namespace {
+
+constexpr double same_travel = 1.1;
+constexpr std::size_t most_compared = 60;
+
+struct Candidate {
+  const std::string* machine;
+  const ComparedValue* of;
+  double travel() const { return of->travel.value_or(0.0); }
+};
+
+reports::ModelComparison comparison(const std::string& model,
+                                    const std::vector<Candidate>& machines) {
+  const ComparedValue& first = *machines.front().of;
+  reports::ModelComparison c;
+  c.model = model, c.axis = first.axis, c.quantity = first.quantity, c.unit = first.unit;
+  if (first.travel)
+    c.travel = {machines.front().travel(), machines.back().travel(), first.rotary};
+  c.count = machines.size();
+  std::vector<double> values, distances;
+  for (const Candidate& m : machines) values.push_back(m.of->value);
+  c.median = median(values);
+  for (const double v : values) distances.push_back(std::fabs(v - c.median));
+  c.spread = 1.4826 * median(distances);
+  for (const Candidate& m : machines)
+    c.machines.push_back({*m.machine, m.of->value, m.of->u,
+                          c.spread > 0.0 ? (m.of->value - c.median) / c.spread : 0.0});
+  const auto by_name = [](const auto& a, const auto& b) { return a.machine < b.machine; };
+  std::stable_sort(c.machines.begin(), c.machines.end(), by_name);
+  if (c.machines.size() <= most_compared) return c;
+  std::stable_sort(c.machines.begin(), c.machines.end(), [&](const auto& a, const auto& b) {
+    return std::fabs(a.value - c.median) > std::fabs(b.value - c.median);
+  });
+  c.machines.resize(most_compared);
+  std::stable_sort(c.machines.begin(), c.machines.end(), by_name);
+  return c;
+}
+
+}  // namespace
+
+std::vector<reports::ModelComparison> comparisons_of(const std::vector<ComparedMachine>& machines) {
+  std::map<std::tuple<std::string, std::string, std::string, Quantity, std::string, bool>,
+           std::vector<Candidate>>
       all;
-  for (const reports::MachineHistory& m : described) {
-    if (m.model.empty()) continue;
-    for (const reports::HistorySeries& s : m.series) {
-      const reports::HistoryPoint* last = compared_point(s);
-      if (last == nullptr) continue;
-      reports::ModelComparison& c = all[{m.model, s.axis, s.quantity, s.unit}];
-      c.model = m.model, c.axis = s.axis, c.quantity = s.quantity, c.unit = s.unit;
-      c.machines.push_back({m.id, last->value, last->u});
-    }
+  for (const ComparedMachine& m : machines) {
+    if (m.machine->model.empty()) continue;
+    for (const ComparedValue& v : *m.values)
+      all[{m.machine->model, v.axis, v.quantity, v.unit, v.conditions, v.travel.has_value()}]
+          .push_back({&m.machine->id, &v});
   }
   std::vector<reports::ModelComparison> out;
-  for (auto& [key, c] : all) {
-    if (c.machines.size() < 3) continue;
-    std::vector<double> values, distances;
-    for (const auto& of : c.machines) values.push_back(of.value);
-    const double middle = median(values);
-    for (const double v : values) distances.push_back(std::fabs(v - middle));
-    const double spread = 1.4826 * median(distances);
-    for (auto& of : c.machines) of.z = spread > 0.0 ? (of.value - middle) / spread : 0.0;
-    out.push_back(std::move(c));
+  for (auto& [key, candidates] : all) {
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.travel() < b.travel(); });
+    for (auto from = candidates.begin(); from != candidates.end();) {
+      const auto to = std::find_if(from, candidates.end(), [&](const Candidate& c) {
+        return c.travel() > same_travel * from->travel();
+      });
+      if (to - from >= 3) out.push_back(comparison(std::get<0>(key), {from, to}));
+      from = to;
+    }
   }
   return out;
 }

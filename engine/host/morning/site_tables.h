@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "host/morning/series.h"
@@ -20,12 +22,25 @@ std::vector<reports::InstrumentUse> instruments_of(const AssessedMachine& machin
 std::vector<reports::InstrumentUse> joined(
     const std::vector<const std::vector<reports::InstrumentUse>*>& of_machines);
 
-/// The point of a series by which its machine is compared with others; none if it is not.
-const reports::HistoryPoint* compared_point(const reports::HistorySeries& series);
+/// A quantity of a machine as it is compared with that of others: the last value that was found.
+struct ComparedValue {
+  std::string axis, quantity;
+  Quantity unit = Quantity::deviation;
+  double value = 0.0, u = 0.0;
+  std::string conditions{};         ///< JSON: what must be equal, but the travel
+  std::optional<double> travel{};  ///< from the first target to the last, SI
+  bool rotary = false;
+};
+std::vector<ComparedValue> compared_of(const AssessedMachine& machine,
+                                       const reports::MachineHistory& described);
 
-/// Models of three machines or more, quantity by quantity: distance from the median in robust
-/// standard deviations (1.4826 times the median of the distances).
-std::vector<reports::ModelComparison> comparisons_of(
-    const std::vector<reports::MachineHistory>& described);
+struct ComparedMachine {
+  const reports::MachineHistory* machine;
+  const std::vector<ComparedValue>* values;
+};
+/// Models of three machines or more, quantity by quantity, and travels that differ by 10 % at most:
+/// distance from the median in robust standard deviations (1.4826 times the median of the
+/// distances). Of more than 60 machines the 60 that are furthest from it.
+std::vector<reports::ModelComparison> comparisons_of(const std::vector<ComparedMachine>& machines);
 
 }  // namespace nonio::host::morning

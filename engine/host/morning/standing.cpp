@@ -6,7 +6,6 @@
 #include "host/morning/acknowledged.h"
 #include "host/morning/days.h"
 #include "host/morning/lines_of_machine.h"
-#include "host/morning/site_tables.h"
 
 namespace nonio::host::morning {
 
@@ -16,19 +15,12 @@ namespace {
 
 constexpr const char* for_ever = "9999-12-31";
 
-reports::MachineHistory as_compared(const reports::MachineHistory& whole) {
+reports::MachineHistory without_series(const reports::MachineHistory& whole) {
   reports::MachineHistory out;
   out.id = whole.id, out.maker = whole.maker, out.model = whole.model, out.serial = whole.serial;
   out.customer = whole.customer, out.place = whole.place, out.control = whole.control;
   out.due = whole.due, out.why_due = whole.why_due, out.proposal = whole.proposal;
   out.file = whole.file;
-  for (const reports::HistorySeries& s : whole.series)
-    if (const reports::HistoryPoint* last = compared_point(s))
-      out.series.push_back({.axis = s.axis,
-                            .quantity = s.quantity,
-                            .unit = s.unit,
-                            .points = {*last},
-                            .model = s.model});
   return out;
 }
 
@@ -65,7 +57,7 @@ std::vector<const config::Acknowledgement*> acknowledgements_of(const std::strin
 Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& described,
                      const history::StoredLogs& logs, const Tonight& tonight,
                      const std::filesystem::path& out) {
-  Standing s{.shown = as_compared(described)};
+  Standing s{.shown = without_series(described), .compared = compared_of(m, described)};
   s.lines = lines_of_machine(m, described, tonight);
   s.until = acknowledgements_of(described.id, logs).empty()
                 ? same_until(m, described, s.lines, tonight.date)

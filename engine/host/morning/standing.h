@@ -8,6 +8,7 @@
 #include "host/history/reader.h"
 #include "host/morning/proposals.h"
 #include "host/morning/series.h"
+#include "host/morning/site_tables.h"
 #include "host/morning/tonight.h"
 #include "nonio/reports/site.h"
 
@@ -15,7 +16,8 @@ namespace nonio::host::morning {
 
 /// What one machine has to do with the others: all that lists over the machines of a site need.
 struct Standing {
-  reports::MachineHistory shown;  ///< without series, but for the points that are compared
+  reports::MachineHistory shown;  ///< without series
+  std::vector<ComparedValue> compared{};
   std::vector<reports::MorningLine> lines{};
   std::vector<reports::MonthOfMachine> months{};
   std::vector<reports::InstrumentUse> instruments{};

@@ -246,6 +246,46 @@ class SlurmTest(NightTest):
         logs = "".join(p.read_text() for p in self.log.iterdir())
         self.assertEqual(logs.count("status 0"), 4, logs)
 
+    def test_an_array_with_packs_is_one_run(self):
+        self.plan()
+        self.cluster.env["NONIO_SHARD_PACK"] = "1"
+        try:
+            done = self.cluster.call(SCRIPTS / "nonio-night", self.site, self.parts, "4", check=False)
+        finally:
+            del self.cluster.env["NONIO_SHARD_PACK"]
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        one, parts = tree(self.out), tree(self.parts)
+        packed = [k for k in one if k.split("/")[0] in {f"c{i}" for i in range(8)}]
+        self.assertEqual([k for k in packed if k in parts], [])  # all of them are in packs
+        self.assertEqual(sorted(k for k in one if k not in packed and not k.startswith(".nonio/") and one[k] != parts.get(k)), [])
+        self.cluster.call(NONIO, "get", "--all", "--out", self.parts)
+        parts = tree(self.parts)
+        self.assertEqual([k for k in packed if one[k] != parts.get(k)], [])
+
+    def test_a_night_that_is_a_job_of_a_lost_host(self):
+        """Its output folder is taken over when Slurm no longer has the job, and not before."""
+        self.plan()
+        user = self.parts / ".nonio/user"
+        left = {"host": "elsewhere", "pid": 17, "machine": "m", "boot": "0-1"}
+        self.cluster.call("scontrol", "update", "PartitionName=night", "State=DOWN")
+        waiting = self.cluster.call("sbatch", "--parsable", "--output=/dev/null", "--wrap=true").stdout.strip()
+        env, self.cluster.env = self.cluster.env, {**self.cluster.env, "SLURM_JOB_ID": "9999999"}
+        night = (SCRIPTS / "nonio-night", self.site, self.parts, "4")
+        try:
+            user.write_text(json.dumps({**left, "job": f"{waiting}.0"}) + "\n")
+            done = self.cluster.call(*night, check=False)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"(job {waiting}.0) is using the output folder", done.stderr)
+            self.cluster.call("scancel", waiting)
+            self.cluster.call("scontrol", "update", "PartitionName=night", "State=UP")
+            self.ended(waiting, 60)
+            done = self.cluster.call(*night, check=False)
+        finally:
+            self.cluster.env = env
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertFalse(user.exists())
+        self.same()
+
     def test_a_task_that_is_cancelled_is_missing_until_it_is_submitted_again(self):
         self.cluster.call("scontrol", "update", "PartitionName=night", "State=DOWN")
         job = self.submit(NONIO_RESTARTS=0)

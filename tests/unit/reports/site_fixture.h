@@ -153,6 +153,10 @@ inline SiteHistory made_site() {
                        "X",
                        "B_mean",
                        Quantity::deviation,
+                       ModelComparison::Travel{0.78, 0.8},
+                       64,
+                       -5.4e-6,
+                       0.6e-6,
                        {{"S-0017", -5e-6, 0.2e-6, 0.1},
                         {"S-0031", -5.4e-6, 0.2e-6, -0.3},
                         {"S-0042", -9.4e-6, 0.2e-6, -6.2}}}};

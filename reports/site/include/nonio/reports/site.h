@@ -91,16 +91,23 @@ struct InstrumentUse {
   std::vector<On> results;
 };
 
-/// One quantity of all machines of a model.
+/// One quantity of all machines of a model, read over about the same travel.
 struct ModelComparison {
   std::string model, axis, quantity;
   Quantity unit = Quantity::deviation;
+  struct Travel {
+    double shortest = 0.0, longest = 0.0;
+    bool rotary = false;
+  };
+  std::optional<Travel> travel{};     ///< of quantities along an axis
+  std::size_t count = 0;              ///< of machines
+  double median = 0.0, spread = 0.0;  ///< of all; one robust standard deviation
   struct Of {
     std::string machine;
     double value = 0.0, u = 0.0;
     double z = 0.0;  ///< distance from the median in robust standard deviations
   };
-  std::vector<Of> machines;
+  std::vector<Of> machines;  ///< by name; of very many those that are furthest from the median
 };
 
 struct SiteHistory {
