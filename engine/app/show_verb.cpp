@@ -55,8 +55,8 @@ Expected<Shown> evaluated_now(const fs::path& folder, const Common& common) {
   for (const Results::Written& w : evaluated.results.outputs)
     for (const Artifact& a : w.result.artifacts)
       files.push_back({a.name, a.bytes.size(), host::storage::sha256(a.bytes)});
-  return Shown{host::evaluation::results_json(evaluated, context, files), context.templates,
-               context.site.language};
+  std::string text = host::evaluation::results_json(evaluated, context, files);
+  return Shown{std::move(text), std::move((*place)->context.templates), context.site.language};
 }
 
 Expected<Shown> of_night(const fs::path& folder, const Common& common) {

@@ -31,6 +31,12 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   auto machines = config::read_machines(site);
   if (!machines) return fail(machines.error());
   context.machines = std::move(*machines);
+  process::hide_from_plugins(config::secret_files(context.site, site));
+  place->plugins.load(plugin_folders);
+  if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
+  place->notes = place->plugins.refusal_notes();
+  context.plugins = &place->plugins;
+  // After the process for the plugins was forked: it would copy each page of them when it frees them.
   const auto folders = config::with_site_templates(template_folders, site);
   if (!folders) return fail(folders.error());
   std::vector<std::string> below;
@@ -38,11 +44,6 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   auto templates = config::read_templates(*folders, context.templates_sha256, nullptr, {}, below);
   if (!templates) return fail(templates.error());
   context.templates = std::move(*templates);
-  process::hide_from_plugins(config::secret_files(context.site, site));
-  place->plugins.load(plugin_folders);
-  if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
-  place->notes = place->plugins.refusal_notes();
-  context.plugins = &place->plugins;
   return place;
 }
 
