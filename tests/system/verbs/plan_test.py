@@ -398,7 +398,8 @@ class Programs(VerbTest):
         self.assertIn("\nG1 X2=1.0 F2000\n", files["program-siemens-X2.mpf"])
 
     def test_a_rotary_axis_is_measured_as_the_nights_findings_ask(self):
-        """The plan of every travel, measured as written, gets no plan.* finding."""
+        """The plan of every travel, measured as written, gets no plan.* finding: one night of them all."""
+        made = {}
         for travel in ((0, 360), (-5, 365), (0, 90), (-100, 100), (-30, 120), (10, 370)):
             for setting in ("seed=1", "seed=2", "interval_deg=120"):
                 _, files = self.program("program", "--axis", "C=%d:%d" % travel, "--control", "gcode", "--out",
@@ -410,18 +411,23 @@ class Programs(VerbTest):
                 lines = ["run,direction,target_deg,deviation_arcsec"]
                 lines += ["%d,%s,%.6f,%.3f" % (1 + i // (2 * len(targets)), "+" if up else "-", p, (i * 7919 % 13) / 10)
                           for i, (up, p) in enumerate(stops)]
-                self.campaign('format = 1\n[campaign]\nid = "c"\n[machine.axes.C]\nkind = "rotary"\ntravel = [%d, %d]\n'
-                              '[[measurement]]\nid = "C"\nkind = "axis"\naxis = "C"\nfile = "c.csv"\n[run]\n'
-                              'analyses = ["iso230-2"]\noutputs = []\n' % travel, c="\n".join(lines) + "\n")
-                out = self.site.parent / "out"
-                self.nonio("run", self.site, "--out", out)
-                analysis = json.loads((out / "c" / "results.json").read_text())["analyses"][0]
-                found = [f["id"] for f in analysis["findings"]]
-                self.assertEqual([f for f in found if f.startswith(("plan.", "targets.", "direction."))], [],
-                                 (travel, setting, targets))
+                name = f"c{len(made)}"
+                made[name] = (travel, setting, targets)
+                (self.site / name).mkdir()
+                (self.site / name / "c.csv").write_text("\n".join(lines) + "\n")
+                (self.site / name / "campaign.toml").write_text(
+                    'format = 1\n[campaign]\nid = "%s"\n[machine.axes.C]\nkind = "rotary"\ntravel = [%d, %d]\n'
+                    '[[measurement]]\nid = "C"\nkind = "axis"\naxis = "C"\nfile = "c.csv"\n[run]\n'
+                    'analyses = ["iso230-2"]\noutputs = []\n' % (name, *travel))
                 beyond = min(targets) - 1 < travel[0] or max(targets) + 1 > travel[1]
                 self.assertEqual("whole turn" in files["program-gcode-C.ngc"], beyond)
                 self.assertTrue(not beyond or travel[1] - travel[0] >= 360)
+        out = self.site.parent / "out"
+        self.nonio("run", self.site, "--out", out)
+        for name, what in made.items():
+            analysis = json.loads((out / name / "results.json").read_text())["analyses"][0]
+            found = [f["id"] for f in analysis["findings"]]
+            self.assertEqual([f for f in found if f.startswith(("plan.", "targets.", "direction."))], [], what)
 
     def test_the_unit_of_the_rest(self):
         for word, wanted in (("P-s", "G4 P2.5"), ("P-ms", "G4 P2500"), ("X", "G4 X2.5")):
