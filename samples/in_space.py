@@ -275,7 +275,7 @@ def two_rotary_axes():
     """B on the bed carries C: a ball on the table at 36 positions of both."""
     noise = Noise(126)
     b_line = ([412.286, 305.0, -310.045], unit([0.00015, 1.0, -0.00007]))
-    c_line = ([412.338, 305.120, -148.600], unit([0.00012, -0.00008, 1.0]))  # with B at 0
+    c_line = ([412.338, 305.120, -310.045], unit([0.00012, -0.00008, 1.0]))  # with B at 0
     ball = [412.338 + 140.0, 305.120, -130.0]
     lines = ["# " + MADE_UP, "angle_deg,B_deg,x_mm,y_mm,z_mm"]
     for b in (-60, -30, 0, 30, 60, 90):

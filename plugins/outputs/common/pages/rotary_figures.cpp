@@ -126,7 +126,7 @@ Plot chain_residuals(const Source& source, const PointTable& p, const std::strin
   plot.degrees = true;
   plot.height = height;
   const double um = unit_of(Quantity::deviation).per_si;
-  const std::array colours{style.plus, style.minus, style.accent};
+  const std::array colours{style.plus, style.minus, style.good};
   static constexpr std::array markers{Marker::dot, Marker::ring, Marker::up};
   for (std::size_t k = 0; k < 3; ++k) {
     const auto* residual = p.column(std::string("residual_") + "xyz"[k]);

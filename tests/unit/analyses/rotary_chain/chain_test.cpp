@@ -186,6 +186,16 @@ TEST(RotaryChainPlugin, AnEncoderThatErrsIsFound) {
   EXPECT_EQ(text_of(*f, "axis"), "C");
 }
 
+TEST(RotaryChainPlugin, LinearAxesBeyondTheirBoundAreFound) {
+  Builder builder(18);
+  Machine m = builder.tables();
+  EXPECT_EQ(found(said(shop_of(m, grid(tilts, turns), builder)), "rotary-chain.linear-axes"),
+            nullptr);
+  m.linear(0, 2) = 60 * urad;
+  const Evaluation e = said(shop_of(m, grid(tilts, turns), builder));
+  EXPECT_NE(found(e, "rotary-chain.linear-axes"), nullptr) << ids(e);
+}
+
 /// A head tells the pivot length and the tool together; apart only by a stated length.
 TEST(RotaryChainPlugin, APivotNeedsAStatedTool) {
   Builder builder(16);
