@@ -271,6 +271,39 @@ sign_shown = ["heidenhain"]      # a move of the machine has shown them
             "b.csv": ball_centres(noise, *b_line, b_start, range(-60, 91, 15), 1.0, made)}
 
 
+def two_rotary_axes():
+    """B on the bed carries C: a ball on the table at 36 positions of both."""
+    noise = Noise(126)
+    b_line = ([412.286, 305.0, -310.045], unit([0.00015, 1.0, -0.00007]))
+    c_line = ([412.338, 305.120, -310.045], unit([0.00012, -0.00008, 1.0]))  # with B at 0
+    ball = [412.338 + 140.0, 305.120, -130.0]
+    lines = ["# " + MADE_UP, "angle_deg,B_deg,x_mm,y_mm,z_mm"]
+    for b in (-60, -30, 0, 30, 60, 90):
+        for c in range(0, 360, 60):
+            there = turned(turned(ball, *c_line, c), *b_line, b)
+            lines.append(f"{c},{b}," + ",".join(f"{x + 0.001 * noise.normal():.4f}" for x in there))
+    story = ["A five-axis machine whose table C sits on the swivelling axis B. By its drawing the axes intersect. A ball on",
+             "the table, 140 mm from C, was probed at 36 positions of both: one fit gives both lines with both axes at 0.",
+             "Constructed: lines and noise (1 um in each coordinate) are chosen, C passes B at 52 um; the centres are the",
+             "ball turned exactly about C and then about B."]
+    return {"campaign.toml": manifest(
+        story, "26-two-rotary-axes", "Esempio Ventisei S.r.l.", "Treviso", "2026-06-01",
+        {"maker": "Sample Machines", "model": "UM 6", "serial": "S-0126", "structure": "bridge"},
+        {"B": {"kind": '"rotary"', "travel": "[-60.0, 90.0]"},
+         "C": {"kind": '"rotary"', "travel": "[0.0, 360.0]"},
+         **{axis: {"kind": '"linear"', "expansion_um_per_m_K": "11.5"} for axis in "XYZ"}},
+        [axis_measurement("C", "ball-centres", "BC")],
+        PROBE, {key: value for key, value in GOOD_ROOM.items() if key != "misalignment_mm"},
+        analyses=["rotary-chain"],
+        options={"rotary-chain": {"tables": '["B", "C"]              # B carries C, C the workpiece',
+                                  "offset_mm": "0.0                 # by the drawing they intersect",
+                                  "linear_axes_urad": "5.0"},
+                 "rotary-vectors.before.siemens": {  # what is in the control, mm: the change is limited and logged
+                     '"$TC_CARR4"': "412.300", '"$TC_CARR5"': "305.100", '"$TC_CARR6"': "-310.000",
+                     '"$TC_CARR15"': "0.0", '"$TC_CARR16"': "0.0", '"$TC_CARR17"': "0.0"}}),
+            "bc.csv": "\n".join(lines) + "\n"}
+
+
 # Before and after new parameters: each gauge of a table that turns, with its ball and its zero (um).
 RTCP_GAUGES = (("low", 0.0, (1, 0, 0), 4.0), ("high", 220.0, (1, 0, 0), -6.5), ("along", 0.0, (0, 0, 1), 1.5))
 
@@ -548,4 +581,5 @@ STORIES = {
     "19-square-turned-over": square_turned_over,
     "20-body-diagonals": body_diagonals,
     "22-rtcp": rtcp,
+    "26-two-rotary-axes": two_rotary_axes,
 }

@@ -118,6 +118,23 @@ class MadeMachine {
     return out;
   }
 
+  /// A ball on a table C that stands on B, at positions of both.
+  std::string balls_of_two_axes() {
+    std::string out = "angle_deg,B_deg,x_mm,y_mm,z_mm\n";
+    for (const double b : {-40.0, 0.0, 40.0})
+      for (const double c : {0.0, 72.0, 144.0, 216.0, 288.0}) {
+        const double x = 12.0 + 140.0 * std::cos(c / deg_per_rad), z = 180.0,
+                     cosine = std::cos(b / deg_per_rad), sine = std::sin(b / deg_per_rad);
+        out += fixed_text(c, 3) + "," + fixed_text(b, 3);
+        for (const double p :
+             {400.0 + x * cosine + z * sine, 305.0 + 140.0 * std::sin(c / deg_per_rad),
+              -310.0 - x * sine + z * cosine})
+          out += "," + fixed_text(p + 0.001 * random_.normal(), 4);
+        out += "\n";
+      }
+    return out;
+  }
+
   /// A gauge on a table, along its radius and along its axis, which the control has 20 um beside
   /// where it is.
   std::string tool_centre(int n) {
@@ -388,6 +405,18 @@ Source balls(MadeMachine& machine) {
   return s;
 }
 
+Source two_rotary_axes(MadeMachine& machine) {
+  Source s{"two-rotary-axes",
+           head("two-rotary-axes") +
+               "[machine.axes.C]\nkind = \"rotary\"\ntravel = [0.0, 360.0]\n"
+               "[machine.axes.B]\nkind = \"rotary\"\ntravel = [-60.0, 90.0]\n"
+               "[options.rotary-chain]\ntables = [\"B\", \"C\"]\n" +
+               measured("BC", "ball-centres", "axis = \"C\"\n"),
+           {}};
+  s.files.push_back({"BC.csv", machine.balls_of_two_axes()});
+  return s;
+}
+
 Source tool_centre(MadeMachine& machine) {
   Source s{"rtcp",
            head("rtcp") + "[machine.axes.C]\nkind = \"rotary\"\ntravel = [0.0, 360.0]\n" +
@@ -416,7 +445,8 @@ std::vector<Source> made_sources(std::uint64_t seed) {
           spindle(),
           lengths(),
           balls(m),
-          tool_centre(m)};
+          tool_centre(m),
+          two_rotary_axes(m)};
 }
 
 }  // namespace nonio::host::plugin_check::kit

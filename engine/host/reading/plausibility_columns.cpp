@@ -5,6 +5,7 @@
 
 #include "host/reading/plausibility.h"
 #include "host/reading/plausibility_strokes.h"
+#include "nonio/math/rotary.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::host::reading {
@@ -167,7 +168,7 @@ void implausible_centres(const Measurement& m, const Observations& o, std::vecto
                                        {"least", nearest, Quantity::length},
                                        {"most", farthest, Quantity::length}}});
   const std::size_t named = m.axis.empty() ? std::string::npos : std::string("ABC").find(m.axis[0]);
-  if (named == std::string::npos) return;
+  if (named == std::string::npos || !math::other_turning_axis(o).empty()) return;
   const double cosine = std::fabs(normal_of(centres)[named]);
   constexpr double least = 0.5;  // 60 deg; swivelling axes stand at 45 deg
   if (cosine < least)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What follows from a fitted rotary axis: waves in its residuals, and its place against another.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -62,6 +63,17 @@ DoubleWave double_wave(const RotaryFit& fit, std::span<const BallCentre> centres
   wave.left = std::sqrt(remains / dof);
   wave.p = f_upper(test_ratio((own - left) / 2.0, remains / dof), 2.0, dof);
   return wave;
+}
+
+std::string other_turning_axis(const Observations& o) {
+  constexpr double least = 1e-6;  // rad
+  for (std::size_t k = 1; k < o.axes.size(); ++k) {
+    const auto& column = o.axes[k];
+    if (!column.rotary || column.position.empty()) continue;
+    const auto [low, high] = std::minmax_element(column.position.begin(), column.position.end());
+    if (*high - *low > least) return column.axis;
+  }
+  return {};
 }
 
 double expansion_factor(int dof) {

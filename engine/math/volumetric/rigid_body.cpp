@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "combinations.h"
 #include "functional.h"
 #include "rigid_fit.h"
 
@@ -28,37 +29,18 @@ std::string name_of(const RigidTerm& term) {
                                                   : term.error + "." + std::to_string(term.degree);
 }
 
-/// The rows that the readings tell, by elimination from the left: a column that is no pivot is a
-/// sum of pivots before it.
 void find_combinations(const RigidFit& f, RigidSolution& out) {
-  MatrixXd R = f.solved.V.transpose();
-  std::vector<Index> pivots;
-  Index row = 0;
-  for (Index c = 0; c < R.cols() && row < R.rows(); ++c) {
-    Index best = 0;
-    if (R.col(c).tail(R.rows() - row).cwiseAbs().maxCoeff(&best) < same_share) continue;
-    R.row(row).swap(R.row(row + best));
-    R.row(row) /= R(row, c);
-    for (Index r = 0; r < R.rows(); ++r)
-      if (r != row) R.row(r) -= R(r, c) * RowVectorXd(R.row(row));
-    pivots.push_back(c);
-    ++row;
-  }
   std::set<std::string> seen;
-  for (Index c = 0; c < R.cols(); ++c)
+  for (Index c = 0; c < f.solved.V.rows(); ++c)
     if (f.solved.V.row(c).norm() > shows_nothing)
       seen.insert(f.terms[static_cast<std::size_t>(c)].error);
-  for (Index c = 0; c < R.cols(); ++c) {
-    const RigidTerm& term = f.terms[static_cast<std::size_t>(c)];
-    if (!seen.contains(term.error)) {
-      if (out.unseen.empty() || out.unseen.back() != term.error) out.unseen.push_back(term.error);
-      continue;
-    }
-    if (std::find(pivots.begin(), pivots.end(), c) != pivots.end()) continue;
-    Combination combination{{name_of(term), 1.0}};
-    for (std::size_t r = 0; r < pivots.size(); ++r)
-      if (const double share = -R(at(r), c); std::fabs(share) > same_share)
-        combination.emplace_back(name_of(f.terms[static_cast<std::size_t>(pivots[r])]), share);
+  for (const RigidTerm& term : f.terms)
+    if (!seen.contains(term.error) && (out.unseen.empty() || out.unseen.back() != term.error))
+      out.unseen.push_back(term.error);
+  for (const OpenCombination& open : open_combinations(f.solved.V, same_share)) {
+    if (!seen.contains(f.terms[open.front().first].error)) continue;
+    Combination combination;
+    for (const auto& [k, size] : open) combination.emplace_back(name_of(f.terms[k]), size);
     out.combinations.push_back(std::move(combination));
   }
 }

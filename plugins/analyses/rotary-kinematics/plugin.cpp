@@ -24,6 +24,7 @@ bool applies(const Campaign&, const Measurement& m) { return m.kind == "ball-cen
 double extent(const Observations& o) {
   double size = 0.0;
   for (std::size_t k = 1; k < o.axes.size(); ++k) {
+    if (o.axes[k].rotary) continue;
     const auto [low, high] =
         std::minmax_element(o.axes[k].position.begin(), o.axes[k].position.end());
     if (low != high) size = std::max(size, *high - *low);
@@ -177,6 +178,7 @@ void add_relations(Work& w) {
     const Measurement& other = measurements[i];
     if (other.id == in.measurement.id) break;
     if (other.kind != in.measurement.kind || (*in.all)[i].size() == 0) continue;
+    if (!math::other_turning_axis((*in.all)[i]).empty()) continue;
     if (!shares(other.id) || !shares(in.measurement.id)) {
       w.out.findings.push_back({.id = "rotary.reference-unknown",
                                 .texts = {{"one", other.id}, {"other", in.measurement.id}}});
@@ -208,7 +210,17 @@ void show_residuals(math::ReadingModel& model, const Judged& j, const rotary::De
   model.see_residuals(rows, j.fit.dof);
 }
 
+/// Where another axis turned too, the centres lie on no circle.
+Evaluation of_two_axes(const Measurement& m, const std::string& other) {
+  Evaluation out;
+  out.findings.push_back(
+      {.id = "rotary.other-axis-turned", .texts = {{"axis", m.axis}, {"other", other}}});
+  return out;
+}
+
 Expected<Evaluation> analyse(const AnalysisInput& in) {
+  if (const std::string other = math::other_turning_axis(in.observations); !other.empty())
+    return of_two_axes(in.measurement, other);
   const Wish wish = wish_of(in.campaign, in.observations, in.options);
   Judged judged = judge(in.observations, wish);
   if (!judged.given) {

@@ -37,6 +37,7 @@ bool parallel(const Line& line, std::size_t coordinate) {
 }
 
 bool compared(const Line& a, const Line& b) {
+  if (a.of_chain && b.of_chain) return a.measurement == b.measurement;
   const auto names = [](const Line& x, const Line& y) {
     return std::find(x.shares_reference.begin(), x.shares_reference.end(), y.measurement) !=
            x.shares_reference.end();
@@ -154,8 +155,10 @@ std::string linuxcnc(const TiltingTable& t, const std::string& campaign, const C
   out += t.tilt->axis + " at 0;\n# " + t.tilt->axis + " through " + (a ? "y" : "x") +
          "-rot-point + " + (a ? "y" : "x") + "-offset and z-rot-point + z-offset.\n";
   out += "# Only the sum of z-rot-point and z-offset counts: z-offset is set to 0.\n";
-  out += "# INFERRED: that C was measured with " + t.tilt->axis +
-         " at 0, and in machine coordinates without tool length.\n";
+  out += t.c->of_chain ? "# INFERRED: machine coordinates without tool length. C is that with " +
+                             t.tilt->axis + " at 0, from one fit.\n"
+                       : "# INFERRED: that C was measured with " + t.tilt->axis +
+                             " at 0, and in machine coordinates without tool length.\n";
   out += "# The module takes both axes as parallel to the linear axes; they lean by\n";
   const double lean_c = std::hypot(t.c->direction[0].value, t.c->direction[1].value);
   const double lean_t = std::hypot(t.tilt->direction[t.across].value, t.tilt->direction[2].value);
@@ -239,7 +242,8 @@ Change heidenhain_fields(const TiltingTable& t) {
 std::string values_file(const TiltingTable& t, const std::string& campaign, const Wish& wish,
                         const Change& c, const char* what) {
   std::string out = "; " + campaign + ": " + what + ", mm\n";
-  out += "; first rotary axis " + t.tilt->axis + ", second C; both measured with the other at 0\n";
+  out += "; first rotary axis " + t.tilt->axis + ", second C; " +
+         (t.c->of_chain ? "both at 0, from one fit\n" : "both measured with the other at 0\n");
   out += "; INFERRED: centres in machine coordinates without tool length\n";
   out += "; write down what the control has before you change it\n";
   return out + rows_of(wish, c, ";");
@@ -265,6 +269,12 @@ void write_controllers(const std::vector<Line>& lines, const std::string& campai
   if (t.c == nullptr) return;
   const std::vector<std::pair<std::string, std::string>> names = {{"one", t.c->measurement},
                                                                   {"other", t.tilt->measurement}};
+  // A chain says how it goes: here the tilting axis carries C, and both the workpiece.
+  for (const Line* line : {t.c, t.tilt})
+    if (line->of_chain && line->tables != t.tilt->axis + ", C") {
+      result.findings.push_back({.id = "vectors.other-chain", .attention = true, .texts = names});
+      return;
+    }
   if (!compared(*t.c, *t.tilt)) {
     result.findings.push_back({.id = "vectors.no-reference", .texts = names});
     return;
@@ -306,11 +316,15 @@ void write_controllers(const std::vector<Line>& lines, const std::string& campai
   });
   if (std::string log = log_of(campaign, wish, written); !log.empty())
     result.artifacts.push_back({"rotary-vectors-changes.txt", std::move(log)});
+  const bool chain = t.c->of_chain;
   if (right_handed)
-    result.notes.push_back({.id = "vectors.linuxcnc-inferred", .texts = {{"axis", t.tilt->axis}}});
+    result.notes.push_back(
+        {.id = chain ? "vectors.linuxcnc-inferred-chain" : "vectors.linuxcnc-inferred",
+         .texts = {{"axis", t.tilt->axis}}});
   if (right_handed && contains(wish.sign_shown, "heidenhain"))
     result.notes.push_back({.id = "vectors.heidenhain-inferred"});
-  result.notes.push_back({.id = "vectors.controls-inferred"});
+  result.notes.push_back(
+      {.id = chain ? "vectors.controls-inferred-chain" : "vectors.controls-inferred"});
 }
 
 }  // namespace nonio::vectors

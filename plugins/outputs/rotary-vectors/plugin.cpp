@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -22,29 +23,65 @@ std::string padded(std::string text, std::size_t width) {
   return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
 }
 
+namespace {
+
+/// The line whose values end in `suffix`; none if one of them is missing.
+std::optional<Line> line_of(const Results::Analysed& a, const std::string& suffix) {
+  const auto take = [&](const std::string& name, Value& into) {
+    for (const Value& v : a.evaluation.values)
+      if (v.name == name + suffix) {
+        into = v;
+        into.name = name;
+        return true;
+      }
+    return false;
+  };
+  Line line;
+  bool complete = take("radius", line.radius);
+  for (std::size_t k = 0; k < 3; ++k)
+    complete = complete && take(std::string("centre_") + "xyz"[k], line.centre[k]) &&
+               take(std::string("direction_") + "ijk"[k], line.direction[k]);
+  if (!complete) return std::nullopt;
+  line.measurement = a.measurement;
+  line.shares_reference = a.evaluation.uses;
+  return line;
+}
+
+/// The axes that a note of rotary-chain names, "B, C".
+std::string noted(const Evaluation& e, std::string_view note) {
+  for (const Remark& r : e.notes)
+    for (const auto& [name, text] : r.texts)
+      if (r.id == note && name == "axes") return text;
+  return {};
+}
+
+void put_chain(const Campaign& campaign, const Results::Analysed& a, std::vector<Line>& lines) {
+  const std::string heads = ", " + noted(a.evaluation, "rotary-chain.heads") + ",";
+  for (const Axis& axis : campaign.machine.axes) {
+    auto line = axis.rotary ? line_of(a, "_" + axis.name) : std::nullopt;
+    if (!line) continue;
+    std::erase_if(lines, [&](const Line& other) { return other.axis == axis.name; });
+    line->axis = axis.name;
+    line->of_chain = true;
+    line->tables = noted(a.evaluation, "rotary-chain.tables");
+    line->head = heads.find(", " + axis.name + ",") != std::string::npos;
+    lines.push_back(std::move(*line));
+  }
+}
+
+}  // namespace
+
 std::vector<Line> lines_of(const Campaign& campaign, const Results& results) {
   std::vector<Line> lines;
   for (const Results::Analysed& a : results.analyses) {
-    const auto take = [&](std::string_view name, Value& into) {
-      for (const Value& v : a.evaluation.values)
-        if (v.name == name) {
-          into = v;
-          return true;
-        }
-      return false;
-    };
-    Line line;
-    bool complete = take("radius", line.radius);
-    for (std::size_t k = 0; k < 3; ++k)
-      complete = complete && take(std::string("centre_") + "xyz"[k], line.centre[k]) &&
-                 take(std::string("direction_") + "ijk"[k], line.direction[k]);
-    if (!complete) continue;
-    line.measurement = a.measurement;
+    auto line = line_of(a, "");
+    if (!line) continue;
     for (const Measurement& m : campaign.measurements)
-      if (m.id == a.measurement) line.axis = m.axis;
-    line.shares_reference = a.evaluation.uses;
-    lines.push_back(std::move(line));
+      if (m.id == a.measurement) line->axis = m.axis;
+    lines.push_back(std::move(*line));
   }
+  for (const Results::Analysed& a : results.analyses)
+    if (a.plugin == "rotary-chain") put_chain(campaign, a, lines);
   return lines;
 }
 
@@ -65,6 +102,7 @@ std::string json(const Campaign& campaign, const std::vector<Line>& lines) {
     for (const auto* values : {&line.centre, &line.direction})
       for (const Value& v : *values) one[v.name] = number(v);
     one["radius"] = number(line.radius);
+    if (line.head) one["seen_from"] = "tool tip";
     one["compared_with"] = line.shares_reference;
     axes.push_back(std::move(one));
   }
@@ -96,7 +134,8 @@ std::string text(const Campaign& campaign, const std::vector<Line>& lines) {
   out += "mm, in the coordinates of the linear axes that read the ball; U: expanded, k = 2\n";
   out += "positive angles turn right-handed about the direction\n";
   for (const Line& line : lines) {
-    out += "\naxis " + line.axis + " (measurement " + line.measurement + "), ball at radius " +
+    out += "\naxis " + line.axis + " (measurement " + line.measurement + "), " +
+           (line.head ? "as seen from the tip of the tool at radius " : "ball at radius ") +
            millimetres(line.radius.value) + " mm\n";
     for (std::size_t k = 0; k < 3; ++k) {
       const Value &c = line.centre[k], &d = line.direction[k];

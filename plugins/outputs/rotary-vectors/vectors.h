@@ -16,7 +16,12 @@ struct Line {
   std::array<Value, 3> centre, direction;
   Value radius;
   std::vector<std::string> shares_reference;  ///< measurements it was compared with
+  /// Of the fit of two axes together: the order of those that carry the workpiece, "B, C".
+  bool of_chain = false;
+  std::string tables{};
+  bool head = false;  ///< as seen from the tip of the tool
 };
+/// Of an axis that stands in a fit of two together, that one alone.
 std::vector<Line> lines_of(const Campaign&, const Results&);
 
 /// In mm, or without a unit: as many digits as stand for 0.1 um and 0.1 urad.

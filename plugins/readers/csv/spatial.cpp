@@ -57,17 +57,33 @@ void spread(Observations& obs, const Span& span) {
     obs.axes.push_back(std::move(column));
   }
 }
+
+namespace {
+
+/// Beside the axis of the measurement, those that may stand in a table of ball centres.
+std::vector<std::string> other_rotary_axes(const Campaign& campaign, const std::string& axis) {
+  std::vector<std::string> names;
+  for (const Axis& other : campaign.machine.axes)
+    if (other.rotary && other.name != axis) names.push_back(other.name);
+  return names;
+}
+
+}  // namespace
+
 Expected<Observations> read_ball_centres(const ReadInput& input) {
   const Measurement& m = input.measurement;
   const Axis* axis = input.campaign.machine.axis(m.axis);
   if (axis == nullptr || !axis->rotary)
     return fail("measurement \"" + m.id + "\": expected a rotary axis, found " +
                 (m.axis.empty() ? "none" : "\"" + m.axis + "\""));
-  const auto table = table_of(input, with_common({{"angle_deg", Kind::place, true},
-                                                  {"x_mm", Kind::number, true},
-                                                  {"y_mm", Kind::number, true},
-                                                  {"z_mm", Kind::number, true},
-                                                  {"direction", Kind::sign}}));
+  std::vector<ColumnSpec> columns{{"angle_deg", Kind::place, true},
+                                  {"x_mm", Kind::number, true},
+                                  {"y_mm", Kind::number, true},
+                                  {"z_mm", Kind::number, true},
+                                  {"direction", Kind::sign}};
+  const auto others = other_rotary_axes(input.campaign, m.axis);
+  for (const std::string& other : others) columns.push_back({other + "_deg", Kind::place});
+  const auto table = table_of(input, with_common(columns));
   if (!table) return fail(table.error());
   Observations obs = begin(m, *table);
   obs.axes = {
@@ -77,6 +93,12 @@ Expected<Observations> read_ball_centres(const ReadInput& input) {
     line.sense[k] = 1.0;
     obs.lines.push_back(line);
   }
+  std::vector<const std::vector<double>*> also;  // angles of the other axes
+  for (const std::string& other : others)
+    if (const auto* column = table->column(other + "_deg")) {
+      also.push_back(column);
+      obs.axes.push_back({other, true, {}, {}});
+    }
   const auto* direction = table->column("direction");
   for (std::size_t row = 0; row < table->size(); ++row) {
     const Sense centre{(*table->column("x_mm"))[row] * per_mm,
@@ -91,6 +113,8 @@ Expected<Observations> read_ball_centres(const ReadInput& input) {
       if (direction != nullptr)
         obs.axes[0].approach.push_back(static_cast<std::int8_t>((*direction)[row]));
       for (std::size_t c = 0; c < 3; ++c) obs.axes[1 + c].position.push_back(centre[c]);
+      for (std::size_t c = 0; c < also.size(); ++c)
+        obs.axes[4 + c].position.push_back((*also[c])[row] * per_deg);
       obs.deviation.push_back(centre[k]);
       obs.line.push_back(static_cast<std::uint32_t>(k));
       put_common(obs, *table, row);

@@ -171,6 +171,47 @@ TEST(RotaryVectors, HeidenhainMarksWhatIsInferredOnceItsSignsWereShown) {
       << table;
 }
 
+/// Both lines as one analysis gives them.
+Results::Analysed chain(const std::string& tables, const std::string& heads) {
+  Results::Analysed a{"rotary-chain", "1", "BC", {}};
+  for (const auto& [name, line] :
+       {std::pair(std::string("C"), axis("", {0.1, 0.2, -0.1}, {0, 0, 1})),
+        std::pair(std::string("B"), axis("", {0.11, 0, -0.3}, {0, 1, 0}))})
+    for (Value v : line.evaluation.values) {
+      v.name += "_" + name;
+      a.evaluation.values.push_back(v);
+    }
+  if (!tables.empty())
+    a.evaluation.notes.push_back({"rotary-chain.tables", {}, {{"axes", tables}}});
+  if (!heads.empty()) a.evaluation.notes.push_back({"rotary-chain.heads", {}, {{"axes", heads}}});
+  return a;
+}
+
+TEST(RotaryVectors, OneFitOfBothIsTakenBeforeTheFitsOfEach) {
+  Campaign c = campaign({"C"});
+  for (const char* name : {"B", "C"}) {
+    c.machine.axes.push_back(Axis{.name = name});
+    c.machine.axes.back().rotary = true;
+  }
+  const auto out = write(c, {axis("C", {0.3, 0.3, 0.3}, {0, 0, 1}), chain("B, C", "")});
+  const auto json = nlohmann::json::parse(file(out, "rotary-vectors.json"));
+  ASSERT_EQ(json["axes"].size(), 2U);
+  EXPECT_EQ(json["axes"][0]["axis"], "B");
+  EXPECT_DOUBLE_EQ(json["axes"][1]["centre_x"]["value"], 100.0);
+  EXPECT_FALSE(json["axes"][1].contains("seen_from"));
+  const std::string fanuc = file(out, "rotary-vectors-fanuc.txt");
+  EXPECT_NE(fanuc.find("both at 0, from one fit"), std::string::npos);
+  EXPECT_DOUBLE_EQ(pin(file(out, "rotary-vectors-linuxcnc.hal"), "x-offset"), 0.01);
+  for (const auto& [tables, heads] :
+       {std::pair("C, B", ""), std::pair("C", "B"), std::pair("", "C, B")}) {
+    const auto other = write(c, {chain(tables, heads)});
+    EXPECT_TRUE(says(other, "vectors.other-chain")) << tables;
+    EXPECT_EQ(other.artifacts.size(), 3U);
+    const auto axes = nlohmann::json::parse(file(other, "rotary-vectors.json"))["axes"];
+    EXPECT_EQ(axes[0].contains("seen_from"), std::string(heads).find('B') != std::string::npos);
+  }
+}
+
 /// Value of a row "  name before new change", by its column.
 double number(const std::string& text, const std::string& name, int column) {
   const std::size_t at = text.find("  " + name + " ");

@@ -413,7 +413,10 @@ std::optional<Plot> readings_plot(const Source& source, const Measured& m) {
   if (m.measurement.kind == "circle") return path_plot(source, m);
   if (is_heat(m.measurement)) return heat_plot(source, m);
   std::vector<Plot> plots;
-  if (m.measurement.kind == "ball-centres") add_circle(source, m, plots);
+  if (m.measurement.kind == "ball-centres") {
+    add_circle(source, m, plots);
+    add_chain(source, m, plots);
+  }
   add_volume(source, m, plots);
   if (plots.empty()) return {};
   return std::move(plots.front());
@@ -437,7 +440,10 @@ void add_plots(const Source& source, const Measured& m, Blocks& blocks) {
     if (kind == "reversal") add(reversal_plot(source, m));
     if (kind == "diagonals") add_diagonals(source, m, plots);
     if (kind == "volume") add_volume(source, m, plots);
-    if (kind == "circle" && circle) add_circle(source, m, plots);
+    if (kind == "circle" && circle) {
+      add_circle(source, m, plots);
+      add_chain(source, m, plots);
+    }
     if (kind == "series" && !circle) series_plots(source, m, plots);
   }
   if (!plots.empty()) blocks.push_back({Spacer{4}});

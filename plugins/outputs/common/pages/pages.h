@@ -113,6 +113,8 @@ void add_volume(const Source&, const Measured&, std::vector<reports::Plot>&);
 double round_factor(double v);
 /// The circle of ball centres with exaggerated residuals, and the residuals over the angle.
 void add_circle(const Source&, const Measured&, std::vector<reports::Plot>&);
+/// The residuals of two rotary axes as one chain, over the angle of each.
+void add_chain(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// The path of a circular test over rings, and beside it the causes by their size.
 std::optional<reports::Plot> path_plot(const Source&, const Measured&);
 void add_path(const Source&, const Measured&, Blocks&);

@@ -17,11 +17,13 @@ using namespace reports;
 std::string meaning_of(const Source& source, const std::string& name) {
   const std::string known = source.words.get_or("value." + name, "");
   if (!known.empty()) return known;
-  const std::size_t end = name.find('_');
-  if (end == std::string::npos) return "";
-  const std::string key = "value_of." + name.substr(0, end);
-  if (source.words.get_or(key, "").empty()) return "";
-  return source.words.get(key, {{"id", name.substr(end + 1)}});
+  for (std::size_t end = name.rfind('_'); end != std::string::npos && end > 0;
+       end = name.rfind('_', end - 1)) {
+    const std::string key = "value_of." + name.substr(0, end);
+    if (!source.words.get_or(key, "").empty())
+      return source.words.get(key, {{"id", name.substr(end + 1)}});
+  }
+  return "";
 }
 
 namespace {

@@ -3,6 +3,7 @@
 // The ball centres of a rotary axis: their circle with exaggerated residuals, and the residuals
 // over the angle.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -112,7 +113,49 @@ Plot residuals(const Source& source, const Measured& m, const Centres& c, double
   return plot;
 }
 
+/// Of a chain: residuals of all centres over the angle of one axis, a curve for each coordinate.
+Plot chain_residuals(const Source& source, const PointTable& p, const std::string& axis,
+                     double height) {
+  const Style& style = source.look.style;
+  Plot plot;
+  plot.title = source.words.get("plot.chain_residuals", {{"axis", axis}});
+  plot.x_title =
+      source.words.get("plot.position", {{"axis", axis}, {"unit", unit_text(Quantity::angle)}});
+  plot.y_title = source.words.get("plot.deviation", {{"unit", unit_text(Quantity::deviation)}});
+  plot.language = source.language();
+  plot.degrees = true;
+  plot.height = height;
+  const double um = unit_of(Quantity::deviation).per_si;
+  const std::array colours{style.plus, style.minus, style.good};
+  static constexpr std::array markers{Marker::dot, Marker::ring, Marker::up};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto* residual = p.column(std::string("residual_") + "xyz"[k]);
+    if (residual == nullptr) continue;
+    Curve curve;
+    for (std::size_t i = 0; i < residual->values.size(); ++i) {
+      curve.x.push_back(p.column(axis)->values[i] * deg_per_rad);
+      curve.y.push_back(residual->values[i] * um);
+    }
+    curve.colour = colours[k], curve.marker = markers[k];
+    curve.width = 0.0;
+    curve.legend = std::string(1, "XYZ"[k]);
+    plot.curves.push_back(std::move(curve));
+  }
+  return plot;
+}
+
 }  // namespace
+
+void add_chain(const Source& source, const Measured& m, std::vector<Plot>& plots) {
+  for (const auto* a : m.analyses) {
+    const PointTable& p = a->evaluation.points;
+    if (p.column("residual_x") == nullptr) continue;
+    for (const PointTable::Column& column : p.columns)
+      if (column.quantity == Quantity::angle)
+        plots.push_back(
+            chain_residuals(source, p, column.name, 1.2 * source.look.style.plot_height));
+  }
+}
 
 void add_circle(const Source& source, const Measured& m, std::vector<Plot>& plots) {
   const Centres c = centres_of(m);

@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "nonio/sdk/error.h"
+#include "nonio/sdk/observations.h"
 
 /// The line of a rotary axis from centres of a ball that turns with it.
 ///
@@ -76,6 +78,9 @@ struct DoubleWave {
 /// else p stays 1.
 DoubleWave double_wave(const RotaryFit& fit, std::span<const BallCentre> centres,
                        const std::vector<double>& residual);
+
+/// Of ball centres: a rotary axis beside the first one that did not stand still; empty if none.
+std::string other_turning_axis(const Observations&);
 
 /// Factor that expands a standard uncertainty to 95.45 %: 2 for many degrees of freedom (dof < 0:
 /// known sigma), Student's t for few; NaN for 0.

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chain.h"
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+
+#include "nonio/math/distributions.h"
+
+namespace nonio::rotary_chain {
+namespace {
+
+using math::ChainRefusal;
+
+constexpr double surely = 1e-3;  // residuals against a stated sigma
+// Of a pattern, in the residuals. A scale of all coordinates shows only their own residuals, 1e-5.
+constexpr double least_shown = 1e-3;
+constexpr double no_chain_share = 1e-3;  // of the extent, where no sigma is known
+
+Finding finding(const char* id, std::vector<Number> evidence,
+                std::vector<std::pair<std::string, std::string>> texts = {}) {
+  return {.id = id, .attention = true, .evidence = std::move(evidence), .texts = std::move(texts)};
+}
+
+Number count(const char* name, double n) { return {name, n, Quantity::count}; }
+Number um(const char* name, double v) { return {name, v, Quantity::deviation}; }
+
+/// The extent of the readings in one coordinate at most.
+double extent(const Places& places) {
+  double size = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [low, high] =
+        std::minmax_element(places.readings.begin(), places.readings.end(),
+                            [k](const auto& a, const auto& b) { return a.at[k] < b.at[k]; });
+    size = std::max(size, high->at[k] - low->at[k]);
+  }
+  return size;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+void add(std::vector<double>& to, double f, const std::vector<double>& v) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] += f * v[i];
+}
+
+class Solver {
+ public:
+  Solver(const AnalysisInput& in, const Chain& chain, const Places& places, const Wish& wish,
+         const math::ReadingModel& model)
+      : in_(in), chain_(chain), places_(places), wish_(wish), model_(model) {}
+
+  Solved done() {
+    if (fitted() && fits()) {
+      set_scatter();
+      with_sigma();
+      out_.given = true;
+      tell_angles();
+    }
+    return std::move(out_);
+  }
+
+ private:
+  bool refuse(Finding f) {
+    out_.findings.push_back(std::move(f));
+    return false;
+  }
+  std::string axes() const {
+    std::string text;
+    for (const std::string& axis : chain_.axes) text += (text.empty() ? "" : ", ") + axis;
+    return text;
+  }
+  double centres() const { return static_cast<double>(places_.readings.size()); }
+
+  bool fitted() {
+    auto fit = math::fit_chain(places_.readings, places_.order);
+    if (fit) {
+      out_.fit = std::move(*fit);
+      return true;
+    }
+    switch (fit.error()) {
+      case ChainRefusal::not_finite:
+        return refuse(finding("rotary.not-finite", {}));
+      case ChainRefusal::too_few:
+        return refuse(finding("rotary-chain.too-few", {count("centres", centres())}));
+      case ChainRefusal::ambiguous:
+        return refuse(
+            finding("rotary-chain.ambiguous", {count("centres", centres())}, {{"axes", axes()}}));
+      case ChainRefusal::not_converging:
+        break;
+    }
+    return refuse(finding("rotary-chain.not-converging", {count("centres", centres())}));
+  }
+
+  /// A wrong order, an angle in the wrong column, a table called a head.
+  bool fits() {
+    const double size = extent(places_);
+    double expected = wish_.sigma.value_or(0.0);
+    if (const Instrument& i = in_.campaign.instrument; expected == 0.0 && i.U_fixed)
+      expected = 0.5 * (*i.U_fixed + i.U_per_length.value_or(0.0) * size);
+    const double limit = expected > 0.0 ? wish_.circle_limit * expected : no_chain_share * size;
+    if (out_.fit.s <= limit) return true;
+    return refuse(finding("rotary-chain.does-not-fit", {um("s", out_.fit.s), um("limit", limit)},
+                          {{"axes", axes()}}));
+  }
+
+  /// Without the span of what the linear axes make in the residuals. Where the residuals show more of
+  /// it than the stated bound can make, the whole of them counts.
+  void set_scatter() {
+    const math::ChainFit& fit = out_.fit;
+    scatter_ = fit.s, dof_ = fit.dof;
+    const auto& readings = places_.readings;
+    if (!std::all_of(readings.begin(), readings.end(),
+                     [&](const auto& r) { return r.weight == readings.front().weight; }))
+      return;
+    out_.residual_by = fit.residual_by;
+    const auto linear =
+        std::find_if(model_.inputs.begin(), model_.inputs.end(),
+                     [](const auto& input) { return input.is.id == "linear-axes"; });
+    if (linear == model_.inputs.end() || fit.residual_by.empty()) return;
+    std::vector<std::vector<double>> basis;
+    double most = 0.0;  // that the bound makes, all at their limits
+    for (const auto& pattern : linear->patterns) {
+      std::vector<double> shown;
+      for (const auto& row : fit.residual_by) shown.push_back(dot(row, pattern));
+      most += std::numbers::sqrt3 * std::sqrt(dot(shown, shown));
+      const double size = std::sqrt(dot(pattern, pattern));
+      for (int twice = 0; twice < 2; ++twice)
+        for (const auto& q : basis) add(shown, -dot(q, shown), q);
+      const double left = std::sqrt(dot(shown, shown));
+      if (!(left > least_shown * size)) continue;
+      for (double& x : shown) x /= left;
+      basis.push_back(std::move(shown));
+    }
+    std::vector<double> r;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const auto& residual : fit.residual) r.push_back(residual[k]);
+    double part = 0.0;
+    for (const auto& q : basis) part += std::pow(dot(q, r), 2);
+    const double root = std::sqrt(readings.front().weight);
+    const auto n = static_cast<double>(basis.size());
+    if (!(fit.dof - n >= 1.0)) return;
+    const double rest = std::max(0.0, dot(r, r) - part);
+    const double s = root * std::sqrt(rest / (fit.dof - n));
+    if (root * std::sqrt(part) > root * most + 3.0 * s * std::sqrt(n)) {
+      out_.findings.push_back(finding(
+          "rotary-chain.linear-axes",
+          {um("found", std::sqrt(part / centres())), um("most", most / std::sqrt(centres()))}));
+      return;
+    }
+    scatter_ = s, dof_ = fit.dof - n;
+    for (auto& row : out_.residual_by) {
+      const std::vector<double> whole = row;
+      for (const auto& q : basis) add(row, -dot(q, whole), q);
+    }
+  }
+
+  void with_sigma() {
+    const double s = scatter_, dof = dof_;
+    if (wish_.sigma) {
+      const double ratio = s / *wish_.sigma;
+      if (!math::significant(math::f_upper(ratio * ratio, dof, 1e9), surely)) {
+        out_.sigma = *wish_.sigma;
+      } else {
+        out_.findings.push_back(finding("rotary.scatter", {um("s", s), um("sigma", *wish_.sigma)}));
+      }
+    }
+    if (out_.sigma == 0.0) {
+      out_.sigma = s;
+      out_.dof = dof;
+      out_.from_readings = true;
+    }
+    if (places_.stated_u == 0.0) return;
+    out_.findings.push_back({.id = "rotary.stated-uncertainty",
+                             .evidence = {um("u", places_.stated_u), um("sigma", out_.sigma)}});
+    if (places_.stated_u <= out_.sigma) return;
+    out_.sigma = places_.stated_u;
+    out_.dof = INFINITY;
+    out_.from_readings = true;
+  }
+
+  /// Encoder against the rest: larger, the angles do not deserve their trust.
+  void tell_angles() {
+    for (std::size_t j = 0; j < chain_.axes.size(); ++j) {
+      const auto& f = out_.fit.followed[j];
+      if (!(f.dof_along > 1.0) || !(f.dof_rest > 1.0) || !(f.rest > 0.0)) continue;
+      const double ratio = f.along / f.rest,
+                   p = math::f_upper(ratio * ratio, f.dof_along, f.dof_rest);
+      if (math::significant(p, surely))
+        out_.findings.push_back(
+            finding("rotary-chain.angles-not-trusted",
+                    {um("along", f.along), um("rest", f.rest), {"p", p, Quantity::probability}},
+                    {{"axis", chain_.axes[j]}}));
+    }
+  }
+
+  const AnalysisInput& in_;
+  const Chain& chain_;
+  const Places& places_;
+  const Wish& wish_;
+  const math::ReadingModel& model_;
+  double scatter_ = 0.0, dof_ = 0.0;
+  Solved out_;
+};
+
+}  // namespace
+
+Solved solve(const AnalysisInput& in, const Chain& chain, const Places& places, const Wish& wish,
+             const math::ReadingModel& model) {
+  return Solver(in, chain, places, wish, model).done();
+}
+
+}  // namespace nonio::rotary_chain
