@@ -255,7 +255,8 @@ class Fit {
       if (!both_ && (r.direction > 0) != (only_ == 0)) continue;
       double off = r.deviation;
       for (std::size_t k = 0; k < columns_.size(); ++k)
-        off -= beta[at(k)] * cause_at(static_cast<Cause>(columns_[k]), model_, r.angle, r.direction);
+        off -=
+            beta[at(k)] * cause_at(static_cast<Cause>(columns_[k]), model_, r.angle, r.direction);
       squares += off * off, n += 1.0;
     }
     return std::sqrt(squares / std::max(1.0, n - static_cast<double>(columns_.size())));

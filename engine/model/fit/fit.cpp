@@ -399,7 +399,7 @@ void put_stated(Fit& out, const std::vector<StatedShape>& stated, const std::vec
 // Long: the columns of shapes, the noise and the correlation are steps on one matrix.
 void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
                      const std::vector<char>& searched, const Whitening& white) {
-  std::vector<Index> place(out.parameters.size(), -1);  // row of the cofactor matrix
+  std::vector<Index> place(out.parameters.size(), -1);         // row of the cofactor matrix
   std::vector<std::pair<std::size_t, std::size_t>> stated_at;  // parameter, term
   Index row = design.first.front(), extra = 0;
   std::size_t at = 0;
@@ -452,9 +452,9 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
   std::vector<StatedShape> stated;
   for (const auto& [parameter, t] : stated_at) {
     const VectorXd linear = s.x.segment(design.first[t], design.first[t + 1] - design.first[t]);
-    stated.push_back({parameter, out.terms[t].stated->u,
-                      by_stated(out.terms[t], linear, o, plain_cofactor,
-                                design.a.leftCols(columns), white)});
+    stated.push_back(
+        {parameter, out.terms[t].stated->u,
+         by_stated(out.terms[t], linear, o, plain_cofactor, design.a.leftCols(columns), white)});
     const VectorXd& made = stated.back().of_unknowns;
     if (s_of_u > 0.0) cofactor += made * made.transpose() / (s_of_u * s_of_u);
   }

@@ -57,8 +57,7 @@ std::size_t Workbench::usual_ones(const Term& term, const std::vector<double>& s
 /// evidence is asked that they are needed.
 void Workbench::fill_search(Block& block) const {
   const Instance& instance = instances_[block.effect];
-  const auto tried =
-      static_cast<double>(instance.tried[usual_ones(instance.term, block.shape)]);
+  const auto tried = static_cast<double>(instance.tried[usual_ones(instance.term, block.shape)]);
   block.searched = 0, block.cost_of_shape = 0.0;
   if (!(tried > 1.0)) return;
   // Neighbours on a grid are alike: about a third of its values are independent.

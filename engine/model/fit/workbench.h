@@ -29,10 +29,10 @@ class Workbench {
     Term term;
     std::vector<std::size_t> blocks;  ///< none: the readings cannot show it
     std::string error;
-    bool reducible = false;            ///< may_lose
+    bool reducible = false;  ///< may_lose
     /// Values of its shapes of which those have their usual value that a bit stands for.
     std::vector<std::size_t> tried{};
-    std::vector<char> free{};          ///< of each shape: it has more than one value
+    std::vector<char> free{};  ///< of each shape: it has more than one value
   };
   /// Blocks in the order in which they came in, with what they leave.
   struct State {

@@ -151,7 +151,8 @@ void path_values(Work& w) {
   }
   if (!H) return;
   const std::vector<CircleReading> pair{{H->angle, 0.0, 1, 1}, {H->angle, 0.0, -1, 1}};
-  add(w, "H", H->H, Quantity::deviation, std::numbers::sqrt2 * w.fit.s_reading, by_bins(w, pair, 0, 1));
+  add(w, "H", H->H, Quantity::deviation, std::numbers::sqrt2 * w.fit.s_reading,
+      by_bins(w, pair, 0, 1));
 }
 
 /// Centres, and what asks for a known length.
@@ -176,7 +177,8 @@ void circle_values(Work& w) {
   for (const bool outer : {true, false}) {
     std::vector<double> by =
         by_bins(w, w.circle.readings, outer ? F.outermost : F.innermost, std::nullopt);
-    add(w, outer ? "F_max" : "F_min", outer ? F.outer : F.inner, Quantity::deviation, w.fit.s_reading, by);
+    add(w, outer ? "F_max" : "F_min", outer ? F.outer : F.inner, Quantity::deviation,
+        w.fit.s_reading, by);
   }
 }
 

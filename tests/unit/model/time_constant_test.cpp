@@ -250,8 +250,8 @@ TEST(TimeConstant, TheSizeIsWithinTwoUWithTheTestsUncertaintyInIt) {
     ASSERT_TRUE(sure);
     without += std::fabs(parameter(*sure, "w").value - 4.0 * um) <= 2.0 * parameter(*sure, "w").u;
   }
-  std::printf("within 2 u: %d, without the test's u: %d, kept %d, of %d\n",
-              within, without, kept, known);
+  std::printf("within 2 u: %d, without the test's u: %d, kept %d, of %d\n", within, without, kept,
+              known);
   ASSERT_GE(known, 100);
   // 95 % of 120 are 114: 4 standard deviations are 9.5.
   EXPECT_GE(within, known * 87 / 100);

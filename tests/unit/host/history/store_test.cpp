@@ -373,20 +373,22 @@ TEST(HistoryStore, AFailureThatStaysIsKeptBehindOneThatMayPass) {
 // error its two linear parts are followed, not the amplitude.
 TEST(HistoryStore, OfCirclesLargestValuesAreShownAndLinearOnesFollowed) {
   std::string values, followed;
-  for (const char* name : {"G_ccw", "G_cw", "G_b", "H", "D", "F_max", "F_min", "spike_X", "cyclic_X",
-                           "cyclicCos_X", "B_X", "s"})
+  for (const char* name : {"G_ccw", "G_cw", "G_b", "H", "D", "F_max", "F_min", "spike_X",
+                           "cyclic_X", "cyclicCos_X", "B_X", "s"})
     values += std::string(values.empty() ? "" : ", ") + "\"" + name +
               R"(": {"value": 7.5, "unit": "um", "U": 1.0, "k": 2.0})";
-  for (const auto& [axis, name] : {std::pair("XY", "scale_mismatch:XY"), {"X", "cyclic_circle_cos"}})
-    followed += std::string(R"(, {"measurement": "C1", "axis": ")") + axis +
-                R"(", "quantity": ")" + name +
-                R"(", "unit": "um", "value": 0.5, "u": 0.1, "state": "as-found"})";
+  for (const auto& [axis, name] :
+       {std::pair("XY", "scale_mismatch:XY"), {"X", "cyclic_circle_cos"}})
+    followed += std::string(R"(, {"measurement": "C1", "axis": ")") + axis + R"(", "quantity": ")" +
+                name + R"(", "unit": "um", "value": 0.5, "u": 0.1, "state": "as-found"})";
   Output out("circles");
-  ASSERT_TRUE(out.store({.id = "a",
-                         .analyses = R"(, {"plugin": "circle", "version": "1", "measurement": "C1",)"
-                                     R"( "values": {)" + values + R"(}, "findings": []})",
-                         .followed = followed},
-                        1, "r1"));
+  ASSERT_TRUE(
+      out.store({.id = "a",
+                 .analyses = R"(, {"plugin": "circle", "version": "1", "measurement": "C1",)"
+                             R"( "values": {)" +
+                             values + R"(}, "findings": []})",
+                 .followed = followed},
+                1, "r1"));
   ASSERT_TRUE(history::update(out.root(), false, {"a"}, {}, nothing));
   auto reader = history::StoreReader::open(out.root());
   ASSERT_TRUE(reader) << reader.error().message;
