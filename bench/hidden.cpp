@@ -344,6 +344,14 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
   return right;
 }
 
+/// What became of the time constant of a thermal test.
+void score_thermal(Score& score, const Followed& f) {
+  score.tested.add(f.tested), score.stated.add(f.stated);
+  if (!f.stated || f.steps.empty()) return;
+  for (const model::Term& term : f.steps.back().said.comparison.fit.terms)
+    if (term.stated) score.kept.add(model::has_stated(term));
+}
+
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& w : words) text += (text.empty() ? "" : " ") + w;
@@ -554,10 +562,7 @@ int main(int argc, char** argv) {
       }
     }
     const Followed f = follow(h, plugins.effects(), a->thermal);
-    if (a->thermal > 0 && !scenario.rotary) score.tested.add(f.tested), score.stated.add(f.stated);
-    if (f.stated && !f.steps.empty())
-      for (const model::Term& term : f.steps.back().said.comparison.fit.terms)
-        if (term.stated) score.kept.add(model::has_stated(term));
+    if (a->thermal > 0 && !scenario.rotary) score_thermal(score, f);
     const bool right = judge(score, h, f);
     for (const Step& s : f.steps) {
       score.cpu.push_back(s.cpu);
