@@ -30,6 +30,16 @@ int main(int argc, char** argv) {
     for (std::size_t k = 0; k < found.size(); ++k) together[k] += found[k], all += found[k];
   }
   row("together", together);
+  row(exact::wide_spikes.name,
+      exact::coverage(circles, exact::wide_spikes.noise, seed, exact::wide_spikes.stick_deg));
+  std::printf("largest values, %d circles\n", circles);
+  for (const auto& scenario : exact::scenarios) {
+    std::printf("%-22s", scenario.name);
+    const auto found = exact::largest_coverage(circles, scenario.noise, seed);
+    for (std::size_t k = 0; k < found.size(); ++k)
+      std::printf("  %s %.1f %.2f", exact::largest_names[k], found[k].share(), found[k].rms());
+    std::printf("\n");
+  }
   std::printf("all %.2f %%\n", all.share());
   return all.all > 0 ? 0 : 1;
 }

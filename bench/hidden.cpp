@@ -7,6 +7,8 @@
 //                [--size PERCENT]
 //                [--verbose] [--plugins FOLDER]
 //                [--write FOLDER] [--right PERCENT] [--wrong PERCENT]
+//                [--thermal PERCENT]: of linear axes with a thermal test, whose screw has so many %
+//                of the time constant of the runs'
 //                [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] [--digit SIZE]
 // Sizes in units of the noise: what makes the noise other than independent (hidden::Unrest).
 // Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
@@ -48,6 +50,7 @@ struct Arguments {
   std::uint64_t size = 100;  ///< smallest: % of the printed smallest size
   fs::path plugins{}, write{};
   std::uint64_t least_right = 0, most_wrong = 100;  // %
+  std::uint64_t thermal = 0;                        // %; 0: no test
   hidden::Unrest unrest{};
 };
 
@@ -72,6 +75,7 @@ struct Followed {
   std::vector<Step> steps;         ///< never empty if `error` is
   std::vector<std::string> added;  ///< in order
   bool offered = true;             ///< the catalogue has all that is hidden, for these readings
+  bool tested = false, stated = false;  ///< a thermal test gives a time constant; a term takes it
   std::string error;
 };
 
@@ -99,11 +103,30 @@ Expected<Step> step(const model::Part& part, const Machine& machine,
   return done;
 }
 
-Followed follow(const Hidden& h, const std::vector<Effect>& effects) {
+/// `thermal`: of the time constant, %; 0: no test.
+std::vector<model::Part> parts_with(const Hidden& h, std::uint64_t thermal) {
+  Campaign campaign = h.campaign;
+  std::vector<Observations> read{h.table};
+  if (thermal > 0 && !h.scenario.rotary) {
+    Measurement m;
+    m.id = "X-thermal", m.kind = "thermal", m.axis = "X";
+    campaign.measurements.push_back(m);
+    read.push_back(hidden::thermal_test(h.scenario, 0.01 * static_cast<double>(thermal)));
+  }
+  return model::parts_of(campaign, read);
+}
+
+Followed follow(const Hidden& h, const std::vector<Effect>& effects, std::uint64_t thermal) {
   Followed f;
-  const auto parts = model::parts_of(h.campaign, {h.table});
-  if (parts.size() != 1) return {{}, {}, true, "not one part"};
+  const auto parts = parts_with(h, thermal);
+  if (parts.size() != 1) {
+    f.error = "not one part";
+    return f;
+  }
   const auto offered = model::catalogue(parts[0], effects);
+  f.tested = !parts[0].time_constants.empty() &&
+             parts[0].time_constants[0].state == model::TimeConstant::State::known;
+  for (const model::Term& term : offered) f.stated = f.stated || term.stated;
   for (const std::string& name : h.truth.hidden)
     f.offered = f.offered && std::any_of(offered.begin(), offered.end(),
                                          [&](const auto& term) { return term.name() == name; });
@@ -187,7 +210,8 @@ struct Score {
       described;  ///< names said to be certain that are hidden; descriptions to the floor
   Tally answered, right, asked, kind, floor, wrong_name, place, alias, ends, noise, above_floor,
       values;
-  Tally without_u;  ///< values whose u is not printed
+  Tally tested, stated, kept;  ///< thermal tests; terms that take it; fits that keep it
+  Tally without_u;             ///< values whose u is not printed
   std::map<std::string, Tally> of_effect, of_value;
   std::map<std::string, Tally> named_of;                ///< outside: `missing`, by cause
   std::map<std::string, std::uint64_t> certain_beside;  ///< certain, and not hidden
@@ -320,6 +344,14 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
   return right;
 }
 
+/// What became of the time constant of a thermal test.
+void score_thermal(Score& score, const Followed& f) {
+  score.tested.add(f.tested), score.stated.add(f.stated);
+  if (!f.stated || f.steps.empty()) return;
+  for (const model::Term& term : f.steps.back().said.comparison.fit.terms)
+    if (term.stated) score.kept.add(model::has_stated(term));
+}
+
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& w : words) text += (text.empty() ? "" : " ") + w;
@@ -391,6 +423,11 @@ void print_score(const Score& s, Kind kind) {
     std::printf("    of right models that is expected (F distribution) %12.2f %%\n",
                 100.0 * s.above_floor_expected / static_cast<double>(s.above_floor.of));
   print("floor of the repeats within 2 u of the true noise", s.floor);
+  if (s.tested.of > 0) {
+    print("thermal test gives a time constant", s.tested);
+    print("an effect takes it", s.stated);
+    print("fits with such an effect that keep it", s.kept);
+  }
   if (s.without_u.yes > 0) print("values whose u not printed", s.without_u);
   print("true value within 2 u", s.values);
   for (const auto& [name, tally] : s.of_value) print("    " + name, tally);
@@ -470,6 +507,8 @@ std::optional<Arguments> arguments(const std::vector<std::string>& words) {
       a.plugins = words[++i];
     else if (words[i] == "--write" && i + 1 < words.size())
       a.write = words[++i];
+    else if (words[i] == "--thermal" && i + 1 < words.size() && whole(words[i + 1]))
+      a.thermal = *whole(words[++i]);
     else if (words[i] == "--size" && i + 1 < words.size() && whole(words[i + 1]))
       a.size = *whole(words[++i]);
     else if ((words[i] == "--right" || words[i] == "--wrong") && i + 1 < words.size()) {
@@ -496,6 +535,7 @@ int main(int argc, char** argv) {
                  "             short-complete|smallest COUNT SEED\n"
                  "             [--verbose] [--plugins FOLDER] [--write FOLDER] [--right PERCENT] "
                  "[--wrong PERCENT]\n"
+                 "             [--thermal PERCENT]\n"
                  "             [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] "
                  "[--digit SIZE]\n");
     return 2;
@@ -521,7 +561,8 @@ int main(int argc, char** argv) {
         return 1;
       }
     }
-    const Followed f = follow(h, plugins.effects());
+    const Followed f = follow(h, plugins.effects(), a->thermal);
+    if (a->thermal > 0 && !scenario.rotary) score_thermal(score, f);
     const bool right = judge(score, h, f);
     for (const Step& s : f.steps) {
       score.cpu.push_back(s.cpu);

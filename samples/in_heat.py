@@ -157,4 +157,34 @@ def gauge():
                                                            "mpe_P_um": "2.5"}})}
 
 
-STORIES = {"42-heat": heat, "43-spindle": spindle_turns, "44-lengths": gauge}
+def morning_runs():
+    """Three runs in 27 minutes on a screw that had worked for a quarter of an hour and cooled for a while."""
+    noise, rows = Noise(148), []
+    screw, t = Body(1700.0), 0.0
+    screw.to(900.0, 1.0), screw.to(600.0, 0.0)
+    places = [40.0 * i + 4.0 + 0.37 * ((7 * i) % 11) for i in range(19)]
+    for run in (1, 2, 3):
+        for direction, way in (("+", places), ("-", places[::-1])):
+            for place in way:
+                um = 38.0 * (screw.x - 0.29) * (place - 380.0) * 1e-3 + 6.0 * (place - 380.0) * 1e-3
+                um += -1.6 if direction == "+" else 1.6
+                rows.append("%d,%s,%.3f,%d,%.2f" % (run, direction, place, t, um + 0.25 * noise.normal()))
+                screw.to(14.0, 0.8)
+                t += 14.0
+    return text("run,direction,target_mm,time_s,deviation_um", rows, MADE_UP)
+
+
+def warm_axis():
+    story = ["Positioning of X on a morning on which the screw was not yet warm, and the thermal test of the same axis from the",
+             "week before, by other sensors and from cold. The runs alone are too short to tell a warm-up from a steady growth;",
+             "with the time constant of the test they can, and the size of the warm-up stays theirs."]
+    runs = [{"id": "X", "kind": "axis", "axis": "X", "file": "x.csv"},
+            {"id": "X-thermal", "kind": "thermal", "axis": "X", "file": "thermal.csv", "feed_mm_per_min": 12000}]
+    return {"x.csv": morning_runs(), "thermal.csv": exercised(),
+            "campaign.toml": manifest(story, "48-warm-axis", "Esempio Quarantotto S.r.l.", "Padova", "2026-06-19",
+                                      dict(MACHINE, serial="S-0148"), AXES, runs, environment={"drift_um": "0.8"},
+                                      analyses=["iso230-2", "thermal", "model-fit"],
+                                      model=["backlash:X", "scale:X", "warm-up:X"])}
+
+
+STORIES = {"42-heat": heat, "43-spindle": spindle_turns, "44-lengths": gauge, "48-warm-axis": warm_axis}

@@ -96,8 +96,11 @@ void print_parameters(std::ostream& out, const model::Fit& fit,
         << (p.quantity == Quantity::count ? fixed_text(value, 0) : short_text(value, 4));
     if (std::isfinite(p.u)) out << ", u = " << short_text(printed(p.u, p.quantity), 2);
     const std::string_view unit = unit_of(p.quantity).symbol;
-    out << (unit.empty() ? "" : " ") << unit << (p.shape ? "  " + words.terminal()("searched") : "")
-        << "\n";
+    const bool stated = p.shape && term != fit.terms.end() && model::has_stated(*term) &&
+                        term->effect->shapes[term->stated->shape].parameter.name == p.name;
+    out << (unit.empty() ? "" : " ") << unit;
+    if (p.shape) out << "  " << words.terminal()(stated ? "stated" : "searched");
+    out << "\n";
   }
 }
 

@@ -118,7 +118,9 @@ std::optional<Named> named_of_circle(const std::string& value, const Measurement
   if (value == "D") return Named{"radius:" + plane, plane};
   if (value.size() == 3 && value[1] == '0') return Named{"squareness:" + plane + ".circle", plane};
   if (value.starts_with("bow_")) return Named{"bow:" + value.substr(4), value.substr(6)};
-  for (const auto& [begin, name] : {std::pair("B_", "B_circle"), std::pair("lateral_", "lateral")})
+  for (const auto& [begin, name] :
+       {std::pair("B_", "B_circle"), std::pair("lateral_", "lateral"),
+        std::pair("cyclicCos_", "cyclic_circle_cos"), std::pair("cyclicSin_", "cyclic_circle_sin")})
     if (value.starts_with(begin)) return Named{name, value.substr(std::string(begin).size())};
   return std::nullopt;
 }
@@ -191,6 +193,9 @@ std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaig
     q.u = std::sqrt(variance);
     for (const Measurement& m : campaign.measurements)
       if (m.id == a.measurement) q.state = found_or_left(m), put_conditions(q, campaign, m);
+    if (const Axis* axis = campaign.machine.axis(q.axis);
+        q.name.starts_with("cyclic") && axis != nullptr && axis->screw_pitch)
+      q.numbers.emplace_back("period", printed(*axis->screw_pitch, Quantity::length));
     if (q.state.empty()) q.state = "as-found";
     variances.push_back(variance);
     if (q.u > 0.0)

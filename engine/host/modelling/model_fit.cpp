@@ -8,6 +8,7 @@
 #include <set>
 
 #include "host/modelling/model_json.h"
+#include "host/modelling/thermal_tests.h"
 #include "host/reading/names.h"
 
 namespace nonio::host::modelling {
@@ -53,6 +54,7 @@ class Findings {
     suspects(e.comparison);
     if (const auto small = below_uncertainty(e.comparison.fit); !small.empty())
       out_.push_back({"model.below-uncertainty", false, {}, {{"effects", storage::listed(small)}}});
+    for (Finding& f : time_constant_findings(part_, e.comparison.fit)) out_.push_back(std::move(f));
     for (Finding& f : out_)
       std::erase_if(f.evidence, [](const Number& n) { return !std::isfinite(n.value); });
     return std::move(out_);

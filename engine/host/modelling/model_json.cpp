@@ -414,6 +414,7 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
     out.push_back(words.order_assumed(measurement));
   if (!part.part.table.order_known) out.push_back(words.order_unknown());
   if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
+  for (std::string& said : words.time_constants(part, fit)) out.push_back(std::move(said));
   for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
   return out;
 }

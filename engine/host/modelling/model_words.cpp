@@ -7,6 +7,7 @@
 #include <set>
 
 #include "host/modelling/model_json.h"
+#include "host/modelling/thermal_tests.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::host::modelling {
@@ -438,6 +439,14 @@ std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartMode
 
 std::string ModelWords::order_assumed(const std::string& measurement) const {
   return says("order-assumed", {}, {{"measurement", measurement}});
+}
+
+std::vector<std::string> ModelWords::time_constants(const PartModel& part,
+                                                    const model::Fit& fit) const {
+  std::vector<std::string> out;
+  for (const Finding& f : time_constant_findings(part, fit))
+    out.push_back(finding_text(templates_, language_, f, "says"));
+  return out;
 }
 
 std::string ModelWords::order_unknown() const { return says("order-unknown", {}, {}); }

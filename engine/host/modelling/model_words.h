@@ -49,6 +49,8 @@ class ModelWords {
   std::string order_assumed(const std::string& measurement) const;
   /// How the noise of a fit is other than independent readings of one scatter; mostly nothing.
   std::vector<std::string> noise(const model::Fit& fit, const PartModel& part) const;
+  /// What thermal tests of the campaign state for this part, a sentence an axis.
+  std::vector<std::string> time_constants(const PartModel& part, const model::Fit& fit) const;
   std::string order_unknown() const;
   std::string stood_somewhere() const;
   std::string unmeasured(const std::string& effect) const;

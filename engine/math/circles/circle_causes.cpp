@@ -76,7 +76,7 @@ struct Block {
 class Fit {
  public:
   Fit(std::span<const CircleReading> readings, const CircleModel& model)
-      : model_(model), bins_(readings, model) {
+      : readings_(readings), model_(model), bins_(readings, model) {
     for (std::size_t c = 0; c < cause_count; ++c)
       if (model.wanted[c]) columns_.push_back(c);
     std::array<std::size_t, 3> count{};  // only ccw, only cw, both
@@ -244,8 +244,25 @@ class Fit {
     const double n = static_cast<double>(out_.bins.size());
     out_.s = std::sqrt(squares / std::max(1.0, n - static_cast<double>(columns_.size())));
     out_.correlation = squares > 0.0 ? products / squares : 0.0;
+    out_.s_reading = scatter_of_readings(beta);
   }
 
+  /// Of the readings that are in the fit.
+  double scatter_of_readings(const Eigen::VectorXd& beta) const {
+    double squares = 0.0, n = 0.0;
+    for (const CircleReading& r : readings_) {
+      if (from_reversal(r.angle) < model_.leave_out) continue;
+      if (!both_ && (r.direction > 0) != (only_ == 0)) continue;
+      double off = r.deviation;
+      for (std::size_t k = 0; k < columns_.size(); ++k)
+        off -=
+            beta[at(k)] * cause_at(static_cast<Cause>(columns_[k]), model_, r.angle, r.direction);
+      squares += off * off, n += 1.0;
+    }
+    return std::sqrt(squares / std::max(1.0, n - static_cast<double>(columns_.size())));
+  }
+
+  std::span<const CircleReading> readings_;
   const CircleModel& model_;
   Bins bins_;
   bool both_ = false;
@@ -341,10 +358,10 @@ std::vector<Spike> reversal_spikes(std::span<const CircleReading> readings,
         sum += r.deviation - model_says, n += 1.0;
       }
       if (behind.size() < 3) continue;
-      Spike spike{q * quarter, direction, q % 2 == 1, 0.0, 0.0, fit.s};
+      Spike spike{q * quarter, direction, q % 2 == 1, 0.0, 0.0, fit.s_reading};
       for (const auto& [way, of] : behind)
         if (std::fabs(of.first / of.second) > std::fabs(spike.height))
-          spike.height = of.first / of.second;
+          spike.height = of.first / of.second, spike.u = fit.s_reading / std::sqrt(of.second);
       double first = INFINITY, last = -INFINITY;
       for (const auto& [way, of] : behind)
         if (of.first / of.second * sign_of(spike.height) >= 0.5 * std::fabs(spike.height))

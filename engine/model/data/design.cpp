@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace nonio::model {
@@ -80,7 +81,10 @@ std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& te
   if (!term.shape.empty() || term.effect->shapes.empty()) return {term.shape};
   std::vector<std::vector<double>> all{{}};
   for (const Effect::Shape& shape : term.effect->shapes) {
-    const std::vector<double> grid = shape.grid(o, term.axis);
+    std::vector<double> grid = shape.grid(o, term.axis);
+    if (const auto& stated = term.stated;
+        stated && &shape == &term.effect->shapes[stated->shape] && !grid.empty())
+      grid.insert(std::lower_bound(grid.begin(), grid.end(), stated->value), stated->value);
     std::vector<std::vector<double>> longer;
     for (const auto& begun : all)
       for (const double value : grid) {
@@ -92,14 +96,19 @@ std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& te
   return all;
 }
 
+std::optional<double> usual_of(const Term& term, std::size_t k) {
+  if (term.stated && term.stated->shape == k) return term.stated->value;
+  return term.effect->shapes[k].usual;
+}
+
 bool is_usual(const Term& term, const std::vector<double>& shape, std::size_t k) {
-  const auto& usual = term.effect->shapes[k].usual;
+  const auto usual = usual_of(term, k);
   return usual && shape[k] == *usual;
 }
 
 bool are_usual(const Term& term, const std::vector<double>& shape) {
   for (std::size_t k = 0; k < shape.size(); ++k)
-    if (term.effect->shapes[k].usual && !is_usual(term, shape, k)) return false;
+    if (usual_of(term, k) && !is_usual(term, shape, k)) return false;
   return true;
 }
 

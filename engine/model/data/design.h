@@ -41,8 +41,9 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
 /// that the term has already is kept. Empty if the readings cannot show the effect.
 std::vector<std::vector<double>> shapes_of(const Observations& o, const Term& term);
 
-/// Whether a shape of a term has the value that needs no evidence; whether all that have such a
-/// value have it.
+/// The value of a term's shape that needs no evidence, if it has one.
+std::optional<double> usual_of(const Term& term, std::size_t k);
+/// Whether a shape of a term has that value; whether all that have such a value have it.
 bool is_usual(const Term& term, const std::vector<double>& shape, std::size_t k);
 bool are_usual(const Term& term, const std::vector<double>& shape);
 

@@ -10,6 +10,7 @@
 #include "nonio/model/explain.h"
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/check.h"
+#include "thermal_tests.h"
 
 namespace nonio::model {
 
@@ -155,7 +156,11 @@ std::optional<Term> term_of(const Part& part, const Effect& effect, const std::s
     return Term{&effect, std::move(place), {}};
   }
   for (const Axis& axis : part.axes)
-    if (axis.name == of && concerns(part, axis)) return Term{&effect, axis, {}};
+    if (axis.name == of && concerns(part, axis)) {
+      Term term{&effect, axis, {}};
+      term.stated = stated_time_constant(part, effect, axis);
+      return term;
+    }
   return std::nullopt;
 }
 
@@ -170,7 +175,9 @@ std::vector<std::string> offered_by(const Part& part, const Effect& effect) {
 }  // namespace
 
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read) {
-  return Parts(campaign, read).made();
+  std::vector<Part> parts = Parts(campaign, read).made();
+  put_time_constants(campaign, read, parts);
+  return parts;
 }
 
 std::vector<std::string> names_of(const Part& part, const Effect& effect) {

@@ -90,7 +90,12 @@ std::vector<Foresight::Factor> factors_of(const Fit& now, const Longer& longer) 
   // Predicted readings leave nothing, so that s falls as redundancy grows; noise does not.
   const double same_s =
       std::sqrt(static_cast<double>(then->redundancy) / static_cast<double>(now.redundancy));
+  // More runs do not make a stated time constant better known, nor what depends on it.
+  std::set<std::string> stated;
+  for (const Term& term : now.terms)
+    if (has_stated(term)) stated.insert(term.name());
   for (std::size_t i = 0; i < now.parameters.size(); ++i) {
+    if (stated.contains(now.parameters[i].effect)) continue;
     const double factor = same_s * then->parameters[i].u / now.parameters[i].u;
     if (std::isfinite(factor))
       out.push_back({now.parameters[i].effect, now.parameters[i].name, factor});

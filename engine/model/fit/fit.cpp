@@ -12,6 +12,7 @@
 #include "data/whitening.h"
 #include "interpolation.h"
 #include "nonio/math/golden_section.h"
+#include "nonio/model/explain.h"
 #include "nonio/sdk/axis_readings.h"
 #include "workbench.h"
 
@@ -209,7 +210,7 @@ void refine_shapes(const Observations& o, std::vector<Term>& terms,
 bool estimated(const Observations& o, const Term& term, std::size_t k) {
   const Effect::Shape& shape = term.effect->shapes[k];
   if (!shape.continuous || is_usual(term, term.shape, k)) return false;
-  return !shape.usual || shape.grid(o, term.axis).size() > 1;
+  return !usual_of(term, k) || shape.grid(o, term.axis).size() > 1;
 }
 
 /// Derivative of a term's part by its shape k, by central differences.
@@ -217,7 +218,7 @@ Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::si
                                 const VectorXd& linear) {
   const Effect::Shape& shape = term.effect->shapes[k];
   double size = std::max(std::fabs(term.shape[k]), 1e-12);
-  if (shape.usual) {  // may lie at 0
+  if (usual_of(term, k)) {  // may lie at 0
     const std::vector<double> grid = shape.grid(o, term.axis);
     if (grid.size() > 1) size = std::max(size, grid.back() - grid.front());
   }
@@ -231,6 +232,28 @@ Expected<VectorXd> shape_column(const Observations& o, const Term& term, std::si
   if (above->cols() != linear.size() || below->cols() != linear.size())
     return fail(term.name() + ": the number of columns changes with a continuous shape");
   return VectorXd((*above - *below) * linear / (2.0 * step));
+}
+
+/// A stated shape becomes one that is searched, between its neighbours on the grid too, where the
+/// evidence pays for it as for any other (workbench.h, price).
+void free_stated(const Observations& o, std::vector<Term>& terms, const std::vector<char>& searched,
+                 const std::vector<double>& weight, const Noise& noise) {
+  const Whitening white(o, weight, Whitening::of_repeats(noise));
+  const Eigen::Map<const VectorXd> y(o.deviation.data(), static_cast<Index>(o.size()));
+  const auto n = static_cast<double>((white.root().array() > 0.0).count());
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    if (!searched[t] || !has_stated(terms[t])) continue;
+    const std::size_t k = terms[t].stated->shape;
+    const std::vector<double> grid = terms[t].effect->shapes[k].grid(o, terms[t].axis);
+    std::vector<Term> moved = terms;
+    moved[t].shape[k] *= 1.0 + 1e-9;
+    refine(o, moved, t, k, white, y);
+    const double independent = std::max(static_cast<double>(grid.size() + 1) / 3.0, 2.0);
+    const double price = std::log(n) + 2.0 * std::log(independent);
+    const double gain =
+        n * std::log(squares_with(o, terms, white, y) / squares_with(o, moved, white, y));
+    if (gain > price) terms = std::move(moved);
+  }
 }
 
 /// Shapes that were found on means of the readings: steps of Gauss and Newton on all of them.
@@ -341,12 +364,43 @@ void add_interpolation(MatrixXd& cofactor, const MatrixXd& plain, const Observat
   cofactor += of_parameters * of_parameters.transpose() / (s_of_fit * s_of_fit);
 }
 
+/// What one standard uncertainty of a shape that another measurement states makes of the unknowns.
+VectorXd by_stated(const Term& term, const VectorXd& linear, const Observations& o,
+                   const MatrixXd& plain, const MatrixXd& a, const Whitening& white) {
+  const auto column = shape_column(o, term, term.stated->shape, linear);
+  if (!column) return VectorXd::Zero(plain.rows());
+  const MatrixXd wrong = *column * term.stated->u;
+  return plain * (a.transpose() * white(wrong));
+}
+
+/// A stated shape among the parameters, and what its error makes of the unknowns.
+struct StatedShape {
+  std::size_t parameter;
+  double u;
+  VectorXd of_unknowns;
+};
+
+/// The stated shapes have the uncertainty that they came with, and go along with what their error
+/// makes of the others: too large a value of theirs is an error of the opposite sign.
+void put_stated(Fit& out, const std::vector<StatedShape>& stated, const std::vector<Index>& place) {
+  for (const StatedShape& one : stated) {
+    out.parameters[one.parameter].u = one.u;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      const double u = out.parameters[k].u;
+      if (place[k] < 0 || !(u > 0.0)) continue;
+      out.correlation[one.parameter][k] = out.correlation[k][one.parameter] =
+          -one.of_unknowns(place[k]) / u;
+    }
+  }
+}
+
 /// Covariance of the linear parameters and of the shapes that were searched, linearised: columns
 /// of the design and the derivatives by the shapes together.
 // Long: the columns of shapes, the noise and the correlation are steps on one matrix.
 void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
                      const std::vector<char>& searched, const Whitening& white) {
-  std::vector<Index> place(out.parameters.size(), -1);  // row of the cofactor matrix
+  std::vector<Index> place(out.parameters.size(), -1);         // row of the cofactor matrix
+  std::vector<std::pair<std::size_t, std::size_t>> stated_at;  // parameter, term
   Index row = design.first.front(), extra = 0;
   std::size_t at = 0;
   const Index plain = design.a.cols();
@@ -355,6 +409,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
     const Index k = design.first[t + 1] - design.first[t];
     for (Index i = 0; i < k; ++i) place[at++] = row++;
     for (std::size_t i = 0; i < term.shape.size(); ++i, ++at) {
+      if (has_stated(term) && term.stated->shape == i) stated_at.emplace_back(at, t);
       if (!searched[t] || !estimated(o, term, i)) continue;
       const auto column = shape_column(o, term, i, s.x.segment(design.first[t], k));
       if (!column || !(column->norm() > 0.0)) continue;
@@ -394,6 +449,15 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
   }
   const double s_of_u = s_for_uncertainty(out, o, s);
   add_interpolation(cofactor, plain_cofactor, o, out.terms, design, s, white, s_of_u);
+  std::vector<StatedShape> stated;
+  for (const auto& [parameter, t] : stated_at) {
+    const VectorXd linear = s.x.segment(design.first[t], design.first[t + 1] - design.first[t]);
+    stated.push_back(
+        {parameter, out.terms[t].stated->u,
+         by_stated(out.terms[t], linear, o, plain_cofactor, design.a.leftCols(columns), white)});
+    const VectorXd& made = stated.back().of_unknowns;
+    if (s_of_u > 0.0) cofactor += made * made.transpose() / (s_of_u * s_of_u);
+  }
   const std::size_t p = out.parameters.size();
   out.correlation.assign(p, std::vector<double>(p, 0.0));
   for (std::size_t i = 0; i < p; ++i) {
@@ -409,6 +473,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
             cofactor(place[i], place[k]) /
             std::sqrt(cofactor(place[i], place[i]) * cofactor(place[k], place[k]));
   }
+  put_stated(out, stated, place);
 }
 
 }  // namespace
@@ -429,6 +494,7 @@ Expected<Fit> fit(const Observations& o, std::vector<Term> terms, std::vector<do
   } else if (any) {
     if (auto found = start_shapes(o, terms, searched, weight, noise); !found)
       return fail(found.error());
+    free_stated(o, terms, searched, weight, noise);
   }
   return fit_near(o, std::move(terms), searched, std::move(weight), noise);
 }

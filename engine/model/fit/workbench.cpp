@@ -33,22 +33,31 @@ bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uin
 /// How many values its shapes are chosen from.
 void Workbench::count_shapes(Instance& instance) const {
   const auto& shapes = instance.term.effect->shapes;
-  instance.tried = instance.blocks.size(), instance.usual = 0;
+  instance.tried.assign(std::size_t{1} << shapes.size(), 0);
   instance.free.assign(shapes.size(), 0);
   for (const std::size_t b : instance.blocks) {
     const auto& shape = blocks_[b].shape;
     for (std::size_t k = 0; k < shapes.size(); ++k)
       if (shape[k] != blocks_[instance.blocks.front()].shape[k]) instance.free[k] = 1;
-    instance.usual += are_usual(instance.term, shape);
+    const std::size_t usual = usual_ones(instance.term, shape);
+    for (std::size_t of = 0; of < instance.tried.size(); ++of)
+      instance.tried[of] += (usual & of) == of;
   }
 }
 
-/// A block with the usual values of its shapes was chosen from those only: of the others evidence
-/// is asked that they are needed.
+/// Bit k: shape k has its usual value.
+std::size_t Workbench::usual_ones(const Term& term, const std::vector<double>& shape) {
+  std::size_t out = 0;
+  for (std::size_t k = 0; k < shape.size(); ++k)
+    out |= static_cast<std::size_t>(is_usual(term, shape, k)) << k;
+  return out;
+}
+
+/// A block with usual values of its shapes was chosen from those that have them: of the others
+/// evidence is asked that they are needed.
 void Workbench::fill_search(Block& block) const {
   const Instance& instance = instances_[block.effect];
-  const bool usual = are_usual(instance.term, block.shape);
-  const auto tried = static_cast<double>(usual ? instance.usual : instance.tried);
+  const auto tried = static_cast<double>(instance.tried[usual_ones(instance.term, block.shape)]);
   block.searched = 0, block.cost_of_shape = 0.0;
   if (!(tried > 1.0)) return;
   // Neighbours on a grid are alike: about a third of its values are independent.

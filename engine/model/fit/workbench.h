@@ -29,9 +29,10 @@ class Workbench {
     Term term;
     std::vector<std::size_t> blocks;  ///< none: the readings cannot show it
     std::string error;
-    bool reducible = false;            ///< may_lose
-    std::size_t tried = 0, usual = 0;  ///< values of its shapes; of these with the usual ones
-    std::vector<char> free{};          ///< of each shape: it has more than one value
+    bool reducible = false;  ///< may_lose
+    /// Values of its shapes of which those have their usual value that a bit stands for.
+    std::vector<std::size_t> tried{};
+    std::vector<char> free{};  ///< of each shape: it has more than one value
   };
   /// Blocks in the order in which they came in, with what they leave.
   struct State {
@@ -128,6 +129,7 @@ class Workbench {
   void push(Block block, const MatrixXd& columns);
   void count_shapes(Instance& instance) const;
   void fill_search(Block& block) const;
+  static std::size_t usual_ones(const Term& term, const std::vector<double>& shape);
   /// Of the columns of two blocks: from what is kept of all columns, if it is.
   MatrixXd product(std::size_t a, std::size_t b) const;
   const MatrixXd& products_of(std::size_t block) const;

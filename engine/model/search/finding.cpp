@@ -165,9 +165,10 @@ class Finder {
   bool add_without(const State& state, std::size_t effect) {
     const State rest = f_.bench->settled(f_.bench->without(state, effect));
     const auto free = [&](std::size_t b) {
-      const auto& shapes = f_.terms[f_.bench->effect_of(b)].effect->shapes;
-      return std::any_of(shapes.begin(), shapes.end(),
-                         [](const Effect::Shape& shape) { return shape.usual.has_value(); });
+      const Term& term = f_.terms[f_.bench->effect_of(b)];
+      for (std::size_t k = 0; k < term.effect->shapes.size(); ++k)
+        if (usual_of(term, k)) return true;
+      return false;
     };
     if (std::none_of(rest.blocks.begin(), rest.blocks.end(), free)) return false;
     const bool any = add_fitted(rest, terms_of_state(rest));

@@ -127,6 +127,13 @@ class Values {
           Quantity::time);
   }
 
+  /// A part of a cyclic error by the machine's own zero: given whether it is significant or not, so
+  /// that it can be followed; the amplitude says what it is worth.
+  void waves(Cause c, std::string name) {
+    const auto& v = of(fit_, c);
+    out_.push_back({std::move(name), "", "", v.value, Quantity::deviation, v.u, v.by_bin, 0.0});
+  }
+
   /// An amplitude is given where there is one: noise has an amplitude too.
   void cyclic(std::size_t k) {
     const Cause sine = k == 0 ? Cause::cyclic_u_sin : Cause::cyclic_v_sin,
@@ -138,6 +145,8 @@ class Values {
       return;
     }
     if (!separable(sine, name)) return;
+    waves(cosine, "cyclicCos_" + circle_.axis[k]);
+    waves(sine, "cyclicSin_" + circle_.axis[k]);
     const auto &a = of(fit_, sine), &b = of(fit_, cosine);
     const double c = std::hypot(a.value, b.value), u2 = (a.u * a.u + b.u * b.u) / 2.0;
     if (!(math::f_upper(c * c / 2.0 / u2, 2.0, fit_.dof) < level)) {

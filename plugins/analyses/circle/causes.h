@@ -12,7 +12,7 @@ namespace nonio::circle {
 /// One value of the decomposition, as it is named and printed.
 struct CauseValue {
   std::string name;     ///< C0Y, B_X, lateral_X, ...
-  std::string finding;  ///< of a significant one: "circle.squareness"
+  std::string finding;  ///< of a significant one: "circle.squareness"; empty: it is no cause alone
   std::string axis;     ///< whose it is; empty: of both
   double value = 0.0;   ///< SI
   Quantity quantity = Quantity::deviation;

@@ -139,7 +139,7 @@ void path_values(Work& w) {
       if (c.width() > worst.value) worst = {c.width(), std::move(path), c};
     }
     if (worst.path.empty()) continue;
-    add(w, name, worst.value, Quantity::deviation, std::numbers::sqrt2 * w.fit.s,
+    add(w, name, worst.value, Quantity::deviation, std::numbers::sqrt2 * w.fit.s_reading,
         by_bins(w, worst.path, worst.circle.outermost, worst.circle.innermost));
   }
   std::optional<math::Hysteresis> H;
@@ -151,7 +151,8 @@ void path_values(Work& w) {
   }
   if (!H) return;
   const std::vector<CircleReading> pair{{H->angle, 0.0, 1, 1}, {H->angle, 0.0, -1, 1}};
-  add(w, "H", H->H, Quantity::deviation, std::numbers::sqrt2 * w.fit.s, by_bins(w, pair, 0, 1));
+  add(w, "H", H->H, Quantity::deviation, std::numbers::sqrt2 * w.fit.s_reading,
+      by_bins(w, pair, 0, 1));
 }
 
 /// Centres, and what asks for a known length.
@@ -176,7 +177,8 @@ void circle_values(Work& w) {
   for (const bool outer : {true, false}) {
     std::vector<double> by =
         by_bins(w, w.circle.readings, outer ? F.outermost : F.innermost, std::nullopt);
-    add(w, outer ? "F_max" : "F_min", outer ? F.outer : F.inner, Quantity::deviation, w.fit.s, by);
+    add(w, outer ? "F_max" : "F_min", outer ? F.outer : F.inner, Quantity::deviation,
+        w.fit.s_reading, by);
   }
 }
 
@@ -216,7 +218,7 @@ void causes(Work& w, const circle::Wish& wish) {
     add(w, v.name, v.value, v.quantity, v.u, v.by_bin);
     const Value& last = w.out.values.back();
     const double U = last.U.value_or(last.repeatability.value_or(2.0 * v.u));
-    if (!(std::fabs(v.value) > U) || !(total > 0.0)) continue;
+    if (v.finding.empty() || !(std::fabs(v.value) > U) || !(total > 0.0)) continue;
     const double share = v.alone / total;
     Finding f{
         .id = v.finding,

@@ -10,29 +10,6 @@ namespace nonio::thermal {
 
 namespace {
 
-/// By time, each time once: of readings at one time the first row stands for where the spindle was.
-struct Ordered {
-  std::vector<std::size_t> rows;
-  math::Track track;
-};
-
-Ordered ordered(const Observations& o, std::vector<std::size_t> rows) {
-  std::stable_sort(rows.begin(), rows.end(),
-                   [&](std::size_t a, std::size_t b) { return o.time[a] < o.time[b]; });
-  Ordered out;
-  double n = 0.0;
-  for (const std::size_t i : rows) {
-    if (out.rows.empty() || o.time[i] > out.track.time.back()) {
-      out.rows.push_back(i);
-      out.track.time.push_back(o.time[i]), out.track.d.push_back(0.0);
-      n = 0.0;
-    }
-    n += 1.0;
-    out.track.d.back() += (o.deviation[i] - out.track.d.back()) / n;
-  }
-  return out;
-}
-
 /// Rows of the file at which a spindle starts and stops; the speed of a row holds until the next.
 struct Run {
   std::size_t start = 0, stop = 0;
@@ -119,27 +96,13 @@ void add_tilts(const Measurement& m, const std::map<std::string, math::Track>& t
   }
 }
 
-void exercised(const Observations& o, Tracks& out) {
-  if (o.size() == 0) return;
-  std::map<std::pair<double, int>, std::vector<std::size_t>> visits;
-  const auto& axis = o.axes.front();
-  const double start = *std::min_element(o.time.begin(), o.time.end());
-  for (std::size_t i = 0; i < o.size(); ++i)
-    visits[{axis.position[i], axis.approach.empty() ? 1 : axis.approach[i]}].push_back(i);
-  for (auto& [place, rows] : visits) {
-    math::Visits v{place.first, place.second, ordered(o, std::move(rows)).track};
-    for (double& t : v.track.time) t -= start;
-    if (v.track.size() > 1) out.visits.push_back(std::move(v));
-  }
-}
-
 }  // namespace
 
 Tracks tracks_of(const Measurement& m, const Observations& o) {
   Tracks out;
   if (!m.axis.empty()) {
     out.test = Test::axis;
-    exercised(o, out);
+    out.visits = math::visits_of(o);
     return out;
   }
   const bool spindle = !o.axes.empty() && o.axes.front().approach.size() == o.size() &&
@@ -152,7 +115,7 @@ Tracks tracks_of(const Measurement& m, const Observations& o) {
   std::map<std::string, std::optional<Run>> runs;
   for (std::size_t line = 0; line < o.lines.size(); ++line) {
     if (rows[line].size() < 2) continue;
-    auto [kept, track] = ordered(o, std::move(rows[line]));
+    auto [kept, track] = math::in_time(o, std::move(rows[line]));
     if (track.size() < 2) continue;
     std::optional<Run> run;
     if (spindle) run = run_of(o, kept, out);

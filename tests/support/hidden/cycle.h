@@ -34,6 +34,13 @@ struct Cause {
 Cause simulate(Source source, const Cycle& cycle, const Scenario& scenario, Random random,
                double amplitude);
 
+/// The screw of a campaign: its time constant, s, and what its other properties are drawn from.
+struct Screw {
+  double tau;
+  Random random;
+};
+Screw screw_of(const Scenario& scenario);
+
 /// The same with the asked RMS, by repeated proportion: exact geometry is not quite linear.
 Cause simulate_sized(Source source, const Cycle& cycle, const Scenario& scenario,
                      const Random& random, double rms);

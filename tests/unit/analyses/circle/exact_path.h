@@ -24,6 +24,7 @@ struct Mill {
   struct Axis {
     double scale = 0.0, lag = 2e-3, play = 0.0, lateral = 0.0, stick = 0.0, wave = 0.0, phase = 0.0,
            sagitta = 0.0, zero = 0.0;
+    double stick_deg = 0.35;  // of travel over which it lets go
   };
   std::array<Axis, 2> axis;
   std::array<double, 2> centre{0.4, 0.25};
@@ -34,7 +35,7 @@ struct Noise {
 };
 
 /// A machine with everything, of the sizes of workshops.
-inline Mill any_mill(std::mt19937_64& random) {
+inline Mill any_mill(std::mt19937_64& random, double stick_deg = 0.35) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   Mill m;
   m.squareness = 40e-6 * u(random);
@@ -43,7 +44,7 @@ inline Mill any_mill(std::mt19937_64& random) {
     a.play = 4e-6 * u(random), a.lateral = 2e-6 * u(random);
     a.stick = 3e-6 * std::fabs(u(random)), a.sagitta = 2e-6 * u(random);
     a.wave = 1.5e-6 * (0.6 + 0.4 * u(random)), a.phase = pi * u(random);
-    a.zero = 20e-6 * u(random);
+    a.zero = 20e-6 * u(random), a.stick_deg = stick_deg;
   }
   return m;
 }
@@ -60,7 +61,7 @@ inline std::pair<double, double> place(const Mill& m, std::size_t k, double t, i
   const double outside = std::cos(behind - d * way - turned) > 0.0 ? 1.0 : -1.0;
   const double taken = std::min(1.0, way / (1.5 * deg));
   x += a.scale * x + outside * a.play * (taken - 0.5) +
-       outside * a.stick * std::exp(-way / (0.35 * deg)) +
+       outside * a.stick * std::exp(-way / (a.stick_deg * deg)) +
        a.wave * std::sin(2.0 * pi * (x + m.centre[k]) / m.pitch + a.phase);
   return {x, outside * (1.0 - 2.0 * taken)};
 }
@@ -131,11 +132,12 @@ struct Coverage {
 };
 
 /// Of so many circles, by cause; the amplitude of the wave of X last.
-inline std::vector<Coverage> coverage(int circles, const Noise& noise, std::uint64_t seed) {
+inline std::vector<Coverage> coverage(int circles, const Noise& noise, std::uint64_t seed,
+                                      double stick_deg = 0.35) {
   std::mt19937_64 random(seed);
   std::vector<Coverage> out(truth({}).size() + 1);
   for (int i = 0; i < circles; ++i) {
-    const Mill m = any_mill(random);
+    const Mill m = any_mill(random, stick_deg);
     const auto fit = nonio::math::fit_causes(circle(m, noise, random), model(m));
     if (!fit) return {};
     const auto count = [&](std::size_t k, double found, double u, double wanted) {
@@ -156,13 +158,63 @@ inline std::vector<Coverage> coverage(int circles, const Noise& noise, std::uint
   return out;
 }
 
+/// Largest values of a path: what it would have without noise is the truth, and what noise adds to a
+/// largest value is an error of it. `names` in the order of the result.
+constexpr const char* largest_names[] = {"spike", "spike above 6 u", "G_ccw", "G_b", "H"};
+inline std::vector<Coverage> largest_coverage(int circles, const Noise& noise, std::uint64_t seed,
+                                              double stick_deg = 0.35) {
+  using nonio::math::Spike;
+  std::mt19937_64 random(seed);
+  std::vector<Coverage> out(std::size(largest_names));
+  const auto worst = [](const std::vector<Spike>& all, bool of_v) {
+    Spike w;
+    for (const Spike& s : all)
+      if (s.of_v == of_v && std::fabs(s.height) > std::fabs(w.height)) w = s;
+    return w;
+  };
+  const auto one_way = [](std::vector<nonio::math::CircleReading> path) {
+    std::erase_if(path, [](const auto& r) { return r.direction < 0; });
+    return path;
+  };
+  for (int i = 0; i < circles; ++i) {
+    const Mill m = any_mill(random, stick_deg);
+    const auto still = circle(m, {}, random), read = circle(m, noise, random);
+    const auto wanted = nonio::math::fit_causes(still, model(m)),
+               fit = nonio::math::fit_causes(read, model(m));
+    if (!wanted || !fit) return {};
+    const auto count = [&](std::size_t k, double off, double u) {
+      out[k] += {std::fabs(off) <= 2.0 * u ? 1 : 0, 1, off * off / (u * u)};
+    };
+    const auto true_spikes = nonio::math::reversal_spikes(still, model(m), *wanted),
+               spikes = nonio::math::reversal_spikes(read, model(m), *fit);
+    for (const bool of_v : {false, true}) {
+      const Spike found = worst(spikes, of_v), truth = worst(true_spikes, of_v);
+      const double off = std::fabs(found.height) - std::fabs(truth.height);
+      count(0, off, found.u);
+      if (std::fabs(truth.height) > 6.0 * found.u) count(1, off, found.u);
+    }
+    const double u = std::sqrt(2.0) * fit->s_reading;
+    const auto zone = [&](const auto& path) { return nonio::math::minimum_zone(path, m.R); };
+    count(2, zone(one_way(read)).width() - zone(one_way(still)).width(), u);
+    const auto both = zone(read), true_both = zone(still);
+    count(3, both.width() - true_both.width(), u);
+    const auto h = nonio::math::circular_hysteresis(read, m.R, both.centre, 1.0 * deg),
+               true_h = nonio::math::circular_hysteresis(still, m.R, true_both.centre, 1.0 * deg);
+    if (h && true_h) count(4, h->H - true_h->H, u);
+  }
+  return out;
+}
+
 /// The scenarios that the documents state.
 struct Scenario {
   const char* name;
   Noise noise;
+  double stick_deg = 0.35;
 };
 constexpr Scenario scenarios[] = {{"white", {0.2e-6, 0.0, 0.0}},
                                   {"correlated over 5 deg", {0.05e-6, 0.3e-6, 0.9}},
                                   {"both", {0.15e-6, 0.15e-6, 0.9}}};
+/// Beyond what is left out of the fit on both sides of a reversal (2 deg).
+constexpr Scenario wide_spikes = {"white, spikes of 2 deg", {0.2e-6, 0.0, 0.0}, 2.0};
 
 }  // namespace exact

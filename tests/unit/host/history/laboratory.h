@@ -34,6 +34,7 @@ struct Made {
   std::string certificate{};
   std::string status = "ok";
   std::string A = "7.5", decision = "conforms";
+  std::string analyses{}, followed{};  ///< JSON, put behind those that all have
   bool manifest_read = false;  ///< of a campaign that failed: its machine and date are known
   std::string json() const {
     const auto number = [](double x) { return std::to_string(x); };
@@ -59,7 +60,9 @@ struct Made {
            "\"}}, \"budget\": "
            "{\"results\": {\"A\": {\"u\": {\"device\": 0.3, \"expansion\": 0.4, \"drift\": "
            "0.5}}}}, \"findings\": [{\"id\": \"reversal.constant\", \"severity\": "
-           "\"attention\"}]}],\n \"followed\": [{\"measurement\": \"X\", \"axis\": \"X\", "
+           "\"attention\"}]}" +
+           analyses +
+           "],\n \"followed\": [{\"measurement\": \"X\", \"axis\": \"X\", "
            "\"quantity\": \"scale\", \"unit\": \"um/m\", \"value\": " +
            number(scale) +
            ", \"u\": 0.1, \"state\": \"as-found\", \"common\": [{\"source\": \"instrument O L-1 "
@@ -67,8 +70,8 @@ struct Made {
            "\"conditions\": {\"from\": 0.0, \"to\": 800.0}, \"not_stated\": [\"a.b\", \"c.d\"]}, "
            "{\"measurement\": \"X\", \"axis\": \"X\", \"quantity\": \"B_mean\", \"unit\": \"um\", "
            "\"value\": " +
-           number(b_mean) +
-           ", \"u\": 0.2, \"state\": \"as-found\"}],\n \"followed_covariance\": [{\"first\": 0, "
+           number(b_mean) + ", \"u\": 0.2, \"state\": \"as-found\"}" + followed +
+           "],\n \"followed_covariance\": [{\"first\": 0, "
            "\"count\": 2, \"upper\": [0.01, -0.001, 0.04]}]" +
            (certificate.empty() ? ""
                                 : ",\n \"certificate\": {\"plugin\": \"certificate\", \"number\": "

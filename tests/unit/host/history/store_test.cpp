@@ -9,6 +9,7 @@
 #include <csignal>
 
 #include "host/history/query.h"
+#include "host/history/reader.h"
 #include "laboratory.h"
 
 namespace nonio::test::store_test {
@@ -366,6 +367,41 @@ TEST(HistoryStore, AFailureThatStaysIsKeptBehindOneThatMayPass) {
   ASSERT_TRUE(history::update(out.root(), false, {"a"}, {}, nothing));
   EXPECT_EQ(ask(out.root(), "SELECT night, status, supersedes FROM evaluation ORDER BY evaluation"),
             "1|ok|;2|failed|1;5|ok|2;");
+}
+
+// Largest values of a path (ISO 230-4) are shown and held against limits, never followed; of a cyclic
+// error its two linear parts are followed, not the amplitude.
+TEST(HistoryStore, OfCirclesLargestValuesAreShownAndLinearOnesFollowed) {
+  std::string values, followed;
+  for (const char* name : {"G_ccw", "G_cw", "G_b", "H", "D", "F_max", "F_min", "spike_X",
+                           "cyclic_X", "cyclicCos_X", "B_X", "s"})
+    values += std::string(values.empty() ? "" : ", ") + "\"" + name +
+              R"(": {"value": 7.5, "unit": "um", "U": 1.0, "k": 2.0})";
+  for (const auto& [axis, name] :
+       {std::pair("XY", "scale_mismatch:XY"), {"X", "cyclic_circle_cos"}})
+    followed += std::string(R"(, {"measurement": "C1", "axis": ")") + axis + R"(", "quantity": ")" +
+                name + R"(", "unit": "um", "value": 0.5, "u": 0.1, "state": "as-found"})";
+  Output out("circles");
+  ASSERT_TRUE(
+      out.store({.id = "a",
+                 .analyses = R"(, {"plugin": "circle", "version": "1", "measurement": "C1",)"
+                             R"( "values": {)" +
+                             values + R"(}, "findings": []})",
+                 .followed = followed},
+                1, "r1"));
+  ASSERT_TRUE(history::update(out.root(), false, {"a"}, {}, nothing));
+  auto reader = history::StoreReader::open(out.root());
+  ASSERT_TRUE(reader) << reader.error().message;
+  const auto machine = reader->machine("S-1");
+  ASSERT_TRUE(machine) << machine.error().message;
+  std::string shown, lines;
+  for (const history::StoredResult& r : machine->results)
+    if (r.measurement == "C1") {
+      (r.followed ? lines : shown) += r.axis + " " + r.quantity + ";";
+      EXPECT_EQ(r.expanded.has_value(), !r.followed) << r.quantity;
+    }
+  EXPECT_EQ(lines, "XY scale_mismatch:XY;X cyclic_circle_cos;");
+  EXPECT_EQ(shown, "XY G_ccw;XY G_cw;XY G_b;XY H;XY D;XY F_max;XY F_min;");
 }
 
 TEST(HistoryQuery, JoinsAliasesAndOrdersByDay) {

@@ -52,6 +52,27 @@ TEST(MorningSeries, OtherPlacesAndModelsAreOthers) {
   EXPECT_EQ(std::count_if(series.begin(), series.end(), [](const auto& s) { return s.ended; }), 0);
 }
 
+TEST(MorningSeries, LargestValuesOfCirclesHaveNoLineAndTheWorstOfADayCounts) {
+  MadeMachine m("S-1");
+  for (const char* of_path : {"G_ccw", "G_cw", "G_b", "H", "D", "F_max", "F_min"})
+    m.judge("XY", of_path, eight, "circle");
+  m.follow("X", "cyclic_circle_cos", eight, 0.1, R"({"radius":150.0,"period":10.0})");
+  m.stored().results.back().conditions = R"({"radius":150.0,"period":5.0})";
+  const auto series = m.series();
+  ASSERT_EQ(series.size(), 2U);  // another pitch begins another
+  for (const auto& s : series) EXPECT_EQ(s.quantity, "cyclic_circle_cos");
+  auto again = m.stored().results.front();  // G_ccw of the first campaign, measured twice
+  again.value = 20.0, again.decision = "does not conform";
+  m.stored().results.push_back(again);
+  const auto shown = morning::shown_series(m.stored());
+  ASSERT_EQ(shown.size(), 7U);
+  for (const auto& s : shown) {
+    EXPECT_EQ(s.judged.size(), 8U) << s.quantity;
+    EXPECT_EQ(m.stored().results[s.judged.front()].value,
+              s.quantity == "G_ccw" ? 20.0 : eight.front());
+  }
+}
+
 TEST(MorningSeries, CirclesStandBesideDiagonalsAndAreComparedWithTheirLike) {
   MadeMachine m("S-1");
   m.follow("XY", "squareness:XY", {1, 1, 1}, 0.1, "{}");

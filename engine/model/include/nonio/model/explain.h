@@ -16,6 +16,21 @@
 /// sentences made from it by templates/words.
 namespace nonio::model {
 
+/// Time constant with which a linear axis grows while it is exercised: of the thermal tests of the
+/// campaign. Of first-order heating it is all that such a test and runs of the axis share: not the
+/// amplitude and not the state of warmth (docs/model.md).
+struct TimeConstant {
+  enum class State {
+    known,
+    none,          ///< no test gives one
+    contradictory  ///< two tests give different ones
+  };
+  std::string axis;
+  std::vector<std::string> measurements;  ///< that give it; of `none` all
+  State state = State::none;
+  double tau = 0.0, u = 0.0;  ///< s
+};
+
 /// Measurements that are explained together: they sense the same axes in the same unit.
 struct Part {
   enum class Kind {
@@ -35,7 +50,14 @@ struct Part {
   /// Measurements of an axis whose file cannot be in the order in which it was measured: the cycle
   /// of ISO 230-2 is assumed.
   std::vector<std::string> order_assumed{};
+  std::vector<TimeConstant> time_constants{};  ///< of its axes
 };
+
+/// Which shape of an effect is the time constant of a growth: continuous, named "tau", a time, beside
+/// one growth per length.
+std::optional<std::size_t> time_constant_shape(const Effect& effect);
+/// Whether a term has the value that another measurement states.
+bool has_stated(const Term& term);
 
 /// A reading that was taken where the manifest does not say where the other axes stood.
 inline bool stood_somewhere(const Part& part) {

@@ -17,6 +17,13 @@ struct Term {
   const Effect* effect = nullptr;
   Axis axis;
   std::vector<double> shape{};  ///< empty: searched, if the effect has shapes
+  /// A shape that another measurement states, of standard uncertainty u: taken where these readings
+  /// say nothing against it, and then no unknown of the fit; no evidence is asked for it.
+  struct Stated {
+    std::size_t shape = 0;
+    double value = 0.0, u = 0.0;
+  };
+  std::optional<Stated> stated{};
 
   std::string name() const { return effect->info.name + ":" + axis.name; }
 };

@@ -159,6 +159,12 @@ struct Hidden {
 
 Hidden generate(const Scenario& scenario);
 
+/// A thermal test of the axis: its screw, exercised from cold for five time constants and read at
+/// both ends and in the middle, with another size, another point that stays where it is, another
+/// set-up and zero than the campaign's runs. `times`: the screw has so many times the time constant
+/// of the runs' (a test that does not belong to them). Of a linear axis.
+Observations thermal_test(const Scenario& scenario, double times);
+
 /// campaign.toml and readings into `folder`, the truth into the file `truth` (JSON).
 Expected<void> write(const Hidden& hidden, const std::filesystem::path& folder,
                      const std::filesystem::path& truth);

@@ -114,6 +114,7 @@ struct CauseFit {
   };
   std::vector<Bin> bins;
   double s = 0.0;            ///< standard deviation of a bin's residual
+  double s_reading = 0.0;    ///< of a single reading's: a bin is the mean of several
   double correlation = 0.0;  ///< of neighbouring bins (1 deg apart)
   double dof = 0.0;          ///< effective, the least of all causes
   double covariance(Cause a, Cause b) const;

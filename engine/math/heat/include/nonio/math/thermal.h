@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "nonio/sdk/observations.h"
+
 /// Thermal tests: displacement d against time t, d = 0 at the start.
 ///
 ///     range in a window     max d - min d over the readings with t in [a, a + w], ends included; the
@@ -93,6 +95,18 @@ struct Visits {
   int direction = 1;
   Track track;
 };
+
+/// Rows of a table by time, each time once: of readings at one time the first row stands for where
+/// the machine was, and the mean of their deviations counts. Every row has a time.
+struct InTime {
+  std::vector<std::size_t> rows;
+  Track track;
+};
+InTime in_time(const Observations&, std::vector<std::size_t> rows);
+
+/// What the readings of an exercised axis say of each target from each side, ascending; times from
+/// the first reading on. Places that were read once only are left out.
+std::vector<Visits> visits_of(const Observations&);
 
 /// Slope of the change since the first cycle over the targets, against time: each cycle a reading, at
 /// the mean of its times. With two targets: difference of the changes over their distance.
