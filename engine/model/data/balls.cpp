@@ -50,7 +50,6 @@ std::map<double, math::BallCentre> mean_centres(const Observations& o,
 
 std::optional<Part> balls_of(const Observations& read, const Axis& axis, const std::string& id) {
   if (read.axes.size() < 4 || read.size() % 3 != 0) return std::nullopt;
-  if (!math::other_turning_axis(read).empty()) return std::nullopt;  // no circle
   const std::vector<Ball> balls = gathered(read);
   const auto places = mean_centres(read, balls);
   std::vector<math::BallCentre> centres;

@@ -7,6 +7,7 @@
 #include "balls.h"
 #include "design.h"
 #include "lines.h"
+#include "nonio/math/rotary.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/check.h"
@@ -87,7 +88,7 @@ class Parts {
 
   void add_balls(std::size_t m) {
     const Axis* axis = campaign_.machine.axis(measurement(m).axis);
-    if (axis == nullptr) return;
+    if (axis == nullptr || !math::other_turning_axis(read_[m]).empty()) return;  // no circle
     if (auto part = balls_of(read_[m], *axis, measurement(m).id))
       parts_.push_back(std::move(*part));
   }

@@ -61,6 +61,12 @@ TiltingTable tilting_table(const std::vector<Line>& lines) {
   return t;
 }
 
+/// A chain says how it goes: here the tilting axis has to carry C, and both the workpiece.
+bool of_another_chain(const TiltingTable& t) {
+  const std::string wanted = t.tilt->axis + ", C";
+  return (t.c->of_chain && t.c->tables != wanted) || (t.tilt->of_chain && t.tilt->tables != wanted);
+}
+
 /// Where the lines pass each other: C at the height of the tilting axis, that one beside C.
 void meet(TiltingTable& t) {
   t.c_point = point_at(*t.c, 2, t.tilt->centre[2].value);
@@ -269,12 +275,10 @@ void write_controllers(const std::vector<Line>& lines, const std::string& campai
   if (t.c == nullptr) return;
   const std::vector<std::pair<std::string, std::string>> names = {{"one", t.c->measurement},
                                                                   {"other", t.tilt->measurement}};
-  // A chain says how it goes: here the tilting axis carries C, and both the workpiece.
-  for (const Line* line : {t.c, t.tilt})
-    if (line->of_chain && line->tables != t.tilt->axis + ", C") {
-      result.findings.push_back({.id = "vectors.other-chain", .attention = true, .texts = names});
-      return;
-    }
+  if (of_another_chain(t)) {
+    result.findings.push_back({.id = "vectors.other-chain", .attention = true, .texts = names});
+    return;
+  }
   if (!compared(*t.c, *t.tilt)) {
     result.findings.push_back({.id = "vectors.no-reference", .texts = names});
     return;
@@ -316,15 +320,13 @@ void write_controllers(const std::vector<Line>& lines, const std::string& campai
   });
   if (std::string log = log_of(campaign, wish, written); !log.empty())
     result.artifacts.push_back({"rotary-vectors-changes.txt", std::move(log)});
-  const bool chain = t.c->of_chain;
+  const std::string chain = t.c->of_chain ? "-chain" : "";
   if (right_handed)
     result.notes.push_back(
-        {.id = chain ? "vectors.linuxcnc-inferred-chain" : "vectors.linuxcnc-inferred",
-         .texts = {{"axis", t.tilt->axis}}});
+        {.id = "vectors.linuxcnc-inferred" + chain, .texts = {{"axis", t.tilt->axis}}});
   if (right_handed && contains(wish.sign_shown, "heidenhain"))
     result.notes.push_back({.id = "vectors.heidenhain-inferred"});
-  result.notes.push_back(
-      {.id = chain ? "vectors.controls-inferred-chain" : "vectors.controls-inferred"});
+  result.notes.push_back({.id = "vectors.controls-inferred" + chain});
 }
 
 }  // namespace nonio::vectors

@@ -108,6 +108,13 @@ std::vector<math::BallCentre> noisy(const Table& t, const std::vector<double>& a
   return noise.on(t.at(angles), sigma);
 }
 
+/// Where another axis turned too, the centres are of no circle; where it stood, they are.
+void other_axis(Workshop& shop, double turned) {
+  Observations& o = shop.all.front();
+  o.axes.push_back({"B", true, std::vector<double>(o.size(), 0.5), {}});
+  o.axes.back().position.back() += turned;
+}
+
 /// Refused means: this finding, for attention, and no value.
 void expect_refused(const Evaluation& e, std::string_view id) {
   const Finding* f = found(e, id);
@@ -499,6 +506,17 @@ TEST(RotaryJudge, AxesAreComparedOnlyWithOneReference) {
   EXPECT_NEAR(value(e, "angle_C")->value, 90 * deg, *value(e, "angle_C")->repeatability * 2);
   EXPECT_EQ(e.uses, std::vector<std::string>{"C"});
   EXPECT_EQ(found(e, "rotary.reference-unknown"), nullptr);
+}
+
+TEST(Rotary, AMeasurementOfTwoAxesIsNoCircle) {
+  for (const bool turned : {false, true}) {
+    Workshop shop;
+    shop.measured("C", noisy(Table{}, full_turn(8), 1 * um));
+    other_axis(shop, turned ? 0.1 : 0.0);
+    const Evaluation e = shop.last();
+    EXPECT_EQ(found(e, "rotary.other-axis-turned") != nullptr, turned) << ids(e);
+    EXPECT_EQ(e.values.empty(), turned);
+  }
 }
 
 }  // namespace

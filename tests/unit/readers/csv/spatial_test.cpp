@@ -28,10 +28,10 @@ Measurement measurement(const std::string& kind) {
 
 Expected<Observations> read_text(const std::string& text, const Measurement& m) {
   Campaign campaign;
-  for (const char* name : {"X", "Y", "C"}) {
+  for (const char* name : {"X", "Y", "B", "C"}) {
     Axis axis;
     axis.name = name;
-    axis.rotary = axis.name == "C";
+    axis.rotary = axis.name == "C" || axis.name == "B";
     campaign.machine.axes.push_back(axis);
   }
   const Settings options;
@@ -203,6 +203,18 @@ TEST(BallCentres, EachCentreIsThreeReadings) {
   EXPECT_FALSE(read_text("angle_deg,x_mm,y_mm,z_mm\n0,1,2,3\n", m));
   EXPECT_FALSE(read_text("angle_deg,x_mm,y_mm,z_mm\n,1,2,3\n", "ball-centres"));
   EXPECT_FALSE(read_text("angle_deg;x_mm;y_mm;z_mm\n0;1,5;2.5;3\n", "ball-centres"));
+}
+
+/// Beside the axis of the measurement; the others keep their places.
+TEST(BallCentres, MayHaveTheAngleOfAnotherAxis) {
+  const auto obs =
+      read_text("angle_deg,B_deg,x_mm,y_mm,z_mm\n0,-60,1,2,3\n90,30,4,5,6\n", "ball-centres");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->axes.size(), 5U);
+  EXPECT_TRUE(obs->axes[3].axis == "Z" && obs->axes[4].axis == "B" && obs->axes[4].rotary);
+  EXPECT_DOUBLE_EQ(obs->axes[4].position[2], -std::numbers::pi / 3);
+  EXPECT_FALSE(read_text("angle_deg,B_deg,x_mm,y_mm,z_mm\n0,,1,2,3\n", "ball-centres"));
+  EXPECT_FALSE(read_text("angle_deg,A_deg,x_mm,y_mm,z_mm\n0,1,1,2,3\n", "ball-centres"));
 }
 
 /// Places that go round left-handed: a gauge that turns points with them.
