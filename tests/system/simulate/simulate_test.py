@@ -256,6 +256,12 @@ class Circles(unittest.TestCase):
             u = (f["u"] ** 2 + sum(c["u"] ** 2 for c in f["common"])) ** 0.5
             self.assertAlmostEqual(u * v["k"] / v["U"], 1.0, places=3, msg=name)
             self.assertEqual(f["conditions"], {"radius": 150.0, "feed": 1000.0, "at": "X=400.000000 Y=250.000000 Z=120.000000"})
+        # A wave of 1 um along X, none along Y: as cosine and sine, which are linear in the readings.
+        wave = {axis: sum(followed.pop((axis, f"cyclic_circle_{part}"))["value"] ** 2 for part in ("cos", "sin")) ** 0.5
+                for axis in "XY"}
+        self.assertAlmostEqual(wave["X"], values["cyclic_X"]["value"], places=3)
+        self.assertNotIn("cyclic_Y", values)
+        self.assertLess(wave["Y"], values["cyclic_X"]["U"])
         self.assertEqual(set(followed), {("Y", "lateral"), ("Y", "bow:EXY")})
 
     def test_one_direction_and_the_lines_of_the_file(self):
