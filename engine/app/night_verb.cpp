@@ -254,9 +254,10 @@ Verb unlock_part(Common& common) {
 }  // namespace
 
 Verb night_verb(Common& common) {
-  return {.name = "night",
-          .summary = "A night in parts, on one host or many: plan, shards (`run --shard`), merge",
-          .verbs = {plan_part(common), merge_part(common), cancel_part(common), unlock_part(common)}};
+  return {
+      .name = "night",
+      .summary = "A night in parts, on one host or many: plan, shards (`run --shard`), merge",
+      .verbs = {plan_part(common), merge_part(common), cancel_part(common), unlock_part(common)}};
 }
 
 }  // namespace nonio::app

@@ -46,7 +46,8 @@ std::string trouble(const NightStatus& s, const StatusWish& wish) {
 
 std::string line_of(const NightStatus& s, const std::string& wrong) {
   std::string line;
-  if (s.state == NightStatus::State::running) line = night_text(s.night) + " is running (" + s.used_by + "); ";
+  if (s.state == NightStatus::State::running)
+    line = night_text(s.night) + " is running (" + s.used_by + "); ";
   if (s.state == NightStatus::State::planned)
     line = night_text(s.night) + " is planned, " + std::to_string(s.reported) + " of " +
            std::to_string(s.shards) + " shards have reported; ";

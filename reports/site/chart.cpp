@@ -385,8 +385,7 @@ std::string comparison_chart(const Page& page, const ModelComparison& comparison
   const std::size_t each = (comparison.machines.size() + 9) / 10;  // names that have room
   for (std::size_t i = 0; i < comparison.machines.size(); ++i) {
     const auto& m = comparison.machines[i];
-    if (i % each == 0)
-      f.x.ticks.push_back(static_cast<double>(i)), f.x.labels.push_back(m.machine);
+    if (i % each == 0) f.x.ticks.push_back(static_cast<double>(i)), f.x.labels.push_back(m.machine);
     const double x = f.at_x(static_cast<double>(i));
     const auto at = [&](double v) { return f.at_y(scaled(v, comparison.unit)); };
     points += line_of(x, at(m.value - 2 * m.u), x, at(m.value + 2 * m.u), "bar") +

@@ -62,13 +62,14 @@ std::string text_of(const User& user) {
 /// A file that says nothing that can be understood names nobody, and is believed all the same.
 User user_in(const std::string& text) {
   const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) return {};
   const auto word = [&](const char* key) {
-    const auto it = json.is_object() ? json.find(key) : json.end();
-    return json.is_object() && it != json.end() && it->is_string() ? it->get<std::string>() : "";
+    const auto it = json.find(key);
+    return it != json.end() && it->is_string() ? it->get<std::string>() : "";
   };
-  User user{word("host"), word("machine"), word("boot"), word("job"), 0};
-  if (json.is_object() && json.contains("pid") && json["pid"].is_number_integer())
-    user.pid = json["pid"].get<long>();
+  User user{word("host"), word("machine"), word("boot"), word("job")};
+  if (const auto pid = json.find("pid"); pid != json.end() && pid->is_number_integer())
+    user.pid = pid->get<long>();
   return user;
 }
 
@@ -117,9 +118,8 @@ Expected<Made> make_user(const fs::path& path, const User& user, const std::stri
   std::string own = temporary(path, user) + "XXXXXX";
   const int fd = ::mkostemp(own.data(), O_CLOEXEC);
   if (fd < 0) return fail("cannot write " + own + ": " + std::strerror(errno));
-  const bool written =
-      ::write(fd, says.data(), says.size()) == static_cast<ssize_t>(says.size()) &&
-      ::fchmod(fd, 0644) == 0 && ::fsync(fd) == 0;
+  const bool written = ::write(fd, says.data(), says.size()) == static_cast<ssize_t>(says.size()) &&
+                       ::fchmod(fd, 0644) == 0 && ::fsync(fd) == 0;
   const int trouble = written ? 0 : errno;
   ::close(fd);
   if (!written) {
@@ -169,15 +169,20 @@ int open_lock(const fs::path& out, int how) {
   return ::open((out / state_folder / "lock").c_str(), how | O_CLOEXEC, 0644);
 }
 
+/// Whether a process has the lock that excludes others, as far as the file system tells.
+bool is_held(const fs::path& out) {
+  const int fd = open_lock(out, O_RDONLY);
+  const bool held = fd >= 0 && ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (fd >= 0) ::close(fd);
+  return held;
+}
+
 }  // namespace
 
 std::string user_of(const fs::path& out) {
   const auto text = read_user(out / state_folder / user_name);
   const std::string named = text && *text ? words_for(user_in(**text)) : "";
-  const int fd = open_lock(out, O_RDONLY);
-  const bool held = fd >= 0 && ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  if (fd >= 0) ::close(fd);
-  if (held) return named.empty() ? "a process" : named;
+  if (is_held(out)) return named.empty() ? "a process" : named;
   return named.empty() || is_gone(user_in(**text), own_user()) ? "" : named;
 }
 
@@ -193,10 +198,7 @@ Expected<std::string> unlock(const fs::path& out, const std::optional<std::strin
   if (alive && is_line_of(*alive, user.job))
     return fail(words_for(user) + " is using the output folder " + out.string() +
                 ", and its job is alive; expected its end");
-  const int fd = open_lock(out, O_RDONLY);
-  const bool held = fd >= 0 && ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  if (fd >= 0) ::close(fd);
-  if (held)
+  if (is_held(out))
     return fail(words_for(user) + " holds the lock of the output folder " + out.string() +
                 ", so it is not gone; expected its end");
   if (::unlink(path.c_str()) != 0 && errno != ENOENT)

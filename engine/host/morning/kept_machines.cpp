@@ -121,8 +121,8 @@ void fields(Io& io, T& v) {
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, Standing>
 void fields(Io& io, T& s) {
-  io(s.shown, s.compared, s.lines, s.months, s.instruments, s.has_results, s.judged, s.conforms, s.attention,
-     s.reversal, s.interval, s.until);
+  io(s.shown, s.compared, s.lines, s.months, s.instruments, s.has_results, s.judged, s.conforms,
+     s.attention, s.reversal, s.interval, s.until);
 }
 
 template <class Io, class T>

@@ -128,9 +128,8 @@ std::vector<ComparedValue> compared_of(const AssessedMachine& m,
     ComparedValue value{s.axis, s.quantity, q, si(r.value, q), si(r.u_repeat.value_or(0.0), q)};
     storage::Json json = storage::Json::parse(r.conditions, nullptr, false);
     if (json.is_object()) {
-      value.rotary = std::any_of(described.curves.begin(), described.curves.end(), [&](const auto& c) {
-        return c.axis == s.axis && c.rotary;
-      });
+      value.rotary = std::any_of(described.curves.begin(), described.curves.end(),
+                                 [&](const auto& c) { return c.axis == s.axis && c.rotary; });
       if (const auto from = json.find("from"), to = json.find("to");
           from != json.end() && to != json.end() && from->is_number() && to->is_number())
         value.travel = si(to->get<double>() - from->get<double>(),
@@ -159,8 +158,7 @@ reports::ModelComparison comparison(const std::string& model,
   const ComparedValue& first = *machines.front().of;
   reports::ModelComparison c;
   c.model = model, c.axis = first.axis, c.quantity = first.quantity, c.unit = first.unit;
-  if (first.travel)
-    c.travel = {machines.front().travel(), machines.back().travel(), first.rotary};
+  if (first.travel) c.travel = {machines.front().travel(), machines.back().travel(), first.rotary};
   c.count = machines.size();
   std::vector<double> values, distances;
   for (const Candidate& m : machines) values.push_back(m.of->value);
@@ -195,8 +193,9 @@ std::vector<reports::ModelComparison> comparisons_of(const std::vector<ComparedM
   }
   std::vector<reports::ModelComparison> out;
   for (auto& [key, candidates] : all) {
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.travel() < b.travel(); });
+    std::stable_sort(
+        candidates.begin(), candidates.end(),
+        [](const Candidate& a, const Candidate& b) { return a.travel() < b.travel(); });
     for (auto from = candidates.begin(); from != candidates.end();) {
       const auto to = std::find_if(from, candidates.end(), [&](const Candidate& c) {
         return c.travel() > same_travel * from->travel();

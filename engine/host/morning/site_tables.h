@@ -27,7 +27,7 @@ struct ComparedValue {
   std::string axis, quantity;
   Quantity unit = Quantity::deviation;
   double value = 0.0, u = 0.0;
-  std::string conditions{};         ///< JSON: what must be equal, but the travel
+  std::string conditions{};        ///< JSON: what must be equal, but the travel
   std::optional<double> travel{};  ///< from the first target to the last, SI
   bool rotary = false;
 };

@@ -31,8 +31,7 @@ class Fleet {
   }
   std::vector<reports::ModelComparison> compared() const {
     std::vector<morning::ComparedMachine> all;
-    for (std::size_t i = 0; i < machines_.size(); ++i)
-      all.push_back({&machines_[i], &values_[i]});
+    for (std::size_t i = 0; i < machines_.size(); ++i) all.push_back({&machines_[i], &values_[i]});
     return morning::comparisons_of(all);
   }
 
