@@ -115,7 +115,7 @@ enum class Made { done, taken, no_links };
 /// Gives `path` the bytes, if there is no such file. link(2) is one step on every server; two names
 /// prove that it was done, also where the answer was lost and a second try was told "exists".
 Expected<Made> make_user(const fs::path& path, const User& user, const std::string& says) {
-  std::string own = temporary(path, user) + "XXXXXX";
+  std::string own = temporary(path, user) + "XXXXXX";  // mkostemp puts its letters there
   const int fd = ::mkostemp(own.data(), O_CLOEXEC);
   if (fd < 0) return fail("cannot write " + own + ": " + std::strerror(errno));
   const bool written = ::write(fd, says.data(), says.size()) == static_cast<ssize_t>(says.size()) &&

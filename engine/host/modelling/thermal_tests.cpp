@@ -11,9 +11,6 @@ namespace nonio::host::modelling {
 
 namespace {
 
-// docs/constants.md, M34.
-constexpr double most_apart = 2.6;  // standard deviations of the difference of ln tau
-
 Number minutes(const char* name, double s) { return {name, s / 60.0, Quantity::number}; }
 
 /// The effect that asks for the time constant of this axis.
@@ -38,7 +35,7 @@ const model::Parameter* fitted_tau(const model::Fit& fit, const model::Term& ask
 Finding own_value(const model::TimeConstant& stated, const model::Parameter& tau, Finding f) {
   const double apart = std::fabs(std::log(tau.value / stated.tau));
   const double u = std::hypot(tau.u / tau.value, stated.u / stated.tau);
-  const bool differs = !std::isfinite(u) || apart > most_apart * u;
+  const bool differs = !std::isfinite(u) || apart > model::time_constants_apart * u;
   f.id = differs ? "model.time-constant-differs" : "model.time-constant-own";
   f.attention = differs;
   f.evidence.push_back(minutes("own_min", tau.value));

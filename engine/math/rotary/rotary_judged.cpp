@@ -65,6 +65,12 @@ DoubleWave double_wave(const RotaryFit& fit, std::span<const BallCentre> centres
   return wave;
 }
 
+long long place_in_turn(double angle) {
+  constexpr double turn = 2.0 * std::numbers::pi, resolution = 1e-6;
+  const double within = angle - turn * std::floor(angle / turn);
+  return std::llround(within / resolution) % std::llround(turn / resolution);
+}
+
 std::string other_turning_axis(const Observations& o) {
   constexpr double least = 1e-6;  // rad
   for (std::size_t k = 1; k < o.axes.size(); ++k) {

@@ -17,9 +17,6 @@ namespace nonio::model {
 
 namespace {
 
-// docs/constants.md, M34.
-constexpr double most_apart = 2.6;  // standard deviations of the difference of ln tau
-
 /// Of one test; tau 0 where it gives none.
 struct OfTest {
   std::string measurement;
@@ -50,7 +47,7 @@ TimeConstant together(const std::string& axis, const std::vector<OfTest>& tests)
     out.state = out.state == TimeConstant::State::none ? TimeConstant::State::known : out.state;
     weights += 1.0 / (a.u * a.u), sum += a.ln_tau / (a.u * a.u);
     for (const OfTest& b : tests)
-      if (b.given && std::fabs(a.ln_tau - b.ln_tau) > most_apart * std::hypot(a.u, b.u))
+      if (b.given && std::fabs(a.ln_tau - b.ln_tau) > time_constants_apart * std::hypot(a.u, b.u))
         out.state = TimeConstant::State::contradictory;
   }
   if (out.state == TimeConstant::State::none)

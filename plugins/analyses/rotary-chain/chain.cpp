@@ -65,11 +65,7 @@ class Solver {
     out_.findings.push_back(std::move(f));
     return false;
   }
-  std::string axes() const {
-    std::string text;
-    for (const std::string& axis : chain_.axes) text += (text.empty() ? "" : ", ") + axis;
-    return text;
-  }
+  std::string axes() const { return listed(chain_.axes); }
   double centres() const { return static_cast<double>(places_.readings.size()); }
 
   bool fitted() {
@@ -204,6 +200,12 @@ class Solver {
 };
 
 }  // namespace
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
 
 Solved solve(const AnalysisInput& in, const Chain& chain, const Places& places, const Wish& wish,
              const math::ReadingModel& model) {

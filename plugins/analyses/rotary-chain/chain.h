@@ -12,6 +12,9 @@
 
 namespace nonio::rotary_chain {
 
+/// Names with commas between them.
+std::string listed(const std::vector<std::string>& names);
+
 /// What the user wants and knows; SI.
 struct Wish {
   std::optional<double> sigma;        ///< standard uncertainty of a coordinate, stated

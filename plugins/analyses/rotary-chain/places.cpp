@@ -5,22 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <tuple>
 
+#include "nonio/math/rotary.h"
+
 namespace nonio::rotary_chain {
 namespace {
-
-constexpr double turn = 2.0 * std::numbers::pi;
-constexpr double resolution = 1e-6;  // rad: positions that differ by less are one
-
-/// Position of an axis within a turn, as a whole number of the resolution.
-long long place_of(double angle) {
-  const double within = angle - turn * std::floor(angle / turn);
-  return std::llround(within / resolution) % std::llround(turn / resolution);
-}
 
 bool has_all(const Observations& o, const Chain& chain) {
   if (o.size() == 0 || o.angular) return false;
@@ -69,7 +61,7 @@ class Collector {
  private:
   std::vector<long long> key_of(const math::ChainReading& r) const {
     std::vector<long long> key;
-    for (const double a : r.angle) key.push_back(place_of(a));
+    for (const double a : r.angle) key.push_back(math::place_in_turn(a));
     return key;
   }
   std::optional<Finding> seen_before(std::size_t i, const math::ChainReading& r) {

@@ -15,6 +15,7 @@ namespace {
 
 using rotary_chain::Candidate;
 using rotary_chain::Chain;
+using rotary_chain::listed;
 using rotary_chain::Places;
 using rotary_chain::Solved;
 using rotary_chain::Wish;
@@ -58,12 +59,6 @@ std::optional<Chain> chain_of(const AnalysisInput& in) {
     if (axis == nullptr || !axis->rotary) return std::nullopt;
   }
   return chain;
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
 }
 
 /// What the analysis goes through.

@@ -4,22 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 #include <tuple>
 
 namespace nonio::rotary {
 namespace {
-
-constexpr double turn = 2.0 * std::numbers::pi;
-constexpr double resolution = 1e-6;  // rad: positions that differ by less are one
-
-/// Position of the axis within a turn, as a whole number of the resolution.
-long long place_of(double angle) {
-  const double within = angle - turn * std::floor(angle / turn);
-  const auto places = std::llround(turn / resolution);
-  return std::llround(within / resolution) % places;
-}
 
 const Observations::AxisColumn* column(const Observations& o, std::string_view axis) {
   for (const auto& c : o.axes)
@@ -48,7 +37,8 @@ tl::expected<std::vector<math::BallCentre>, Finding> centres_of(const Observatio
       return tl::unexpected(std::move(repeated));
     }
     math::BallCentre& c =
-        places.try_emplace(place_of(angle), math::BallCentre{{}, angle, 0.0}).first->second;
+        places.try_emplace(math::place_in_turn(angle), math::BallCentre{{}, angle, 0.0})
+            .first->second;
     c.weight += 1.0;
     const math::Vector3 at{x->position[i], y->position[i], z->position[i]};
     for (std::size_t k = 0; k < 3; ++k) c.at[k] += (at[k] - c.at[k]) / c.weight;

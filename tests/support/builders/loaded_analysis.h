@@ -10,8 +10,8 @@
 
 namespace nonio {
 
-/// The analysis of a plugin as it was built.
-inline Analysis loaded_analysis(const char* path) {
+/// The analysis of a plugin that is linked in.
+inline Analysis analysis_of(const PluginEntry& plugin) {
   struct Taker final : Registry {
     Analysis analysis;
     void add(Reader) override {}
@@ -20,10 +20,15 @@ inline Analysis loaded_analysis(const char* path) {
     void add(Output) override {}
     void add(Controller) override {}
   } taker;
+  plugin.add_to(taker);
+  return taker.analysis;
+}
+
+/// The analysis of a plugin as it was built.
+inline Analysis loaded_analysis(const char* path) {
   void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw std::runtime_error(dlerror());
-  static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"))->add_to(taker);
-  return taker.analysis;
+  return analysis_of(*static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin")));
 }
 
 }  // namespace nonio

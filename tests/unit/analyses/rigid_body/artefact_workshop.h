@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "loaded_analysis.h"
 #include "nonio/math/rigid_artefact.h"
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/plugin.h"
@@ -143,18 +144,7 @@ inline Observations on_face(const Truth& t, std::size_t axis, std::size_t across
   return o;
 }
 
-inline nonio::Analysis the_analysis() {
-  struct Taker final : nonio::Registry {
-    nonio::Analysis analysis;
-    void add(nonio::Reader) override {}
-    void add(nonio::Effect) override {}
-    void add(nonio::Analysis a) override { analysis = std::move(a); }
-    void add(nonio::Output) override {}
-    void add(nonio::Controller) override {}
-  } taker;
-  nonio_plugin.add_to(taker);
-  return taker.analysis;
-}
+inline nonio::Analysis the_analysis() { return nonio::analysis_of(nonio_plugin); }
 
 /// A campaign as the host gives it to the plugin.
 struct Workshop {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "loaded_analysis.h"
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/plugin.h"
 
@@ -114,18 +115,7 @@ Observations probe(const Machine& m, const std::vector<Line>& balls, const std::
   return o;
 }
 
-inline Analysis the_analysis() {
-  struct Taker final : Registry {
-    Analysis analysis;
-    void add(Reader) override {}
-    void add(Effect) override {}
-    void add(Analysis a) override { analysis = std::move(a); }
-    void add(Output) override {}
-    void add(Controller) override {}
-  } taker;
-  nonio_plugin.add_to(taker);
-  return taker.analysis;
-}
+inline Analysis the_analysis() { return analysis_of(nonio_plugin); }
 
 /// A campaign as the host gives it to the plugin.
 struct Workshop {

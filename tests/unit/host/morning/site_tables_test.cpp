@@ -123,7 +123,10 @@ TEST(Comparisons, DamagedConditionsAreOnesOfTheirOwn) {
   for (const char* name : {"a", "b"}) fleet.add(name, 1.0, over(0, 500));
   for (const char* text : {"", "[1]", "{\"from\":\"x\",\"to\":3}", "{\"from\":0}", "{"})
     fleet.add(std::string("d") + text, 1.0, text);
-  for (const auto& c : fleet.compared()) EXPECT_FALSE(c.travel.has_value());
+  const auto all = fleet.compared();
+  ASSERT_EQ(all.size(), 1U);  // of the three that cannot be read
+  EXPECT_EQ(all[0].count, 3U);
+  EXPECT_FALSE(all[0].travel.has_value());
 }
 
 }  // namespace

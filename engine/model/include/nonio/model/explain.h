@@ -31,6 +31,10 @@ struct TimeConstant {
   double tau = 0.0, u = 0.0;  ///< s
 };
 
+/// Time constants differ from so many standard uncertainties of the difference of their logarithms
+/// on (docs/constants.md, M34).
+inline constexpr double time_constants_apart = 2.6;
+
 /// Measurements that are explained together: they sense the same axes in the same unit.
 struct Part {
   enum class Kind {

@@ -82,6 +82,10 @@ DoubleWave double_wave(const RotaryFit& fit, std::span<const BallCentre> centres
 /// Of ball centres: a rotary axis beside the first one that did not stand still; empty if none.
 std::string other_turning_axis(const Observations&);
 
+/// Position of a rotary axis within a turn as a whole number of microradians: positions that differ
+/// by less are one.
+long long place_in_turn(double angle);
+
 /// Factor that expands a standard uncertainty to 95.45 %: 2 for many degrees of freedom (dof < 0:
 /// known sigma), Student's t for few; NaN for 0.
 double expansion_factor(int dof);
