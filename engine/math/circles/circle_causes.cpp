@@ -23,15 +23,11 @@ constexpr double bin_width = full_turn / 360.0;
 constexpr int bins_of_turn = 360;
 constexpr std::size_t at_least = 24;  // bins, and twice the causes
 constexpr double singular = 1e-10;    // least part of a column that is its own, squared
-constexpr double quarter = std::numbers::pi / 2.0;
 
 std::size_t index_of(Cause c) { return static_cast<std::size_t>(c); }
 double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 double within_turn(double t) { return t - full_turn * std::floor(t / full_turn); }
-
-/// How far from the nearest reversal of an axis, rad.
-double from_reversal(double t) { return std::fabs(t - quarter * std::round(t / quarter)); }
 
 /// Means of one degree, of both directions.
 struct Bins {
@@ -43,7 +39,7 @@ struct Bins {
 
   Bins(std::span<const CircleReading> readings, const CircleModel& model) {
     for (const CircleReading& r : readings) {
-      if (from_reversal(r.angle) < model.leave_out) continue;
+      if (model.leaves_out(r.angle)) continue;
       const double t = within_turn(r.angle);
       const int place = static_cast<int>(std::floor(t / bin_width + 1e-6)) % bins_of_turn;
       Bin& bin = of[place][r.direction > 0 ? 0 : 1];
@@ -244,19 +240,16 @@ class Fit {
     const double n = static_cast<double>(out_.bins.size());
     out_.s = std::sqrt(squares / std::max(1.0, n - static_cast<double>(columns_.size())));
     out_.correlation = squares > 0.0 ? products / squares : 0.0;
-    out_.s_reading = scatter_of_readings(beta);
+    out_.s_reading = scatter_of_readings();
   }
 
   /// Of the readings that are in the fit.
-  double scatter_of_readings(const Eigen::VectorXd& beta) const {
+  double scatter_of_readings() const {
     double squares = 0.0, n = 0.0;
     for (const CircleReading& r : readings_) {
-      if (from_reversal(r.angle) < model_.leave_out) continue;
+      if (model_.leaves_out(r.angle)) continue;
       if (!both_ && (r.direction > 0) != (only_ == 0)) continue;
-      double off = r.deviation;
-      for (std::size_t k = 0; k < columns_.size(); ++k)
-        off -=
-            beta[at(k)] * cause_at(static_cast<Cause>(columns_[k]), model_, r.angle, r.direction);
+      const double off = r.deviation - out_.radius_at(model_, r.angle, r.direction);
       squares += off * off, n += 1.0;
     }
     return std::sqrt(squares / std::max(1.0, n - static_cast<double>(columns_.size())));
@@ -274,6 +267,11 @@ class Fit {
 };
 
 }  // namespace
+
+bool CircleModel::leaves_out(double angle) const {
+  constexpr double quarter = full_turn / 4.0;
+  return std::fabs(angle - quarter * std::round(angle / quarter)) < leave_out;
+}
 
 void all_causes(CircleModel& m, bool both_directions) {
   m.wanted.fill(true);
@@ -329,47 +327,32 @@ double cause_at(Cause cause, const CircleModel& m, double t, int direction) {
   return 0.0;
 }
 
+double CauseFit::radius_at(const CircleModel& model, double angle, int direction) const {
+  double r = 0.0;
+  for (std::size_t c = 0; c < cause_count; ++c)
+    if (of[c].value != 0.0)
+      r += of[c].value * cause_at(static_cast<Cause>(c), model, angle, direction);
+  return r;
+}
+
+double CauseFit::u_at(const CircleModel& model, double angle, int direction) const {
+  std::array<double, cause_count> column{};
+  for (std::size_t c = 0; c < cause_count; ++c)
+    if (of[c].fitted) column[c] = cause_at(static_cast<Cause>(c), model, angle, direction);
+  double square = 0.0;
+  for (std::size_t a = 0; a < cause_count; ++a)
+    for (std::size_t b = 0; b < cause_count; ++b)
+      if (column[a] != 0.0 && column[b] != 0.0)
+        square += column[a] * column[b] * covariance_of[a * cause_count + b];
+  return std::sqrt(std::max(0.0, square));
+}
+
 double CauseFit::covariance(Cause a, Cause b) const {
   return covariance_of.empty() ? 0.0 : covariance_of[index_of(a) * cause_count + index_of(b)];
 }
 
 Expected<CauseFit> fit_causes(std::span<const CircleReading> readings, const CircleModel& model) {
   return Fit(readings, model).done();
-}
-
-std::vector<Spike> reversal_spikes(std::span<const CircleReading> readings,
-                                   const CircleModel& model, const CauseFit& fit) {
-  constexpr double window = 5.0 * bin_width, before = 0.5 * bin_width;
-  std::vector<Spike> out;
-  for (const int direction : {1, -1})
-    for (int q = 0; q < 4; ++q) {
-      std::map<double, std::pair<double, double>> behind;  // residual, count by the way since
-      for (const CircleReading& r : readings) {
-        if (r.direction != direction) continue;
-        const double off = r.angle - q * quarter,
-                     way = direction * (off - full_turn * std::round(off / full_turn));
-        if (way < -before || way > window) continue;
-        double model_says = 0.0;
-        for (std::size_t c = 0; c < cause_count; ++c)
-          if (fit.of[c].fitted)
-            model_says +=
-                fit.of[c].value * cause_at(static_cast<Cause>(c), model, r.angle, direction);
-        auto& [sum, n] = behind[std::round(way / 1e-4) * 1e-4];
-        sum += r.deviation - model_says, n += 1.0;
-      }
-      if (behind.size() < 3) continue;
-      Spike spike{q * quarter, direction, q % 2 == 1, 0.0, 0.0, fit.s_reading};
-      for (const auto& [way, of] : behind)
-        if (std::fabs(of.first / of.second) > std::fabs(spike.height))
-          spike.height = of.first / of.second, spike.u = fit.s_reading / std::sqrt(of.second);
-      double first = INFINITY, last = -INFINITY;
-      for (const auto& [way, of] : behind)
-        if (of.first / of.second * sign_of(spike.height) >= 0.5 * std::fabs(spike.height))
-          first = std::min(first, way), last = std::max(last, way);
-      spike.width = last - first;
-      out.push_back(spike);
-    }
-  return out;
 }
 
 }  // namespace nonio::math

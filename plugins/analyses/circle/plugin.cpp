@@ -19,6 +19,7 @@ using math::PathCircle;
 
 constexpr std::size_t fewest = 12;  // readings of a path
 constexpr double per_deg = std::numbers::pi / 180.0;
+constexpr double most_left_out = 20.0;  // deg
 // docs/constants.md, A12.
 constexpr double share_for_attention = 0.2;
 
@@ -27,6 +28,7 @@ bool applies(const Campaign&, const Measurement& m) { return m.kind == "circle";
 /// A path and the value that is taken from it: of several runs the largest counts.
 struct Worst {
   double value = -INFINITY;
+  std::uint32_t run = 0;
   std::vector<CircleReading> path;
   PathCircle circle;
 };
@@ -37,6 +39,7 @@ struct Work {
   bool minimum_zone, calibrated;
   math::CircleModel model;
   math::CauseFit fit;
+  std::optional<math::CircleNoise> noise;
   math::ReadingModel readings;
   std::optional<math::BudgetOf> budget;
   Evaluation out;
@@ -127,6 +130,23 @@ void add(Work& w, std::string name, double v, Quantity q, double u, const std::v
   w.out.values.push_back(w.budget->value(std::move(name), v, q, u, shares));
 }
 
+/// What noise adds to a value of the path of a direction (0: both) and run.
+template <class Of>
+double noise_adds(const Work& w, int direction, std::uint32_t run, const Of& value) {
+  return w.noise->adds([&](const std::vector<CircleReading>& all) {
+    std::vector<CircleReading> path;
+    for (const CircleReading& r : all)
+      if (r.run == run && (direction == 0 || r.direction == direction)) path.push_back(r);
+    return value(path);
+  });
+}
+
+/// Repetition of a value that is the largest of many: noise of `readings` single readings, and what
+/// noise adds to the largest. Nobody takes that out of the value, so its uncertainty has it.
+double repetition(const Work& w, double readings, double adds) {
+  return std::hypot(std::sqrt(readings) * w.fit.s_reading, adds);
+}
+
 /// G of each direction and of both, H: of several runs the largest.
 void path_values(Work& w) {
   for (const auto& [name, direction] : {std::pair{"G_ccw", 1}, {"G_cw", -1}, {"G_b", 0}}) {
@@ -136,23 +156,33 @@ void path_values(Work& w) {
       std::vector<CircleReading> path = w.circle.of(direction, run);
       if (path.size() < fewest) continue;
       const PathCircle c = w.path(path);
-      if (c.width() > worst.value) worst = {c.width(), std::move(path), c};
+      if (c.width() > worst.value) worst = {c.width(), run, std::move(path), c};
     }
     if (worst.path.empty()) continue;
-    add(w, name, worst.value, Quantity::deviation, std::numbers::sqrt2 * w.fit.s_reading,
+    // About the least-squares centre: noise does the same to both, and the zone takes longer.
+    const double adds = noise_adds(w, direction, worst.run, [&](const auto& path) {
+      return math::least_squares_circle(path, w.circle.R).width();
+    });
+    add(w, name, worst.value, Quantity::deviation, repetition(w, 2.0, adds),
         by_bins(w, worst.path, worst.circle.outermost, worst.circle.innermost));
   }
   std::optional<math::Hysteresis> H;
+  std::uint32_t run_of_H = 0;
+  std::array<double, 2> centre{};
   for (const std::uint32_t run : w.runs()) {
     const auto path = w.circle.of(0, run);
     if (path.size() < 2 * fewest) continue;
-    const auto h = math::circular_hysteresis(path, w.circle.R, w.path(path).centre, w.circle.step);
-    if (h && (!H || h->H > H->H)) H = h;
+    const auto about = w.path(path).centre;
+    const auto h = math::circular_hysteresis(path, w.circle.R, about, w.circle.step);
+    if (h && (!H || h->H > H->H)) H = h, run_of_H = run, centre = about;
   }
   if (!H) return;
   const std::vector<CircleReading> pair{{H->angle, 0.0, 1, 1}, {H->angle, 0.0, -1, 1}};
-  add(w, "H", H->H, Quantity::deviation, std::numbers::sqrt2 * w.fit.s_reading,
-      by_bins(w, pair, 0, 1));
+  const double adds = noise_adds(w, 0, run_of_H, [&](const auto& path) {
+    const auto h = math::circular_hysteresis(path, w.circle.R, centre, w.circle.step);
+    return h ? h->H : 0.0;
+  });
+  add(w, "H", H->H, Quantity::deviation, repetition(w, 2.0, adds), by_bins(w, pair, 0, 1));
 }
 
 /// Centres, and what asks for a known length.
@@ -172,27 +202,37 @@ void circle_values(Work& w) {
   const auto& radius = w.fit.of[static_cast<std::size_t>(Cause::radius)];
   if (w.circle.both()) add(w, "D", ls.radius, Quantity::deviation, radius.u, radius.by_bin);
   const bool commanded = w.in.options.text("F_about") == "commanded";
-  const PathCircle F =
-      math::about(w.circle.readings, w.circle.R, commanded ? std::array<double, 2>{} : ls.centre);
+  const std::array<double, 2> centre = commanded ? std::array<double, 2>{} : ls.centre;
+  const PathCircle F = math::about(w.circle.readings, w.circle.R, centre);
   for (const bool outer : {true, false}) {
     std::vector<double> by =
         by_bins(w, w.circle.readings, outer ? F.outermost : F.innermost, std::nullopt);
+    const double adds = w.noise->adds([&](const std::vector<CircleReading>& all) {
+      const PathCircle again = math::about(all, w.circle.R, centre);
+      return outer ? again.outer : again.inner;
+    });
     add(w, outer ? "F_max" : "F_min", outer ? F.outer : F.inner, Quantity::deviation,
-        w.fit.s_reading, by);
+        repetition(w, 1.0, adds), by);
   }
 }
 
+/// The highest spike of an axis.
+math::Spike worst_spike(const Work& w, const std::vector<CircleReading>& readings, bool of_v) {
+  math::Spike worst;
+  for (const math::Spike& s : math::reversal_spikes(readings, w.model, w.fit))
+    if (s.of_v == of_v && std::fabs(s.height) > std::fabs(worst.height)) worst = s;
+  return worst;
+}
+
 void spikes(Work& w, double total) {
-  const auto all = math::reversal_spikes(w.circle.readings, w.model, w.fit);
   for (std::size_t k = 0; k < 2; ++k) {
-    const math::Spike* worst = nullptr;
-    for (const math::Spike& s : all)
-      if (s.of_v == (k == 1) &&
-          (worst == nullptr || std::fabs(s.height) > std::fabs(worst->height)))
-        worst = &s;
-    if (worst == nullptr) continue;
-    add(w, "spike_" + w.circle.axis[k], worst->height, Quantity::deviation, worst->u,
-        std::vector<double>(w.fit.bins.size(), 0.0));
+    const math::Spike found = worst_spike(w, w.circle.readings, k == 1), *const worst = &found;
+    if (found.height == 0.0) continue;  // no readings behind a reversal
+    const double adds = w.noise->adds([&](const std::vector<CircleReading>& all) {
+      return std::fabs(worst_spike(w, all, k == 1).height);
+    });
+    add(w, "spike_" + w.circle.axis[k], worst->height, Quantity::deviation,
+        std::hypot(worst->u, adds), std::vector<double>(w.fit.bins.size(), 0.0));
     // docs/constants.md, A13.
     if (!(std::fabs(worst->height) > 4.0 * worst->u)) continue;  // readings of 0: nothing
     const double alone = std::fabs(worst->height), share = alone / (total + alone);
@@ -290,9 +330,11 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
          {},
          {},
          {},
+         {},
          {}};
   w.model = model_of(w);
-  auto fit = math::fit_causes(w.circle.readings, w.model);
+  const double stated = w.model.leave_out;
+  auto fit = math::fit_causes_without_spikes(w.circle.readings, w.model, most_left_out * per_deg);
   if (!fit) {
     w.out.findings.push_back(
         {.id = "circle.too-few",
@@ -301,6 +343,12 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
     return std::move(w.out);
   }
   w.fit = std::move(*fit);
+  w.noise.emplace(w.circle.readings, w.model, w.fit);
+  if (w.model.leave_out > stated)
+    w.out.findings.push_back({.id = "circle.spikes-last",
+                              .attention = false,
+                              .evidence = {{"stated", stated, Quantity::angle},
+                                           {"left_out", w.model.leave_out, Quantity::angle}}});
   w.out.notes.push_back({w.minimum_zone ? "method.circle-mz" : "method.circle-ls"});
   begin_budget(w);
   path_values(w);
@@ -330,10 +378,11 @@ std::vector<Option> options() {
       {"leave_out_deg",
        2.0,
        "deg",
-       "Readings left out of the fit on both sides of each reversal.",
+       "Readings left out of the fit on both sides of each reversal; more where spikes last "
+       "longer.",
        {},
        0.0,
-       20.0}};
+       most_left_out}};
 }
 
 }  // namespace

@@ -75,10 +75,12 @@ inline double radius(const Mill& m, double t, int d) {
   return std::hypot(X - m.axis[0].zero, Y - m.axis[1].zero);
 }
 
-/// One run in each direction of `directions`, a reading every half degree.
-inline std::vector<nonio::math::CircleReading> circle(const Mill& m, const Noise& noise,
-                                                      std::mt19937_64& random,
-                                                      std::vector<int> directions = {1, -1}) {
+/// One run in each direction of `directions`, a reading every half degree. Between the runs the bar
+/// grows; `still`, if given, gets the same readings without noise.
+inline std::vector<nonio::math::CircleReading> circle(
+    const Mill& m, const Noise& noise, std::mt19937_64& random,
+    std::vector<int> directions = {1, -1},
+    std::vector<nonio::math::CircleReading>* still = nullptr) {
   constexpr int readings = 720;
   std::normal_distribution<double> g;
   std::uniform_real_distribution<double> u(-1.0, 1.0);
@@ -89,8 +91,9 @@ inline std::vector<nonio::math::CircleReading> circle(const Mill& m, const Noise
     for (int i = 0; i < readings; ++i) {
       const double s = 2.0 * pi * (i + 0.5) / readings, t = d > 0 ? s : 2.0 * pi - s;
       slow = noise.rho * slow + std::sqrt(1.0 - noise.rho * noise.rho) * g(random);
-      out.push_back(
-          {t, radius(m, t, d) - m.R + grown + noise.white * g(random) + noise.slow * slow, d, 1});
+      const double r = radius(m, t, d) - m.R + grown;
+      out.push_back({t, r + noise.white * g(random) + noise.slow * slow, d, 1});
+      if (still != nullptr) still->push_back({t, r, d, 1});
     }
   }
   return out;
@@ -138,7 +141,9 @@ inline std::vector<Coverage> coverage(int circles, const Noise& noise, std::uint
   std::vector<Coverage> out(truth({}).size() + 1);
   for (int i = 0; i < circles; ++i) {
     const Mill m = any_mill(random, stick_deg);
-    const auto fit = nonio::math::fit_causes(circle(m, noise, random), model(m));
+    auto asked = model(m);
+    const auto fit =
+        nonio::math::fit_causes_without_spikes(circle(m, noise, random), asked, 20.0 * deg);
     if (!fit) return {};
     const auto count = [&](std::size_t k, double found, double u, double wanted) {
       const double off = (found - wanted) / u;
@@ -178,7 +183,8 @@ inline std::vector<Coverage> largest_coverage(int circles, const Noise& noise, s
   };
   for (int i = 0; i < circles; ++i) {
     const Mill m = any_mill(random, stick_deg);
-    const auto still = circle(m, {}, random), read = circle(m, noise, random);
+    std::vector<nonio::math::CircleReading> still;
+    const auto read = circle(m, noise, random, {1, -1}, &still);
     const auto wanted = nonio::math::fit_causes(still, model(m)),
                fit = nonio::math::fit_causes(read, model(m));
     if (!wanted || !fit) return {};
@@ -187,20 +193,32 @@ inline std::vector<Coverage> largest_coverage(int circles, const Noise& noise, s
     };
     const auto true_spikes = nonio::math::reversal_spikes(still, model(m), *wanted),
                spikes = nonio::math::reversal_spikes(read, model(m), *fit);
+    const nonio::math::CircleNoise again(read, model(m), *fit);
     for (const bool of_v : {false, true}) {
       const Spike found = worst(spikes, of_v), truth = worst(true_spikes, of_v);
-      const double off = std::fabs(found.height) - std::fabs(truth.height);
-      count(0, off, found.u);
-      if (std::fabs(truth.height) > 6.0 * found.u) count(1, off, found.u);
+      const double adds = again.adds([&](const auto& path) {
+        return std::fabs(worst(nonio::math::reversal_spikes(path, model(m), *fit), of_v).height);
+      });
+      const double off = std::fabs(found.height) - std::fabs(truth.height),
+                   u = std::hypot(found.u, adds);
+      count(0, off, u);
+      if (std::fabs(truth.height) > 6.0 * found.u) count(1, off, u);
     }
-    const double u = std::sqrt(2.0) * fit->s_reading;
+    const double s = std::sqrt(2.0) * fit->s_reading;
     const auto zone = [&](const auto& path) { return nonio::math::minimum_zone(path, m.R); };
-    count(2, zone(one_way(read)).width() - zone(one_way(still)).width(), u);
+    const auto width = [&](const auto& path) {
+      return nonio::math::least_squares_circle(path, m.R).width();
+    };
+    count(2, zone(one_way(read)).width() - zone(one_way(still)).width(),
+          std::hypot(s, again.adds([&](const auto& path) { return width(one_way(path)); })));
     const auto both = zone(read), true_both = zone(still);
-    count(3, both.width() - true_both.width(), u);
-    const auto h = nonio::math::circular_hysteresis(read, m.R, both.centre, 1.0 * deg),
-               true_h = nonio::math::circular_hysteresis(still, m.R, true_both.centre, 1.0 * deg);
-    if (h && true_h) count(4, h->H - true_h->H, u);
+    count(3, both.width() - true_both.width(), std::hypot(s, again.adds(width)));
+    const auto h_of = [&](const auto& path, const auto& centre) {
+      const auto h = nonio::math::circular_hysteresis(path, m.R, centre, 1.0 * deg);
+      return h ? h->H : 0.0;
+    };
+    count(4, h_of(read, both.centre) - h_of(still, true_both.centre),
+          std::hypot(s, again.adds([&](const auto& path) { return h_of(path, both.centre); })));
   }
   return out;
 }

@@ -91,6 +91,8 @@ struct CircleModel {
   std::array<bool, cause_count> wanted{};  ///< set by `all_causes`
   double leave_out = 0.0;                  ///< rad, on both sides of each reversal
   bool correlated = true;                  ///< false: as if each mean had noise of its own only
+  /// Whether a reading at this angle is too near to a reversal for the fit.
+  bool leaves_out(double angle) const;
 };
 /// What readings of these directions and pitches can be asked for.
 void all_causes(CircleModel&, bool both_directions);
@@ -118,6 +120,9 @@ struct CauseFit {
   double correlation = 0.0;  ///< of neighbouring bins (1 deg apart)
   double dof = 0.0;          ///< effective, the least of all causes
   double covariance(Cause a, Cause b) const;
+  /// The radial deviation that the fitted causes make.
+  double radius_at(const CircleModel&, double angle, int direction) const;
+  double u_at(const CircleModel&, double angle, int direction) const;
   std::vector<double> covariance_of{};  ///< cause_count x cause_count; 0 where not fitted
 };
 
@@ -125,6 +130,34 @@ struct CauseFit {
 /// the difference of both directions apart, each white noise and a first-order autoregressive
 /// process (REML). An error where readings are too few.
 Expected<CauseFit> fit_causes(std::span<const CircleReading>, const CircleModel&);
+
+/// What noise adds to the largest of many readings, of which it always takes the noisiest. Paths are
+/// made from the fit and its residuals, which are given back turned by parts of the turn in each
+/// direction and run (the same for all, so that what both directions share stays shared). Readings
+/// that are not in the fit keep what they read and get noise besides.
+class CircleNoise {
+ public:
+  static constexpr std::size_t times = 36;
+  CircleNoise(std::span<const CircleReading>, const CircleModel&, const CauseFit&);
+  const std::vector<CircleReading>& truth() const { return truth_; }
+  /// k: 0 .. times - 1. In the order of the readings.
+  std::vector<CircleReading> turned(std::size_t k) const;
+  /// Mean over all turns of value(path) less value(truth()), m.
+  template <class Value>
+  double adds(const Value& value) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < times; ++k) sum += value(turned(k));
+    return sum / static_cast<double>(times) - value(truth_);
+  }
+
+ private:
+  struct From {
+    std::size_t first = 0, count = 0, place = 0;  ///< of residuals_
+  };
+  std::vector<CircleReading> truth_;
+  std::vector<From> from_;  ///< by reading
+  std::vector<double> residuals_;
+};
 
 /// A reversal spike: the largest residual within 5 deg behind a reversal, and its width at half
 /// height.
@@ -137,5 +170,10 @@ struct Spike {
 };
 std::vector<Spike> reversal_spikes(std::span<const CircleReading>, const CircleModel&,
                                    const CauseFit&);
+
+/// The fit, with a zone beside the reversals that becomes wider, from `model.leave_out` to `most` at
+/// most, until spikes above 6 u leave nothing behind it. The zone is left in the model.
+Expected<CauseFit> fit_causes_without_spikes(std::span<const CircleReading>, CircleModel& model,
+                                             double most);
 
 }  // namespace nonio::math
