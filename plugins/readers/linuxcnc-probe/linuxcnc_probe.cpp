@@ -20,17 +20,20 @@ namespace {
 
 constexpr std::size_t columns = 9;  // X Y Z A B C U V W
 constexpr double per_deg = 1.0 / deg_per_rad;
+constexpr std::string_view rotary_letters = "ABC";
+
+using Angles = std::array<double, 3>;  // of A, B and C, deg
 
 struct Touch {
   std::array<double, 3> at{};  ///< m
-  double angle = 0.0;          ///< deg
+  Angles angle{};
   std::uint64_t line = 0;
 };
 
 /// What the log does not say.
 struct Wish {
   double unit = 0.0;               ///< m
-  std::size_t angle_column = 0;    ///< of the rotary axis
+  std::size_t axis = 0;            ///< of A, B and C the one of the measurement
   std::size_t touches = 0;         ///< of one centre; 0: as long as the angle stays
   double same_angle = 0.0;         ///< deg
   std::optional<double> radius{};  ///< m
@@ -45,11 +48,11 @@ Expected<Wish> wish_of(const ReadInput& input, const Axis& axis) {
                           "expected mm or inch, the unit of the program that probed; found "
                           "none. A log does not say it"));
   wish.unit = unit == "mm" ? 1e-3 : 0.0254;
-  const std::size_t letter = std::string_view("ABC").find(axis.name.front());
+  const std::size_t letter = rotary_letters.find(axis.name.front());
   if (letter == std::string_view::npos)
     return fail("expected a rotary axis named A, B or C as in the log's columns, found \"" +
                 axis.name + "\"");
-  wish.angle_column = 3 + letter;
+  wish.axis = letter;
   wish.touches = static_cast<std::size_t>(input.options.integer("touches"));
   wish.same_angle = input.options.number("same_angle_deg");
   if (const double r = input.options.number("radius_mm"); r > 0.0) wish.radius = 1e-3 * r;
@@ -77,7 +80,7 @@ Expected<std::vector<Touch>> touches_of(std::string_view bytes, const Wish& wish
       values[k] = *value;
     }
     touches.push_back({{values[0] * wish.unit, values[1] * wish.unit, values[2] * wish.unit},
-                       values[wish.angle_column],
+                       {values[3], values[4], values[5]},
                        lines.number()});
   }
   if (touches.empty()) return fail("expected touches, found none");
@@ -86,18 +89,57 @@ Expected<std::vector<Touch>> touches_of(std::string_view bytes, const Wish& wish
 
 using Group = std::vector<Touch>;
 
-/// Touches of one centre: as many as stated, or as long as the axis stands still.
-Expected<std::vector<Group>> groups_of(const std::vector<Touch>& touches, const Wish& wish) {
+bool same_angles(const Angles& a, const Angles& b, double within) {
+  for (std::size_t k = 0; k < a.size(); ++k)
+    if (!(std::fabs(a[k] - b[k]) <= within)) return false;
+  return true;
+}
+
+/// "0.000000 deg", or of several axes "B 30.00000, C 0.000000 deg".
+std::string words_of(const Angles& angles, const Wish& wish, const std::vector<std::size_t>& also) {
+  std::string text;
+  for (const std::size_t k : also)
+    text += std::string(1, rotary_letters[k]) + " " + short_text(angles[k], 7) + ", ";
+  if (!text.empty()) text += std::string(1, rotary_letters[wish.axis]) + " ";
+  return text + short_text(angles[wish.axis], 7) + " deg";
+}
+
+/// The other rotary axes that turned in the log.
+Expected<std::vector<std::size_t>> also_turned(const std::vector<Touch>& touches, const Wish& wish,
+                                               const Campaign& campaign) {
+  std::vector<std::size_t> also;
+  for (std::size_t k = 0; k < rotary_letters.size(); ++k) {
+    if (k == wish.axis) continue;
+    const auto turned = std::find_if(touches.begin(), touches.end(), [&](const Touch& t) {
+      return !(std::fabs(t.angle[k] - touches.front().angle[k]) <= wish.same_angle);
+    });
+    if (turned == touches.end()) continue;
+    const std::string name(1, rotary_letters[k]);
+    const Axis* axis = campaign.machine.axis(name);
+    if (axis == nullptr || !axis->rotary)
+      return fail(at_line(turned->line, "axis " + name + " turned from " +
+                                            short_text(touches.front().angle[k], 7) + " to " +
+                                            short_text(turned->angle[k], 7) +
+                                            " deg; expected a rotary axis [machine.axes." + name +
+                                            "] in campaign.toml, found none"));
+    also.push_back(k);
+  }
+  return also;
+}
+
+/// Touches of one centre: as many as stated, or as long as all rotary axes stand still.
+Expected<std::vector<Group>> groups_of(const std::vector<Touch>& touches, const Wish& wish,
+                                       const std::vector<std::size_t>& also) {
   std::vector<Group> groups;
   for (const Touch& t : touches) {
     const bool stands =
-        !groups.empty() && std::fabs(t.angle - groups.back().front().angle) <= wish.same_angle;
+        !groups.empty() && same_angles(t.angle, groups.back().front().angle, wish.same_angle);
     const bool full = !groups.empty() && wish.touches > 0 && groups.back().size() == wish.touches;
     if (!groups.empty() && wish.touches > 0 && !full && !stands)
       return fail(at_line(t.line, "expected " + std::to_string(wish.touches) +
                                       " touches at each angle (option touches), found " +
                                       std::to_string(groups.back().size()) + " at " +
-                                      short_text(groups.back().front().angle, 7) + " deg"));
+                                      words_of(groups.back().front().angle, wish, also)));
     if (groups.empty() || full || !stands) groups.emplace_back();
     groups.back().push_back(t);
   }
@@ -133,11 +175,13 @@ Expected<Centre> centre_of(const Group& group, const Wish& wish) {
   return Centre{&group, std::move(*fit)};
 }
 
-Observations begin(const Measurement& m) {
+Observations begin(const Measurement& m, const std::vector<std::size_t>& also) {
   Observations obs;
   obs.measurement = m.id;
   obs.axes = {
       {m.axis, true, {}, {}}, {"X", false, {}, {}}, {"Y", false, {}, {}}, {"Z", false, {}, {}}};
+  for (const std::size_t k : also)
+    obs.axes.push_back({std::string(1, rotary_letters[k]), true, {}, {}});
   for (std::size_t k = 0; k < 3; ++k) {
     Observations::Line line{m.id + " " + "xyz" [k], {}};
     line.sense[k] = 1.0;
@@ -165,16 +209,21 @@ void note_spheres(const std::vector<Centre>& centres, double s, int dof, Observa
                         {"radius", radius, Quantity::length}}});
 }
 
-void put(const std::vector<Centre>& centres, const Wish& wish, double s, Observations& obs) {
-  std::map<std::int64_t, std::uint32_t> visits;  // how often the axis stood there before
+void put(const std::vector<Centre>& centres, const Wish& wish, const std::vector<std::size_t>& also,
+         double s, Observations& obs) {
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> visits;  // how often the axes stood there
   for (const Centre& c : centres) {
-    const double angle = c.group->front().angle;
-    const auto place = static_cast<std::int64_t>(
-        std::clamp(std::round(angle / std::max(10.0 * wish.same_angle, 1e-9)), -9e18, 9e18));
+    const Angles& angle = c.group->front().angle;
+    std::array<std::int64_t, 3> place{};
+    for (std::size_t k = 0; k < 3; ++k)
+      place[k] = static_cast<std::int64_t>(
+          std::clamp(std::round(angle[k] / std::max(10.0 * wish.same_angle, 1e-9)), -9e18, 9e18));
     const std::uint32_t run = ++visits[place];
     for (std::size_t k = 0; k < 3; ++k) {
-      obs.axes[0].position.push_back(angle * per_deg);
+      obs.axes[0].position.push_back(angle[wish.axis] * per_deg);
       for (std::size_t x = 0; x < 3; ++x) obs.axes[1 + x].position.push_back(c.fit.centre[x]);
+      for (std::size_t a = 0; a < also.size(); ++a)
+        obs.axes[4 + a].position.push_back(angle[also[a]] * per_deg);
       obs.deviation.push_back(c.fit.centre[k]);
       obs.u.push_back(s * std::sqrt(c.fit.cofactor[k]));
       obs.run.push_back(run);
@@ -189,7 +238,9 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   if (!wish) return fail(wish.error());
   const auto touches = touches_of(input.bytes, *wish);
   if (!touches) return fail(touches.error());
-  const auto groups = groups_of(*touches, *wish);
+  const auto also = also_turned(*touches, *wish, input.campaign);
+  if (!also) return fail(also.error());
+  const auto groups = groups_of(*touches, *wish, *also);
   if (!groups) return fail(groups.error());
   std::vector<Centre> centres;
   double rss = 0.0;
@@ -202,8 +253,8 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
     centres.push_back(std::move(*centre));
   }
   const double s = std::sqrt(rss / dof);
-  Observations obs = begin(input.measurement);
-  put(centres, *wish, s, obs);
+  Observations obs = begin(input.measurement, *also);
+  put(centres, *wish, *also, s, obs);
   if (!(s > 0.0)) obs.u.clear();  // touches without any scatter say nothing of it
   note_spheres(centres, s, dof, obs);
   return obs;
@@ -248,14 +299,14 @@ Reader reader() {
        {"touches",
         std::int64_t{0},
         "",
-        "Touches of one centre; 0: all while the rotary axis stands still.",
+        "Touches of one centre; 0: all while the rotary axes stand still.",
         {},
         0.0,
         1e6},
        {"same_angle_deg",
         0.001,
         "deg",
-        "How far the rotary axis may be off and still stand there.",
+        "How far a rotary axis may be off and still stand there.",
         {},
         0.0,
         1.0},

@@ -47,6 +47,7 @@ struct Run {
     if (!c.other_axis.empty()) {
       nonio::Axis other;
       other.name = c.other_axis;
+      other.rotary = std::string_view("ABC").find(other.name.front()) != std::string_view::npos;
       campaign.machine.axes.push_back(other);
     }
     measurement.id = "m";
@@ -123,18 +124,28 @@ struct Checker {
     return say("no such reading");
   }
 
-  /// centre RUN ANGLE X Y Z, mm
+  /// centre RUN ANGLE X Y Z [at AXIS ANGLE], mm and deg: AXIS turned too
   bool centre(std::istringstream& in) {
     const Observations& o = *read;
     std::uint32_t run = 0;
     double angle = 0.0, tolerance = 1e-6;
     double xyz[3] = {};
     in >> run >> angle >> xyz[0] >> xyz[1] >> xyz[2];
-    if (std::string word; in >> word && word == "tolerance") in >> tolerance;
+    std::string other;
+    double other_angle = 0.0;
+    for (std::string word; in >> word;) {
+      if (word == "tolerance") in >> tolerance;
+      if (word == "at") in >> other >> other_angle;
+    }
+    const auto* also = other.empty() ? nullptr : o.axis(other);
+    if (!other.empty() && also == nullptr) return say("expected axis " + other + ", found none");
+    const auto stands = [&](const auto& axis, std::size_t i, double where) {
+      return std::fabs(axis.position[i] * nonio::deg_per_rad - where) < 1e-9;
+    };
     int seen = 0;
     for (std::size_t i = 0; i < o.size(); ++i) {
-      if (o.run[i] != run || std::fabs(o.axes[0].position[i] * nonio::deg_per_rad - angle) > 1e-9)
-        continue;
+      if (o.run[i] != run || !stands(o.axes[0], i, angle)) continue;
+      if (also != nullptr && !stands(*also, i, other_angle)) continue;
       const auto& sense = o.sense_of(i);
       for (std::size_t k = 0; k < 3; ++k)
         if (sense[k] == 1.0) {
