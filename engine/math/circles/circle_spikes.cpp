@@ -17,8 +17,6 @@ namespace {
 constexpr double normal_quartile = 0.6745;  // median of |x|, in standard deviations
 constexpr double begins = 2.24, goes_on = 1.0, wide = 2.0 * full_turn / 360.0;
 
-double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
-
 using Residuals = std::map<double, std::pair<double, double>>;  // sum, count by the way since
 
 /// Residuals `from` .. `to` behind a reversal; several runs are averaged.
@@ -56,7 +54,8 @@ std::vector<Spike> reversal_spikes(std::span<const CircleReading> readings,
                            fit.u_at(model, reversal + direction * peak, direction));
       double first = INFINITY, last = -INFINITY;
       for (const auto& [way, of] : residuals)
-        if (of.first / of.second * sign_of(spike.height) >= 0.5 * std::fabs(spike.height))
+        if (of.first / of.second * std::copysign(1.0, spike.height) >=
+            0.5 * std::fabs(spike.height))
           first = std::min(first, way), last = std::max(last, way);
       spike.width = last - first;
       out.push_back(spike);
