@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Part programs that probe a ball on a rotary axis at several angles and heights, for the kind
-// ball-centres. Each touch is logged as nine numbers, X Y Z A B C U V W, as the reader
+// Part programs that probe a ball on a rotary axis, or on two of which one carries the other, at
+// several angles and heights, for the kind ball-centres. Each touch is logged as nine numbers, X Y Z A B C U V W, as the reader
 // linuxcnc-probe takes them.
 #include "nonio/sdk/plugin.h"
 
@@ -11,31 +11,28 @@
 #include <numbers>
 #include <optional>
 
+#include "ball.h"
 #include "nonio/sdk/format.h"
 #include "programs.h"
 
 namespace nonio {
 namespace {
 
-using Vector = std::array<double, 3>;
+using probing::Ball;
+using probing::Place;
+using probing::Touch;
+using probing::Turning;
+using probing::Vector;
 
 constexpr std::array<const char*, 3> linear{"X", "Y", "Z"};
-constexpr double degree = std::numbers::pi / 180.0;
 
 /// What the options ask for, mm and deg.
 struct Wish {
-  std::string dialect, axis;
-  Vector centre{}, ball{};
-  std::vector<double> angles, heights;
-  double radius = 0.0, approach = 0.0, beyond = 0.0, feed = 0.0, feed_deg = 0.0, probe_feed = 0.0;
-  bool with = true;
+  std::string dialect;
+  Ball ball;
+  std::vector<double> angles, carrier_angles, heights;
+  double feed = 0.0, feed_deg = 0.0, probe_feed = 0.0;
   std::int64_t runs = 1;
-  std::size_t about() const { return static_cast<std::size_t>(axis.front() - 'A'); }
-};
-
-/// One touch: from beside the ball to inside it.
-struct Touch {
-  Vector from{}, to{};
 };
 
 tl::unexpected<Error> wrong(const char* key, std::string message) {
@@ -50,31 +47,6 @@ std::string mm(double value) {
   return text.find('.') == std::string::npos ? text + ".0" : text;
 }
 
-/// Where the ball is at an angle: turned about a line along a coordinate.
-Vector turned(const Wish& w, double height, double angle) {
-  const std::size_t k = w.about(), i = (k + 1) % 3, j = (k + 2) % 3;
-  const double t = (w.with ? angle : -angle) * degree;
-  const double u = w.ball[i] - w.centre[i], v = w.ball[j] - w.centre[j];
-  Vector out;
-  out[i] = w.centre[i] + u * std::cos(t) - v * std::sin(t);
-  out[j] = w.centre[j] + u * std::sin(t) + v * std::cos(t);
-  out[k] = w.ball[k] + height;
-  return out;
-}
-
-/// From above, then from four sides at the height of the centre.
-std::vector<Touch> touches(const Wish& w, const Vector& c) {
-  std::vector<Touch> out;
-  for (const auto& [k, side] :
-       {std::pair<std::size_t, double>{2, 1.0}, {0, 1.0}, {0, -1.0}, {1, 1.0}, {1, -1.0}}) {
-    Touch t{c, c};
-    t.from[k] += side * (w.radius + w.approach);
-    t.to[k] += side * (w.radius - w.beyond);
-    out.push_back(t);
-  }
-  return out;
-}
-
 /// The words of a control.
 struct Dialect {
   const Wish& w;
@@ -85,10 +57,14 @@ struct Dialect {
   void line(const std::string& text) { out += text + "\n"; }
   void comment(const std::string& text) { line(siemens() ? "; " + text : "(" + text + ")"); }
 
-  std::string columns(double angle, const std::array<std::string, 3>& xyz, const char* between) {
+  std::string columns(const Place& place, const std::array<std::string, 3>& xyz,
+                      const char* between) {
+    std::array<std::string, 3> angles{"0", "0", "0"};
+    angles[w.ball.table.about()] = mm(place.angle);
+    if (place.carrier) angles[w.ball.carrier->about()] = mm(*place.carrier);
     std::string text;
-    for (const std::string& value : xyz) text += value + between;
-    for (std::size_t k = 0; k < 3; ++k) text += (k == w.about() ? mm(angle) : "0") + between;
+    for (const auto& values : {xyz, angles})
+      for (const std::string& value : values) text += value + between;
     return text + "0" + between + "0" + between + "0";
   }
 
@@ -107,9 +83,14 @@ struct Dialect {
     line("G1 " + words + " F" + programs::number(feed));
   }
 
-  void touch(const Touch& t, std::size_t k, double angle) {
+  void touch(const Touch& t, const Place& place) {
     const std::string feed = " F" + programs::number(w.probe_feed);
-    const std::string to = linear[k] + mm(t.to[k]);
+    std::string to;
+    std::size_t k = 0;  // the axis that goes farthest
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (t.from[i] != t.to[i]) to += (to.empty() ? "" : " ") + (linear[i] + mm(t.to[i]));
+      if (std::fabs(t.from[i] - t.to[i]) > std::fabs(t.from[k] - t.to[k])) k = i;
+    }
     if (siemens()) {
       // All three: positions are stored of the axes that the block names.
       std::string all;
@@ -121,12 +102,12 @@ struct Dialect {
         return "\"<<$AA_MM[" + std::string(axis) + "]<<\"";
       };
       line("WRITE(RC,\"" + log + "\",\"" +
-           columns(angle, {value("X"), value("Y"), value("Z")}, " ") + "\")");
+           columns(place, {value("X"), value("Y"), value("Z")}, " ") + "\")");
     } else if (w.dialect == "fanuc") {
       line("G31 " + to + feed);
       line("IF [ABS[#" + std::to_string(5061 + k) + "-[" + mm(t.to[k]) +
            "]] LT 0.002] THEN #3000=1(NO CONTACT)");
-      line("DPRNT[" + columns(angle, {"#5061[44]", "#5062[44]", "#5063[44]"}, "*") + "]");
+      line("DPRNT[" + columns(place, {"#5061[44]", "#5062[44]", "#5063[44]"}, "*") + "]");
     } else {
       line("G38.2 " + to + feed);
     }
@@ -151,6 +132,29 @@ std::optional<Vector> three(const Settings& o, const char* name) {
   return Vector{v[0], v[1], v[2]};
 }
 
+/// The axis that carries the other, and its positions, if one is named.
+Expected<void> add_carrier(const Settings& o, const Machine& machine, Wish& w) {
+  Turning carrier;
+  carrier.axis = o.text("carried_by");
+  if (carrier.axis.empty()) return {};
+  const Axis* axis = machine.axis(carrier.axis);
+  if (axis == nullptr || !axis->rotary || carrier.axis == w.ball.table.axis)
+    return wrong("carried_by", "carried_by: expected another rotary axis of the machine than " +
+                                   w.ball.table.axis + ", found " + carrier.axis);
+  const auto centre = three(o, "carrier_centre_mm");
+  if (!centre)
+    return wrong("carrier_centre_mm",
+                 "carrier_centre_mm: expected X, Y, Z of a point of axis " + carrier.axis);
+  w.carrier_angles = o.numbers("carrier_deg");
+  if (w.carrier_angles.empty())
+    return wrong("carrier_deg", "carrier_deg: expected the positions of axis " + carrier.axis +
+                                    ", three or more; found none");
+  carrier.centre = *centre;
+  carrier.with = o.text("carrier_turns") == "right-handed";
+  w.ball.carrier = std::move(carrier);
+  return {};
+}
+
 Expected<Wish> wish_of(const Settings& o, const Machine& machine) {
   Wish w;
   w.dialect = o.text("dialect");
@@ -158,21 +162,24 @@ Expected<Wish> wish_of(const Settings& o, const Machine& machine) {
     return wrong("dialect",
                  "heidenhain: no public text of the blocks of its touch-probe cycles was found, so "
                  "no program is written; expected linuxcnc, fanuc or siemens");
-  w.axis = o.text("axis");
+  w.ball.table.axis = o.text("axis");
   const auto centre = three(o, "centre_mm"), ball = three(o, "ball_mm");
   if (!centre) return wrong("centre_mm", "centre_mm: expected X, Y, Z of a point of the axis");
   if (!ball) return wrong("ball_mm", "ball_mm: expected X, Y, Z of the ball with the axis at 0");
-  w.centre = *centre, w.ball = *ball;
+  w.ball.table.centre = *centre, w.ball.at = *ball;
   w.heights = o.numbers("heights_mm");
   if (w.heights.empty()) w.heights = {0.0};
-  w.radius = o.number("radius_mm"), w.approach = o.number("approach_mm");
-  w.beyond = o.number("beyond_mm");
-  if (w.beyond >= w.radius)
-    return wrong("beyond_mm", "beyond_mm: expected less than radius_mm, " + mm(w.radius) +
-                                  "; found " + mm(w.beyond));
+  w.ball.radius = o.number("radius_mm"), w.ball.approach = o.number("approach_mm");
+  w.ball.beyond = o.number("beyond_mm");
+  if (w.ball.beyond >= w.ball.radius)
+    return wrong("beyond_mm", "beyond_mm: expected less than radius_mm, " + mm(w.ball.radius) +
+                                  "; found " + mm(w.ball.beyond));
   w.feed = o.number("feed_mm_per_min"), w.feed_deg = o.number("feed_deg_per_min");
   w.probe_feed = o.number("probe_feed_mm_per_min");
-  w.with = o.text("turns") == "right-handed";
+  const std::string stem = o.text("stem");
+  w.ball.stem = {};
+  w.ball.stem[static_cast<std::size_t>(stem[1] - 'X')] = stem[0] == '+' ? 1.0 : -1.0;
+  w.ball.table.with = o.text("turns") == "right-handed";
   w.runs = o.integer("runs");
   const double from = o.number("from_deg"), to = o.number("to_deg");
   const auto places = static_cast<std::size_t>(o.integer("places"));
@@ -182,9 +189,10 @@ Expected<Wish> wish_of(const Settings& o, const Machine& machine) {
   for (std::size_t i = 0; i < places; ++i)
     w.angles.push_back(from + (to - from) * static_cast<double>(i) /
                                   static_cast<double>(turn ? places : places - 1));
-  const Axis* axis = machine.axis(w.axis);
+  const Axis* axis = machine.axis(w.ball.table.axis);
   if (axis == nullptr || !axis->rotary)
-    return wrong("axis", "the machine has no rotary axis " + w.axis);
+    return wrong("axis", "the machine has no rotary axis " + w.ball.table.axis);
+  if (auto added = add_carrier(o, machine, w); !added) return fail(added.error());
   return w;
 }
 
@@ -192,51 +200,89 @@ Expected<Wish> wish_of(const Settings& o, const Machine& machine) {
 Expected<void> reaches(const Machine& machine, const char* name, double value, bool rotary) {
   const Axis* axis = machine.axis(name);
   if (axis == nullptr || !axis->travel) return {};
-  const double si = rotary ? value * degree : value * 1e-3;
+  const double si = rotary ? value * std::numbers::pi / 180.0 : value * 1e-3;
   const auto [from, to] = *axis->travel;
   if (si > from - 1e-9 && si < to + 1e-9) return {};
   return wrong("machine.axes",
                std::string("axis ") + name + " would go to " + mm(value) + ", outside its travel");
 }
 
-Expected<std::string> program(const Wish& w, const Machine& machine, double height,
-                              const std::string& name) {
-  std::vector<Vector> centres;
-  for (const double angle : w.angles) centres.push_back(turned(w, height, angle));
-  double safe = centres.front()[2];
-  for (const Vector& c : centres) safe = std::max(safe, c[2]);
-  safe += w.radius + 2.0 * w.approach;
-  Dialect d{w, w.dialect == "siemens" ? "NONIO_" + name : "nonio-" + name + ".txt", {}};
-  d.comment("ball on " + w.axis + ", " + std::to_string(w.angles.size()) + " angles, " +
-            std::to_string(w.runs) + " runs, 5 touches each");
+/// All places, in the order of the program.
+std::vector<Place> places_of(const Wish& w, double height) {
+  std::vector<Place> out;
+  std::vector<std::optional<double>> carrier(w.carrier_angles.begin(), w.carrier_angles.end());
+  if (!w.ball.carrier) carrier = {std::nullopt};
+  for (std::int64_t run = 0; run < w.runs; ++run)
+    for (const auto& carried : carrier)
+      for (const double angle : w.angles) out.push_back(place_of(w.ball, height, angle, carried));
+  return out;
+}
+
+void begin(Dialect& d, const Wish& w) {
+  const std::string angles = std::to_string(w.angles.size()) + " angles, ",
+                    runs = std::to_string(w.runs) + " runs";
+  if (w.ball.carrier)
+    d.comment("ball on " + w.ball.table.axis + ", carried by " + w.ball.carrier->axis + ", " +
+              std::to_string(w.carrier_angles.size()) + " times " + angles + runs);
+  else
+    d.comment("ball on " + w.ball.table.axis + ", " + angles + runs + ", 5 touches each");
   d.comment("positions: machine, mm, of the stylus tip; no offset may be active");
   d.comment(
       "from above and from four sides at the height of the centre: the stem must not be there");
-  d.comment("the ball goes " + std::string(w.with ? "right-handed" : "left-handed") +
-            " about the axis: LOOK AT IT FIRST");
+  for (const Turning* turning : {&w.ball.table, w.ball.carrier ? &*w.ball.carrier : nullptr})
+    if (turning != nullptr)
+      d.comment("the ball goes " + std::string(turning->with ? "right-handed" : "left-handed") +
+                " about " + (w.ball.carrier ? "axis " + turning->axis : std::string("the axis")) +
+                ": LOOK AT IT FIRST");
   d.comment("DRY RUN FIRST, WITHOUT THE BALL, AT LOW OVERRIDE");
   d.begin();
+}
+
+/// That the machine reaches a place and all its touches.
+Expected<void> reaches(const Wish& w, const Machine& machine, const Place& place, double safe) {
+  if (auto there = reaches(machine, w.ball.table.axis.c_str(), place.angle, true); !there)
+    return there;
+  if (place.carrier)
+    if (auto there = reaches(machine, w.ball.carrier->axis.c_str(), *place.carrier, true); !there)
+      return there;
+  const std::vector<Touch> all = touches(w.ball, place);
+  if (all.empty())
+    return wrong("stem",
+                 "stem: at " + w.ball.table.axis + mm(place.angle) +
+                     (place.carrier ? " " + w.ball.carrier->axis + mm(*place.carrier) : "") +
+                     " the stem is above the ball, where the stylus comes from");
+  for (const Touch& t : all)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const double at : {t.from[k], t.to[k], k == 2 ? safe : t.from[k]})
+        if (auto there = reaches(machine, linear[k], at, false); !there) return there;
+  return {};
+}
+
+Expected<std::string> program(const Wish& w, const Machine& machine, double height,
+                              const std::string& name) {
+  const std::vector<Place> places = places_of(w, height);
+  double safe = places.front().ball[2];
+  for (const Place& place : places) safe = std::max(safe, place.ball[2]);
+  safe += w.ball.radius + 2.0 * w.ball.approach;
+  Dialect d{w, w.dialect == "siemens" ? "NONIO_" + name : "nonio-" + name + ".txt", {}};
+  begin(d, w);
   d.move("Z" + mm(safe), w.feed);
-  for (std::int64_t run = 0; run < w.runs; ++run)
-    for (std::size_t i = 0; i < centres.size(); ++i) {
-      if (auto there = reaches(machine, w.axis.c_str(), w.angles[i], true); !there)
-        return fail(there.error());
-      d.move(w.axis + mm(w.angles[i]), w.feed_deg);
-      for (const Touch& t : touches(w, centres[i])) {
-        for (std::size_t k = 0; k < 3; ++k)
-          for (const double at : {t.from[k], t.to[k], k == 2 ? safe : t.from[k]})
-            if (auto there = reaches(machine, linear[k], at, false); !there)
-              return fail(there.error());
-        std::size_t k = 0;
-        for (std::size_t n = 0; n < 3; ++n)
-          if (t.from[n] != t.to[n]) k = n;
-        d.move("X" + mm(t.from[0]) + " Y" + mm(t.from[1]), w.feed);
-        d.move("Z" + mm(t.from[2]), w.feed);
-        d.touch(t, k, w.angles[i]);
-        d.move(linear[k] + mm(t.from[k]), w.feed);
-        d.move("Z" + mm(safe), w.feed);
-      }
+  for (const Place& place : places) {
+    if (auto there = reaches(w, machine, place, safe); !there) return fail(there.error());
+    std::string turn = w.ball.table.axis + mm(place.angle);
+    if (place.carrier) turn = w.ball.carrier->axis + mm(*place.carrier) + " " + turn;
+    d.move(turn, w.feed_deg);
+    for (const Touch& t : touches(w.ball, place)) {
+      d.move("X" + mm(t.from[0]) + " Y" + mm(t.from[1]), w.feed);
+      d.move("Z" + mm(t.from[2]), w.feed);
+      d.touch(t, place);
+      std::string back;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (t.from[k] != t.to[k]) back += (back.empty() ? "" : " ") + (linear[k] + mm(t.from[k]));
+      d.move(back, w.feed);
+      d.move("Z" + mm(safe), w.feed);
     }
+  }
   d.end();
   return d.out;
 }
@@ -248,8 +294,9 @@ Expected<OutputResult> write(const OutputInput& in) {
   OutputResult result;
   const char* ending = w->dialect == "siemens" ? ".mpf" : ".ngc";
   for (std::size_t i = 0; i < w->heights.size(); ++i) {
-    const std::string name =
-        w->axis + (w->heights.size() > 1 ? std::to_string(i + 1) : std::string());
+    const std::string name = (w->ball.carrier ? w->ball.carrier->axis : std::string()) +
+                             w->ball.table.axis +
+                             (w->heights.size() > 1 ? std::to_string(i + 1) : std::string());
     auto text = program(*w, machine, w->heights[i], name);
     if (!text) return fail(text.error());
     result.artifacts.push_back({"program-probing-" + name + ending, std::move(*text)});
@@ -267,16 +314,36 @@ std::vector<Option> options() {
        "",
        "linuxcnc: G38.2; fanuc: G31; siemens: MEAS; heidenhain is refused, with the reason.",
        {"linuxcnc", "fanuc", "siemens", "heidenhain"}},
-      {"axis", std::string("C"), "", "The rotary axis.", {"A", "B", "C"}},
-      {"centre_mm", std::vector<double>{}, "mm", "X, Y, Z of a point of the axis, roughly."},
+      {"axis", std::string("C"), "", "The rotary axis that carries the ball.", {"A", "B", "C"}},
+      {"centre_mm", std::vector<double>{}, "mm",
+       "X, Y, Z of a point of the axis, roughly; with all axes at 0."},
       {"ball_mm", std::vector<double>{}, "mm",
        "X, Y, Z of the machine with the stylus tip in the ball's centre, the axis at 0."},
+      {"stem",
+       std::string("-Z"),
+       "",
+       "Where the ball's stem goes from the ball, with all axes at 0.",
+       {"-Z", "+X", "-X", "+Y", "-Y"}},
       {"heights_mm", std::vector<double>{}, "mm",
        "A program for each: how far along the axis the ball is set on; empty: one, 0."},
       {"turns",
        std::string("right-handed"),
        "",
        "How the ball goes round as the axis's coordinate grows, about +X, +Y or +Z.",
+       {"right-handed", "left-handed"}},
+      {"carried_by",
+       std::string(),
+       "",
+       "A rotary axis on the bed that carries the other one and turns too.",
+       {"", "A", "B", "C"}},
+      {"carrier_centre_mm", std::vector<double>{}, "mm",
+       "X, Y, Z of a point of that axis, roughly."},
+      {"carrier_deg", std::vector<double>{}, "deg",
+       "Its positions: all angles are probed at each of them."},
+      {"carrier_turns",
+       std::string("right-handed"),
+       "",
+       "As turns, of that axis.",
        {"right-handed", "left-handed"}},
       {"places", std::int64_t{8}, "", "Angles, evenly.", {}, 3.0, 1000.0},
       {"from_deg", 0.0, "deg", "First angle.", {}, -3600.0, 3600.0},
@@ -296,7 +363,7 @@ std::vector<Option> options() {
 NONIO_PLUGIN(registry) {
   nonio::Output output;
   output.info = {"program-probing", "1.0.0",
-                 "Part programs that probe a ball on a rotary axis at several angles.",
+                 "Part programs that probe a ball on a rotary axis, or on two, at several angles.",
                  nonio::options(), true};
   output.applies = [](const nonio::Campaign&) { return true; };
   output.write = nonio::write;

@@ -164,15 +164,15 @@ class Probing(unittest.TestCase):
     CENTRE, DIRECTION, RADIUS = (350.021, 249.987, 0.0), (1.1e-4, -6e-5, 1.0), 15.0
     NOMINAL, BALL = (350.0, 250.0, 0.0), (530.0, 250.0, -60.0)
 
-    def turned(self, point, degrees):
+    def turned(self, point, degrees, centre=CENTRE, direction=DIRECTION):
         """Rodrigues' formula about the true axis."""
-        size = math.sqrt(sum(d * d for d in self.DIRECTION))
-        n = [d / size for d in self.DIRECTION]
-        arm = [p - c for p, c in zip(point, self.CENTRE)]
+        size = math.sqrt(sum(d * d for d in direction))
+        n = [d / size for d in direction]
+        arm = [p - c for p, c in zip(point, centre)]
         along, t = sum(a * b for a, b in zip(arm, n)), math.radians(degrees)
         cross = [n[1] * arm[2] - n[2] * arm[1], n[2] * arm[0] - n[0] * arm[2], n[0] * arm[1] - n[1] * arm[0]]
         return [c + a * math.cos(t) + x * math.sin(t) + d * along * (1 - math.cos(t))
-                for c, a, x, d in zip(self.CENTRE, arm, cross, n)]
+                for c, a, x, d in zip(centre, arm, cross, n)]
 
     def touched(self, start, end, ball):
         """Where a straight move meets the sphere."""
@@ -251,6 +251,77 @@ class Probing(unittest.TestCase):
                 self.assertAlmostEqual(values["centre_" + axis]["value"], c + d * z, delta=1e-5)
             for axis, d in zip("ijk", self.DIRECTION):
                 self.assertAlmostEqual(values["direction_" + axis]["value"], d, delta=1e-7)
+
+
+    # B on the bed carries C: lines with both at 0, C 0.03 mm beside B; five positions of B, six of C.
+    B_CENTRE, B_DIRECTION = (350.05, 0.0, -100.02), (2e-4, 1.0, -1e-4)
+    TILTS, TURNS, STEM = (-60.0, -30.0, 0.0, 30.0, 60.0), [60.0 * i for i in range(6)], 4.0
+
+    def probed_on_two(self, program):
+        """The log. Neither ball nor stem is touched on the way."""
+        done = subprocess.run(["rs274", "-g", program.name], cwd=program.parent, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        both = lambda p, b, c: self.turned(self.turned(p, c), b, self.B_CENTRE, self.B_DIRECTION)
+        ball = [b + o for b, o in zip(self.BALL, (0.02, -0.03, 0.01))]
+        at, log, places = None, [], []
+        for line in done.stdout.splitlines():
+            found = re.search(r"(STRAIGHT_FEED|STRAIGHT_TRAVERSE|STRAIGHT_PROBE)\(([^)]*)\)", line)
+            if not found:
+                continue
+            to = [float(v) for v in found.group(2).split(",")][:6]
+            here, foot = (both(p, to[4], to[5]) for p in (ball, [*ball[:2], ball[2] - 200.0]))
+            if found.group(1) == "STRAIGHT_PROBE":
+                point = self.touched(at[:3], to[:3], here)
+                log.append(" ".join(f"{v:.6f}" for v in [*point, *to[3:], 0, 0, 0]))
+                places.append((to[4], to[5]))
+                path = [[a + (b - a) * k / 20 for a, b in zip(at[:3], point)] for k in range(21)]
+                at = [*point, *to[3:]]
+            elif at is not None and at[3:] == to[3:]:
+                path = [[a + (b - a) * k / 50 for a, b in zip(at[:3], to[:3])] for k in range(1, 51)]
+                at = to
+            else:
+                path, at = [to[:3]], to
+            for p in path:
+                self.assertGreaterEqual(math.dist(p, here), self.RADIUS - 1e-9, line)
+                for k in range(41):  # stylus tip 3 mm, stem 1 mm in radius
+                    self.assertGreater(math.dist(p, [a + (b - a) * k / 40 for a, b in zip(here, foot)][:3]), self.STEM, line)
+        self.assertEqual(sorted(set(places)), sorted((b, c) for b in self.TILTS for c in self.TURNS))
+        self.assertGreaterEqual(min(places.count(p) for p in set(places)), 5)
+        return "\n".join(log) + "\n"
+
+    def test_two_axes_read_back_give_both_lines(self):
+        with tempfile.TemporaryDirectory(prefix="nonio-rs274-") as name:
+            folder = pathlib.Path(name)
+            settings = {"axis": "C", "centre_mm": "350,250,0", "ball_mm": "430,250,-20", "radius_mm": self.RADIUS,
+                        "places": 6, "carried_by": "B", "carrier_centre_mm": "350,0,-100", "carrier_deg": "-60,-30,0,30,60"}
+            self.BALL = (430.0, 250.0, -20.0)
+            command = [NONIO, "plan", "program", "--axis", "X=0:700", "--axis", "Y=0:500", "--axis", "Z=-400:200",
+                       "--axis", "B=-100:100", "--axis", "C=0:360", "--control", "probing", "--out", folder / "p"]
+            for key, value in settings.items():
+                command += ["--set", f"{key}={value}"]
+            subprocess.run(command, check=True, capture_output=True, timeout=60)
+            program = folder / "p" / "program-probing-BC.ngc"
+            (folder / "site" / "c").mkdir(parents=True)
+            (folder / "site" / "c" / "bc.txt").write_text(self.probed_on_two(program))
+            (folder / "site" / "c" / "campaign.toml").write_text(
+                'format = 1\n[campaign]\nid = "c"\n[machine.axes.B]\nkind = "rotary"\n[machine.axes.C]\nkind = "rotary"\n'
+                '[run]\nanalyses = ["rotary-chain"]\noutputs = ["json"]\n[options.linuxcnc-probe]\nunit = "mm"\n'
+                '[options.rotary-chain]\ntables = ["B", "C"]\n'
+                '[[measurement]]\nid = "BC"\nkind = "ball-centres"\naxis = "C"\nfile = "bc.txt"\n')
+            subprocess.run([NONIO, "run", folder / "site", "--out", folder / "out", "--quiet", "--root"], capture_output=True,
+                           timeout=120)
+            results = json.loads((folder / "out" / "c" / "results.json").read_text())
+        self.assertEqual(results["errors"], [])
+        values = next(a["values"] for a in results["analyses"] if a["plugin"] == "rotary-chain")
+        for axis, centre, direction in (("B", self.B_CENTRE, self.B_DIRECTION), ("C", self.CENTRE, self.DIRECTION)):
+            size = math.sqrt(sum(d * d for d in direction))
+            n = [d / size for d in direction]
+            found = [values[f"centre_{k}_{axis}"]["value"] - c for k, c in zip("xyz", centre)]
+            off = sum(a * b for a, b in zip(found, n))
+            for k, a, d in zip("xyz", found, n):  # any point of the line will do
+                self.assertAlmostEqual(a, off * d, delta=1e-5, msg=f"{axis} {k}")
+            for k, d in zip("ijk", n):
+                self.assertAlmostEqual(values[f"direction_{k}_{axis}"]["value"], d, delta=1e-7, msg=f"{axis} {k}")
 
 
 class SignProbe(unittest.TestCase):

@@ -299,6 +299,37 @@ class Probing(VerbTest):
         self.assertEqual([lines[lines.index(f"G1 B{a} F720") + 1] for a in ("-90.0", "0.0", "90.0")],
                          [f"G1 X{x} Y250.0 F1000" for x in ("270.0", "350.0", "430.0")])  # +Z turns towards +X
 
+    def test_two_axes(self):
+        """C on B, the ball 180 mm from C and 60 mm below it: with B at 90 C lies along X, so that the ball, at C 90, is at
+        X = 350 + (-60 + 100), Y = 250 + 180, Z = -100. Its stem goes to -X then: no touch comes from there."""
+        two = {"carried_by": "B", "carrier_centre_mm": "350,0,-100", "carrier_deg": "0,90"}
+        _, files = self.wrote(**two)
+        lines = files["program-probing-BC.ngc"]
+        self.assertEqual([line for line in lines if re.match("G1 B", line)],
+                         [f"G1 B{b}.0 C{90 * i}.0 F720" for b in (0, 90) for i in range(4)])
+        at = lines.index("G1 B90.0 C90.0 F720")
+        end = lines.index("G1 B90.0 C180.0 F720")
+        self.assertEqual(lines[at + 1:at + 4], ["G1 X390.0 Y430.0 F1000", "G1 Z-81.0 F1000", "G38.2 Z-87.0 F100"])
+        touches = [line for line in lines[at:end] if line.startswith("G38.2")]
+        self.assertEqual(touches, ["G38.2 Z-87.0 F100", "G38.2 X403.0 F100", "G38.2 Y443.0 F100", "G38.2 Y417.0 F100",
+                                   "G38.2 X399.1924 Y439.1924 F100", "G38.2 X399.1924 Y420.8076 F100"])
+        for dialect, ending, words in (("fanuc", "ngc", "DPRNT[#5061[44]*#5062[44]*#5063[44]*0*90.0*180.0*0*0*0]"),
+                                       ("siemens", "mpf", '<<$AA_MM[Z]<<" 0 90.0 180.0 0 0 0")')):
+            _, files = self.wrote(dialect=dialect, **two)
+            self.assertIn(words, "\n".join(files["program-probing-BC." + ending]))
+        _, files = self.wrote(**{**two, "carrier_turns": "left-handed"})
+        self.assertIn("G1 X310.0 Y430.0 F1000", files["program-probing-BC.ngc"])
+
+    def test_what_two_axes_cannot_be(self):
+        two = {"carried_by": "B", "carrier_centre_mm": "350,0,-100", "carrier_deg": "0,90"}
+        for settings, words in (({"carried_by": "C"}, "another rotary axis of the machine than C"),
+                                ({"carried_by": "A"}, "another rotary axis"), ({"carrier_centre_mm": "1,2"}, "carrier_centre_mm"),
+                                ({"carrier_deg": ""}, "carrier_deg"), ({"carrier_deg": "0,120"}, "axis B would go to 120"),
+                                ({"stem": "+X", "carrier_deg": "-90"}, "the stem is above the ball")):
+            said, files = self.wrote(expect=2, **{**two, **settings})
+            self.assertIn(words, said)
+            self.assertEqual(files, {}, settings)
+
     def test_what_cannot_be(self):
         for settings, words in (({"dialect": "heidenhain"}, "no public text"), ({"centre_mm": "350,250"}, "X, Y, Z of a point"),
                                 ({"ball_mm": "1,2,x"}, "ball_mm"), ({"beyond_mm": 15}, "less than radius_mm"),
