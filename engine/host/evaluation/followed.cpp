@@ -125,8 +125,26 @@ std::optional<Named> named_of_circle(const std::string& value, const Measurement
   return std::nullopt;
 }
 
+/// Of two rotary axes in one chain: lines with both at 0, from other positions than those of one axis
+/// alone, so beside them. What both have is called by both.
+std::optional<Named> named_of_chain(const Results::Analysed& a, const std::string& value) {
+  if (value == "distance" || value == "angle") {
+    std::string axes;
+    for (const Value& v : a.evaluation.values)
+      if (v.name.starts_with("direction_i_")) axes += v.name.substr(12);
+    return Named{"chain_" + value + ':' + axes, axes};
+  }
+  for (const auto& [begin, name] :
+       {std::pair("centre_x_", "chain_x"), std::pair("centre_y_", "chain_y"),
+        std::pair("centre_z_", "chain_z"), std::pair("direction_i_", "chain_i"),
+        std::pair("direction_j_", "chain_j"), std::pair("direction_k_", "chain_k")})
+    if (value.starts_with(begin)) return Named{name, value.substr(std::string(begin).size())};
+  return std::nullopt;
+}
+
 std::optional<Named> named(const Results::Analysed& a, const std::string& value,
                            const Campaign& campaign) {
+  if (a.plugin == "rotary-chain") return named_of_chain(a, value);
   if (a.plugin == "circle")
     for (const Measurement& m : campaign.measurements)
       if (m.id == a.measurement) return named_of_circle(value, m);
@@ -146,10 +164,12 @@ std::optional<Named> named(const Results::Analysed& a, const std::string& value,
 bool is_set_up(const Results::Analysed& a, const std::string& name) {
   static const std::map<std::string, std::string> along{
       {"centre_x", "direction_i"}, {"centre_y", "direction_j"}, {"centre_z", "direction_k"}};
-  const auto direction = along.find(name);
+  const std::size_t size = std::string("centre_x").size();
+  const auto direction = along.find(name.substr(0, size));
   if (direction == along.end()) return false;
+  const std::string of = direction->second + name.substr(size);  // of a chain: and its axis
   for (const Value& v : a.evaluation.values)
-    if (v.name == direction->second) return std::fabs(v.value) > 0.7;
+    if (v.name == of) return std::fabs(v.value) > 0.7;
   return true;
 }
 

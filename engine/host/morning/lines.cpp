@@ -210,7 +210,7 @@ std::string kind_of(const std::string& quantity) {
   if (is("ln_s")) return "scatter";
   if (is("squareness")) return "squareness";
   if (is("straightness")) return "straightness";
-  if (is("centre") || is("direction")) return "centre";
+  if (is("centre") || is("direction") || is("chain_")) return "centre";
   return "parameter";
 }
 
