@@ -211,13 +211,14 @@ class Page {
     notes(a, "  ");
   }
 
-  /// To the second significant digit of U, or to three decimals without one.
+  /// To the second significant digit of U. Without one to three decimals, of what has no unit (a
+  /// direction) to seven.
   static std::string number(const Json& of, const char* key) {
     if (!of.contains(key)) return {};
     const double value = of.at(key), U = of.value("U", 0.0);
     if (of.at(key).is_number_integer()) return std::to_string(of.at(key).get<std::int64_t>());
-    if (!(U > 0.0)) return fixed_text(value, 3);
-    return fixed_text(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, 9));
+    if (!(U > 0.0)) return fixed_text(value, of.value("unit", "").empty() ? 7 : 3);
+    return fixed_text(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, 12));
   }
 
   static std::string shortest(double value) {
@@ -229,20 +230,23 @@ class Page {
   void values(const Json& all) {
     if (all.empty()) return;
     bool limits = false;
-    std::size_t name_width = 8;
+    std::size_t name_width = 8, value_width = 12, U_width = 10;
     for (const auto& [name, v] : all.items()) {
       limits = limits || v.contains("decision");
       name_width = std::max(name_width, columns_of(name) + 1);
+      value_width = std::max(value_width, number(v, "value").size());
+      U_width = std::max(U_width, number(v, "U").size() + 1);
     }
-    out_ << "    " << to_width("", name_width) << to_width(say_("value"), 12, true)
-         << to_width("U", 10, true) << "  "
+    out_ << "    " << to_width("", name_width) << to_width(say_("value"), value_width, true)
+         << to_width("U", U_width, true) << "  "
          << (limits ? to_width(say_("unit"), 10) + to_width(say_("limit"), 9, true) + "  " +
                           say_("decision")
                     : say_("unit"))
          << "\n";
     for (const auto& [name, v] : all.items()) {
-      out_ << "    " << to_width(name, name_width) << to_width(number(v, "value"), 12, true)
-           << to_width(number(v, "U"), 10, true) << "  ";
+      out_ << "    " << to_width(name, name_width)
+           << to_width(number(v, "value"), value_width, true)
+           << to_width(number(v, "U"), U_width, true) << "  ";
       const std::string unit = v.value("unit", ""), decision = v.value("decision", "");
       if (decision.empty())
         out_ << unit << "\n";

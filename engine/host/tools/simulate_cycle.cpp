@@ -39,7 +39,7 @@ class CycleReader {
                         : reader_.number("noise_um", 1e-6))
                    .value_or(0.0);
     if (c_.is("straightness")) c_.set_up = reader_.number("set_up_urad", 1e-6).value_or(0.0);
-    read_balls();
+    read_balls(campaign);
     read_misreadings();
     read_temperature();
     reader_.finish();
@@ -137,12 +137,31 @@ class CycleReader {
       reader_.error("steps", "is missing: the moves of each axis");
   }
 
-  void read_balls() {
+  void read_carrier(const Campaign& campaign) {
+    c_.carrier = reader_.text("carrier");
+    const auto at = reader_.numbers("carrier_deg");
+    if (c_.carrier.empty() != !at)
+      reader_.error(c_.carrier.empty() ? "carrier" : "carrier_deg",
+                    c_.carrier.empty() ? "is missing: the axis of carrier_deg"
+                                       : "is missing: the positions of axis " + c_.carrier);
+    if (c_.carrier.empty() || !at) return;
+    const Axis* axis = campaign.machine.axis(c_.carrier);
+    if (axis == nullptr || !axis->rotary || axis->name == c_.axis.name)
+      reader_.error("carrier", "expected another rotary axis of the machine than " + c_.axis.name +
+                                   ", found " + c_.carrier);
+    if (at->empty() || at->size() > 1000)
+      reader_.error("carrier_deg",
+                    "expected 1 to 1000 positions, found " + std::to_string(at->size()));
+    for (const double degrees : *at) c_.carrier_at.push_back(degrees / deg_per_rad);
+  }
+
+  void read_balls(const Campaign& campaign) {
     if (!c_.is("ball-centres") && !c_.is("rtcp")) return;
     c_.balls = vectors_at(reader_, "ball_mm", 1e-3);
     if (c_.balls.empty()) reader_.error("ball_mm", "is missing: where the ball is, [X, Y, Z]");
     if (c_.is("ball-centres")) {
       if (c_.balls.size() > 1) reader_.error("ball_mm", "expected one ball");
+      read_carrier(campaign);
       return;
     }
     c_.sensor = reader_.text("sensor");

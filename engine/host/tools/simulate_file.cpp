@@ -42,6 +42,7 @@ std::string ball_row(const CycleSpec& c, const Observations& o, std::size_t i,
                      const std::vector<double>& e) {
   std::string text = std::to_string(o.run[i]) + (o.axes[0].approach[i] > 0 ? ",+," : ",-,") +
                      shortest(printed(o.axes[0].position[i], Quantity::angle));
+  if (!c.carrier.empty()) text += "," + shortest(printed(o.axes[4].position[i], Quantity::angle));
   const bool probe = c.sensor == "probe";
   for (std::size_t k = 0; k < 3; ++k)
     text += "," + millimetres(c.is("rtcp") ? o.axes[1 + k].position[i] : e[k]);
@@ -77,7 +78,8 @@ std::string header_of(const CycleSpec& c) {
   } else if (c.is("circle")) {
     text = "run,direction,angle_deg,deviation_um";
   } else if (of_ball(c)) {
-    text = "run,direction,angle_deg,x_mm,y_mm,z_mm";
+    text = "run,direction,angle_deg" + (c.carrier.empty() ? "" : "," + c.carrier + "_deg") +
+           ",x_mm,y_mm,z_mm";
     if (c.is("rtcp"))
       text += c.sensor == "probe"   ? ",dx_um,dy_um,dz_um,line"
               : c.sensor == "turns" ? ",tx,ty,tz,deviation_um,line"

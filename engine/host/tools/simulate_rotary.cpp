@@ -35,31 +35,45 @@ class Rows {
     o_.measurement = c.measurement.id;
     o_.axes.push_back({c.axis.name, true, {}, {}});
     for (const char* axis : {"X", "Y", "Z"}) o_.axes.push_back({axis, false, {}, {}});
+    if (!c.carrier.empty()) o_.axes.push_back({c.carrier, true, {}, {}});
   }
   void line(std::string name, const Vector& sense) { o_.lines.push_back({std::move(name), sense}); }
 
-  /// Reads at each angle: put(angle) adds the readings of one place with `add`.
+  /// Reads at each angle: put(angle) adds the readings of one place with `add`. Of a carrier: at its
+  /// positions, one after the other, in each run.
   template <class Put>
   void sweep(Put put) {
-    double last = c_.targets.front();
+    last_ = c_.targets.front();
+    const std::vector<double> carrier = c_.carrier.empty() ? std::vector{0.0} : c_.carrier_at;
     for (std::uint32_t run = 1; run <= c_.runs; ++run) {
       if (run > 1) clock_.pause();
-      for (int pass = 0; pass < (c_.pendulum ? 2 : 1); ++pass) {
-        direction_ = static_cast<std::int8_t>(pass == 0 ? c_.direction : -c_.direction);
-        for (std::size_t i = 0; i < c_.targets.size(); ++i) {
-          angle_ = c_.targets[direction_ > 0 ? i : c_.targets.size() - 1 - i];
-          run_ = run;
-          way_ = std::fabs(angle_ - last);
-          last = angle_;
-          put(angle_);
-        }
+      run_ = run;
+      for (const double at : carrier) {
+        turned_ = std::fabs(at - carrier_);
+        carrier_ = at;
+        passes(put);
       }
     }
   }
+  template <class Put>
+  void passes(Put put) {
+    for (int pass = 0; pass < (c_.pendulum ? 2 : 1); ++pass) {
+      direction_ = static_cast<std::int8_t>(pass == 0 ? c_.direction : -c_.direction);
+      for (std::size_t i = 0; i < c_.targets.size(); ++i) {
+        angle_ = c_.targets[direction_ > 0 ? i : c_.targets.size() - 1 - i];
+        way_ = std::max(std::fabs(angle_ - last_), turned_);
+        last_ = angle_;
+        turned_ = 0.0;
+        put(angle_);
+      }
+    }
+  }
+  double carrier() const { return carrier_; }
   void add(std::size_t line, const Vector& at, const Vector& sense, double deviation, bool first) {
     o_.axes[0].position.push_back(angle_);
     o_.axes[0].approach.push_back(direction_);
     for (std::size_t k = 0; k < 3; ++k) o_.axes[1 + k].position.push_back(at[k]);
+    if (!c_.carrier.empty()) o_.axes[4].position.push_back(carrier_);
     o_.deviation.push_back(deviation);
     o_.sense.push_back(sense);
     o_.line.push_back(static_cast<std::uint32_t>(line));
@@ -77,18 +91,21 @@ class Rows {
   const CycleSpec& c_;
   Clock clock_;
   Observations o_;
-  double angle_ = 0.0, way_ = 0.0;
+  double angle_ = 0.0, way_ = 0.0, last_ = 0.0;
+  double carrier_ = 0.0, turned_ = 0.0;
   std::int8_t direction_ = 1;
   std::uint32_t run_ = 1;
 };
 
 constexpr std::array<Vector, 3> units{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-Observations centres(const RotarySpec& r, const CycleSpec& c) {
+/// A ball on a table; the carrier turns the table with its line.
+Observations centres(const RotarySpec& r, const RotarySpec* carrier, const CycleSpec& c) {
   Rows rows(c);
   for (std::size_t k = 0; k < 3; ++k) rows.line(c.measurement.id + " " + "xyz"[k], units[k]);
   rows.sweep([&](double angle) {
-    const Vector at = turned(c.balls.front(), r.centre, r.direction, angle);
+    Vector at = turned(c.balls.front(), r.centre, r.direction, angle);
+    if (carrier != nullptr) at = turned(at, carrier->centre, carrier->direction, rows.carrier());
     for (std::size_t k = 0; k < 3; ++k) rows.add(k, at, units[k], at[k], k == 0);
   });
   return rows.done();
@@ -139,7 +156,16 @@ Expected<Observations> rotary_rows(const Specification& s, const CycleSpec& c) {
   if (r == nullptr)
     return fail("measurement \"" + c.measurement.id + "\": expected a [[simulation.rotary]] of " +
                 "axis " + c.axis.name + ", which says where it is");
-  if (c.is("ball-centres")) return centres(*r, c);
+  const RotarySpec* carrier = c.carrier.empty() ? nullptr : s.rotary(c.carrier);
+  if (carrier == nullptr && !c.carrier.empty())
+    return fail("measurement \"" + c.measurement.id + "\": expected a [[simulation.rotary]] of " +
+                "axis " + c.carrier + ", which carries " + c.axis.name);
+  for (const RotarySpec* axis : {r, carrier})
+    if (carrier != nullptr && axis->carries == "head")
+      return fail("[[simulation.rotary]] of axis " + axis->axis +
+                  ": carries: expected a table, because measurement \"" + c.measurement.id +
+                  "\" has a carrier; found head");
+  if (c.is("ball-centres")) return centres(*r, carrier, c);
   if (r->carries.empty())
     return fail("[[simulation.rotary]] of axis " + c.axis.name +
                 ": carries is missing: table or head");

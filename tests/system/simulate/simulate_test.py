@@ -216,6 +216,49 @@ class EveryKind(unittest.TestCase):
         self.assertFalse((self.root / "site" / "none").exists())
 
 
+class TwoRotaryAxes(unittest.TestCase):
+    """A ball on C, which B carries: both lines come back."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.root = pathlib.Path(self.folder.name)
+        self.text = SAMPLE.with_name("two-rotary-axes.toml").read_text("utf-8")
+
+    def made(self, text):
+        spec = self.root / "spec.toml"
+        spec.write_text(text, "utf-8")
+        return nonio("simulate", spec, "--out", self.root / "site" / "bc")
+
+    def test_both_lines(self):
+        self.assertEqual(self.made(self.text).returncode, 0)
+        rows = (self.root / "site" / "bc" / "bc.csv").read_text("utf-8").splitlines()[1:]
+        self.assertEqual(rows[0], "run,direction,angle_deg,B_deg,x_mm,y_mm,z_mm,time_s")
+        self.assertEqual([tuple(r.split(",")[2:4]) for r in rows[1:]],
+                         [(f"{60 * i}", f"{b}") for b in (-60, -30, 0, 30, 60) for i in range(6)])
+        done = nonio("run", self.root / "site", "--out", self.root / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        results = json.loads((self.root / "out" / "two-rotary-axes" / "results.json").read_text("utf-8"))
+        v = {name: value["value"] for name, value in results["analyses"][0]["values"].items()}
+        for name, truth, near in (("distance", 0.04, 0.003), ("angle", 89.9971, 0.002), ("centre_x_C", 400.06, 0.003),
+                                  ("centre_x_B", 400.02, 0.003), ("centre_z_B", -100.0, 0.003), ("direction_i_B", 1e-4, 3e-5),
+                                  ("direction_j_C", 5e-5, 3e-5)):
+            self.assertAlmostEqual(v[name], truth, delta=near, msg=name)
+
+    def test_refusals_name_the_key(self):
+        for old, new, says in (('carrier = "B"', 'carrier = "C"', "another rotary axis of the machine than C"),
+                               ('carrier = "B"', 'carrier = "X"', "another rotary axis"), ('carrier = "B"\n', "", "carrier: is missing"),
+                               ("carrier_deg = [-60.0, -30.0, 0.0, 30.0, 60.0]\n", "", "carrier_deg: is missing"),
+                               ("[-60.0, -30.0, 0.0, 30.0, 60.0]", "[]", "found 0"),
+                               ('carries = "table"', 'carries = "head"', "expected a table"),
+                               ('axis = "B"\ncentre_mm', 'axis = "A"\ncentre_mm', "")):
+            self.assertIn(old, self.text)
+            done = self.made(self.text.replace(old, new, 1))
+            self.assertEqual(done.returncode, 2, says)
+            self.assertIn(says, done.stderr)
+        self.assertFalse((self.root / "site").exists())
+
+
 class Circles(unittest.TestCase):
     """A ball bar on a machine with known errors: each cause comes back within its U."""
 

@@ -18,7 +18,7 @@ constexpr Words in_order[] = {"linear",       "rotary", "straightness", "diagona
 constexpr Words stepwise[] = {"diagonal", "step-diagonal"};
 constexpr Words step_diagonal_cycle[] = {"step-diagonal"}, straightness_cycle[] = {"straightness"};
 constexpr Words with_balls[] = {"ball-centres", "rtcp"}, rtcp_cycle[] = {"rtcp"},
-                circle_cycle[] = {"circle"};
+                circle_cycle[] = {"circle"}, centres_cycle[] = {"ball-centres"};
 constexpr Key misreading_keys[] = {
     {.name = "fraction",
      .holds = number,
@@ -127,6 +127,15 @@ constexpr Key cycle_keys[] = {
               .help = "Place of the ball in machine coordinates with the axis at 0, [X, Y, Z]; "
                       "of a further ball three numbers more."},
              with_balls, "mm"),
+    of_kinds({.name = "carrier",
+              .holds = text,
+              .help = "The rotary axis on the bed whose table carries that of the ball, and which "
+                      "turned too."},
+             centres_cycle),
+    of_kinds({.name = "carrier_deg",
+              .holds = numbers,
+              .help = "Positions of the carrier: all targets at each of them."},
+             centres_cycle, "deg"),
     of_kinds({.name = "sensor",
               .holds = text,
               .help = "A gauge that turns with the axis, a gauge that stands still, or a probe "
