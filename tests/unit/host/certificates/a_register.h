@@ -62,7 +62,7 @@ class RegisterTest : public testing::Test {
 
   certificates::Register open() const {
     auto opened = certificates::Register::open(site_, numbering_);
-    EXPECT_TRUE(opened) << opened.error().message;
+    if (!opened) throw std::runtime_error(opened.error().message);
     return std::move(*opened);
   }
   static evaluation::Certificate drawn(certificates::Register& r, const std::string& campaign,
