@@ -99,13 +99,21 @@ class Rows {
 
 constexpr std::array<Vector, 3> units{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// A ball on a table; the carrier turns the table with its line.
+/// Where the linear axes stand when the probe is at the ball. A table takes the ball along, and its
+/// carrier table and ball. A head takes the stylus along, which is at the ball with the heads at 0,
+/// and its carrier head and stylus; the linear axes go back by as much.
 Observations centres(const RotarySpec& r, const RotarySpec* carrier, const CycleSpec& c) {
   Rows rows(c);
   for (std::size_t k = 0; k < 3; ++k) rows.line(c.measurement.id + " " + "xyz"[k], units[k]);
+  const Vector& start = c.balls.front();
   rows.sweep([&](double angle) {
-    Vector at = turned(c.balls.front(), r.centre, r.direction, angle);
-    if (carrier != nullptr) at = turned(at, carrier->centre, carrier->direction, rows.carrier());
+    Vector ball = start, tip = start;
+    (r.carries == "head" ? tip : ball) = turned(start, r.centre, r.direction, angle);
+    if (carrier != nullptr) {
+      Vector& moved = carrier->carries == "head" ? tip : ball;
+      moved = turned(moved, carrier->centre, carrier->direction, rows.carrier());
+    }
+    const Vector at = sum(sum(ball, 1.0, start), -1.0, tip);
     for (std::size_t k = 0; k < 3; ++k) rows.add(k, at, units[k], at[k], k == 0);
   });
   return rows.done();
@@ -160,11 +168,6 @@ Expected<Observations> rotary_rows(const Specification& s, const CycleSpec& c) {
   if (carrier == nullptr && !c.carrier.empty())
     return fail("measurement \"" + c.measurement.id + "\": expected a [[simulation.rotary]] of " +
                 "axis " + c.carrier + ", which carries " + c.axis.name);
-  for (const RotarySpec* axis : {r, carrier})
-    if (carrier != nullptr && axis->carries == "head")
-      return fail("[[simulation.rotary]] of axis " + axis->axis +
-                  ": carries: expected a table, because measurement \"" + c.measurement.id +
-                  "\" has a carrier; found head");
   if (c.is("ball-centres")) return centres(*r, carrier, c);
   if (r->carries.empty())
     return fail("[[simulation.rotary]] of axis " + c.axis.name +

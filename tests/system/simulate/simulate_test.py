@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -245,12 +246,27 @@ class TwoRotaryAxes(unittest.TestCase):
                                   ("direction_j_C", 5e-5, 3e-5)):
             self.assertAlmostEqual(v[name], truth, delta=near, msg=name)
 
+    def test_heads(self):
+        """As seen from the tip, which is at the ball with both at 0; C of the table as before."""
+        text = self.text.replace('tables = ["B", "C"]', 'heads = ["B", "C"]').replace('carries = "table"', 'carries = "head"')
+        one = self.text.replace('tables = ["B", "C"]', 'tables = ["C"]\nheads = ["B"]').replace('carries = "table"', 'carries = "head"', 1)
+        for spec, C in ((text, 400.06 - 540.0), (one, 400.06)):
+            with self.subTest(C=C):
+                self.assertEqual(self.made(spec).returncode, 0)
+                done = nonio("run", self.root / "site", "--out", self.root / "out")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                results = json.loads((self.root / "out" / "two-rotary-axes" / "results.json").read_text("utf-8"))
+                v = {name: value["value"] for name, value in results["analyses"][0]["values"].items()}
+                for name, truth in (("centre_x_B", 400.02 - 540.0), ("centre_z_B", -160.0), ("centre_x_C", C)):
+                    self.assertAlmostEqual(v[name], truth, delta=0.003, msg=name)
+                self.assertAlmostEqual(v["direction_i_B"], 1e-4, delta=3e-5)
+                shutil.rmtree(self.root / "site")
+
     def test_refusals_name_the_key(self):
         for old, new, says in (('carrier = "B"', 'carrier = "C"', "another rotary axis of the machine than C"),
                                ('carrier = "B"', 'carrier = "X"', "another rotary axis"), ('carrier = "B"\n', "", "carrier: is missing"),
                                ("carrier_deg = [-60.0, -30.0, 0.0, 30.0, 60.0]\n", "", "carrier_deg: is missing"),
                                ("[-60.0, -30.0, 0.0, 30.0, 60.0]", "[]", "found 0"),
-                               ('carries = "table"', 'carries = "head"', "expected a table"),
                                ('axis = "B"\ncentre_mm', 'axis = "A"\ncentre_mm', "")):
             self.assertIn(old, self.text)
             done = self.made(self.text.replace(old, new, 1))

@@ -129,8 +129,8 @@ constexpr Key cycle_keys[] = {
              with_balls, "mm"),
     of_kinds({.name = "carrier",
               .holds = text,
-              .help = "The rotary axis on the bed whose table carries that of the ball, and which "
-                      "turned too."},
+              .help = "Another rotary axis, which turned too: the table or head that carries this "
+                      "one, or the head beside this table."},
              centres_cycle),
     of_kinds({.name = "carrier_deg",
               .holds = numbers,
@@ -202,7 +202,7 @@ constexpr Key simulated_rotary_keys[] = {
      .help = "The direction that the control has of it (rtcp)."},
     {.name = "carries",
      .holds = text,
-     .help = "What the axis turns: the table or the head (rtcp).",
+     .help = "What the axis turns: the table or the head. Needed for rtcp; ball-centres: table.",
      .choices = carried},
 };
 
