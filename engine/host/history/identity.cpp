@@ -12,16 +12,14 @@ namespace {
 std::string carelessly(const std::string& name) {
   std::string out;
   for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x80) {
-      out += c;
-    } else if (c == 'o' || c == 'O') {
+    const bool ascii = static_cast<unsigned char>(c) < 0x80;
+    if (c == 'o' || c == 'O') {
       out += '0';
     } else if (c == 'i' || c == 'I' || c == 'l' || c == 'L') {
       out += '1';
     } else if (c >= 'A' && c <= 'Z') {
       out += static_cast<char>(c - 'A' + 'a');
-    } else if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
+    } else if (!ascii || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
       out += c;
     }
   }
