@@ -87,7 +87,7 @@ class Fit {
   Expected<CauseFit> done() {
     make_blocks();
     const std::size_t rows = blocks_.empty() ? 0 : blocks_.front().place.size();
-    if (rows < std::max(at_least, 2 * columns_.size() / blocks_.size()))
+    if (rows < std::max(at_least, 2 * columns_.size() / std::max<std::size_t>(1, blocks_.size())))
       return fail("expected readings at " +
                   std::to_string(std::max(at_least, 2 * columns_.size())) +
                   " degrees of the circle or more, found " + std::to_string(rows));

@@ -17,9 +17,8 @@ using math::Cause;
 using math::CircleReading;
 using math::PathCircle;
 
-constexpr std::size_t fewest = 12;  // readings of a path
-constexpr double per_deg = std::numbers::pi / 180.0;
-constexpr double most_left_out = 20.0;  // deg
+constexpr std::size_t fewest = 12;                                          // readings of a path
+constexpr double per_deg = std::numbers::pi / 180.0, most_left_out = 20.0;  // deg
 // docs/constants.md, A12.
 constexpr double share_for_attention = 0.2;
 
@@ -121,12 +120,13 @@ std::vector<double> by_bins(const Work& w, const std::vector<CircleReading>& pat
 }
 
 void add(Work& w, std::string name, double v, Quantity q, double u, const std::vector<double>& by) {
+  v = circle::steady(v, std::max(std::fabs(v), u)), u = circle::steady(u, u);
   math::Shares shares = w.readings.shares(by);
   // What cancels leaves the rounding of the processor, which is none of the budget.
   double largest = 0.0;
   for (const double share : shares.u) largest = std::max(largest, std::fabs(share));
   for (double& share : shares.u)
-    if (std::fabs(share) < 1e-9 * largest) share = 0.0;
+    share = std::fabs(share) < 1e-9 * largest ? 0.0 : circle::steady(share, std::fabs(share));
   w.out.values.push_back(w.budget->value(std::move(name), v, q, u, shares));
 }
 
@@ -202,7 +202,7 @@ void circle_values(Work& w) {
   const auto& radius = w.fit.of[static_cast<std::size_t>(Cause::radius)];
   if (w.circle.both()) add(w, "D", ls.radius, Quantity::deviation, radius.u, radius.by_bin);
   const bool commanded = w.in.options.text("F_about") == "commanded";
-  const std::array<double, 2> centre = commanded ? std::array<double, 2>{} : ls.centre;
+  const auto centre = commanded ? std::array<double, 2>{} : ls.centre;
   const PathCircle F = math::about(w.circle.readings, w.circle.R, centre);
   for (const bool outer : {true, false}) {
     std::vector<double> by =
@@ -343,6 +343,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
     return std::move(w.out);
   }
   w.fit = std::move(*fit);
+  for (double* x : {&w.fit.s, &w.fit.s_reading, &w.fit.dof}) *x = circle::steady(*x, *x);
   w.noise.emplace(w.circle.readings, w.model, w.fit);
   if (w.model.leave_out > stated)
     w.out.findings.push_back({.id = "circle.spikes-last",

@@ -53,4 +53,10 @@ Expected<Circle> circle_of(const Measurement& m, const Observations& o) {
   return out;
 }
 
+double steady(double x, double size) {
+  if (!(size > 0.0) || !std::isfinite(x)) return x;
+  const double step = std::pow(10.0, std::floor(std::log10(size)) - 9.0);
+  return std::round(x / step) * step;
+}
+
 }  // namespace nonio::circle

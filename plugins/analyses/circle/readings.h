@@ -24,4 +24,8 @@ struct Circle {
 
 Expected<Circle> circle_of(const Measurement&, const Observations&);
 
+/// x to ten digits of `size`. What iterations and processors leave beyond is no result, and the same
+/// readings give the same bytes everywhere.
+double steady(double x, double size);
+
 }  // namespace nonio::circle
