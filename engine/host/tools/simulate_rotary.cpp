@@ -55,19 +55,6 @@ class Rows {
       }
     }
   }
-  template <class Put>
-  void passes(Put put) {
-    for (int pass = 0; pass < (c_.pendulum ? 2 : 1); ++pass) {
-      direction_ = static_cast<std::int8_t>(pass == 0 ? c_.direction : -c_.direction);
-      for (std::size_t i = 0; i < c_.targets.size(); ++i) {
-        angle_ = c_.targets[direction_ > 0 ? i : c_.targets.size() - 1 - i];
-        way_ = std::max(std::fabs(angle_ - last_), turned_);
-        last_ = angle_;
-        turned_ = 0.0;
-        put(angle_);
-      }
-    }
-  }
   double carrier() const { return carrier_; }
   void add(std::size_t line, const Vector& at, const Vector& sense, double deviation, bool first) {
     o_.axes[0].position.push_back(angle_);
@@ -88,6 +75,20 @@ class Rows {
   Observations done() { return std::move(o_); }
 
  private:
+  template <class Put>
+  void passes(Put put) {
+    for (int pass = 0; pass < (c_.pendulum ? 2 : 1); ++pass) {
+      direction_ = static_cast<std::int8_t>(pass == 0 ? c_.direction : -c_.direction);
+      for (std::size_t i = 0; i < c_.targets.size(); ++i) {
+        angle_ = c_.targets[direction_ > 0 ? i : c_.targets.size() - 1 - i];
+        way_ = std::max(std::fabs(angle_ - last_), turned_);
+        last_ = angle_;
+        turned_ = 0.0;
+        put(angle_);
+      }
+    }
+  }
+
   const CycleSpec& c_;
   Clock clock_;
   Observations o_;
@@ -167,7 +168,7 @@ Expected<Observations> rotary_rows(const Specification& s, const CycleSpec& c) {
   const RotarySpec* carrier = c.carrier.empty() ? nullptr : s.rotary(c.carrier);
   if (carrier == nullptr && !c.carrier.empty())
     return fail("measurement \"" + c.measurement.id + "\": expected a [[simulation.rotary]] of " +
-                "axis " + c.carrier + ", which carries " + c.axis.name);
+                "axis " + c.carrier + ", which turned too");
   if (c.is("ball-centres")) return centres(*r, carrier, c);
   if (r->carries.empty())
     return fail("[[simulation.rotary]] of axis " + c.axis.name +

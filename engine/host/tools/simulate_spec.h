@@ -39,7 +39,7 @@ struct CycleSpec {
   std::uint32_t readings = 720;               ///< of a circle, on a turn
   double set_up = 0.0;                        ///< of a straightedge against the axis, rad
   std::vector<std::array<double, 3>> balls;   ///< with the rotary axes at 0, m
-  std::string carrier;                        ///< table that carries that of the ball, or none
+  std::string carrier;                        ///< another rotary axis that turned too, or none
   std::vector<double> carrier_at;             ///< its positions, rad
   std::vector<std::array<double, 3>> senses;  ///< of gauges, unit vectors
   std::string sensor;                         ///< of rtcp: turns, stands, probe

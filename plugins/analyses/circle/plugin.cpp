@@ -226,23 +226,23 @@ math::Spike worst_spike(const Work& w, const std::vector<CircleReading>& reading
 
 void spikes(Work& w, double total) {
   for (std::size_t k = 0; k < 2; ++k) {
-    const math::Spike found = worst_spike(w, w.circle.readings, k == 1), *const worst = &found;
-    if (found.height == 0.0) continue;  // no readings behind a reversal
+    const math::Spike worst = worst_spike(w, w.circle.readings, k == 1);
+    if (worst.height == 0.0) continue;  // no readings behind a reversal
     const double adds = w.noise->adds([&](const std::vector<CircleReading>& all) {
       return std::fabs(worst_spike(w, all, k == 1).height);
     });
-    add(w, "spike_" + w.circle.axis[k], worst->height, Quantity::deviation,
-        std::hypot(worst->u, adds), std::vector<double>(w.fit.bins.size(), 0.0));
+    add(w, "spike_" + w.circle.axis[k], worst.height, Quantity::deviation,
+        std::hypot(worst.u, adds), std::vector<double>(w.fit.bins.size(), 0.0));
     // docs/constants.md, A13.
-    if (!(std::fabs(worst->height) > 4.0 * worst->u)) continue;  // readings of 0: nothing
-    const double alone = std::fabs(worst->height), share = alone / (total + alone);
+    if (!(std::fabs(worst.height) > 4.0 * worst.u)) continue;  // readings of 0: nothing
+    const double alone = std::fabs(worst.height), share = alone / (total + alone);
     w.out.findings.push_back({.id = "circle.spikes",
                               .attention = share >= share_for_attention,
-                              .evidence = {{"value", worst->height, Quantity::deviation},
+                              .evidence = {{"value", worst.height, Quantity::deviation},
                                            {"alone", alone, Quantity::deviation},
                                            {"share", share, Quantity::ratio},
-                                           {"at", worst->at, Quantity::angle},
-                                           {"width", worst->width, Quantity::angle}},
+                                           {"at", worst.at, Quantity::angle},
+                                           {"width", worst.width, Quantity::angle}},
                               .texts = {{"axis", w.circle.axis[k]}}});
   }
 }

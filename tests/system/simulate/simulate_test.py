@@ -267,7 +267,9 @@ class TwoRotaryAxes(unittest.TestCase):
                                ('carrier = "B"', 'carrier = "X"', "another rotary axis"), ('carrier = "B"\n', "", "carrier: is missing"),
                                ("carrier_deg = [-60.0, -30.0, 0.0, 30.0, 60.0]\n", "", "carrier_deg: is missing"),
                                ("[-60.0, -30.0, 0.0, 30.0, 60.0]", "[]", "found 0"),
-                               ('axis = "B"\ncentre_mm', 'axis = "A"\ncentre_mm', "")):
+                               ('axis = "B"\ncentre_mm', 'axis = "A"\ncentre_mm', 'no rotary axis "A"'),
+                               (self.text[self.text.index("[[simulation.rotary]]"):self.text.index("[[simulation.rotary]]            #")],
+                                "", "expected a [[simulation.rotary]] of axis B")):
             self.assertIn(old, self.text)
             done = self.made(self.text.replace(old, new, 1))
             self.assertEqual(done.returncode, 2, says)

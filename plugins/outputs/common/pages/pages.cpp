@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "nonio/math/rotary.h"
 #include "nonio/reports/number.h"
 #include "nonio/reports/text.h"
 #include "nonio/sdk/format.h"
@@ -158,24 +159,6 @@ std::string circle_test(const Source& source, const Measured& m) {
        {"directions", directions}});
 }
 
-namespace {
-
-/// The rotary axes that turned, in the order of their names; empty if it was not more than one.
-std::string turned_axes(const Observations& o) {
-  std::vector<std::string> names;
-  for (const auto& axis : o.axes) {
-    if (!axis.rotary || axis.position.empty()) continue;
-    const auto [low, high] = std::minmax_element(axis.position.begin(), axis.position.end());
-    if (*low < *high) names.push_back(axis.axis);
-  }
-  std::sort(names.begin(), names.end());
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return names.size() > 1 ? out : std::string();
-}
-
-}  // namespace
-
 std::string heading_of(const Source& source, const Measured& m) {
   const Wording& words = source.words;
   const Measurement& measurement = m.measurement;
@@ -196,9 +179,11 @@ std::string heading_of(const Source& source, const Measured& m) {
   if (measurement.kind == "diagonal")
     return words.get("measurement.diagonal", {{"id", measurement.id}});
   if (measurement.kind == "ball-centres") {
-    const std::string axes = turned_axes(m.observations);
-    return ids(axes.empty() ? words.get("measurement.ball_centres", {{"axis", measurement.axis}})
-                            : words.get("measurement.ball_centres_of_axes", {{"axes", axes}}));
+    const std::string other = math::other_turning_axis(m.observations);
+    if (other.empty())
+      return ids(words.get("measurement.ball_centres", {{"axis", measurement.axis}}));
+    const auto [first, second] = std::minmax(measurement.axis, other);
+    return ids(words.get("measurement.ball_centres_of_axes", {{"axes", first + ", " + second}}));
   }
   if (measurement.kind == "artefact" || measurement.kind == "artefact-certificate")
     return ids(words.get(measurement.kind == "artefact" ? "measurement.artefact"
