@@ -35,7 +35,7 @@ std::size_t terminal_width() {
 }
 
 std::string message_of(const host::batch::CampaignState& c) {
-  return c.errors.empty() ? c.reason : text_of(c.errors.front());
+  return c.errors().empty() ? c.reason : text_of(c.errors().front());
 }
 
 }  // namespace

@@ -33,10 +33,10 @@ void print_night_plan(const host::batch::Night& night, bool json) {
   for (const host::batch::CampaignState& c : night.campaigns) {
     const bool collides = c.action == host::batch::CampaignState::Action::todo &&
                           c.status == host::evaluation::Status::failed;
-    const std::string reason = collides ? c.errors.front().message : c.reason;
+    const std::string reason = collides ? c.errors().front().message : c.reason;
     if (json)
       std::cout << Json{{"id", c.id},
-                        {"folder", host::storage::path_text(c.folder)},
+                        {"folder", host::storage::path_text(c.folder.view())},
                         {"action", collides ? "refused" : to_text(c.action)},
                         {"reason", reason}}
                        .dump(-1, ' ', false, Json::error_handler_t::replace)

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/batch/run.h"
@@ -17,14 +20,25 @@ struct EarlierResult {
   bool failed = false;
 };
 
-/// `campaigns`: those with `named_by_folder` do not count. An error if the folder cannot be listed.
-Expected<std::vector<EarlierResult>> unclaimed_results(const std::filesystem::path& out,
-                                                       const std::vector<CampaignState>& campaigns);
+/// The campaigns whose manifests give an id, to be found by it. Keeps where they stand, four bytes each.
+class ClaimedIds {
+ public:
+  explicit ClaimedIds(const std::vector<CampaignState>& campaigns);
+  bool contains(std::string_view id) const;
 
-/// What of it was there before and is not there tonight. Failed results of a folder that is there
+ private:
+  const std::vector<CampaignState>& campaigns_;
+  std::vector<std::uint32_t> by_id_;
+};
+
+/// An error if the folder cannot be listed.
+Expected<std::vector<EarlierResult>> unclaimed_results(const std::filesystem::path& out,
+                                                       const ClaimedIds& claimed);
+
+/// What of it was there before and is not there tonight; the first `ordered` campaigns are in the order of their folders. Failed results of a folder that is there
 /// under another id are leftovers, and only noted.
 std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
-                                  const std::vector<CampaignState>& campaigns,
+                                  const std::vector<CampaignState>& campaigns, std::size_t ordered,
                                   const std::vector<SiteWalk::Unlisted>& unlisted,
                                   const std::filesystem::path& out,
                                   std::vector<std::string>& notes);

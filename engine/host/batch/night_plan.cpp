@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <random>
+#include <span>
 #include <stdexcept>
 
 #include "host/batch/night_state.h"
@@ -12,6 +13,7 @@
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
 #include "host/storage/json_values.h"
+#include "host/storage/spool.h"
 
 namespace nonio::host::batch {
 namespace fs = std::filesystem;
@@ -90,15 +92,15 @@ std::string hex_of(std::uint64_t value) {
 
 /// One line. What is as usual is left out.
 std::string line_of(const CampaignState& c, const std::vector<CampaignState>& all) {
-  Json json = {{"id", c.id}, {"folder", exact(c.folder)}, {"reason", exact(c.reason)}};
+  Json json = {{"id", c.id.view()}, {"folder", exact(c.folder.str())}, {"reason", exact(c.reason.str())}};
   if (c.action != Action::todo) json["action"] = actions.at(static_cast<std::size_t>(c.action));
   if (c.status != evaluation::Status::none) json["status"] = to_text(c.status);
   if (c.named_by_folder) json["named_by_folder"] = true;
   if (!c.is_campaign) json["is_campaign"] = false;
-  if (!c.errors.empty()) json["errors"] = errors_json(c.errors);
-  for (const auto& [digest, other] : c.twins)
-    json["twins"].push_back({hex_of(digest), all[other].id});
-  if (c.history) json["history"] = *c.history;
+  if (!c.errors().empty()) json["errors"] = errors_json(c.errors());
+  for (const auto& [digest, other] : c.twins())
+    json["twins"].push_back({hex_of(digest), all[other].id.view()});
+  if (c.shows_history) json["history"] = c.history.view();
   return storage::dump_line(json) + "\n";
 }
 
@@ -107,7 +109,7 @@ Listed listed_in(const Json& json) {
   CampaignState& c = listed.campaign;
   c.id = json.at("id").get<std::string>();
   c.folder = exact(json.at("folder"));
-  c.reason = exact(json.at("reason"));
+  c.reason = KeptText::shared(exact(json.at("reason")));
   const std::string action = json.value("action", "todo");
   const auto at = std::find(actions.begin(), actions.end(), action);
   if (at == actions.end()) throw std::runtime_error("unknown action " + action);
@@ -115,12 +117,13 @@ Listed listed_in(const Json& json) {
   if (json.contains("status")) c.status = status_in(json["status"]);
   c.named_by_folder = json.value("named_by_folder", false);
   c.is_campaign = json.value("is_campaign", true);
-  if (json.contains("errors")) c.errors = errors_in(json["errors"]);
+  if (json.contains("errors")) c.set_errors(errors_in(json["errors"]));
   if (json.contains("twins"))
     for (const Json& twin : json["twins"])
       listed.twins.emplace_back(std::stoull(twin.at(0).get<std::string>(), nullptr, 16),
                                 twin.at(1).get<std::string>());
-  if (json.contains("history")) c.history = json["history"].get<std::string>();
+  c.shows_history = json.contains("history");
+  if (c.shows_history) c.history = json["history"].get<std::string>();
   return listed;
 }
 
@@ -215,6 +218,55 @@ bool is_for_shard(const CampaignState& c) {
   return c.action == Action::todo && c.status != evaluation::Status::failed;
 }
 
+/// Where campaigns stand, those of the first shard first and the rest last. Counts them in the plan.
+std::vector<std::uint32_t> by_list(const fs::path& out, NightPlan& plan,
+                                   const std::vector<CampaignState>& campaigns) {
+  const auto rest = static_cast<std::uint32_t>(plan.shards.size());
+  std::vector<std::uint32_t> list_of(campaigns.size(), rest);
+  std::vector<std::size_t> next(plan.shards.size() + 1);  // the next place in each list
+  for (std::size_t i = 0; i < campaigns.size(); ++i) {
+    const CampaignState& c = campaigns[i];
+    const bool to_do = is_for_shard(c);
+    if (to_do) ++plan.to_do;
+    if (to_do && !needs_register(out, c))
+      list_of[i] = static_cast<std::uint32_t>(shard_of(c.id, plan.shards.size()));
+    ++(list_of[i] == rest ? plan.rest : plan.shards[list_of[i]]).campaigns;
+  }
+  for (std::size_t k = 0; k < plan.shards.size(); ++k)
+    next[k + 1] = next[k] + plan.shards[k].campaigns;
+  std::vector<std::uint32_t> ordered(campaigns.size());
+  for (std::size_t i = 0; i < campaigns.size(); ++i)
+    ordered[next[list_of[i]]++] = static_cast<std::uint32_t>(i);
+  return ordered;
+}
+
+/// Under its temporary name, line by line, since a list may be longer than what memory is for.
+Expected<void> write_list(const fs::path& folder, const std::string& name,
+                          std::span<const std::uint32_t> of,
+                          const std::vector<CampaignState>& campaigns, NightPlan::List& list) {
+  const fs::path path = storage::temporary_path(folder, name);
+  std::uint64_t size = 0;
+  storage::RunningDigest digest;
+  {
+    storage::Spool file = storage::Spool::at(path);
+    for (const std::uint32_t i : of) {
+      const std::string line = line_of(campaigns[i], campaigns);
+      file.add(line);
+      digest.add(line);
+      size += line.size();
+    }
+    if (auto flushed = file.flush(); !flushed)
+      return fail("cannot write " + path.string() + ": " + flushed.error().message);
+  }
+  list.sha256 = digest.hex();
+  storage::drop_cached(path);
+  const auto same = storage::disk_gives_back(path, size, list.sha256);
+  if (!same) return fail(same.error());
+  if (!*same)
+    return fail("the disk does not give back what was written to it: " + (folder / name).string());
+  return {};
+}
+
 }  // namespace
 
 std::uint64_t shard_of(const std::string& campaign, std::uint64_t shards) {
@@ -224,25 +276,32 @@ std::uint64_t shard_of(const std::string& campaign, std::uint64_t shards) {
 Expected<void> write_plan(const fs::path& out, NightPlan& plan,
                           const std::vector<CampaignState>& campaigns) {
   plan.id = std::to_string(plan.night.number) + "-" + word_of_its_own();
-  std::vector<std::string> lists(plan.shards.size());
-  std::string rest;
   plan.seen = campaigns.size();
-  for (const CampaignState& c : campaigns) {
-    const bool to_do = is_for_shard(c);
-    if (to_do) ++plan.to_do;
-    const bool for_shard = to_do && !needs_register(out, c);
-    const std::uint64_t shard = for_shard ? shard_of(c.id, plan.shards.size()) : 0;
-    (for_shard ? lists[shard] : rest) += line_of(c, campaigns);
-    ++(for_shard ? plan.shards[shard] : plan.rest).campaigns;
+  const std::vector<std::uint32_t> ordered = by_list(out, plan, campaigns);
+  const fs::path folder = folder_of(out, plan);
+  std::vector<std::string> names;
+  for (std::uint64_t i = 0; i < plan.shards.size(); ++i) names.push_back(list_name(i));
+  names.emplace_back(rest_name);
+  const auto list_at = [&](std::size_t i) -> NightPlan::List& {
+    return i < plan.shards.size() ? plan.shards[i] : plan.rest;
+  };
+  auto done = storage::write_temporaries(folder, {});  // the folder
+  std::span<const std::uint32_t> left = ordered;
+  for (std::size_t i = 0; done && i < names.size(); ++i) {
+    NightPlan::List& list = list_at(i);
+    done = write_list(folder, names[i], left.first(list.campaigns), campaigns, list);
+    left = left.subspan(list.campaigns);
   }
-  std::vector<Artifact> files;
-  for (std::uint64_t i = 0; i < lists.size(); ++i) {
-    plan.shards[i].sha256 = storage::sha256(lists[i]);
-    files.push_back({list_name(i), std::move(lists[i])});
+  if (done)
+    done = storage::rename_temporaries(folder, names, [&](const std::string& name) {
+      const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+      const auto now = storage::sha256_of_file(folder / name);
+      return now && *now == list_at(static_cast<std::size_t>(at)).sha256;
+    });
+  if (!done) {
+    storage::remove_temporaries(folder, names);
+    return done;
   }
-  plan.rest.sha256 = storage::sha256(rest);
-  files.push_back({rest_name, std::move(rest)});
-  if (auto put = storage::publish(folder_of(out, plan), files); !put) return put;
   return storage::publish(out / state_folder / plan_folder,
                           {{plan_name, storage::dump(json_of(plan))}});
 }

@@ -17,19 +17,21 @@ void store_refused(const RunOptions& options, const reading::Context& context,
     if (c.action != Action::todo || c.status != evaluation::Status::failed) continue;
     const auto record = evaluation::read_record(storage::results_folder(options.out, c.id));
     const bool stays = c.is_campaign && record && record->status != evaluation::Status::failed;
+    std::vector<Error> errors = c.errors();
     if (stays)
-      c.errors.front().message +=
+      errors.front().message +=
           "; the results of night " + std::to_string(record->night) + " stay as they are";
     if (c.is_campaign && !stays && (before == nullptr || before->id != c.id)) {
       evaluation::Evaluated evaluated;
       evaluated.campaign.id = c.id;
       evaluated.status = evaluation::Status::failed;
-      evaluated.results.errors = c.errors;
+      evaluated.results.errors = errors;
       if (const auto stored =
               store(options.out, evaluated, context, {c.folder, night.of(), c.reason, true}, disk);
           !stored)
-        c.errors.push_back(stored.error());
+        errors.push_back(stored.error());
     }
+    c.set_errors(std::move(errors));
     before = &c;
     c.action = Action::done;
     events.finished(c);

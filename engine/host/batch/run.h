@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "host/batch/campaign_state.h"
 #include "host/certificates/register.h"
 #include "host/evaluation/evaluate.h"
 #include "host/evaluation/record.h"
@@ -38,27 +39,6 @@ struct RunOptions {
   std::filesystem::path
       scratch{};          ///< where it does them before; empty: the system's folder for such
   double patience = 0.0;  ///< s, for results of other hosts to appear here; of a merge
-};
-
-/// One campaign of the night, as it is known so far. Small: there may be very many. What its record
-/// holds (findings) is read again for the summary.
-struct CampaignState {
-  std::string id;
-  std::string folder;            ///< relative to the site, in the bytes of the file system
-  bool named_by_folder = false;  ///< its manifest gives no id
-  bool is_campaign = true;       ///< false: a folder of which nobody knows what lies in it
-  enum class Action { todo, done, unchanged } action = Action::todo;
-  std::string reason;                                    ///< why it is to do, or why not
-  evaluation::Status status = evaluation::Status::none;  ///< none while it is to do
-  std::vector<Error> errors;
-  std::vector<std::uint64_t> readings{};  ///< of its files' SHA-256 the begin, until compared
-  /// Of those that another campaign has too, and where that one stands in the list of campaigns.
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> twins{};
-  /// The same as its record knew it, with the other one's id.
-  std::vector<std::pair<std::uint64_t, std::string>> twins_before{};
-  /// Digest of the machine's history that a document shows; empty: not known when it was written.
-  /// None: no document asks for it.
-  std::optional<std::string> history{};
 };
 
 /// A campaign that has results and is not in the site any more. Its results stay; a

@@ -245,9 +245,9 @@ class Runner {
   }
 
   void note_history(CampaignState& c, bool shown) const {
-    c.history.reset();
     const auto basis = histories_.find(c.id);
-    if (shown) c.history = basis == histories_.end() ? std::string() : basis->second.sha256;
+    c.shows_history = shown;
+    c.history = shown && basis != histories_.end() ? basis->second.sha256 : "";
   }
 
   /// What an earlier campaign left behind in the process may be the cause: only what fails in a new
@@ -348,7 +348,7 @@ class Runner {
     CampaignState& c = campaigns_[index];
     c.action = Action::done;
     c.status = status;
-    c.errors = std::move(errors);
+    c.set_errors(std::move(errors));
     events_.finished(c);
   }
 

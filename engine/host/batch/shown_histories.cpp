@@ -34,7 +34,7 @@ std::string noted_histories(const fs::path& out) {
   return text ? *text : std::string();
 }
 
-bool shows_history(const CampaignState& c) { return c.is_campaign && c.history.has_value(); }
+bool shows_history(const CampaignState& c) { return c.is_campaign && c.shows_history; }
 
 }  // namespace
 
@@ -49,7 +49,7 @@ Expected<std::map<std::string, morning::HistoryBasis>> ShownHistories::others(
   using Bases = std::map<std::string, morning::HistoryBasis>;
   std::map<std::string, std::string> shown;
   for (const CampaignState& c : campaigns)
-    if (shows_history(c)) shown[c.id] = *c.history;
+    if (shows_history(c)) shown[c.id] = c.history;
   if (shown.empty() || (!looked && noted_histories(options_.out) == digest_of_told(told) + "\n"))
     return Bases();
   return read_apart<Bases>("the history of the machines", context_.site.limits.disk_seconds,

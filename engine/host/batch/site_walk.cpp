@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <map>
 #include <optional>
 
@@ -45,7 +46,8 @@ bool is_nearly_manifest(const std::string& name) {
 }
 
 struct FolderNames {
-  std::vector<std::string> folders, links, nearly;
+  std::deque<KeptText> folders;  // there may be millions
+  std::vector<std::string> links, nearly;
   bool has_manifest = false;
 };
 
@@ -60,13 +62,15 @@ class Walker {
   }
 
   void run() {
-    std::vector<std::string> todo{"."};
+    std::deque<KeptText> todo{KeptText(".")};
     while (!todo.empty()) {
-      const std::string folder = std::move(todo.back());
+      const std::string folder = todo.back();
       todo.pop_back();
       if (!may(folder)) continue;
-      const FolderNames names = list(folder);
-      for (const std::string& name : names.folders) todo.push_back(below(folder, name));
+      FolderNames names = list(folder);
+      for (; !names.folders.empty(); names.folders.pop_front())
+        todo.push_back(folder == "." ? names.folders.front()
+                                     : KeptText(below(folder, names.folders.front())));
       tell(folder, names);
     }
     if (remarks_ > most_remarks)
@@ -146,7 +150,7 @@ class Walker {
 
   static void sort_in(const std::string& name, unsigned char kind, FolderNames& names) {
     if (kind == DT_DIR) {
-      if (!name.starts_with('.')) names.folders.push_back(name);
+      if (!name.starts_with('.')) names.folders.emplace_back(name);
       if (is_nearly_manifest(name)) names.nearly.push_back(name);
     } else if (name == config::manifest_name) {
       names.has_manifest = true;
@@ -199,7 +203,7 @@ bool take_over(std::vector<process::Parcel> parcels, SiteWalk& walk) {
     std::string folder = parcel.text();
     switch (what) {
       case Seen::campaign:
-        walk.campaigns.push_back(std::move(folder));
+        walk.campaigns.emplace_back(folder);
         break;
       case Seen::unlisted:
         walk.unlisted.push_back({std::move(folder), parcel.text()});

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "host/batch/kept_text.h"
 #include "nonio/sdk/error.h"
 
 namespace nonio::host::batch {
@@ -14,9 +16,9 @@ struct SiteWalk {
   struct Unlisted {
     std::string folder, why;
   };
-  std::vector<std::string> campaigns;  ///< folders with a manifest
-  std::vector<Unlisted> unlisted;      ///< what lies in them is not known
-  std::vector<std::string> notes;      ///< what looks like a campaign and is passed over
+  std::deque<KeptText> campaigns;  ///< folders with a manifest
+  std::vector<Unlisted> unlisted;  ///< what lies in them is not known
+  std::vector<std::string> notes;  ///< what looks like a campaign and is passed over
 };
 
 /// All folders below a site. Links are not followed: a campaign is what lies in the site. Hidden

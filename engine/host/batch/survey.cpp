@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 #include "host/batch/earlier_results.h"
 #include "host/batch/site_walk.h"
@@ -31,7 +32,8 @@ std::string folder_id(const std::string& folder) {
 
 /// A name for each campaign whose manifest gives none: the one under which its folder has results,
 /// else the folder's, which gives way to every id that is taken.
-void name_by_folder(std::vector<CampaignState>& states, const std::vector<EarlierResult>& earlier) {
+void name_by_folder(std::vector<CampaignState>& states, const std::vector<EarlierResult>& earlier,
+                    const ClaimedIds& claimed) {
   std::map<std::string_view, std::string_view> known;  // id by folder
   std::set<std::string> taken;
   for (const EarlierResult& e : earlier) {
@@ -40,20 +42,18 @@ void name_by_folder(std::vector<CampaignState>& states, const std::vector<Earlie
     if (!is_new && !e.failed) at->second = e.id;
     taken.insert(e.id);
   }
-  if (std::none_of(states.begin(), states.end(), [](const auto& s) { return s.named_by_folder; }))
-    return;
-  for (const CampaignState& s : states)
-    if (!s.named_by_folder) taken.insert(s.id);
   for (CampaignState& s : states) {
     if (!s.named_by_folder) continue;
-    if (const auto at = known.find(storage::path_text(s.folder)); at != known.end()) {
+    if (const auto at = known.find(storage::path_text(s.folder.view())); at != known.end()) {
       s.id = at->second;
       known.erase(at);
       continue;
     }
     const std::string name = folder_id(s.folder);
-    s.id = name;
-    for (int n = 2; !taken.insert(s.id).second; ++n) s.id = name + "." + std::to_string(n);
+    std::string id = name;
+    for (int n = 2; claimed.contains(id) || !taken.insert(id).second; ++n)
+      id = name + "." + std::to_string(n);
+    s.id = id;
   }
 }
 
@@ -71,15 +71,15 @@ void fail_collisions(std::vector<CampaignState>& states) {
         folders += (k == i         ? ""
                     : k + 1 == end ? " and "
                                    : ", ") +
-                   storage::path_text(states[k].folder);
+                   storage::path_text(states[k].folder.view());
       if (named < end) folders += " and " + std::to_string(end - named) + " more folders";
       for (std::size_t k = i; k < end; ++k) {
         states[k].action = CampaignState::Action::todo;
         states[k].status = evaluation::Status::failed;
         states[k].reason = "no result: its id is not unique";
-        states[k].errors = {Error{"campaign.id \"" + states[k].id + "\" is used by " + folders +
-                                      "; expected one id for one campaign",
-                                  config::manifest_name}};
+        states[k].set_errors({Error{"campaign.id \"" + states[k].id.str() + "\" is used by " +
+                                        folders + "; expected one id for one campaign",
+                                    config::manifest_name}});
       }
     }
     i = end;
@@ -93,20 +93,22 @@ CampaignState failed_folder(const SiteWalk::Unlisted& unlisted) {
   state.is_campaign = false;
   state.status = evaluation::Status::failed;
   state.reason = "the folder cannot be listed";
-  state.errors = {Error{"the folder " + storage::path_text(unlisted.folder) +
-                        " cannot be listed, and what lies in it is not known: " + unlisted.why}};
+  state.set_errors(
+      {Error{"the folder " + storage::path_text(unlisted.folder) +
+             " cannot be listed, and what lies in it is not known: " + unlisted.why}});
   return state;
 }
 
 /// Whether other campaigns share readings as they did when the record was written.
 void compare_twins(CampaignState& state, const std::vector<CampaignState>& all) {
-  const reading::Twins before = std::move(state.twins_before);
+  const reading::Twins before = state.twins_before();
+  state.set_twins_before({});
   if (state.action == CampaignState::Action::todo) return;
   const reading::Twins now = twins_of(state, all);
   if (now == before) return;
   state.action = CampaignState::Action::todo;
   state.status = evaluation::Status::none;
-  state.errors.clear();
+  state.set_errors({});
   state.reason = now.empty() ? "no other campaign has its readings any more"
                              : "campaign " + now.front().second + " has the same readings";
 }
@@ -131,32 +133,40 @@ Expected<Surveyed> survey(const SurveyInput& input) {
       walk_site(input.site, input.out, input.context.site.limits.disk_seconds, input.stopped);
   if (!walk) return fail(walk.error());
   for (std::string& note : walk->notes) input.notes.push_back(std::move(note));
-  for (std::string& folder : walk->campaigns) {
+  states.reserve(walk->campaigns.size() + walk->unlisted.size());
+  for (; !walk->campaigns.empty(); walk->campaigns.pop_front()) {
     states.emplace_back();
-    states.back().folder = std::move(folder);
+    states.back().folder = walk->campaigns.front();
   }
-  walk->campaigns = {};
-  std::vector<std::size_t> which(states.size());
-  std::iota(which.begin(), which.end(), std::size_t{0});
+  std::vector<std::uint32_t> which(states.size());
+  std::iota(which.begin(), which.end(), std::uint32_t{0});
   if (auto looked = look_at_all(input, which, states); !looked) return fail(looked.error());
   if (input.stopped()) return all;
+  which = {};
+  const std::size_t walked = states.size();
   for (const SiteWalk::Unlisted& u : walk->unlisted) states.push_back(failed_folder(u));
-
-  const auto earlier = unclaimed_results(input.out, states);
-  if (!earlier) return fail(earlier.error());
-  name_by_folder(states, *earlier);
-  which.clear();
-  for (std::size_t i = 0; i < states.size(); ++i)
-    if (states[i].named_by_folder && states[i].status == evaluation::Status::none)
-      which.push_back(i);
-  if (auto looked = look_at_all(input, which, states); !looked) return fail(looked.error());
-  all.vanished = vanished_of(*earlier, states, walk->unlisted, input.out, input.notes);
-  std::stable_sort(states.begin(), states.end(),
-                   [](const CampaignState& a, const CampaignState& b) { return a.id < b.id; });
-  fail_collisions(states);
-  find_twins(states);
-  for (CampaignState& state : states) compare_twins(state, states);
+  {
+    const ClaimedIds claimed(states);
+    const auto earlier = unclaimed_results(input.out, claimed);
+    if (!earlier) return fail(earlier.error());
+    name_by_folder(states, *earlier, claimed);
+    for (std::size_t i = 0; i < states.size(); ++i)
+      if (states[i].named_by_folder && states[i].status == evaluation::Status::none)
+        which.push_back(static_cast<std::uint32_t>(i));
+    if (auto looked = look_at_all(input, which, states); !looked) return fail(looked.error());
+    all.vanished = vanished_of(*earlier, states, walked, walk->unlisted, input.out, input.notes);
+  }
+  set_in_order(states);
   return all;
+}
+
+void set_in_order(std::vector<CampaignState>& campaigns) {
+  std::sort(campaigns.begin(), campaigns.end(), [](const CampaignState& a, const CampaignState& b) {
+    return std::tie(a.id, a.folder) < std::tie(b.id, b.folder);
+  });
+  fail_collisions(campaigns);
+  find_twins(campaigns);
+  for (CampaignState& state : campaigns) compare_twins(state, campaigns);
 }
 
 }  // namespace nonio::host::batch

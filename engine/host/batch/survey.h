@@ -36,6 +36,9 @@ struct Surveyed {
 /// entries of their own, folders that cannot be listed. The site is read in child processes.
 Expected<Surveyed> survey(const SurveyInput& input);
 
+/// The last step of a survey: in the order of ids and folders, with collisions and shared readings.
+void set_in_order(std::vector<CampaignState>& campaigns);
+
 /// An error if the output folder has a number that the register does not know: numbers would be
 /// used twice. For a night whose survey could not ask.
 Expected<void> check_numbers(const std::filesystem::path& out,

@@ -38,8 +38,8 @@ CampaignState ChangeDetector::at(const CampaignState& known, bool rough) {
   state.folder = known.folder;
   state.id = known.id;
   state.named_by_folder = known.named_by_folder;
-  signs_.reading((fs::path(known.folder) / config::manifest_name).string());
-  const auto text = storage::read_small_file(in_.site / known.folder / config::manifest_name);
+  signs_.reading((fs::path(known.folder.view()) / config::manifest_name).string());
+  const auto text = storage::read_small_file(in_.site / known.folder.view() / config::manifest_name);
   if (!text) {  // its worker says why
     state.named_by_folder = true;
     state.reason = "no earlier result";
@@ -50,13 +50,13 @@ CampaignState ChangeDetector::at(const CampaignState& known, bool rough) {
   if (state.id.empty()) state.id = config::extract_id(*text);
   Last last = last_of(state.id);
   const bool as_before = last && *last &&
-                         (*last)->record.folder == storage::path_text(known.folder) &&
+                         (*last)->record.folder == storage::path_text(known.folder.view()) &&
                          digest_in((*last)->record, config::manifest_name) == digest;
   if (!as_before) {
     std::string id = read_whole(state, *text, rough);
     if (!known.named_by_folder) {
       if (!id.empty() && id != state.id) {
-        state.id = std::move(id);
+        state.id = id;
         last = last_of(state.id);
       }
       state.named_by_folder = state.id.empty();
@@ -75,13 +75,15 @@ std::string ChangeDetector::read_whole(CampaignState& state, const std::string& 
   signs_.beat();
   if (!parsed) return {};
   std::set<std::string> files;
+  std::vector<std::uint64_t> readings;
   for (const Measurement& m : parsed->campaign.measurements) {
     if (!files.insert(m.file).second) continue;
-    signs_.reading((fs::path(state.folder) / m.file).string());
-    const auto path = storage::path_inside(in_.site / state.folder, m.file);
+    signs_.reading((fs::path(state.folder.view()) / m.file).string());
+    const auto path = storage::path_inside(in_.site / state.folder.view(), m.file);
     const auto digest = path ? digest_with_signs(*path) : fail(path.error());
-    if (digest) state.readings.push_back(storage::short_digest(*digest));
+    if (digest) readings.push_back(storage::short_digest(*digest));
   }
+  state.set_readings(readings);
   return parsed->campaign.id;
 }
 
@@ -115,12 +117,13 @@ void ChangeDetector::judge(CampaignState& state, const Last& last,
   state.reason = changes(state, record, manifest_digest);
   if (state.reason.empty() && !(*last)->whole) state.reason = "its last results are not whole";
   if (!state.reason.empty()) return;
-  state.twins_before = twins_of(record.inputs);
+  state.set_twins_before(twins_of(record.inputs));
+  state.shows_history = record.history.has_value();
   if (record.history) state.history = record.history->sha256;
   state.action = tonight ? CampaignState::Action::done : CampaignState::Action::unchanged;
   state.reason = tonight ? record.reason : "nothing changed";
   state.status = record.status;
-  state.errors = record.errors;
+  state.set_errors(record.errors);
 }
 
 std::string ChangeDetector::changes(CampaignState& state, const evaluation::Record& record,
@@ -128,7 +131,7 @@ std::string ChangeDetector::changes(CampaignState& state, const evaluation::Reco
   std::vector<std::string> why;
   if (record.retry && record.night != in_.night)
     why.push_back("it failed for a reason that may have passed");
-  if (record.folder != storage::path_text(state.folder))
+  if (record.folder != storage::path_text(state.folder.view()))
     why.push_back("moved from " + record.folder);
   for (const auto& [name, digest] : shared_)
     if (digest_in(record, name) != digest) why.push_back(name + " changed");
@@ -140,8 +143,12 @@ std::string ChangeDetector::changes(CampaignState& state, const evaluation::Reco
         config::machine_digest(in_.context.machines, name) != digest)
       why.push_back("the record of the machine (" + name.substr(config::machine_prefix.size()) +
                     ") changed");
+  std::vector<std::uint64_t> readings = state.readings();
   for (const auto& [name, digest] : record.inputs)
-    if (name.starts_with(prefix)) look_at_file(state, name.substr(prefix.size()), digest, why);
+    if (name.starts_with(prefix))
+      if (const auto now = look_at_file(state, name.substr(prefix.size()), digest, why))
+        readings.push_back(*now);
+  state.set_readings(readings);
   if (in_.force && record.night != in_.night) return "--force";
   look_at_outputs(state, record, why);
   look_at_number(state, record, why);
@@ -154,18 +161,19 @@ Expected<std::string> ChangeDetector::digest_with_signs(const fs::path& path) {
   return storage::sha256_of_file(path, [this] { signs_.beat(); });
 }
 
-void ChangeDetector::look_at_file(CampaignState& state, const std::string& name,
-                                  const std::string& digest, std::vector<std::string>& why) {
-  signs_.reading((fs::path(state.folder) / name).string());
-  const auto path = storage::path_inside(in_.site / state.folder, name);
+std::optional<std::uint64_t> ChangeDetector::look_at_file(const CampaignState& state,
+                                                          const std::string& name,
+                                                          const std::string& digest,
+                                                          std::vector<std::string>& why) {
+  signs_.reading((fs::path(state.folder.view()) / name).string());
+  const auto path = storage::path_inside(in_.site / state.folder.view(), name);
   const auto now = path ? digest_with_signs(*path) : fail(path.error());
-  if (now) state.readings.push_back(storage::short_digest(*now));
   std::error_code error;
-  if (now.value_or(config::absent) == digest) return;
-  if (!now && path && fs::exists(*path, error))
-    why.push_back(now.error().message);
-  else
-    why.push_back("file " + name + (now ? " changed" : " is gone"));
+  if (now.value_or(config::absent) != digest)
+    why.push_back(!now && path && fs::exists(*path, error)
+                      ? now.error().message
+                      : "file " + name + (now ? " changed" : " is gone"));
+  return now ? std::optional(storage::short_digest(*now)) : std::nullopt;
 }
 
 /// A file of the right size that is not younger than the record was not touched since; of another

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "host/batch/survey.h"
 #include "host/evaluation/record.h"
@@ -33,8 +36,10 @@ class ChangeDetector {
   void judge(CampaignState& state, const Last& last, const std::string& manifest_digest);
   std::string changes(CampaignState& state, const evaluation::Record& record,
                       const std::string& manifest_digest);
-  void look_at_file(CampaignState& state, const std::string& name, const std::string& digest,
-                    std::vector<std::string>& why);
+  /// Adds what is not as it was; the begin of the file's digest.
+  std::optional<std::uint64_t> look_at_file(const CampaignState& state, const std::string& name,
+                                            const std::string& digest,
+                                            std::vector<std::string>& why);
   void look_at_outputs(const CampaignState& state, const evaluation::Record& record,
                        std::vector<std::string>& why);
   void look_at_number(const CampaignState& state, const evaluation::Record& record,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <thread>
 
 #include "host/batch/survey_look.h"
@@ -20,16 +21,17 @@ constexpr std::size_t most_patience = 8;
 
 process::Parcel packed(const CampaignState& state, const std::string& unknown) {
   process::Parcel parcel;
-  parcel.add(state.id).add(std::uint64_t{state.named_by_folder});
-  parcel.add(static_cast<std::uint64_t>(state.action)).add(state.reason);
+  parcel.add(state.id.view()).add(std::uint64_t{state.named_by_folder});
+  parcel.add(static_cast<std::uint64_t>(state.action)).add(state.reason.view());
   parcel.add(static_cast<std::uint64_t>(state.status));
-  parcel.add(unknown).add(state.errors.size());
-  for (const Error& e : state.errors) parcel.add(e.message).add(e.file).add(e.line).add(e.column);
-  parcel.add(state.readings.size());
-  for (const std::uint64_t digest : state.readings) parcel.add(digest);
-  parcel.add(state.twins_before.size());
-  for (const auto& [digest, id] : state.twins_before) parcel.add(digest).add(id);
-  parcel.add(std::uint64_t{state.history.has_value()}).add(state.history.value_or(""));
+  parcel.add(unknown).add(state.errors().size());
+  for (const Error& e : state.errors()) parcel.add(e.message).add(e.file).add(e.line).add(e.column);
+  const std::vector<std::uint64_t> readings = state.readings();
+  parcel.add(readings.size());
+  for (const std::uint64_t digest : readings) parcel.add(digest);
+  parcel.add(state.twins_before().size());
+  for (const auto& [digest, id] : state.twins_before()) parcel.add(digest).add(id);
+  parcel.add(std::uint64_t{state.shows_history}).add(state.history.view());
   return parcel;
 }
 
@@ -38,31 +40,34 @@ std::string unpack(process::Parcel& parcel, CampaignState& state) {
   state.id = parcel.text();
   state.named_by_folder = parcel.number() != 0;
   state.action = static_cast<CampaignState::Action>(parcel.number());
-  state.reason = parcel.text();
+  state.reason = KeptText::shared(parcel.text());
   state.status = static_cast<evaluation::Status>(parcel.number());
   std::string unknown = parcel.text();
+  std::vector<Error> errors = state.errors();
   for (std::uint64_t n = parcel.number(); n-- > 0;) {
     Error error{parcel.text()};
     error.file = parcel.text();
     error.line = parcel.number();
     error.column = parcel.text();
-    state.errors.push_back(std::move(error));
+    errors.push_back(std::move(error));
   }
-  state.readings.clear();
-  for (std::uint64_t n = parcel.number(); n-- > 0;) state.readings.push_back(parcel.number());
-  state.twins_before.clear();
+  state.set_errors(std::move(errors));
+  std::vector<std::uint64_t> readings;
+  for (std::uint64_t n = parcel.number(); n-- > 0;) readings.push_back(parcel.number());
+  state.set_readings(readings);
+  std::vector<CampaignState::TwinBefore> twins_before;
   for (std::uint64_t n = parcel.number(); n-- > 0;) {
     const std::uint64_t digest = parcel.number();
-    state.twins_before.emplace_back(digest, parcel.text());
+    twins_before.emplace_back(digest, parcel.text());
   }
-  const bool shows_history = parcel.number() != 0;
-  std::string history = parcel.text();
-  if (shows_history) state.history = std::move(history);
+  state.set_twins_before(std::move(twins_before));
+  state.shows_history = parcel.number() != 0;
+  state.history = parcel.text();
   return unknown;
 }
 
 struct Batch {
-  std::vector<std::size_t> campaigns{};
+  std::vector<std::uint32_t> campaigns{};
   bool rough = false;
   std::size_t received = 0;
 };
@@ -72,20 +77,20 @@ class Pool {
   Pool(const SurveyInput& input, std::vector<CampaignState>& states)
       : in_(input), states_(states) {}
 
-  Expected<void> run(const std::vector<std::size_t>& which) {
+  Expected<void> run(std::span<const std::uint32_t> which) {
     const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
     // Several for each core, so that all end at about the same time.
     const std::size_t size =
         std::clamp(which.size() / (4 * cores), std::size_t{1}, campaigns_in_batch);
-    for (std::size_t i = 0; i < which.size(); i += size) {
-      const auto from = which.begin() + static_cast<std::ptrdiff_t>(i);
-      todo_.push_back(
-          {{from, from + static_cast<std::ptrdiff_t>(std::min(size, which.size() - i))}});
-    }
-    std::reverse(todo_.begin(), todo_.end());
-    while ((!todo_.empty() || !children_.empty()) && !in_.stopped()) {
-      while (!todo_.empty() && children_.size() < cores)
+    while ((!which.empty() || !todo_.empty() || !children_.empty()) && !in_.stopped()) {
+      while ((!which.empty() || !todo_.empty()) && children_.size() < cores) {
+        if (todo_.empty()) {
+          const auto next = which.first(std::min(size, which.size()));
+          todo_.push_back({{next.begin(), next.end()}});
+          which = which.subspan(next.size());
+        }
         if (auto started = start(); !started) return started;
+      }
       process::wait_for_parcels(children_);
       for (std::size_t i = children_.size(); i-- > 0;) serve(i);
     }
@@ -137,7 +142,7 @@ class Pool {
     const std::string place = storage::path_text(child.signs().reads_from());
     const bool hangs = silent && child.signs().reads;
     const process::ChildEnd end = child.end();
-    const std::size_t campaign = batch.campaigns[at];
+    const std::uint32_t campaign = batch.campaigns[at];
     Batch rest{{}, batch.rough};
     for (std::size_t i = batch.received; i < batch.campaigns.size(); ++i)
       if (i != at) rest.campaigns.push_back(batch.campaigns[i]);
@@ -152,27 +157,27 @@ class Pool {
       fail_at(campaign, {"the process that looked at it ended: " + end.words, place});
   }
 
-  void fail_at(std::size_t campaign, Error why) {
+  void fail_at(std::uint32_t campaign, Error why) {
     CampaignState& state = states_[campaign];
     state.named_by_folder = true;
     state.status = evaluation::Status::failed;
     state.reason = "not evaluated";
-    state.errors = {std::move(why)};
+    state.set_errors({std::move(why)});
   }
 
   const SurveyInput& in_;
   std::vector<CampaignState>& states_;
-  std::vector<Batch> todo_;  // the next one is the last
+  std::vector<Batch> todo_;  // before all others
   std::vector<process::Watched> children_;
   std::vector<Batch> batches_;  // of the children
-  std::map<std::size_t, int> trials_;
+  std::map<std::uint32_t, int> trials_;
   std::size_t hung_ = 0;
   std::string unknown_;
 };
 
 }  // namespace
 
-Expected<void> look_at_all(const SurveyInput& input, const std::vector<std::size_t>& which,
+Expected<void> look_at_all(const SurveyInput& input, std::span<const std::uint32_t> which,
                            std::vector<CampaignState>& states) {
   return Pool(input, states).run(which);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,7 +13,7 @@ namespace nonio::host::batch {
 /// Looks at the campaigns `which` of `states` and completes them, on all cores, in child processes
 /// that may hang or crash without harm to the night. An error only if no process can be had, or if
 /// the register does not know a number.
-Expected<void> look_at_all(const SurveyInput& input, const std::vector<std::size_t>& which,
+Expected<void> look_at_all(const SurveyInput& input, std::span<const std::uint32_t> which,
                            std::vector<CampaignState>& states);
 
 /// For a number that was issued before.

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// What memory the plan of a night takes for so many campaigns:
+//   bench_plan_memory COUNT SHARDS FOLDER
+// The survey is simulated: names, one file of readings each, no results of nights before. What follows is what `nonio night
+// plan` does: the campaigns in order, those that share readings, the lists in FOLDER/.nonio/plan. Prints the
+// peak of the memory (VmHWM) after each step.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <string>
+
+#include "host/batch/earlier_results.h"
+#include "host/batch/night_plan.h"
+#include "host/batch/survey.h"
+#include "host/storage/digest.h"
+
+using namespace nonio;
+using namespace nonio::host;
+using batch::CampaignState, batch::KeptText;
+
+namespace {
+
+/// Bytes; 0 if the system does not say.
+double peak() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return std::strtod(line.c_str() + 6, nullptr) * 1024.0;
+  return 0.0;
+}
+
+void tell(const char* step, double before, std::size_t count) {
+  static const auto begin = std::chrono::steady_clock::now();
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+  std::printf("%-34s peak %7.1f MB, %5.1f bytes a campaign, after %.1f s\n", step, peak() / 1e6,
+              (peak() - before) / static_cast<double>(count), spent.count());
+  std::fflush(stdout);
+}
+
+std::string padded(std::size_t n, std::size_t digits) {
+  std::string text = std::to_string(n);
+  return text.insert(0, digits - std::min(digits, text.size()), '0');
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    std::fprintf(stderr, "usage: bench_plan_memory COUNT SHARDS FOLDER\n");
+    return 2;
+  }
+  const std::size_t count = std::strtoull(argv[1], nullptr, 10);
+  const double before = peak();
+  tell("nothing", before, count);
+  std::deque<KeptText> walked;
+  for (std::size_t i = 0; i < count; ++i)  // as bench/scale.py makes them
+    walked.emplace_back(padded(i / 1000, 5) + "/c" + padded(i, 7));
+  tell("folders found", before, count);
+  std::vector<CampaignState> campaigns;
+  campaigns.reserve(walked.size());
+  for (; !walked.empty(); walked.pop_front()) {
+    campaigns.emplace_back();
+    campaigns.back().folder = walked.front();
+  }
+  {
+    std::vector<std::uint32_t> which(count);
+    std::iota(which.begin(), which.end(), std::uint32_t{0});
+    for (const std::uint32_t i : which) {
+      CampaignState& c = campaigns[i];
+      // Not in the order of the folders.
+      c.id = "c" + padded((i * 7919ULL + 13) % count, 7);
+      c.reason = KeptText::shared("no earlier result");
+      const std::uint64_t digest = storage::short_digest(storage::sha256(c.folder.view()));
+      c.set_readings({&digest, 1});
+    }
+  }
+  tell("campaigns looked at", before, count);
+  {
+    const batch::ClaimedIds claimed(campaigns);
+    if (claimed.contains("x")) return 1;
+  }
+  batch::set_in_order(campaigns);
+  tell("in order, shared readings found", before, count);
+  batch::NightPlan plan;
+  plan.night = {1, "2026-01-01"};
+  plan.shards.resize(std::strtoull(argv[2], nullptr, 10));
+  if (const auto written = batch::write_plan(argv[3], plan, campaigns); !written) {
+    std::fprintf(stderr, "%s\n", written.error().message.c_str());
+    return 1;
+  }
+  tell("lists written", before, count);
+  std::printf("%llu campaigns in %zu shards\n", static_cast<unsigned long long>(plan.to_do),
+              plan.shards.size());
+}
