@@ -18,7 +18,7 @@ constexpr std::size_t most_shared = 500;
 constexpr unsigned char is_long = 255;
 
 /// Blocks that texts are written into one behind the other.
-struct Store {
+struct KeptTexts {
   std::mutex mutex;
   std::vector<std::unique_ptr<char[]>> blocks;
   char* at = nullptr;
@@ -37,8 +37,8 @@ struct Store {
   }
 };
 
-Store& store() {
-  static auto* const all = new Store;
+KeptTexts& kept_texts() {
+  static auto* const all = new KeptTexts;
   return *all;
 }
 
@@ -49,8 +49,8 @@ KeptText::KeptText(std::string_view text) {
   const std::size_t size = text.size();
   const bool fits = size < is_long;
   const std::size_t before = fits ? 1 : 1 + sizeof size;
-  const std::scoped_lock lock(store().mutex);
-  char* const to = store().take(before + size);
+  const std::scoped_lock lock(kept_texts().mutex);
+  char* const to = kept_texts().take(before + size);
   to[0] = static_cast<char>(fits ? size : is_long);
   if (!fits) std::memcpy(to + 1, &size, sizeof size);
   std::memcpy(to + before, text.data(), size);
@@ -59,13 +59,13 @@ KeptText::KeptText(std::string_view text) {
 
 KeptText KeptText::shared(std::string_view text) {
   {
-    const std::scoped_lock lock(store().mutex);
-    if (const auto known = store().shared.find(text); known != store().shared.end())
+    const std::scoped_lock lock(kept_texts().mutex);
+    if (const auto known = kept_texts().shared.find(text); known != kept_texts().shared.end())
       return known->second;
   }
   const KeptText kept(text);
-  const std::scoped_lock lock(store().mutex);
-  if (store().shared.size() < most_shared) store().shared.emplace(text, kept);
+  const std::scoped_lock lock(kept_texts().mutex);
+  if (kept_texts().shared.size() < most_shared) kept_texts().shared.emplace(text, kept);
   return kept;
 }
 
