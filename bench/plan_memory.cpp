@@ -7,11 +7,11 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
 #include <string>
+#include <vector>
 
 #include "host/batch/earlier_results.h"
 #include "host/batch/night_plan.h"
@@ -55,16 +55,17 @@ int main(int argc, char** argv) {
   const std::size_t count = std::strtoull(argv[1], nullptr, 10);
   const double before = peak();
   tell("nothing", before, count);
-  std::deque<KeptText> walked;
+  std::vector<KeptText> walked;
   for (std::size_t i = 0; i < count; ++i)  // as bench/scale.py makes them
     walked.emplace_back(padded(i / 1000, 5) + "/c" + padded(i, 7));
   tell("folders found", before, count);
   std::vector<CampaignState> campaigns;
   campaigns.reserve(walked.size());
-  for (; !walked.empty(); walked.pop_front()) {
+  for (const KeptText& folder : walked) {
     campaigns.emplace_back();
-    campaigns.back().folder = walked.front();
+    campaigns.back().folder = folder;
   }
+  std::vector<KeptText>().swap(walked);
   {
     std::vector<std::uint32_t> which(count);
     std::iota(which.begin(), which.end(), std::uint32_t{0});

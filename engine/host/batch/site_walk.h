@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <deque>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,7 +15,7 @@ struct SiteWalk {
   struct Unlisted {
     std::string folder, why;
   };
-  std::deque<KeptText> campaigns;  ///< folders with a manifest
+  std::vector<KeptText> campaigns;  ///< folders with a manifest
   std::vector<Unlisted> unlisted;  ///< what lies in them is not known
   std::vector<std::string> notes;  ///< what looks like a campaign and is passed over
 };

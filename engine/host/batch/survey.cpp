@@ -5,7 +5,6 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <tuple>
 
 #include "host/batch/earlier_results.h"
 #include "host/batch/site_walk.h"
@@ -134,15 +133,17 @@ Expected<Surveyed> survey(const SurveyInput& input) {
   if (!walk) return fail(walk.error());
   for (std::string& note : walk->notes) input.notes.push_back(std::move(note));
   states.reserve(walk->campaigns.size() + walk->unlisted.size());
-  for (; !walk->campaigns.empty(); walk->campaigns.pop_front()) {
+  for (const KeptText& folder : walk->campaigns) {
     states.emplace_back();
-    states.back().folder = walk->campaigns.front();
+    states.back().folder = folder;
   }
-  std::vector<std::uint32_t> which(states.size());
-  std::iota(which.begin(), which.end(), std::uint32_t{0});
-  if (auto looked = look_at_all(input, which, states); !looked) return fail(looked.error());
+  std::vector<KeptText>().swap(walk->campaigns);
+  {
+    std::vector<std::uint32_t> each(states.size());
+    std::iota(each.begin(), each.end(), std::uint32_t{0});
+    if (auto looked = look_at_all(input, each, states); !looked) return fail(looked.error());
+  }
   if (input.stopped()) return all;
-  which = {};
   const std::size_t walked = states.size();
   for (const SiteWalk::Unlisted& u : walk->unlisted) states.push_back(failed_folder(u));
   {
@@ -150,6 +151,7 @@ Expected<Surveyed> survey(const SurveyInput& input) {
     const auto earlier = unclaimed_results(input.out, claimed);
     if (!earlier) return fail(earlier.error());
     name_by_folder(states, *earlier, claimed);
+    std::vector<std::uint32_t> which;
     for (std::size_t i = 0; i < states.size(); ++i)
       if (states[i].named_by_folder && states[i].status == evaluation::Status::none)
         which.push_back(static_cast<std::uint32_t>(i));
@@ -162,7 +164,8 @@ Expected<Surveyed> survey(const SurveyInput& input) {
 
 void set_in_order(std::vector<CampaignState>& campaigns) {
   std::sort(campaigns.begin(), campaigns.end(), [](const CampaignState& a, const CampaignState& b) {
-    return std::tie(a.id, a.folder) < std::tie(b.id, b.folder);
+    const auto by_id = a.id <=> b.id;
+    return by_id == 0 ? a.folder < b.folder : by_id < 0;
   });
   fail_collisions(campaigns);
   find_twins(campaigns);
