@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What memory the plan of a night takes for so many campaigns:
-//   bench_plan_memory COUNT SHARDS FOLDER
+//   bench_plan_memory COUNT SHARDS FOLDER [LENGTH]
 // The survey is simulated: names, one file of readings each, no results of nights before. What follows is what `nonio night
 // plan` does: the campaigns in order, those that share readings, the lists in FOLDER/.nonio/plan. Prints the
-// peak of the memory (VmHWM) after each step.
+// peak of the memory (VmHWM) after each step. LENGTH: characters of an id, 8 if it is not given; a folder has 6 more.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -48,16 +48,17 @@ std::string padded(std::size_t n, std::size_t digits) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::fprintf(stderr, "usage: bench_plan_memory COUNT SHARDS FOLDER\n");
+  if (argc < 4 || argc > 5) {
+    std::fprintf(stderr, "usage: bench_plan_memory COUNT SHARDS FOLDER [LENGTH]\n");
     return 2;
   }
   const std::size_t count = std::strtoull(argv[1], nullptr, 10);
+  const std::size_t digits = argc == 5 ? std::strtoull(argv[4], nullptr, 10) - 1 : 7;
   const double before = peak();
   tell("nothing", before, count);
   std::vector<KeptText> walked;
   for (std::size_t i = 0; i < count; ++i)  // as bench/scale.py makes them
-    walked.emplace_back(padded(i / 1000, 5) + "/c" + padded(i, 7));
+    walked.emplace_back(padded(i / 1000, 5) + "/c" + padded(i, digits));
   tell("folders found", before, count);
   std::vector<CampaignState> campaigns;
   campaigns.reserve(walked.size());
@@ -72,7 +73,7 @@ int main(int argc, char** argv) {
     for (const std::uint32_t i : which) {
       CampaignState& c = campaigns[i];
       // Not in the order of the folders.
-      c.id = "c" + padded((i * 7919ULL + 13) % count, 7);
+      c.id = "c" + padded((i * 7919ULL + 13) % count, digits);
       c.reason = KeptText::shared("no earlier result");
       const std::uint64_t digest = storage::short_digest(storage::sha256(c.folder.view()));
       c.set_readings({&digest, 1});

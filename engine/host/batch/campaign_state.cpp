@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/batch/campaign_state.h"
 
+#include <bit>
 #include <cstring>
 
 namespace nonio::host::batch {
@@ -26,14 +27,21 @@ void CampaignState::set_twins_before(std::vector<TwinBefore> twins) {
 }
 
 std::vector<std::uint64_t> CampaignState::readings() const {
-  const std::string_view bytes = readings_.view();
+  if (has_ == Readings::none) return {};
+  if (has_ == Readings::one) return {readings_};
+  const std::string_view bytes = std::bit_cast<KeptText>(readings_).view();
   std::vector<std::uint64_t> digests(bytes.size() / sizeof(std::uint64_t));
-  if (!digests.empty()) std::memcpy(digests.data(), bytes.data(), bytes.size());
+  std::memcpy(digests.data(), bytes.data(), bytes.size());
   return digests;
 }
 
 void CampaignState::set_readings(std::span<const std::uint64_t> digests) {
-  readings_ = std::string_view(reinterpret_cast<const char*>(digests.data()), digests.size_bytes());
+  has_ = digests.empty() ? Readings::none : digests.size() == 1 ? Readings::one : Readings::several;
+  readings_ = 0;
+  if (has_ == Readings::one) readings_ = digests.front();
+  if (has_ == Readings::several)
+    readings_ = std::bit_cast<std::uint64_t>(
+        KeptText({reinterpret_cast<const char*>(digests.data()), digests.size_bytes()}));
 }
 
 }  // namespace nonio::host::batch

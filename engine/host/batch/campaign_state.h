@@ -19,14 +19,14 @@ namespace nonio::host::batch {
 class CampaignState {
  public:
   KeptText id;
-  KeptText folder;  ///< relative to the site, in the bytes of the file system
-  KeptText reason;  ///< why it is to do, or why not
+  KeptText folder;   ///< relative to the site, in the bytes of the file system
+  KeptText reason;   ///< why it is to do, or why not
   KeptText history;  ///< where `shows_history`: digest of it; empty: not known when it was written
   enum class Action : char { todo, done, unchanged } action = Action::todo;
   evaluation::Status status = evaluation::Status::none;  ///< none while it is to do
-  bool named_by_folder = false;  ///< its manifest gives no id
-  bool is_campaign = true;       ///< false: a folder of which nobody knows what lies in it
-  bool shows_history = false;    ///< a document shows the machine's history
+  bool named_by_folder = false;                          ///< its manifest gives no id
+  bool is_campaign = true;     ///< false: a folder of which nobody knows what lies in it
+  bool shows_history = false;  ///< a document shows the machine's history
 
   using TwinBefore = std::pair<std::uint64_t, std::string>;
   using Twin = std::pair<std::uint64_t, std::uint32_t>;
@@ -66,7 +66,8 @@ class CampaignState {
   const Seldom& seldom() const;
   Seldom& change();
 
-  KeptText readings_;
+  enum class Readings : char { none, one, several } has_ = Readings::none;
+  std::uint64_t readings_ = 0;  ///< the digest of the only one, or where the text of several is
   Held seldom_;
 };
 

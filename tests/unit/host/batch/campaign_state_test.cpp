@@ -66,9 +66,11 @@ TEST(CampaignState, ACopyHasErrorsOfItsOwn) {
 TEST(CampaignState, KeepsReadingsUntilTheyAreTaken) {
   CampaignState c;
   EXPECT_TRUE(c.readings().empty());
-  const std::vector<std::uint64_t> digests{0, 1, ~std::uint64_t{0}, 1};
-  c.set_readings(digests);
-  EXPECT_EQ(CampaignState(c).readings(), digests);
+  using Digests = std::vector<std::uint64_t>;
+  for (const Digests& digests : {Digests{0}, Digests{7}, Digests{0, 1, ~std::uint64_t{0}, 1}}) {
+    c.set_readings(digests);
+    EXPECT_EQ(CampaignState(c).readings(), digests);
+  }
   c.set_readings({});
   EXPECT_TRUE(c.readings().empty());
 }
