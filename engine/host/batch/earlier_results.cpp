@@ -46,9 +46,8 @@ ClaimedIds::ClaimedIds(const std::vector<CampaignState>& campaigns) : campaigns_
   by_id_.reserve(campaigns.size());
   for (std::size_t i = 0; i < campaigns.size(); ++i)
     if (!campaigns[i].named_by_folder) by_id_.push_back(static_cast<std::uint32_t>(i));
-  std::sort(by_id_.begin(), by_id_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return campaigns[a].id < campaigns[b].id;
-  });
+  std::sort(by_id_.begin(), by_id_.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return campaigns[a].id < campaigns[b].id; });
 }
 
 bool ClaimedIds::contains(std::string_view id) const {
@@ -93,12 +92,11 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
     if (now != nullptr && now->id == e.id) continue;
     if (now != nullptr && e.failed)
       notes.push_back(storage::own_folder(out, e.id).string() + " is left over: it says that " +
-                      e.folder + " failed, which is the campaign " + now->id.str() +
-                      " now");
+                      e.folder + " failed, which is the campaign " + now->id.str() + " now");
     else if (now != nullptr)
-      vanished.push_back({e.id, e.folder, e.night,
-                          "its folder " + e.folder + " is the campaign " +
-                              now->id.str() + " now; " + meant});
+      vanished.push_back(
+          {e.id, e.folder, e.night,
+           "its folder " + e.folder + " is the campaign " + now->id.str() + " now; " + meant});
     else if (above != unlisted.end())
       vanished.push_back({e.id, e.folder, e.night,
                           "it was not seen: the folder " + storage::path_text(above->folder) +

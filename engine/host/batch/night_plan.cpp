@@ -92,7 +92,8 @@ std::string hex_of(std::uint64_t value) {
 
 /// One line. What is as usual is left out.
 std::string line_of(const CampaignState& c, const std::vector<CampaignState>& all) {
-  Json json = {{"id", c.id.view()}, {"folder", exact(c.folder.str())}, {"reason", exact(c.reason.str())}};
+  Json json = {
+      {"id", c.id.view()}, {"folder", exact(c.folder.str())}, {"reason", exact(c.reason.str())}};
   if (c.action != Action::todo) json["action"] = actions.at(static_cast<std::size_t>(c.action));
   if (c.status != evaluation::Status::none) json["status"] = to_text(c.status);
   if (c.named_by_folder) json["named_by_folder"] = true;

@@ -221,8 +221,9 @@ class Releaser {
     if (!opened) return fail_with(opened.error().message);
     auto last = opened->last_number(id_);
     if (!last || !*last || (*last)->number == last_number_)
-      return fail_with(campaigns.front().errors().empty() ? "nothing was issued"
-                                                        : campaigns.front().errors().front().message);
+      return fail_with(campaigns.front().errors().empty()
+                           ? "nothing was issued"
+                           : campaigns.front().errors().front().message);
     out_.entry = std::move(**last);
     out_.state = Released::State::issued;
     if (const auto files = opened->files(out_.entry.number))

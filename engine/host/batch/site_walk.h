@@ -16,8 +16,8 @@ struct SiteWalk {
     std::string folder, why;
   };
   std::vector<KeptText> campaigns;  ///< folders with a manifest
-  std::vector<Unlisted> unlisted;  ///< what lies in them is not known
-  std::vector<std::string> notes;  ///< what looks like a campaign and is passed over
+  std::vector<Unlisted> unlisted;   ///< what lies in them is not known
+  std::vector<std::string> notes;   ///< what looks like a campaign and is passed over
 };
 
 /// All folders below a site. Links are not followed: a campaign is what lies in the site. Hidden

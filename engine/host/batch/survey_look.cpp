@@ -39,7 +39,8 @@ CampaignState ChangeDetector::at(const CampaignState& known, bool rough) {
   state.id = known.id;
   state.named_by_folder = known.named_by_folder;
   signs_.reading((fs::path(known.folder.view()) / config::manifest_name).string());
-  const auto text = storage::read_small_file(in_.site / known.folder.view() / config::manifest_name);
+  const auto text =
+      storage::read_small_file(in_.site / known.folder.view() / config::manifest_name);
   if (!text) {  // its worker says why
     state.named_by_folder = true;
     state.reason = "no earlier result";
