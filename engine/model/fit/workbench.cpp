@@ -280,11 +280,12 @@ MatrixXd Workbench::products(const std::vector<std::size_t>& blocks) const {
   return out;
 }
 
-MatrixXd Workbench::product(std::size_t a, std::size_t b) const {
-  const Block &one = blocks_[a], &other = blocks_[b];
-  if (products_[b].size() > 0) return products_[b].middleRows(one.first, one.count);
-  if (products_[a].size() > 0) return products_[a].middleRows(other.first, other.count).transpose();
-  return x_.middleCols(one.first, one.count).transpose() * x_.middleCols(other.first, other.count);
+const MatrixXd& Workbench::product_of_pair(std::size_t a, std::size_t b) const {
+  MatrixXd& product = pairs_[{a, b}];
+  if (product.size() == 0)
+    product.noalias() = x_.middleCols(blocks_[a].first, blocks_[a].count).transpose() *
+                        x_.middleCols(blocks_[b].first, blocks_[b].count);
+  return product;
 }
 
 MatrixXd Workbench::gram(const std::vector<std::size_t>& blocks) const {
@@ -295,7 +296,13 @@ MatrixXd Workbench::gram(const std::vector<std::size_t>& blocks) const {
   for (const std::size_t b : blocks) {
     Index row = 0;
     for (const std::size_t a : blocks) {
-      out.block(row, column, blocks_[a].count, blocks_[b].count) = product(a, b);
+      auto to = out.block(row, column, blocks_[a].count, blocks_[b].count);
+      if (products_[b].size() > 0)
+        to = products_[b].middleRows(blocks_[a].first, blocks_[a].count);
+      else if (products_[a].size() > 0)
+        to = products_[a].middleRows(blocks_[b].first, blocks_[b].count).transpose();
+      else
+        to = product_of_pair(a, b);
       row += blocks_[a].count;
     }
     column += blocks_[b].count;

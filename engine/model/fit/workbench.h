@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "data/design.h"
@@ -130,8 +131,7 @@ class Workbench {
   void count_shapes(Instance& instance) const;
   void fill_search(Block& block) const;
   static std::size_t usual_ones(const Term& term, const std::vector<double>& shape);
-  /// Of the columns of two blocks: from what is kept of all columns, if it is.
-  MatrixXd product(std::size_t a, std::size_t b) const;
+  const MatrixXd& product_of_pair(std::size_t a, std::size_t b) const;
   const MatrixXd& products_of(std::size_t block) const;
   double criterion(double squares, double price, Index parameters) const;
 
@@ -139,6 +139,8 @@ class Workbench {
   std::vector<Block> blocks_;
   MatrixXd x_;
   mutable std::vector<MatrixXd> products_;  // of all columns with each block's, where asked for
+  mutable std::map<std::pair<std::size_t, std::size_t>, MatrixXd>
+      pairs_;  // of two blocks' columns, likewise
   Whitening white_;
   VectorXd y_, xy_;
   double yy_ = 0.0, used_ = 0.0;
