@@ -268,11 +268,15 @@ const MatrixXd& Workbench::products_of(std::size_t block) const {
   return products;
 }
 
-MatrixXd Workbench::products(const std::vector<std::size_t>& blocks) const {
+Index Workbench::count_of(const std::vector<std::size_t>& blocks) const {
   Index columns = 0;
   for (const std::size_t b : blocks) columns += blocks_[b].count;
-  MatrixXd out(x_.cols(), columns);
-  columns = 0;
+  return columns;
+}
+
+MatrixXd Workbench::products(const std::vector<std::size_t>& blocks) const {
+  MatrixXd out(x_.cols(), count_of(blocks));
+  Index columns = 0;
   for (const std::size_t b : blocks) {
     out.middleCols(columns, blocks_[b].count) = products_of(b);
     columns += blocks_[b].count;
@@ -289,13 +293,16 @@ const MatrixXd& Workbench::product_of_pair(std::size_t a, std::size_t b) const {
 }
 
 MatrixXd Workbench::gram(const std::vector<std::size_t>& blocks) const {
-  Index columns = 0;
-  for (const std::size_t b : blocks) columns += blocks_[b].count;
-  MatrixXd out(columns, columns);
+  return products(blocks, blocks);
+}
+
+MatrixXd Workbench::products(const std::vector<std::size_t>& of,
+                             const std::vector<std::size_t>& with) const {
+  MatrixXd out(count_of(of), count_of(with));
   Index column = 0;
-  for (const std::size_t b : blocks) {
+  for (const std::size_t b : with) {
     Index row = 0;
-    for (const std::size_t a : blocks) {
+    for (const std::size_t a : of) {
       auto to = out.block(row, column, blocks_[a].count, blocks_[b].count);
       if (products_[b].size() > 0)
         to = products_[b].middleRows(blocks_[a].first, blocks_[a].count);
@@ -310,8 +317,8 @@ MatrixXd Workbench::gram(const std::vector<std::size_t>& blocks) const {
   return out;
 }
 
-Workbench::Projection Workbench::projection(const State& state) const {
-  Projection out{products(state.blocks), {}};
+Workbench::Projection Workbench::projection(const State& state, MatrixXd products) const {
+  Projection out{std::move(products), {}};
   if (state.blocks.empty()) return out;
   const MatrixXd own = gram(state.blocks);
   const Eigen::LLT<MatrixXd> llt(own);
@@ -356,9 +363,9 @@ Workbench::Directions Workbench::directions(const std::vector<std::size_t>& bloc
   return out;
 }
 
-/// `p.products` holds what each column has in the directions of the state.
-double Workbench::fall_of_block(const Projection& p, const Block& block) const {
-  const auto w = p.products.middleRows(block.first, block.count);
+/// `p.products` holds what columns have in the directions of the state, those of the block from `row` on.
+double Workbench::fall_of_block(const Projection& p, Index row, const Block& block) const {
+  const auto w = p.products.middleRows(row, block.count);
   VectorXd left = xy_.segment(block.first, block.count);
   if (p.z.size() > 0) left.noalias() -= w * p.z;
   if (block.count == 1) {
@@ -373,21 +380,23 @@ double Workbench::fall_of_block(const Projection& p, const Block& block) const {
   return std::isnan(fall) && reducible(block) ? fall_of_some(s, left) : fall;
 }
 
-void Workbench::add_falls(const Projection& p, std::size_t effect, VectorXd& fall) const {
-  for (const std::size_t b : instances_[effect].blocks)
-    fall(static_cast<Index>(b)) = fall_of_block(p, blocks_[b]);
-}
-
 VectorXd Workbench::gains(const State& state) const {
-  VectorXd fall = VectorXd::Constant(static_cast<Index>(blocks_.size()), nan);
-  const Projection p = projection(state);
-  for (std::size_t e = 0; e < instances_.size(); ++e) add_falls(p, e, fall);
+  VectorXd fall(static_cast<Index>(blocks_.size()));
+  const Projection p = projection(state, products(state.blocks));
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    fall(static_cast<Index>(b)) = fall_of_block(p, blocks_[b].first, blocks_[b]);
   return fall;
 }
 
 VectorXd Workbench::gains(const State& state, std::size_t effect) const {
   VectorXd fall = VectorXd::Constant(static_cast<Index>(blocks_.size()), nan);
-  add_falls(projection(state), effect, fall);
+  const std::vector<std::size_t>& own = instances_[effect].blocks;
+  const Projection p = projection(state, products(own, state.blocks));
+  Index row = 0;
+  for (const std::size_t b : own) {
+    fall(static_cast<Index>(b)) = fall_of_block(p, row, blocks_[b]);
+    row += blocks_[b].count;
+  }
   return fall;
 }
 

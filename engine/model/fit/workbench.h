@@ -97,6 +97,8 @@ class Workbench {
   /// Scalar products of the columns of blocks with each other, and of all columns with them.
   MatrixXd gram(const std::vector<std::size_t>& blocks) const;
   MatrixXd products(const std::vector<std::size_t>& blocks) const;
+  /// Of the columns of some blocks, one behind the other, with those of others.
+  MatrixXd products(const std::vector<std::size_t>& of, const std::vector<std::size_t>& with) const;
 
   /// Price of an effect with these shapes; with so many linear columns of its own.
   double price(const Block& block, Index columns) const;
@@ -111,7 +113,7 @@ class Workbench {
   MatrixXd columns_for(const Observations& o, Instance& instance, const std::vector<double>& shape,
                        bool& of_position, Made& made) const;
   struct Projection {
-    MatrixXd products;  // of all columns with orthonormal directions of the state's
+    MatrixXd products;  // of columns with orthonormal directions of the state's
     VectorXd z;         // of the readings with them
   };
   /// Directions of a state one of whose curves is not wholly independent of what came before it.
@@ -124,13 +126,14 @@ class Workbench {
   bool reducible(const Block& block) const;
   double least_of(const Block& block) const;
   State with_curve(const State& state, const VectorXd& gains, std::size_t effect) const;
-  Projection projection(const State& state) const;
-  void add_falls(const Projection& projection, std::size_t effect, VectorXd& fall) const;
-  double fall_of_block(const Projection& projection, const Block& block) const;
+  /// `products` of columns with those of the state.
+  Projection projection(const State& state, MatrixXd products) const;
+  double fall_of_block(const Projection& projection, Index row, const Block& block) const;
   void push(Block block, const MatrixXd& columns);
   void count_shapes(Instance& instance) const;
   void fill_search(Block& block) const;
   static std::size_t usual_ones(const Term& term, const std::vector<double>& shape);
+  Index count_of(const std::vector<std::size_t>& blocks) const;
   const MatrixXd& product_of_pair(std::size_t a, std::size_t b) const;
   const MatrixXd& products_of(std::size_t block) const;
   double criterion(double squares, double price, Index parameters) const;
