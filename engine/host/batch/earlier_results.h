@@ -35,8 +35,8 @@ class ClaimedIds {
 Expected<std::vector<EarlierResult>> unclaimed_results(const std::filesystem::path& out,
                                                        const ClaimedIds& claimed);
 
-/// What of it was there before and is not there tonight; the first `ordered` campaigns are in the order of their folders. Failed results of a folder that is there
-/// under another id are leftovers, and only noted.
+/// What of it was there before and is not there tonight. Failed results of a folder that is there under another id are
+/// leftovers, and only noted. The first `ordered` campaigns are in the order of their folders.
 std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
                                   const std::vector<CampaignState>& campaigns, std::size_t ordered,
                                   const std::vector<SiteWalk::Unlisted>& unlisted,
