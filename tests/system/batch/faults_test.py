@@ -13,8 +13,7 @@ import subprocess
 import sys
 import unittest
 
-from nightly import NightTest, readings
-from nightly import tree as every_file
+from nightly import NightTest, given_out as tree, readings
 
 FAULTS = int(os.environ.get("NONIO_FAULTS", "40"))
 SEED = int(os.environ.get("NONIO_SEED", "20261122"))
@@ -39,14 +38,6 @@ def night_number(out):
 
 def night_number_of(files):
     return json.loads(files[".nonio/night.json"])["night"]
-
-
-def tree(folder):
-    """Without the mark of who uses the folder: one that was killed, or could not look at it, leaves its own, and the next
-    night takes it over (night.locks)."""
-    files = every_file(folder)
-    files.pop(".nonio/user", None)
-    return files
 
 
 class Faults(NightTest):
