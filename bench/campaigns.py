@@ -50,7 +50,7 @@ def make(site, count):
 
 
 def peak_memory(process):
-    """Of the main process alone, in MB, looked at while it runs."""
+    """Of the main process alone, in MiB, looked at while it runs."""
     peak = 0.0
     try:
         for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():

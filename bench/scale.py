@@ -107,8 +107,8 @@ def memory(program, root, counts):
             time.sleep(0.01)
         peaks.append(peak)
     few, many = counts
-    print(f"memory of the plan: {peaks[0]:.1f} and {peaks[1]:.1f} MB for {few} and {many} campaigns: "
-          f"{(peaks[1] - peaks[0]) * 1e6 / (many - few):.0f} bytes each", flush=True)
+    print(f"memory of the plan: {peaks[0]:.1f} and {peaks[1]:.1f} MiB for {few} and {many} campaigns: "
+          f"{(peaks[1] - peaks[0]) * 2**20 / (many - few):.0f} bytes each", flush=True)
 
 
 def main():

@@ -146,7 +146,6 @@ Expected<void> write_list(const fs::path& folder, const std::string& name,
       return fail("cannot write " + path.string() + ": " + flushed.error().message);
   }
   list.sha256 = digest.hex();
-  storage::drop_cached(path);
   const auto same = storage::disk_gives_back(path, size, list.sha256);
   if (!same) return fail(same.error());
   if (!*same)
