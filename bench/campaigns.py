@@ -114,7 +114,7 @@ def main():
 
         def show(name, seconds, peak, status, after=None):
             term = "" if after is None else f", ended {after:.2f} s after SIGTERM"
-            print(f"{name}: {seconds:.1f} s, main process {peak:.1f} MB, status {status}{term}", flush=True)
+            print(f"{name}: {seconds:.1f} s, main process {peak:.1f} MiB, status {status}{term}", flush=True)
 
         def whole(name, changed):
             measured = night(command)
