@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/modelling/after_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "nonio/math/iso230_2.h"
@@ -11,14 +12,23 @@ namespace {
 
 constexpr double k = 2.0;  // ISO 230-2 since 1997
 
-double rms_of(const std::vector<double>& values, const std::vector<double>& weight) {
-  double sum = 0.0, weights = 0.0;
+/// About the weighted mean of each line: the zero of a line is unknown before and after a table.
+double rms_about_zeros(const Observations& o, const std::vector<double>& values,
+                       const std::vector<double>& weight) {
+  const auto weight_of = [&](std::size_t i) { return i < weight.size() ? weight[i] : 1.0; };
+  std::vector<double> sum(std::max<std::size_t>(o.lines.size(), 1)), weights(sum.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double w = i < weight.size() ? weight[i] : 1.0;
-    sum += w * values[i] * values[i];
-    weights += w;
+    sum[o.line_of(i)] += weight_of(i) * values[i];
+    weights[o.line_of(i)] += weight_of(i);
   }
-  return weights > 0.0 ? std::sqrt(sum / weights) : std::nan("");
+  double squares = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(weight_of(i) > 0.0)) continue;
+    const double left = values[i] - sum[o.line_of(i)] / weights[o.line_of(i)];
+    squares += weight_of(i) * left * left;
+    all += weight_of(i);
+  }
+  return all > 0.0 ? std::sqrt(squares / all) : std::nan("");
 }
 
 /// The readings of one measurement, along its axis.
@@ -53,8 +63,8 @@ AfterTable after_table(const model::Part& part, const model::Fit& fit) {
     out.effects.push_back(fit.terms[t].name());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] -= fit.part[t][i];
   }
-  out.rms_before = rms_of(measured, fit.weight);
-  out.rms = rms_of(left, fit.weight);
+  out.rms_before = rms_about_zeros(part.table, measured, fit.weight);
+  out.rms = rms_about_zeros(part.table, left, fit.weight);
   if (part.kind != model::Part::Kind::axis) return out;
   for (std::size_t m = 0; m < part.measurements.size(); ++m)
     out.tests.push_back({part.measurements[m], positioning(readings_of(part, m, measured)),

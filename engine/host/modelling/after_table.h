@@ -8,10 +8,11 @@
 
 namespace nonio::host::modelling {
 
-/// What a table in the control would leave of the readings of a part, if it took away what the
-/// compensable effects of the model say of them: RMS of all readings about zero, weighted as in the
-/// fit; of each measurement of one axis E, A and R of ISO 230-2 with k = 2 (math/iso230_2.h), NaN
-/// where the readings do not give them. A prediction: a control's table has points and steps, and
+/// What remains of the readings of a part if a table in the control compensates the compensable
+/// effects of the model: RMS of all readings about the zero of their line, weighted as in the fit
+/// (equal to the RMS of the fit if every effect is compensable and the readings are independent);
+/// of each measurement of one axis E, A and R of ISO 230-2 with k = 2 (math/iso230_2.h), NaN where
+/// the readings do not give them. A prediction: a control's table has points and steps, and
 /// `nonio apply` reads a real one.
 struct AfterTable {
   struct Positioning {
@@ -21,7 +22,7 @@ struct AfterTable {
     std::string measurement;
     Positioning before, after;
   };
-  std::vector<std::string> effects;    ///< those that are taken away; empty: none is compensable
+  std::vector<std::string> effects;    ///< those that are compensated; empty: none is compensable
   double rms_before = 0.0, rms = 0.0;  ///< m or rad
   std::vector<Test> tests;             ///< empty where no axis is measured along itself
 };

@@ -28,7 +28,8 @@ std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& mod
   const auto finding = find_best(part, model, catalogue, seed);
   if (!finding) return out;
   Explanation e;
-  e.candidates = candidates_of(*finding);
+  e.candidates = candidates_of(
+      *finding, {finding->repeats, finding->suspects, finding->weight, finding->noise});
   for (const Candidate& c : e.candidates)
     if (c.visible && finding->bench->holds(finding->best, finding->index_of(c.term.name())))
       e.together.push_back(c.term.name());

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/model/explain.h"
 
+#include <algorithm>
+#include <optional>
+
 #include "beside.h"
 #include "data/thin.h"
 #include "fit/compare.h"
@@ -13,49 +16,50 @@ namespace nonio::model {
 namespace {
 
 Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& model,
-                                  const std::vector<Term>& catalogue, std::uint64_t seed) {
+                                  const std::vector<Term>& catalogue, std::uint64_t seed,
+                                  const Ground& ground) {
   auto finding = find_best(part, model, catalogue, seed);
   if (!finding) return fail(finding.error());
   Explanation out;
-  out.candidates = candidates_of(*finding);
+  out.candidates = candidates_of(*finding, ground);
   for (const Candidate& c : out.candidates)
     if (c.visible && finding->bench->holds(finding->best, finding->index_of(c.term.name())))
       out.together.push_back(c.term.name());
   out.best_rms = finding->of_best.fit.rms;
   judge(*finding, out);
   if (out.verdict.kind == Verdict::Kind::unknown) describe(*finding, catalogue, out);
-  if (finding->of_model.fails())
-    finding->of_model.seats = seats_in(part, finding->repeats, finding->of_model);
-  out.comparison = std::move(finding->of_model);
+  out.comparison.suspects = std::move(finding->suspects);
   return out;
 }
 
-/// The search on means of neighbours; how well the model and each candidate do, on all readings.
-Expected<Explanation> explain_on_means(const Part& part, const std::vector<Term>& model,
-                                       const std::vector<Term>& catalogue, std::uint64_t seed,
-                                       const Groundwork::Found& ground) {
+/// Searched on means of neighbours; how well each candidate does, on all readings.
+void judge_on_all(const Part& part, const std::vector<Term>& model,
+                  const std::vector<Term>& catalogue, const Groundwork::Found& ground,
+                  Explanation& out) {
   const std::vector<double>& weight = ground.whole.weight;
-  const Part& thin = *ground.thin;
-  auto out = explain_all(thin, model, catalogue, seed);
-  if (!out) return out;
-  auto whole = compare_on(part, out->comparison.fit.terms, ground.whole);
-  if (!whole) return fail(whole.error());
-  whole->places = std::move(out->comparison.places);
-  whole->seats = std::move(out->comparison.seats);
-  whole->means = thin.table.size();
-  out->comparison = std::move(*whole);
-  out->verdict.suspects_share =
-      static_cast<double>(out->comparison.suspects.size()) / static_cast<double>(part.table.size());
-  if (too_many(out->comparison.suspects.size(), part.table.size()))
-    out->verdict.kind = Verdict::Kind::unrepeatable;
-  for (Candidate& c : out->candidates) {
-    if (!c.visible) continue;
-    std::vector<Term> terms = out->comparison.fit.terms;
-    terms.push_back(c.term);
-    c.rms = rms_with(part.table, terms, weight);
-    c.cv_rms = rms_of(cross_validated(part.table, terms, weight), weight);
+  out.verdict.suspects_share =
+      static_cast<double>(ground.whole.suspects.size()) / static_cast<double>(part.table.size());
+  if (too_many(ground.whole.suspects.size(), part.table.size()))
+    out.verdict.kind = Verdict::Kind::unrepeatable;
+  for (Candidate& c : out.candidates) {
+    const auto term = std::find_if(catalogue.begin(), catalogue.end(),
+                                   [&](const Term& t) { return t.name() == c.term.name(); });
+    if (!c.visible || term == catalogue.end()) continue;
+    std::vector<Term> terms = model;
+    terms.push_back(*term);
+    const auto fitted = fit(part.table, terms, weight, ground.whole.noise, &ground.thin->table);
+    if (!fitted) continue;
+    c.rms = fitted->rms;
+    c.cv_rms = rms_of(cross_validated(part.table, fitted->terms, weight), weight);
   }
-  return out;
+}
+
+/// What the search suspects besides, because the best explanation contradicts it.
+void add_suspects(const std::vector<Suspect>& found, Comparison& comparison) {
+  for (const Suspect& s : found)
+    if (std::none_of(comparison.suspects.begin(), comparison.suspects.end(),
+                     [&](const Suspect& known) { return known.row == s.row; }))
+      comparison.suspects.push_back(s);
 }
 
 }  // namespace
@@ -64,9 +68,21 @@ Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed,
                               const Groundwork* known) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to explain");
-  if (part.table.size() <= thin_beyond || !can_be_thinned(part.table))
-    return explain_all(part, model, catalogue, seed);
-  return explain_on_means(part, model, catalogue, seed, *GroundworkOf(part, model, known));
+  std::optional<Groundwork> made;
+  if (known == nullptr) known = &made.emplace(part, model);
+  const Groundwork::Found& ground = known->found();
+  auto out = explain_all(ground.thin ? *ground.thin : part, model, catalogue, seed,
+                         ground.thin ? *ground.of_thin : ground.whole);
+  if (!out) return out;
+  // The model is compared as `compare` does it: one model has one RMS.
+  auto comparison = compare(part, model, known);
+  if (!comparison) return fail(comparison.error());
+  if (ground.thin)
+    judge_on_all(part, model, catalogue, ground, *out);
+  else
+    add_suspects(out->comparison.suspects, *comparison);
+  out->comparison = std::move(*comparison);
+  return out;
 }
 
 }  // namespace nonio::model

@@ -94,7 +94,7 @@ class Sizes {
 
 class CandidateOf {
  public:
-  explicit CandidateOf(const Finding& finding) : f_(finding) {}
+  CandidateOf(const Finding& finding, const Ground& ground) : f_(finding), ground_(ground) {}
 
   Candidate operator()(std::size_t e) const {
     Candidate c;
@@ -120,7 +120,7 @@ class CandidateOf {
     c.term.shape = f_.bench->blocks()[block].shape;
     const Sizes sizes(f_, e, member);
     c.minimal_detectable = sizes.smallest();
-    fit_candidate(alone, c);
+    fit_candidate(c);
     if (member) c.bias = sizes.bias(f_.bench->blocks()[block]);
     return c;
   }
@@ -184,20 +184,19 @@ class CandidateOf {
     }
   }
 
-  /// In the model, whose curves may have fewer knots beside it.
-  void fit_candidate(const State& with, Candidate& c) const {
-    const std::size_t e = f_.bench->effect_of(with.blocks.back());
-    std::vector<Term> terms = f_.of_model.fit.terms;
-    for (std::size_t t = 0; t < terms.size(); ++t)
-      if (with.blocks[t] != f_.start.blocks[t])
-        terms[t].shape = f_.bench->blocks()[with.blocks[t]].shape;
-    terms.push_back(c.term);
-    const auto fitted =
-        fit_near(f_.part.table, terms, std::vector<char>(terms.size(), 0), f_.weight, f_.noise);
+  /// Added to the model as `nonio model add` does it, so that the RMS printed beforehand is the one
+  /// obtained: all shapes are searched anew, and readings have the weights of a comparison.
+  void fit_candidate(Candidate& c) const {
+    std::vector<Term> terms(f_.terms.begin(),
+                            f_.terms.begin() + static_cast<std::ptrdiff_t>(f_.in_model));
+    terms.push_back(f_.terms[f_.index_of(c.term.name())]);
+    const auto fitted = fit(f_.part.table, terms, ground_.weight, ground_.noise);
     if (!fitted) return;
     c.rms = fitted->rms;
-    c.cv_rms = rms_of(cross_validated(f_.part.table, terms, f_.weight), f_.weight);
-    const Fit& from = f_.bench->holds(f_.best, e) ? f_.of_best.fit : *fitted;
+    c.cv_rms =
+        rms_of(cross_validated(f_.part.table, fitted->terms, ground_.weight), ground_.weight);
+    const bool member = f_.bench->holds(f_.best, f_.index_of(c.term.name()));
+    const Fit& from = member ? f_.of_best.fit : *fitted;
     for (const Parameter& p : from.parameters)
       if (p.effect == c.term.name()) c.parameters.push_back(p);
     for (const Term& t : from.terms)
@@ -205,12 +204,13 @@ class CandidateOf {
   }
 
   const Finding& f_;
+  const Ground& ground_;
 };
 
 }  // namespace
 
-std::vector<Candidate> candidates_of(const Finding& finding) {
-  const CandidateOf candidate(finding);
+std::vector<Candidate> candidates_of(const Finding& finding, const Ground& ground) {
+  const CandidateOf candidate(finding, ground);
   std::vector<Candidate> out;
   for (std::size_t e = finding.in_model; e < finding.terms.size(); ++e) out.push_back(candidate(e));
   std::stable_sort(out.begin(), out.end(),

@@ -2,11 +2,12 @@
 #pragma once
 
 #include "finding.h"
+#include "fit/compare.h"
 
 namespace nonio::model {
 
 /// Every effect outside the model, with its evidence, its aliases and the smallest that would be
-/// found; most evidence first.
-std::vector<Candidate> candidates_of(const Finding& finding);
+/// found; most evidence first. `ground`: of the comparison that adding the effect is judged by.
+std::vector<Candidate> candidates_of(const Finding& finding, const Ground& ground);
 
 }  // namespace nonio::model

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """nonio compare: figures, places, suspects and their exclusion."""
 import pathlib
+import shutil
 import statistics
 import unittest
 
@@ -63,9 +64,27 @@ class Compare(VerbTest):
                 self.assertAlmostEqual(test[name][key], value, delta=2e-5 * abs(wanted["E_um"]) + 1e-5, msg=f"{name} {key}")
         self.assertGreater(test["before"]["E_um"], 3 * test["after"]["E_um"])
         left = [d - values["a"] * (t - middle) / 1000 - values["b"] * w / 2 for w, t, d in rows]
-        self.assertAlmostEqual(predicted["rms_um"], (sum(x * x for x in left) / len(left)) ** 0.5, delta=1e-4)
+        self.assertAlmostEqual(predicted["rms_um"], statistics.pstdev(left), delta=1e-4)
+        self.assertAlmostEqual(predicted["rms_before_um"], statistics.pstdev([d for _, _, d in rows]), delta=1e-4)
         shown = self.nonio("compare", self.folder).stdout
         self.assertRegex(shown, r"after a table +RMS [\d.]+ um -> [\d.]+ um, predicted, if it takes away scale:X, backlash:X\n +X: E [\d.]+ um -> ")
+
+    def test_after_a_table_the_error_of_diagonals_falls(self):
+        """Every line has its own zero, before and after: a complete model for a table leaves what its fit leaves."""
+        for source, effects in ((SITE / "17-straight-or-square", None), (SITE / "13-gantry-diagonals", ["squareness:XY"])):
+            folder = self.site / source.name
+            shutil.copytree(source, folder)
+            if effects:
+                for effect in effects:
+                    self.nonio("model", "add", folder, effect)
+            for part in self.json_of("compare", folder)["parts"]:
+                if "after_table" not in part:
+                    continue
+                told = part["after_table"]
+                with self.subTest(campaign=source.name, effects=told["takes"]):
+                    self.assertLess(told["rms_um"], told["rms_before_um"])
+                    if set(told["takes"]) == set(part["model"]["effects"]):
+                        self.assertAlmostEqual(told["rms_um"], part["rms_um"], delta=0.002 * part["rms_um"])
 
     def test_without_anything_for_a_table_it_says_nothing_of_one(self):
         self.campaign(manifest(["zero-drift:X"]), x=readings())

@@ -40,6 +40,36 @@ class Explain(VerbTest):
     def explain(self, *args, **kwargs):
         return self.check(self.json_of("explain", self.folder, *args, **kwargs))
 
+    def test_the_predicted_error_is_the_one_obtained(self):
+        """Also where shapes of the model and of the candidate are searched: each depends on the others."""
+        seed = random.SystemRandom().randrange(2**31)
+        print("seed", seed)
+        truth = random.Random(seed)
+        data = readings(runs=4, seed=seed, scale=30, backlash=-4, drift=6)
+        lines = data.splitlines()
+        at, jump, slip = len(lines) // 2 + truth.randrange(-9, 9), truth.uniform(4, 8), truth.uniform(1, 3)
+        rows = []
+        for i, line in enumerate(lines):
+            fields = line.split(",")
+            if fields[0].isdigit():
+                wave = slip * math.sin(2 * math.pi * float(fields[2]) / 310 + 1)
+                fields[3] = f"{float(fields[3]) + wave + (jump if i > at else 0):.3f}"
+            rows.append(",".join(fields))
+        self.campaign(manifest(["scale:X"]), x="\n".join(rows) + "\n")
+        steps = 0
+        while True:
+            e = self.explain()
+            self.assertAlmostEqual(e["model"]["rms_um"], self.json_of("compare", self.folder)["parts"][0]["rms_um"], places=6)
+            if e["verdict"]["kind"] != "missing" or steps == 6:
+                break
+            for candidate in [c for c in e["candidates"] if c["score"] > 0]:
+                after = self.json_of("model", "add", self.folder, candidate["effect"])["after"]["rms_um"]
+                self.assertAlmostEqual(candidate["rms_um"], after, delta=0.002 * after, msg=f"{candidate['effect']}, seed {seed}")
+                self.nonio("model", "drop", self.folder, candidate["effect"])
+            self.nonio("model", "add", self.folder, e["verdict"]["effect"])
+            steps += 1
+        self.assertGreater(steps, 1, f"seed {seed}")
+
     def test_names_the_missing_effect(self):
         self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
         e = self.explain()
