@@ -88,6 +88,10 @@ std::string axis_text(const NewAxis& a) {
               ? "travel = [" + number(axis.travel->first) + ", " + number(axis.travel->second) + "]"
               : "# travel = [0, " + std::string(axis.rotary ? "360" : "1000") + "]";
   text += "  # " + unit + "; targets outside get a finding\n";
+  text +=
+      "# table_on = \"none\"  # table active in the control while measured: its file, or \"none\"\n"
+      "# backlash_on_" +
+      unit + " = \"none\"  # backlash value active then; without both no table is written\n";
   if (axis.rotary)
     return text +
            "# teeth = 180  # periods of the drive or scale per revolution\n"

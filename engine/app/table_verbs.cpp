@@ -222,6 +222,19 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
   return {};
 }
 
+/// --was-on and the campaign state the same thing: they must not state two.
+Expected<void> was_on_unless_stated(const TableWish& w, const Loaded& present, const Campaign& c) {
+  for (const LoadedTable& t : present.tables) {
+    const Axis* axis = c.machine.axis(t.output);
+    if (axis == nullptr || !axis->table_on || t.input != std::vector{t.output}) continue;
+    return fail("--was-on states that " + w.table +
+                " was active, but the campaign states table_on = \"" +
+                (axis->table_on->empty() ? "none" : *axis->table_on) + "\" of axis " + t.output +
+                ": correct one of them");
+  }
+  return {};
+}
+
 int apply(const TableWish& w, const Common& common) {
   const char* const verb = "nonio apply";
   const auto settings = settings_of(w.settings);
@@ -246,6 +259,8 @@ int apply(const TableWish& w, const Common& common) {
     a.forecast = host::tables::forecast(open.read, table->tables, settled, *on);
     return tell(a, table->control->info.name, open, common);
   }
+  if (auto agreed = was_on_unless_stated(w, *table, open.campaign()); !agreed)
+    return complain(verb, agreed.error().message);
   if (auto stated = settle_backlash(w, *table, settled); !stated)
     return complain(verb, stated.error().message);
   auto renewed = host::tables::renew(open.read, *table->control, settled, table->tables);

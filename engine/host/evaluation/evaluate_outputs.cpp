@@ -197,7 +197,7 @@ Expected<OutputResult> table_of(const Work& work, const WantedController& w,
     written = no_table("table.not-written", info, "why", written.error().message);
   if (written && !w.asked)  // a control that the machine may not even have
     for (Finding& f : written->findings)
-      if (f.id == "table.axis-number") f.attention = false;
+      if (f.id == "table.axis-number" || f.id == "table.active-not-stated") f.attention = false;
   return written;
 }
 

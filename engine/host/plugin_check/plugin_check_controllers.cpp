@@ -58,7 +58,8 @@ Sample sample_of(const KnownError& k) {
   s.name = k.rotary ? "planted C" : "planted X";
   const std::string name = k.rotary ? "C" : "X";
   s.campaign.id = "planted";
-  s.campaign.machine.axes.push_back({.name = name, .rotary = k.rotary});
+  s.campaign.machine.axes.push_back(
+      {.name = name, .rotary = k.rotary, .table_on = "", .backlash_on = 0.0});
   Measurement m;
   m.id = m.axis = name;
   m.kind = "axis";

@@ -46,6 +46,48 @@ Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string&
   return fail("no measurement of axis " + axis + "; there are " + (list.empty() ? "none" : list));
 }
 
+/// The backup contains the table that was active while the axis was measured, unless the campaign
+/// states another one: it is removed from the readings, so that the new table is complete.
+Expected<void> take_active_of_backup(OneAxis& one, const Controller& controller,
+                                     const std::vector<Artifact>& backup, const std::string& axis,
+                                     Settings& options, std::vector<Finding>& findings) {
+  auto& axes = one.campaign.machine.axes;
+  const auto of_campaign =
+      std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == axis; });
+  if (of_campaign == axes.end() || of_campaign->table_on ||
+      one.campaign.measurements.front().compensation == "off")
+    return {};
+  const auto present = tables_in(controller, backup, one.campaign, options);
+  if (!present) return fail(present.error());
+  std::string files;
+  for (const Artifact& f : backup) files += (files.empty() ? "" : ", ") + f.name;
+  std::optional<double> backlash = of_campaign->backlash_on;
+  bool corrected = false;
+  for (const LoadedTable& t : *present) {
+    if (t.output != axis || t.input != std::vector{axis}) continue;
+    corrected = true;
+    if (t.backlash) backlash = t.backlash;
+  }
+  if (!backlash) backlash = stated_backlash(options, axis, of_campaign->rotary);
+  if (!backlash && !controller.table.backlash.empty())
+    return fail(files + " does not contain the value of " + controller.table.backlash +
+                " of axis " + axis +
+                ", which was active during the measurement: give its file too, or state " +
+                (of_campaign->rotary ? "backlash_on_deg" : "backlash_on_mm") +
+                " in [machine.axes." + axis + "]");
+  one.readings = without_tables(one.campaign, one.readings, *present);
+  of_campaign->table_on = corrected ? files : std::string();
+  of_campaign->backlash_on = backlash.value_or(0.0);
+  state_backlash(options, axis, of_campaign->rotary, *of_campaign->backlash_on);
+  findings.push_back({"table.active-from-backup",
+                      true,
+                      {},
+                      {{"axis", axis}, {"files", files}},
+                      one.campaign.measurements.front().id,
+                      {}});
+  return {};
+}
+
 /// What the control would have after the merge, held against what it has and what is new.
 Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh,
                               const ReadTables& next, const std::string& axis) {
@@ -100,9 +142,12 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
                 " does not merge: load the new file of the axis as it is, in place of the old one");
   const auto on = what_was_on(read, controller, given);
   if (!on) return fail(on.error());
-  const Settings& options = *on ? (*on)->options : given;
-  const auto one = one_axis(read, axis, *on);
+  Settings options = *on ? (*on)->options : given;
+  auto one = one_axis(read, axis, *on);
   if (!one) return fail(one.error());
+  std::vector<Finding> findings;
+  if (auto taken = take_active_of_backup(*one, controller, backup, axis, options, findings); !taken)
+    return fail(taken.error());
   const Results none;
   auto written = process::guarded(who, [&] {
     return controller.write({one->campaign, one->readings, none, options});
@@ -110,6 +155,7 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
   if (!written) return fail(written.error());
   MergedTables out{
       .files = {}, .differences = {}, .findings = written->findings, .notes = written->notes};
+  out.findings.insert(out.findings.begin(), findings.begin(), findings.end());
   if (written->artifacts.empty()) return out;  // refused; the findings say why
   const Campaign& campaign = read.manifest->campaign;
   auto changed = process::guarded(who, [&] {

@@ -29,86 +29,58 @@ Expected<void> check_names(const NumberTables& settings, const ControllerInput& 
   return {};
 }
 
-/// What was on while the axis was measured, as far as somebody says it.
-struct Present {
+/// The compensation that was active while the axis was measured, as far as it is stated.
+struct Active {
   std::optional<std::string> table;  ///< its files; empty: there was none
-  bool backlash = false;             ///< somebody says it
+  bool backlash = false;             ///< the value is stated
 };
 
-const Measurement* measurement_of(const ControllerInput& input, const AxisJob& job) {
+const Measurement* measurement_of(const ControllerInput& input, const std::string& id) {
   for (const Measurement& m : input.campaign.measurements)
-    if (m.id == job.measurement) return &m;
+    if (m.id == id) return &m;
   return nullptr;
 }
 
-Present present_of(const ControllerInput& input, const AxisJob& job) {
-  const Axis* axis = input.campaign.machine.axis(job.axis);
-  const Measurement* m = measurement_of(input, job);
+Active active_of(const ControllerInput& input, const std::string& axis,
+                 const std::string& measurement, bool in_options) {
+  const Axis* a = input.campaign.machine.axis(axis);
+  const Measurement* m = measurement_of(input, measurement);
   const bool off = m != nullptr && m->compensation == "off";
-  Present p;
-  if (axis != nullptr) p.table = axis->table_on;
-  if (!p.table && off) p.table = std::string();
-  p.backlash =
-      off || (axis != nullptr && axis->backlash_on) || job.position_setting("backlash").has_value();
-  return p;
+  Active out;
+  if (a != nullptr) out.table = a->table_on;
+  if (!out.table && off) out.table = std::string();
+  out.backlash = off || in_options || (a != nullptr && a->backlash_on);
+  return out;
 }
 
-std::vector<std::string> present_lines(const ControllerInput& input, const AxisJob& job) {
-  const Present p = present_of(input, job);
+std::vector<std::string> active_lines(const ControllerInput& input, const AxisJob& job) {
+  const Active active = active_of(input, job.axis, job.measurement, true);
   std::vector<std::string> lines;
-  if (!p.table)
-    lines.emplace_back(
-        "ASSUMED, not stated: no table of this axis was on while it was measured (table_on)");
-  else
-    lines.push_back(p.table->empty()
-                        ? "no table of this axis was on while it was measured"
-                        : "while this axis was measured the table of " + plain(*p.table) +
-                              " was on: this one takes its place and is the whole of it");
-  if (!p.backlash && job.present_backlash() == 0.0)
-    lines.push_back(std::string("ASSUMED, not stated: the backlash parameter was 0 while the "
-                                "axis was measured (backlash_on_") +
-                    std::string(job.unit()) + ")");
-  else
+  if (active.table && active.table->empty())
+    lines.emplace_back("no table of this axis was active while it was measured");
+  else if (active.table)
+    lines.push_back("while this axis was measured the table of " + plain(*active.table) +
+                    " was active: this one replaces it and is complete");
+  if (active.table)
     lines.push_back("the backlash parameter was " + with_unit(job, job.present_backlash(), 6) +
                     " while the axis was measured");
   return lines;
 }
 
-/// False with a finding where compensation was on, and nobody says which table: what is left of
-/// the error would be loaded in place of the table that took the rest away.
-bool knows_what_was_on(const ControllerInput& input, const AxisJob& job, OutputResult& result) {
-  const Present p = present_of(input, job);
-  const Measurement* m = measurement_of(input, job);
-  if (m != nullptr && m->compensation == "on" && !p.table) {
-    result.findings.push_back({"table.which-was-on",
-                               true,
-                               {},
-                               {{"axis", job.axis}},
-                               job.measurement,
-                               "Say table_on in [machine.axes." + job.axis +
-                                   "]: the file of the table that was on, or \"none\"."});
-    return false;
-  }
-  if (p.table && p.backlash) return true;
-  const char* const id = p.table      ? "table.assumed-no-backlash"
-                         : p.backlash ? "table.assumed-no-table"
-                                      : "table.assumed-nothing-on";
-  result.notes.push_back(remark(job, id));
-  return true;
-}
-
 std::vector<std::string> about(const ControllerInput& input, const AxisJob& job) {
   const Machine& m = input.campaign.machine;
   std::vector<std::string> lines;
-  lines.push_back("machine: " + plain(m.maker) + " " + plain(m.model) + ", serial " +
-                  plain(m.serial));
+  lines.push_back("machine: " +
+                  ((m.maker + m.model + m.serial).empty()
+                       ? "not stated"
+                       : plain(m.maker) + " " + plain(m.model) + ", serial " + plain(m.serial)));
   lines.push_back("axis " + plain(job.axis) + ", measurement " + plain(job.measurement) + ", " +
                   plain(input.campaign.date.empty() ? "no date" : input.campaign.date) +
                   ", campaign " + plain(input.campaign.id));
   lines.push_back("measured from " + with_unit(job, job.curve.position.front(), 4) + " to " +
                   with_unit(job, job.curve.position.back(), 4) + ", " +
                   std::to_string(job.curve.position.size()) + " targets");
-  for (std::string& line : present_lines(input, job)) lines.push_back(std::move(line));
+  for (std::string& line : active_lines(input, job)) lines.push_back(std::move(line));
   return lines;
 }
 
@@ -271,6 +243,25 @@ bool lacks_number(const std::vector<std::string>& of, const ControllerInput& inp
   return !unsaid.empty();
 }
 
+bool states_active(const ControllerInput& input, const std::string& axis,
+                   const std::string& measurement, bool backlash_in_options, OutputResult& result) {
+  const Active active = active_of(input, axis, measurement, backlash_in_options);
+  if (active.table && active.backlash) return true;
+  const Axis* a = input.campaign.machine.axis(axis);
+  const std::string backlash = a != nullptr && a->rotary ? "backlash_on_deg" : "backlash_on_mm";
+  const std::string missing = active.table      ? backlash
+                              : active.backlash ? "table_on"
+                                                : "table_on, " + backlash;
+  result.findings.push_back({"table.active-not-stated",
+                             true,
+                             {},
+                             {{"axis", axis}, {"missing", missing}},
+                             measurement,
+                             "State " + missing + " in [machine.axes." + axis +
+                                 "]: what was active while the axis was measured, or \"none\"."});
+  return false;
+}
+
 Remark remark(const AxisJob& job, std::string id) {
   return {std::move(id), {}, {{"axis", job.axis}, {"unit", std::string(job.unit())}}};
 }
@@ -351,7 +342,9 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
       refuse_number(job.axis, job.measurement, input, result);
       continue;
     }
-    if (!job.from_diagonals && !knows_what_was_on(input, job, result)) continue;
+    if (!states_active(input, job.axis, job.measurement,
+                       job.position_setting("backlash").has_value(), result))
+      continue;
     job.about = about(input, job);
     say_what_was_left_out(job, result);
     jobs.push_back(std::move(job));

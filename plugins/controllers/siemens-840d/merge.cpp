@@ -35,10 +35,35 @@ std::optional<Line> line_of(std::string_view text) {
 
 using IsOwn = std::function<bool(const Line&)>;
 
+bool is_comment(std::string_view line) { return controllers::trimmed(line).starts_with(';'); }
+
+/// The text without the comments that Nonio wrote above its own lines: they describe the table that
+/// is replaced, and would be read as the origin of the new one. Comments of others are kept.
+std::string without_origin(const std::string& text, const IsOwn& is_own) {
+  std::string out, block;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t next = std::min(text.find('\n', at), text.size() - 1) + 1;
+    const std::string_view one = std::string_view(text).substr(at, next - at);
+    at = next;
+    if (is_comment(one)) {
+      block += one;
+      continue;
+    }
+    const auto line = line_of(one);
+    const bool origin = block.find(", measurement ") != std::string::npos &&
+                        block.find(", campaign ") != std::string::npos;
+    if (!(line && is_own(*line) && origin)) out += block;
+    block.clear();
+    out += one;
+  }
+  return out + block;
+}
+
 /// The text with new lines in the place of its own ones (else before M17). Nothing where it has
 /// none and is not to get any.
-std::optional<std::string> replaced(const std::string& text, const IsOwn& is_own,
+std::optional<std::string> replaced(const std::string& before, const IsOwn& is_own,
                                     const std::string& lines, bool add) {
+  const std::string text = without_origin(before, is_own);
   std::optional<std::size_t> end;
   for (const std::string_view one : controllers::lines_of(text))
     if (add && controllers::trimmed(one) == "M17")
@@ -52,11 +77,11 @@ std::optional<std::string> replaced(const std::string& text, const IsOwn& is_own
       lines, end);
 }
 
-/// The assignments of a text, one a line.
-std::string assignments_of(const std::string& text) {
+/// The assignments of a text and their comments, one per line.
+std::string body_of(const std::string& text) {
   std::string out;
   for (const std::string_view line : controllers::lines_of(text))
-    if (line_of(line)) out += std::string(controllers::trimmed(line)) + "\n";
+    if (line_of(line) || is_comment(line)) out += std::string(controllers::trimmed(line)) + "\n";
   return out;
 }
 
@@ -142,9 +167,10 @@ class Merger {
   explicit Merger(const MergeInput& in) : in_(in), files_(in.backup), changed_(in.backup.size()) {}
 
   Expected<void> take(const Artifact& table) {
-    const std::string lines = assignments_of(table.bytes);
-    const auto first = line_of(lines.substr(0, lines.find('\n')));
-    if (!first) return {};
+    const std::string lines = body_of(table.bytes);
+    const std::vector<Line> assignments = lines_in({table});
+    if (assignments.empty()) return {};
+    const Line* const first = &assignments.front();
     if (first->name.rfind("AN_CEC", 0) == 0) return take_directions(table);
     const bool backlash = first->name == "MA_BACKLASH";
     const std::string axis = first->index.back(), system = first->index.front();
@@ -173,7 +199,9 @@ class Merger {
     std::string lines;
     std::set<std::string> own;
     for (const std::string_view text : controllers::lines_of(table.bytes))
-      if (const auto l = line_of(text)) {
+      if (is_comment(text)) {
+        lines += std::string(controllers::trimmed(text)) + "\n";
+      } else if (const auto l = line_of(text)) {
         const std::string& to = numbers->at(l->index[0]);
         own.insert(to);
         lines += "$" + l->name + "[" + to + (l->index.size() > 1 ? "," + l->index[1] : "") +

@@ -44,6 +44,14 @@ class BenchTest(unittest.TestCase):
     def tearDown(self):
         self._folder.cleanup()
 
+    active_stated, backlash_on = True, '"none"'
+
+    def none_active(self, name, kind):
+        """No table was active while this axis was measured, and this backlash value; or nothing is stated."""
+        text = '[machine.axes.%s]\nkind = "%s"\n' % (name, kind)
+        unit = "deg" if kind == "rotary" else "mm"
+        return text + ('table_on = "none"\nbacklash_on_%s = %s\n' % (unit, self.backlash_on) if self.active_stated else "")
+
     def campaign(self, files, extra="", axes=(("X", "linear"),), control=None):
         text = 'format = 1\n[campaign]\nid = "c"\n[machine]\n'
         if control:
@@ -52,7 +60,7 @@ class BenchTest(unittest.TestCase):
             text += 'asset = "S-1"\n'
             self.record([name for name, _ in axes], from_zero=control == "linuxcnc")
         for name, kind in axes:
-            text += '[machine.axes.%s]\nkind = "%s"\n' % (name, kind)
+            text += self.none_active(name, kind)
         for name, (kind, data, more) in files.items():
             (self.folder / (name + ".csv")).write_text(data)
             text += '[[measurement]]\nid = "%s"\nkind = "%s"\nfile = "%s.csv"\n%s\n' % (name, kind, name, more)

@@ -17,13 +17,17 @@ def half(x):
 
 class MachineTest(BenchTest):
     def measured(self, control, axis="Z", axes=(("Z", "linear"),), machine="", options="", plus=wave, minus=wave,
-                 of_axis="", of_measurement="", date="2026-06-01"):
-        """A campaign of one measured axis, written without the help of the bench: nothing is said that is not here."""
+                 of_axis=None, of_measurement="", date="2026-06-01"):
+        """A campaign of one measured axis, written without the help of the bench: nothing is said that is not here.
+        `of_axis`: statements on the measured axis; without them no compensation was active."""
         text = 'format = 1\n[campaign]\nid = "c"\ndate = %s\n[machine]\n%s' % (date, machine)
         if control:
             text += 'control = "%s"\n' % control
         for name, kind in axes:
-            text += '[machine.axes.%s]\nkind = "%s"\n%s' % (name, kind, of_axis if name == axis else "")
+            if of_axis is None or name != axis:
+                text += self.none_active(name, kind)
+            else:
+                text += '[machine.axes.%s]\nkind = "%s"\n%s' % (name, kind, of_axis)
         text += '[[measurement]]\nid = "%s"\nkind = "axis"\naxis = "%s"\nfile = "a.csv"\n%s' % (axis, axis, of_measurement)
         (self.folder / "campaign.toml").write_text(text + options)
         (self.folder / "a.csv").write_text(axis_csv(TARGETS, plus, minus))
@@ -208,36 +212,38 @@ class WhatWasOn(MachineTest):
         E = max(map(half, TARGETS)) - min(map(half, TARGETS))
         self.assertAlmostEqual(predicted["E"]["before"], E, places=4)
         self.assertLess(predicted["E"]["predicted"], 0.02)
-        self.assertIn("the table of backup/z.comp was on", self.file("linuxcnc-Z.txt"))
-        self.assertFalse([n for n in table.get("notes", []) if "ASSUMED, not stated" in n])
+        self.assertIn("the table of backup/z.comp was active", self.file("linuxcnc-Z.txt"))
         # It is an input of the night.
         self.comp(self.folder / "backup/z.comp", lambda x: 0.0)
         self.tables("linuxcnc")
         rows = [list(map(float, l.split())) for l in self.file("linuxcnc-Z.comp").splitlines()]
         self.assertAlmostEqual((rows[3][1] - rows[0][1]) * 1e3, -(half(TARGETS[3]) - half(0.0)), places=3)
 
-    def test_where_nobody_says_it_results_and_files_carry_the_sentence(self):
+    def test_without_a_stated_active_compensation_no_control_writes_a_table(self):
+        """The table of what remained would replace the table that corrected the rest."""
         self.record(["X", "Y", "Z"])
-        for said, note, sentences in (
-                ("", "No table and no backlash value is assumed", 2),
-                ('table_on = "none"\n', "0 is assumed", 1),
-                ('backlash_on_mm = 0.01\n', "No table is assumed", 1),
-                ('table_on = "none"\nbacklash_on_mm = "none"\n', None, 0)):
-            self.measured("siemens-840d", machine='asset = "S-1"\n', of_axis=said)
-            table, _ = self.tables("siemens-840d")
-            said_so = [n for n in table.get("notes", []) if "not stated" in n and "assumed" in n]
-            self.assertEqual(len(said_so), 1 if note else 0, said)
-            self.assertTrue(note is None or note in said_so[0], said_so)
-            self.assertEqual(self.file("siemens-840d-Z-EEC.ini").count("ASSUMED, not stated"), sentences, said)
+        for control in ("siemens-840d", "heidenhain-tnc", "fanuc", "linuxcnc"):
+            for stated, missing in (("", "table_on, backlash_on_mm"),
+                                    ('table_on = "none"\n', "backlash_on_mm"),
+                                    ("backlash_on_mm = 0.01\n", "table_on"),
+                                    ('table_on = "none"\nbacklash_on_mm = "none"\n', None),
+                                    ('table_on = "none"\nbacklash_on_mm = 0.0\n', None)):
+                with self.subTest(control=control, stated=stated):
+                    self.measured(control, machine='asset = "S-1"\n', of_axis=stated)
+                    table, _ = self.tables(control)
+                    refused = [f for f in table["findings"] if f["id"] == "table.active-not-stated"]
+                    self.assertEqual([(f["severity"], f["evidence"]["missing"]) for f in refused], [("attention", missing)] if missing else [])
+                    files = [n for n in self.written() if n.startswith(control)]
+                    self.assertEqual(bool(files), missing is None, files)
 
     def test_compensation_on_wants_the_table_that_was(self):
         self.record(["Z"])
-        self.measured("fanuc", machine='asset = "S-1"\n', of_measurement='compensation = "on"\n')
-        self.assertEqual(self.findings("fanuc"), ["table.which-was-on"])
+        self.measured("fanuc", machine='asset = "S-1"\n', of_axis="", of_measurement='compensation = "on"\n')
+        self.assertEqual(self.findings("fanuc"), ["table.active-not-stated"])
         self.assertFalse([n for n in self.written() if n.startswith("fanuc")])
-        self.measured("fanuc", machine='asset = "S-1"\n', of_measurement='compensation = "off"\n')
-        table, _ = self.tables("fanuc")
-        self.assertFalse([n for n in table.get("notes", []) if "ASSUMED, not stated" in n])
+        self.measured("fanuc", machine='asset = "S-1"\n', of_axis="", of_measurement='compensation = "off"\n')
+        self.assertNotIn("table.active-not-stated", self.findings("fanuc"))
+        self.assertTrue([n for n in self.written() if n.startswith("fanuc")])
 
     def test_backlash_that_was_on_is_the_beginning_of_the_new_value(self):
         self.record(["X", "Y", "Z"])
@@ -249,11 +255,14 @@ class WhatWasOn(MachineTest):
     def test_the_record_says_it_for_later_days(self):
         state = 'table = "kept/z.ini,kept/z.md.ini"\nsince = %s\n'
         self.eec("../kept/z.ini", 0.010)
-        for day, value in (("2026-05-31", "]=0.013\n"), ("2026-06-01", "]=0.003\n"), ("2026-06-02", "]=0.003\n")):
+        for day, value in (("2026-05-31", "]=0.013\n"), ("2026-06-01", None), ("2026-06-02", None)):
             self.record(["X", "Y", "Z"])
             with open(self.site / "machines" / "S-1.toml", "a") as file:
                 file.write(state % day)
-            self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0)
+            self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="")
+            if value is None:  # measured before that day: what was active then is not known
+                self.assertEqual(self.findings("siemens-840d"), ["table.active-not-stated"], day)
+                continue
             self.tables("siemens-840d")
             self.assertIn(value, self.file("siemens-840d-Z-backlash.ini"), day)
 
@@ -271,7 +280,7 @@ class WhatWasOn(MachineTest):
     def test_apply_asks_for_the_backlash_that_stands_in_another_file(self):
         """10 um in the parameter, 3 um still lost: 13 um. Taken as 0 it would be 3."""
         self.record(["X", "Y", "Z"])
-        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0)
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="")
         table = self.eec("z.ini")
         new = self.site / "new"
         done = self.nonio("apply", table, self.folder, "--was-on", "--out", new, expect=2)
@@ -292,7 +301,7 @@ class WhatWasOn(MachineTest):
         self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="backlash_on_mm = 0.010\n")
         self.nonio("apply", table, self.folder, "--was-on", "--out", new)
         self.assertIn("]=0.013\n", (new / "siemens-840d-Z-backlash.ini").read_text())
-        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0)
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="")
         with open(self.site / "machines" / "S-1.toml", "a") as file:
             file.write("backlash_mm = 0.010\nsince = 2026-01-01\n")
         self.nonio("apply", table, self.folder, "--was-on", "--out", new)
@@ -390,20 +399,50 @@ class Merge(MachineTest):
 
     def test_siemens_archive_of_all_axes(self):
         self.record(["X", "Y", "Z"])
-        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 4.0, of_axis="backlash_on_mm = 0.003\n")
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 4.0, of_axis='table_on = "none"\nbacklash_on_mm = 0.003\n')
         for axes, end in (((1, 0.001), (2, 0.002), (3, 0.003)), "\n"), (((3, 0.003), (1, 0.001)), "\n"), (((1, 0.001), (2, 0.002)), "\r\n"):
             path = self.site / "EEC.INI"
             before = self.archive(axes).replace("\n", end)
             path.write_bytes(before.encode())
             self.json_of("merge", path, "--with", self.folder, "--out", self.site / "load")
             after = (self.site / "load" / "EEC.INI").read_bytes().decode()
-            other = lambda text: [l for l in text.split("\n") if "AX3" not in l]
-            self.assertEqual(other(after), other(before))
-            self.assertIn("$MA_BACKLASH[0,AX3]=0.007", after)
             self.tables("siemens-840d")
+            origin = [l.rstrip() + end.rstrip("\n") for n in ("siemens-840d-Z-EEC.ini", "siemens-840d-Z-backlash.ini")
+                      for l in self.file(n).splitlines() if l.startswith(";")]
+            other = lambda text: [l for l in text.split("\n") if "AX3" not in l and l not in origin]
+            self.assertEqual(other(after), other(before))
+            self.assertTrue(all(l in after.split("\n") for l in origin), after)
+            self.assertIn("$MA_BACKLASH[0,AX3]=0.007", after)
             for line in self.file("siemens-840d-Z-EEC.ini").splitlines():
                 if line.startswith("$"):
                     self.assertEqual(after.count(line + end), 1, line)
+
+    def test_the_backup_is_the_active_table_and_its_comments_are_replaced(self):
+        """Measured with the table of the backup active, which the campaign does not state."""
+        self.record(["X", "Y", "Z"])
+        whole = lambda x: 3.0 * wave(x)
+        self.measured("siemens-840d", machine='asset = "S-1"\n', plus=whole, minus=lambda x: whole(x) + 4.0)
+        self.tables("siemens-840d")
+        backup = [self.site / n for n in ("siemens-840d-Z-EEC.ini", "siemens-840d-Z-backlash.ini")]
+        for path in backup:  # the campaign of an earlier day
+            path.write_text(self.file(path.name).replace("2026-06-01", "2024-11-01").replace("campaign c", "campaign old"))
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="")
+        done = self.nonio("merge", ",".join(map(str, backup)), "--with", self.folder, "--out", self.site / "load")
+        self.assertIn("were active during the measurement", done.stderr)
+        eec, backlash = ((self.site / "load" / p.name).read_text() for p in backup)
+        entries = lambda text: [float(l.split("=")[1]) for l in text.splitlines() if l.startswith("$AA_ENC_COMP[")]
+        before = entries(backup[0].read_text())
+        for new, old in zip(entries(eec), before):  # what was active and what remained
+            self.assertAlmostEqual(new, old * 4.0 / 3.0, delta=2e-6)
+        self.assertIn("=0.007", backlash)
+        for text in (eec, backlash):
+            self.assertNotIn("2024-11-01", text)
+            self.assertIn("2026-06-01, campaign c", text)
+        self.assertIn("was active", eec)
+        # Without the backlash file nothing says what was in the parameter.
+        done = self.nonio("merge", backup[0], "--with", self.folder, "--out", self.site / "load2", expect=1)
+        self.assertIn("MD32450", done.stderr)
+        self.assertFalse((self.site / "load2").exists())
 
     def test_siemens_direction_tables_beside_a_sag_table(self):
         def cec(t, i, o, direction, size):

@@ -114,9 +114,9 @@ class Axis(BenchTest):
 
     def test_twincat_cnc_bilateral_replaces_backlash(self):
         # 10 um were in the parameter, and 3 um were still lost: 13 um come into the two columns
+        self.backlash_on = "0.010"
         keys, side = self.ssfk(self.write(
-            "twincat-cnc", "twincat-cnc-X.lis",
-            '[options.twincat-cnc]\ndirections = true\naxes = ["X backlash_mm=0.010"]\n'))
+            "twincat-cnc", "twincat-cnc-X.lis", "[options.twincat-cnc]\ndirections = true\n"))
         self.assertEqual(keys["kw.ssfk.bilateral"], "1")
         self.expect_correction([(x, -v) for x, v in side("pos")], lambda x: -wave(x), 0.11)
         for (_, up), (_, down) in zip(side("pos"), side("neg")):

@@ -78,6 +78,7 @@ class Tables(BenchTest):
 
     def test_a_table_that_was_on_is_renewed(self):
         # the axis is wrong by `wave`; a table that takes half of it away was on
+        self.active_stated = False
         present = self.comp("linuxcnc-X.comp", lambda x: -0.5 * wave(x))
         self.one_axis(TARGETS, lambda x: 0.5 * wave(x), lambda x: 0.5 * wave(x), control="linuxcnc",
                       extra="[options.linuxcnc]\ntype = 1\n")
@@ -92,9 +93,15 @@ class Tables(BenchTest):
         self.assertAlmostEqual(found["tables"][0]["largest_um"], max(abs(whole(x) + 0.5 * wave(x)) for x in TARGETS),
                                delta=0.01)
         self.nonio("apply", present, self.folder, "--out", new, expect=2)
+        # The campaign states that none was active: one of the two is wrong.
+        self.active_stated = True
+        self.one_axis(TARGETS, wave, wave, control="linuxcnc")
+        done = self.nonio("apply", present, self.folder, "--was-on", "--out", self.site / "other", expect=2)
+        self.assertIn('states table_on = "none" of axis X', done.stderr)
 
     def test_backlash_of_the_present_files_is_counted(self):
         # 10 um in the parameter, 3 um still lost: 13 um
+        self.active_stated = False
         self.one_axis(TARGETS, wave, lambda x: wave(x) + 3.0, control="siemens-840d")
         eec, md = self.site / "eec.ini", self.site / "md.ini"
         eec.write_text("%_N_AX1_EEC_INI\nCHANDATA(1)\n$AA_ENC_COMP[0,0,AX1]=0\n$AA_ENC_COMP[0,1,AX1]=0\n"
@@ -248,8 +255,10 @@ class Gantry(BenchTest):
 
     def gantry(self, axis="", sides=("", ""), extra="", control="siemens-840d", structure="gantry"):
         self.record(["X", "Y"])
-        text = ('format = 1\n[campaign]\nid = "c"\n[machine]\nasset = "S-1"\nstructure = "%s"\ncontrol = "%s"\n[machine.axes.X]\n'
-                'kind = "linear"\n%s\n[machine.axes.Y]\nkind = "linear"\n' % (structure, control, axis))
+        text = ('format = 1\n[campaign]\nid = "c"\n[machine]\nasset = "S-1"\nstructure = "%s"\ncontrol = "%s"\n' % (structure, control)
+                + self.none_active("X", "linear") + axis + "\n" + self.none_active("Y", "linear"))
+        if "slave" in axis and "axes.X2" not in axis:
+            text += self.none_active("X2", "linear")
         for name, side, at, size in (("X1", sides[0], 300, 1.0), ("X2", sides[1], 8700, -2.0)):
             error = lambda x, size=size: size * wave(x)
             (self.folder / (name + ".csv")).write_text(axis_csv(TARGETS, error, error))
@@ -299,7 +308,7 @@ class Gantry(BenchTest):
         self.assertIn("siemens-840d-X-EEC.ini", files)
         self.assertFalse([n for n in files if "X2" in n])
         # The record of the machine says it too; its place among the machine's axes does not.
-        self.gantry('slave = "X2"\n[machine.axes.Z]\nkind = "linear"\n[machine.axes.X2]\nkind = "linear"', ("master", "slave"))
+        self.gantry('slave = "X2"\n[machine.axes.Z]\nkind = "linear"\n' + self.none_active("X2", "linear"), ("master", "slave"))
         self.assertIn("table.axis-number", self.tables()[1])
         self.record(["X", "Y", "X2"])
         self.assertIn("%_N_AX3_EEC_INI", self.tables()[0]["siemens-840d-X2-EEC.ini"])

@@ -196,8 +196,10 @@ void judge(const Kind& k, const Blind& b, const Bench& bench, const OutputResult
 Bench bench_of(const Measured& m) {
   Bench bench;
   for (const char* other : {"A", "X", "Y", "Z", "C"})
-    bench.campaign.machine.axes.push_back(
-        {.name = other, .rotary = *other == 'A' || *other == 'C'});
+    bench.campaign.machine.axes.push_back({.name = other,
+                                           .rotary = *other == 'A' || *other == 'C',
+                                           .table_on = "",
+                                           .backlash_on = 0.0});
   bench.add(m);
   return bench;
 }

@@ -157,7 +157,8 @@ struct Bench {
   std::vector<Observations> observations;
   Results results;
   Templates templates;
-  bool numbered = true;  ///< somebody says how the control counts the axes
+  bool numbered = true;       ///< somebody says how the control counts the axes
+  bool active_stated = true;  ///< no table and no backlash value were active
 
   Bench() {
     campaign.id = "test";
@@ -173,6 +174,7 @@ struct Bench {
       Axis a;
       a.name = m.axis;
       a.rotary = m.rotary;
+      if (active_stated) a.table_on = "", a.backlash_on = 0.0;
       campaign.machine.axes.push_back(a);
     }
     Measurement entry;

@@ -61,7 +61,7 @@ inline constexpr Key axis_keys[] = {
      .holds = text,
      .help = "The table that was active in the control during the measurement: its file below the "
              "campaign's folder, \"backup/x.ini\", further files of the same table separated by "
-             "commas; or \"none\". The new table replaces it. Default: no table was active."},
+             "commas; or \"none\". The new table replaces it. Without it no table is written."},
     {.name = "backlash_on_mm",
      .holds = number_or_none,
      .help = "Value of the control's backlash parameter during the measurement, or \"none\".",

@@ -76,6 +76,12 @@ bool lacks_number(const std::vector<std::string>& of, const ControllerInput& inp
                   const std::vector<KnownAxis>& axes, const std::string& measurement,
                   OutputResult& result);
 
+/// False, with a finding that names the missing keys, unless it is stated which table and which
+/// backlash value were active while the axis was measured: a table of what remained would be loaded
+/// in place of the table that had corrected the rest.
+bool states_active(const ControllerInput& input, const std::string& axis,
+                   const std::string& measurement, bool backlash_in_options, OutputResult& result);
+
 /// A note about this axis; its words find {axis} and {unit}.
 Remark remark(const AxisJob& job, std::string id);
 
