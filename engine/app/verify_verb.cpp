@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -7,11 +9,13 @@
 
 #include "host/certificates/verify.h"
 #include "host/process/apart.h"
+#include "host/storage/nearest.h"
 #include "printable.h"
 #include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
+using host::certificates::Verdict;
 
 namespace {
 
@@ -36,15 +40,55 @@ Json to_json(const std::string& file, const sign::Verified& v) {
   Json checks = Json::array();
   for (const sign::Check& c : v.checks)
     checks.push_back({{"id", c.id}, {"state", to_text(c.state)}, {"says", c.says}});
-  return {{"schema", "nonio-verify/1"}, {"file", file},
-          {"holds", v.holds()},         {"verdict", host::certificates::verdict_of(v)},
-          {"signer", v.subject},        {"checks", std::move(checks)}};
+  const Verdict verdict = host::certificates::verdict_of(v);
+  return {{"schema", "nonio-verify/1"},
+          {"file", file},
+          {"holds", v.holds()},
+          {"verdict", host::certificates::id_of(verdict)},
+          {"not_made", host::certificates::not_made(v)},
+          {"signer", v.subject},
+          {"checks", std::move(checks)}};
+}
+
+/// "time stamp, revocation": of the checks that were not made, each once.
+std::string names_of(const std::vector<std::string>& checks) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> names{
+      {{".time", "time stamp"},
+       {".revocation", "revocation"},
+       {"register.state", "register"},
+       {"content.printed", "printed pages"},
+       {"content.templates", "words other than the installed ones"}}};
+  std::vector<std::string> out;
+  for (const std::string& id : checks) {
+    std::string name = id;
+    for (const auto& [end, says] : names)
+      if (id.ends_with(end)) name = says;
+    if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(std::move(name));
+  }
+  return host::storage::listed(out);
+}
+
+/// The gravest of all files'.
+int exit_of(const std::vector<Verdict>& verdicts) {
+  constexpr std::array<std::pair<Verdict, int>, 7> statuses{{{Verdict::altered, exit_failed},
+                                                             {Verdict::untrusted, 4},
+                                                             {Verdict::not_in_force, 5},
+                                                             {Verdict::no_certificate, 6},
+                                                             {Verdict::no_file, 7},
+                                                             {Verdict::incomplete, 3},
+                                                             {Verdict::valid, exit_done}}};
+  for (const auto& [verdict, status] : statuses)
+    if (std::find(verdicts.begin(), verdicts.end(), verdict) != verdicts.end()) return status;
+  return exit_failed;
 }
 
 /// The verdict first: nothing that a file says comes before it, and nothing can look like it.
 void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet) {
   const std::string name = printable(file);
-  out << name << ": " << host::certificates::verdict_of(v) << "\n";
+  const Verdict verdict = host::certificates::verdict_of(v);
+  out << name << ": " << host::certificates::text_of(verdict);
+  if (verdict == Verdict::incomplete) out << ": " << names_of(host::certificates::not_made(v));
+  out << "\n";
   if (quiet) return;
   for (const sign::Check& c : v.checks)
     out << name << ": " << c.id << " " << to_text(c.state) << ": " << printable(c.says) << "\n";
@@ -69,11 +113,11 @@ int verify(const VerifyWish& wanted, const Common& common) {
     place = std::move(*opened);
     return &place->context;
   };
-  bool all = true;
+  std::vector<Verdict> verdicts;
   for (const std::string& file : wanted.files) {
     const auto v = host::certificates::verify_file(file, *verifier, open, wanted.site);
     if (!v) return complain("nonio verify", v.error().message);
-    all = all && v->holds();
+    verdicts.push_back(host::certificates::verdict_of(*v));
     std::ostream& out = place ? std::cout : early;
     if (common.json)
       out << to_json(file, *v).dump(-1, ' ', true, Json::error_handler_t::replace) << "\n";
@@ -81,7 +125,7 @@ int verify(const VerifyWish& wanted, const Common& common) {
       print(out, file, *v, common.quiet);
   }
   if (!place) std::cout << early.str();
-  return all ? exit_done : exit_failed;
+  return exit_of(verdicts);
 }
 
 }  // namespace
@@ -108,11 +152,15 @@ Verb verify_verb(Common& common) {
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "Prints the verdict, then one line per check; exit status 0 only if all hold. "
-          "Without --trust\n"
-          "and --signer (or --site) a signature proves nothing, and the verdict is negative. "
-          "No network\n"
+          "Prints the verdict, then one line per check. Without --trust and --signer (or --site) "
+          "a\n"
+          "signature proves nothing: the verdict is that you do not trust the signer. No network "
           "is needed.\n\n"
+          "Exit status: 0 valid; 3 valid, but not every check was made; 4 signer not trusted by "
+          "you; 5 not\n"
+          "in force; 1 altered or broken; 6 not a certificate; 7 no such file; 2 usage or "
+          "configuration. Of\n"
+          "several files the gravest: 1, 4, 5, 6, 7, 3, 0.\n\n"
           "Example: nonio verify --site site out/c1/certificate.pdf",
       .run = [wanted, &common] { return verify(*wanted, common); }};
 }

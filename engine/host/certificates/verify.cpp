@@ -2,8 +2,10 @@
 #include "host/certificates/verify.h"
 
 #include <algorithm>
+#include <array>
 #include <ctime>
 #include <fstream>
+#include <optional>
 
 #include "host/certificates/content_check.h"
 #include "host/certificates/recomputed.h"
@@ -37,10 +39,27 @@ void check_documents(sign::Verified& v, const sign::Verifier& verifier) {
   if (!any) v.checks.push_back({"dcc", State::not_checked, "none is attached", false});
 }
 
-sign::Verified refused(const std::string& why) {
+constexpr std::string_view file_check = "file.readable", certificate_check = "file.certificate";
+
+sign::Verified refused(std::string_view check, const std::string& why) {
   sign::Verified v;
-  v.checks.push_back({"file.structure", State::fails, why});
+  v.checks.push_back({std::string(check), State::fails, why});
   return v;
+}
+
+/// Why nobody needs to look for a signature in these bytes; nothing if it is to be checked.
+std::optional<std::string> why_no_certificate(std::string_view bytes) {
+  const auto has = [&](std::string_view text) { return bytes.find(text) != bytes.npos; };
+  if (bytes.starts_with("%PDF-")) {
+    if (!has("/ByteRange")) return "is a PDF without a signature";
+    if (!has("ETSI.CAdES.detached") || !has(evaluation::results_name))
+      return "is a PDF that another program signed";
+    return std::nullopt;
+  }
+  if (!bytes.starts_with("<?xml")) return "is neither a PDF nor an XML document";
+  if (!has("http://www.w3.org/2000/09/xmldsig#")) return "is an XML document without a signature";
+  if (!has("Nonio")) return "is an XML document that another program signed";
+  return std::nullopt;
 }
 
 Expected<std::string> text_at(const fs::path& path) {
@@ -112,7 +131,8 @@ Expected<std::string> read_bounded(const fs::path& path) {
 Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier& verifier,
                                      const OpenContext& open, const fs::path& site) {
   const auto bytes = read_bounded(path);
-  if (!bytes) return refused(bytes.error().message);
+  if (!bytes) return refused(file_check, bytes.error().message);
+  if (const auto why = why_no_certificate(*bytes)) return refused(certificate_check, *why);
   if (bytes->starts_with("<?xml")) {
     sign::Verified v = sign::verify_xml(*bytes, verifier);
     if (!v.holds()) return v;
@@ -124,7 +144,9 @@ Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier&
   // What nobody signed is not given to plugins.
   if (!v.holds()) {
     for (const char* check : {"content.values", "content.printed"})
-      v.checks.push_back({check, State::not_checked, "the signature does not hold"});
+      v.checks.push_back({check, State::not_checked,
+                          verdict_of(v) == Verdict::untrusted ? "the signer is not trusted"
+                                                              : "the signature is not valid"});
     return v;
   }
   // What was added later is looked at by `verify_pdf`; the rest is about what was issued.
@@ -137,16 +159,54 @@ Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier&
   return v;
 }
 
-std::string verdict_of(const sign::Verified& v) {
-  if (!v.holds()) return "DOES NOT HOLD";
-  const auto is_open = [&](std::string_view id) {
+Verdict verdict_of(const sign::Verified& v) {
+  const auto any = [&](const auto& matches) {
     return std::any_of(v.checks.begin(), v.checks.end(), [&](const sign::Check& c) {
-      return c.id == id && c.state == State::not_checked;
+      return c.state == State::fails && matches(std::string_view(c.id));
     });
   };
-  if (is_open("content.printed")) return "holds, pages not compared";
-  if (is_open("content.templates")) return "holds, with other words than are installed";
-  return "HOLDS";
+  const auto of_signer = [](std::string_view id) {
+    return id.starts_with("certificate.") || id.starts_with("signer.");
+  };
+  const auto of_register = [](std::string_view id) { return id == "register.state"; };
+  if (any([](std::string_view id) { return id == file_check; })) return Verdict::no_file;
+  if (any([](std::string_view id) { return id == certificate_check; }))
+    return Verdict::no_certificate;
+  if (any([&](std::string_view id) { return !of_signer(id) && !of_register(id); }))
+    return Verdict::altered;
+  if (any(of_signer)) return Verdict::untrusted;
+  if (any(of_register)) return Verdict::not_in_force;
+  if (!v.holds()) {  // an essential check was not made: whom to trust was not stated, or no register
+    const bool no_register = std::any_of(v.checks.begin(), v.checks.end(), [&](const auto& c) {
+      return of_register(c.id) && c.state == State::not_checked && c.essential;
+    });
+    return no_register ? Verdict::not_in_force : Verdict::untrusted;
+  }
+  return not_made(v).empty() ? Verdict::valid : Verdict::incomplete;
+}
+
+std::string id_of(Verdict verdict) {
+  constexpr std::array ids{"valid",   "incomplete",     "untrusted", "not-in-force",
+                           "altered", "no-certificate", "no-file"};
+  return ids[static_cast<std::size_t>(verdict)];
+}
+
+std::string text_of(Verdict verdict) {
+  constexpr std::array texts{"VALID",
+                             "VALID, but not every check was made",
+                             "SIGNER NOT TRUSTED BY YOU",
+                             "NOT IN FORCE",
+                             "ALTERED OR BROKEN",
+                             "NOT A CERTIFICATE",
+                             "NO SUCH FILE"};
+  return texts[static_cast<std::size_t>(verdict)];
+}
+
+std::vector<std::string> not_made(const sign::Verified& v) {
+  std::vector<std::string> ids;
+  for (const sign::Check& c : v.checks)
+    if (c.state == State::not_checked && c.id != "dcc") ids.push_back(c.id);  // none is attached
+  return ids;
 }
 
 }  // namespace nonio::host::certificates

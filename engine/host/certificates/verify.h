@@ -44,8 +44,22 @@ Expected<sign::Verified> verify_file(const std::filesystem::path& path,
                                      const sign::Verifier& verifier, const OpenContext& open,
                                      const std::filesystem::path& site);
 
-/// What it all comes to, in a few words: "HOLDS", "DOES NOT HOLD", or "holds, ..." with what was
-/// not compared.
-std::string verdict_of(const sign::Verified& verified);
+/// What all checks of a file amount to; each has an exit status of `nonio verify`.
+enum class Verdict {
+  valid,         ///< every check was made and passed
+  incomplete,    ///< every check that was made passed; some could not be made (`not_made`)
+  untrusted,     ///< intact, but the signer is not one whom the user trusts and expects
+  not_in_force,  ///< intact and trusted, but the register of the site does not list it as in force
+  altered,       ///< changed after signing, or damaged
+  no_certificate,  ///< has no signature, or is not a certificate of Nonio
+  no_file          ///< does not exist, or cannot be read
+};
+Verdict verdict_of(const sign::Verified& verified);
+/// "valid", "no-certificate": for programs.
+std::string id_of(Verdict verdict);
+/// "VALID", "NOT A CERTIFICATE": what people read, on the terminal as on the page.
+std::string text_of(Verdict verdict);
+/// The checks that could not be made and do not change the verdict to a negative one.
+std::vector<std::string> not_made(const sign::Verified& verified);
 
 }  // namespace nonio::host::certificates

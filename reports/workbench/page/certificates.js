@@ -27,11 +27,11 @@ const certificates = (() => {
       box.speak(`${one.name}: ${verdict(one)}`);
     }
   }
-  const verdicts = {"HOLDS": "verify.holds", "holds, pages not compared": "verify.holds_unpaged", "holds, with other words than are installed": "verify.holds_words", "DOES NOT HOLD": "verify.fails"};
   function verdict(one) {
     if (one.state === "failed") return say("verify.failed", {error: one.error});
     if (!one.answer) return say("verify." + one.state);
-    return verdicts[one.answer.verdict] ? say(verdicts[one.answer.verdict]) : one.answer.verdict;
+    const key = "verify.verdict_" + one.answer.verdict.replace(/-/g, "_"), text = say(key);
+    return one.answer.not_made && one.answer.verdict === "incomplete" ? `${text}: ${[...new Set(one.answer.not_made.map(nameOf))].join(", ")}` : text;
   }
   /// A check in words; those of a DCC inside a PDF are those of a separate one. What a file of another version sends is its id.
   function nameOf(id) {

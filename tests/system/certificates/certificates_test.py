@@ -11,7 +11,7 @@ import unittest.mock
 
 from numbered import NumberedTest, number
 from nightly import readings
-from signing import run
+from signing import NONIO, SIGNER, run
 
 
 class Certificates(NumberedTest):
@@ -49,7 +49,7 @@ class Certificates(NumberedTest):
         answers = self.assert_holds(self.pdf("c1"))
         self.assertEqual(self.state(answers[0], "content.printed"), "holds")
         self.assertEqual(self.state(answers[0], "content.templates"), "not checked")
-        self.assertEqual(answers[0]["verdict"], "holds, with other words than are installed")
+        self.assertIn("content.templates", answers[0]["not_made"])
 
     def test_other_readings_are_an_amendment(self):
         self.signed_campaign("c1")
@@ -261,8 +261,51 @@ class Certificates(NumberedTest):
         self.assertEqual(self.state(answer[0], "content.values"), "holds")
         self.assertEqual(self.state(answer[0], "content.printed"), "fails")
         done, answer = self.verify(self.pdf("c1"), how="lie")
-        self.assertEqual(done.returncode, 0)
+        self.assertEqual(done.returncode, 3)
         self.plugins_are_loaded_where_a_signature_holds(self.pdf("c1"))
+
+    def test_each_verdict_has_its_words_and_its_status(self):
+        """What a customer must tell apart: a forged file, one whose signer is not known, one that is not a certificate."""
+        self.signed_campaign("c1")
+        self.night()
+        honest = self.pdf("c1")
+        def made(name, data):
+            path = self.root / name
+            path.write_bytes(data)
+            return path
+        whole = honest.read_bytes()
+        changed = bytearray(whole)
+        changed[len(whole) // 3] ^= 1
+        trusted = {"site": False, "args": ["--trust", self.key.ca, "--signer", SIGNER]}
+        xml = (self.out / "c1" / "dcc.xml").read_bytes()
+        self.assertIn(b"<dcc:", xml)
+        foreign = re.sub(rb"<[A-Za-z:]*Signature .*</[A-Za-z:]*Signature>", b"", xml, flags=re.S)
+        for path, kwargs, verdict, words, status in (
+                (honest, {}, "incomplete", "VALID, but not every check was made: time stamp, revocation", 3),
+                (honest, trusted, "incomplete", "VALID, but not every check was made: time stamp, revocation, register", 3),
+                (honest, {"site": False}, "untrusted", "SIGNER NOT TRUSTED BY YOU", 4),
+                (honest, {"site": False, "args": ["--trust", self.key.ca]}, "untrusted", "SIGNER NOT TRUSTED BY YOU", 4),
+                (honest, {"site": False, "args": ["--trust", self.key.ca, "--signer", "CN=Eve"]}, "untrusted", "SIGNER NOT TRUSTED BY YOU", 4),
+                (made("changed.pdf", bytes(changed)), {}, "altered", "ALTERED OR BROKEN", 1),
+                (made("short.pdf", whole[:-300]), {}, "altered", "ALTERED OR BROKEN", 1),
+                (made("longer.pdf", whole + b"% more\n"), {}, "altered", "ALTERED OR BROKEN", 1),
+                (made("dcc.xml", xml.replace(b"</dcc:value>", b"1</dcc:value>", 1).replace(b"<dcc:name>", b"<dcc:name> ", 1)), {}, "altered", "ALTERED OR BROKEN", 1),
+                (made("unsigned.pdf", b"%PDF-1.7\n%%EOF\n"), {}, "no-certificate", "NOT A CERTIFICATE", 6),
+                (made("unsigned.xml", foreign), {}, "no-certificate", "NOT A CERTIFICATE", 6),
+                (made("note.txt", b"hello"), {}, "no-certificate", "NOT A CERTIFICATE", 6),
+                (self.root / "absent.pdf", {}, "no-file", "NO SUCH FILE", 7)):
+            with self.subTest(file=path.name, **{k: str(v) for k, v in kwargs.items()}):
+                done, (answer,) = self.verify(path, **kwargs)
+                self.assertEqual((answer["verdict"], done.returncode), (verdict, status), done.stdout)
+                whom = ["--site", str(self.site)] if kwargs.get("site", True) else []
+                shown = run(NONIO, "verify", "--quiet", *whom, *kwargs.get("args", ()), path, check=False, env=self.environment)
+                self.assertEqual((shown.stdout, shown.returncode), (f"{path}: {words}\n", status))
+                self.assertEqual(answer["holds"], status in (0, 3))
+        # The gravest of several.
+        self.assertEqual(self.verify(honest, self.root / "note.txt", self.root / "changed.pdf")[0].returncode, 1)
+        self.certificates("--withdraw", number(1), "--why", "wrong stamp")
+        done, (answer,) = self.verify(honest)
+        self.assertEqual((answer["verdict"], done.returncode), ("not-in-force", 5))
 
     def plugins_are_loaded_where_a_signature_holds(self, honest):
         broken = self.site.parent / "broken.pdf"

@@ -35,22 +35,22 @@ class Register(NumberedTest):
         for n, name in ((1, "numbered.pdf"), (1, "dcc.xml")):
             kept[name] = self.root / name
             shutil.copy(self.out / "c1" / name, kept[name])
-            self.assertEqual(self.register_says(kept[name])[:2], (0, "holds"))
+            self.assertEqual(self.register_says(kept[name])[:2], (3, "holds"))
         self.assertEqual(self.verify(kept["numbered.pdf"], site=False,
-                                     args=["--trust", self.key.ca, "--signer", SIGNER])[0].returncode, 0)
+                                     args=["--trust", self.key.ca, "--signer", SIGNER])[0].returncode, 3)
         self.change("c1", "other")
         self.night()
         for file in kept.values():
             code, state, says = self.register_says(file)
-            self.assertEqual((code, state), (1, "fails"), says)
+            self.assertEqual((code, state), (5, "fails"), says)
             self.assertIn("replaced by " + number(2), says)
         self.certificates("--withdraw", number(2), "--why", "wrong stamp")
         code, state, says = self.register_says(self.pdf("c1"))
-        self.assertEqual((code, state), (1, "fails"))
+        self.assertEqual((code, state), (5, "fails"))
         self.assertIn("withdrawn: wrong stamp", says)
         (self.site / "certificates.sqlite").rename(self.root / "away")
         code, state, says = self.register_says(self.pdf("c1"))
-        self.assertEqual((code, state), (1, "not checked"))
+        self.assertEqual((code, state), (5, "not checked"))
 
     def test_a_copied_site_is_found(self):
         self.signed_campaign("c1")
@@ -68,11 +68,11 @@ class Register(NumberedTest):
         here, there = self.pdf("c1"), self.pdf("c1", out=out)
         self.assertEqual(self.printed("c1", "number"), number(3))
         self.assertIn(f"number {number(3)} of".encode(), there.read_bytes())
-        self.assertEqual(self.register_says(here)[0], 0)
-        self.assertEqual(self.register_says(there, site=copy)[0], 0)
+        self.assertEqual(self.register_says(here)[0], 3)
+        self.assertEqual(self.register_says(there, site=copy)[0], 3)
         for file, site in ((here, copy), (there, self.site)):
             code, state, says = self.register_says(file, site=site)
-            self.assertEqual((code, state), (1, "fails"))
+            self.assertEqual((code, state), (5, "fails"))
             self.assertIn("another certificate as " + number(3), says)
         # A number that only the copy has issued; and a register that was made anew.
         self.site = copy

@@ -157,11 +157,11 @@ def main():
         own = root / "honest.pdf"
         own.write_bytes(honest)
         status, usual, _ = min(spent(site, own) for _ in range(3))
-        assert status == 0, "the honest certificate does not hold"
+        assert status in (0, 3), "the honest certificate does not hold"
         print(f"{'the honest certificate':45} {usual:7.2f} s")
         for file in (f for f in made if wanted.only in f.name):
             status, seconds, megabytes = spent(site, file)
-            good = status == 1 and seconds <= TIMES * usual and megabytes <= MEGABYTES
+            good = status in (1, 4, 6, 7) and seconds <= TIMES * usual and megabytes <= MEGABYTES
             worst |= not good
             print(f"{file.name:45} {seconds:7.2f} s {megabytes:7.0f} MB  exit {status}" + ("" if good or measure else "  TOO MUCH"), flush=True)
     sys.exit(0 if measure else worst)
