@@ -9,6 +9,7 @@
 #include "host/batch/set_up.h"
 #include "host/batch/twins.h"
 #include "host/certificates/certificate_list.h"
+#include "host/certificates/journal.h"
 #include "host/certificates/register_place.h"
 #include "host/config/site_files.h"
 #include "host/evaluation/record.h"
@@ -33,6 +34,18 @@ std::string plain_name(const std::string& name) {
     out += blank ? ' ' : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   }
   while (out.ends_with(' ')) out.pop_back();
+  return out;
+}
+
+/// "B. Sample; A. Bianchi": the persons of the laboratory who may authorise.
+std::vector<std::string> persons_in(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(';', at), text.size());
+    if (std::string name = plain_name(text.substr(at, end - at)); !name.empty())
+      out.push_back(std::move(name));
+    at = end + 1;
+  }
   return out;
 }
 
@@ -128,7 +141,22 @@ class Releaser {
     if (!numbering) return fail("site.toml: " + numbering.error().message);
     numbering_ = *numbering;
     role_ = !request_.role.empty() ? request_.role : numbering_.two_persons ? author : authoriser;
-    return {};
+    return role_ == authoriser ? may_authorise() : Expected<void>{};
+  }
+
+  /// Whoever authorises is one of those whom the laboratory names.
+  Expected<void> may_authorise() const {
+    std::string digest;
+    const auto site = config::read_site(options_.site, digest);
+    if (!site) return fail("site.toml: " + site.error().front().message);
+    const auto persons = persons_in(site->laboratory.authoriser);
+    if (persons.empty() ||
+        std::find(persons.begin(), persons.end(), plain_name(request_.by)) != persons.end())
+      return {};
+    return fail("--by \"" + request_.by +
+                "\" is not an authoriser of this laboratory: site.toml, "
+                "laboratory.authoriser, names " +
+                site->laboratory.authoriser);
   }
 
   Expected<void> open_draft() {
@@ -166,6 +194,10 @@ class Releaser {
       if (plain_name(by_author->by) == plain_name(request_.by))
         return fail("two_persons = true in site.toml: " + by_author->by +
                     " is the author; expected another person as authoriser");
+      // A name is typed by whoever sits there: two persons are two accounts.
+      if (by_author->account == certificates::own_account())
+        return fail("two_persons = true in site.toml: the author approved it under this account, " +
+                    by_author->account + "; the authoriser needs an account of their own");
     }
     return {};
   }

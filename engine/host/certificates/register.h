@@ -38,6 +38,7 @@ struct Approval {
   std::string by, role;                        ///< role: author, authoriser
   std::string at{};                            ///< UTC
   std::map<std::string, std::string> reasons;  ///< why a finding may stand, by `finding_key`
+  std::string account{};  ///< of the operating system; empty before version 2026-12
 };
 
 /// What a night has made for a campaign and nobody has released yet.

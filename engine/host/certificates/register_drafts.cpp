@@ -9,7 +9,8 @@ namespace nonio::host::certificates {
 namespace {
 
 storage::Json draft_json(const Approval& a) {
-  return {{"by", a.by}, {"role", a.role}, {"at", a.at}, {"reasons", a.reasons}};
+  return {
+      {"by", a.by}, {"role", a.role}, {"at", a.at}, {"reasons", a.reasons}, {"account", a.account}};
 }
 
 storage::Json draft_json(const WaitingDraft& d) {
@@ -47,7 +48,8 @@ WaitingDraft draft_of(const std::string& campaign, const storage::Json& json) {
         {f.at("measurement"), f.at("id"), f.at("title"), f.at("attention"), f.value("said", "")});
   if (json.contains("author")) {
     const storage::Json& a = json["author"];
-    d.author = Approval{a.at("by"), a.at("role"), a.at("at"), a.at("reasons")};
+    d.author =
+        Approval{a.at("by"), a.at("role"), a.at("at"), a.at("reasons"), a.value("account", "")};
   }
   return d;
 }
@@ -130,6 +132,7 @@ Expected<void> Register::approve(const std::string& campaign, const Approval& ap
   WaitingDraft& now = **waiting;
   now.author = approval;
   now.author->at = utc_now();
+  now.author->account = own_account();
   put_draft(*database_, now);
   storage::Json says = draft_json(*now.author);
   says["campaign"] = campaign;

@@ -152,6 +152,7 @@ Environment read_environment(TableReader& top) {
   environment.drift_angle = reader->number("drift_arcsec", arcsec);
   environment.warm_up = reader->text("warm_up");
   environment.sensors = reader->text("sensors");
+  environment.normalised = reader->flag("normalised");
   environment.drift_time = reader->number("drift_minutes", 60.0);
   reader->finish();
   return environment;

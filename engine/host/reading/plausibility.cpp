@@ -384,7 +384,11 @@ std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t 
   if (m.kind == "diagonal") short_diagonal(m, o, out);
   if (m.kind == "ball-centres") implausible_centres(m, o, out);
   beyond_travel(campaign, o, out);
-  if (runs || steps) implausible_passes(passes, o, runs, out);
+  if (runs || steps) {
+    const std::size_t before = out.size();
+    implausible_passes(passes, o, runs, out);
+    if (runs && out.size() == before) shifted_rows(passes, deviation_of(o.angular), out);
+  }
   implausible_columns(m, passes, o, runs, out);
   return out;
 }

@@ -24,7 +24,7 @@ struct Statement {
 void axis_statements(const Axis& a, std::vector<Statement>& all) {
   const std::string key = "machine.axes." + a.name + ".";
   constexpr double mm = 1e-3, degree = 1.0 / deg_per_rad;
-  all.push_back({key + "expansion_um_per_m_K", a.expansion, -2e-6, 3e-5, Quantity::expansion});
+  all.push_back({key + "expansion_um_per_m_K", a.expansion, 3e-6, 3e-5, Quantity::expansion});
   // The new value begins there: one in um would turn a motor by millimetres.
   if (a.rotary)
     all.push_back(
@@ -34,10 +34,10 @@ void axis_statements(const Axis& a, std::vector<Statement>& all) {
   // One that is too small is not met, and that is seen; one too large is met by everything.
   for (const auto& [name, tolerance] : a.tolerance)
     if (a.rotary)
-      all.push_back({key + "tolerance_arcsec." + name, tolerance, 1e-3 * arc_second,
+      all.push_back({key + "tolerance_arcsec." + name, tolerance, 0.1 * arc_second,
                      600 * arc_second, Quantity::angular_deviation});
     else
-      all.push_back({key + "tolerance_um." + name, tolerance, 1e-3 * micrometre, 1000 * micrometre,
+      all.push_back({key + "tolerance_um." + name, tolerance, 0.1 * micrometre, 1000 * micrometre,
                      Quantity::deviation});
 }
 
@@ -47,7 +47,7 @@ void tolerance_statements(const Measurement& m, std::vector<Statement>& all) {
     const bool angle = t.quantity == Quantity::angular_deviation;
     const double unit = angle ? arc_second : micrometre;
     all.push_back({"measurement." + m.id + "." + tolerance_key(t.quantity) + "." + t.result,
-                   t.limit, 1e-3 * unit, (angle ? 600.0 : 1000.0) * unit, t.quantity});
+                   t.limit, 0.1 * unit, (angle ? 600.0 : 1000.0) * unit, t.quantity});
   }
 }
 
@@ -86,7 +86,7 @@ std::vector<Statement> statements(const Campaign& c) {
        Quantity::temperature_difference},
       {"instrument.expansion_range_um_per_m_K", i.expansion_range, 1e-9, 6e-6, Quantity::expansion},
       {"environment.misalignment_mm", e.misalignment, 1e-6, 0.05, Quantity::length},
-      {"environment.temperature_range_K", e.temperature_range, 1e-3, 10,
+      {"environment.temperature_range_K", e.temperature_range, 0.01, 10,
        Quantity::temperature_difference},
       {"environment.temperature_difference_K", e.temperature_difference, 1e-3, 15,
        Quantity::temperature_difference},
@@ -195,6 +195,8 @@ std::vector<Finding> implausible_campaign(const config::Manifest& manifest,
   for (Finding& f : traceability_findings(c))
     if (f.id == "traceability.calibrated-later") {
       f.id = "plausibility.calibrated-later";
+      out.push_back(std::move(f));
+    } else if (is_expired_calibration(f)) {
       out.push_back(std::move(f));
     }
   for (const Statement& s : statements(c))

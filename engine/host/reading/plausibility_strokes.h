@@ -54,6 +54,10 @@ void implausible_values(const Passes& passes, const Observations& o, std::vector
 void implausible_passes(const Passes& passes, const Observations& o, bool with_directions,
                         std::vector<Finding>& out);
 
+/// A pass that agrees with the others only if each reading belongs to the target one row further:
+/// copied one row too high or too low. Two passes of its direction besides it, or nothing is said.
+void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>& out);
+
 /// Passes of which more agrees than chance allows.
 void implausible_copies(const Passes& passes, const Observations& o, std::vector<Finding>& out);
 

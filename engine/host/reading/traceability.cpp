@@ -57,6 +57,10 @@ void calibration(const Calibrated& one, const std::string& first, const std::str
 
 }  // namespace
 
+bool is_expired_calibration(const Finding& f) {
+  return f.id == "traceability.calibration-expired" || f.id == "traceability.calibrated-long-ago";
+}
+
 std::vector<Finding> traceability_findings(const Campaign& c) {
   std::vector<Finding> findings;
   if (c.date.empty()) return findings;

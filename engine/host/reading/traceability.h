@@ -15,8 +15,11 @@ namespace nonio::host::reading {
 inline constexpr int unstated_validity = 2;
 
 /// Instruments that were calibrated after the measurement, or whose calibration held no longer; an
-/// item that came after it was measured. Any of them stops a certificate.
+/// item that came after it was measured. Any of them stops a certificate; an expired calibration
+/// unless the person who releases it states a reason.
 std::vector<Finding> traceability_findings(const Campaign& campaign);
+/// A calibration that held no longer on the day of the measurement, or was too long ago to hold.
+bool is_expired_calibration(const Finding& finding);
 
 /// Keys with a day that has not come yet on `today`, and why they stop a certificate. Days are
 /// YYYY-MM-DD.

@@ -33,6 +33,9 @@ struct Conditions {
 Conditions conditions_of(const std::vector<Observations>&);
 
 /// An analysis whose values a certificate prints.
+/// A method of the laboratory that is based on a standard, not the standard's own: the document
+/// names the laboratory's procedure (ISO/IEC 17025:2017, 7.2.1).
+bool is_by_own_procedure(const Results::Analysed&);
 bool is_printed(const Results::Analysed&);
 bool is_printed(const pages::Measured&);
 

@@ -112,8 +112,10 @@ void add_decided(const std::vector<Source>& sources, dcc::About& about) {
     about.decided.push_back(std::move(d));
   }
   about.rule = in_all(sources, [](const Source& s) { return pages::rule_text(s); });
-  about.norm = in.campaign.certificate.decision_rule.starts_with("ilac") ? "ILAC-G8:09/2019"
-                                                                         : "ISO 14253-1:2013";
+  const std::string& rule = in.campaign.certificate.decision_rule;
+  about.norm = rule.starts_with("ilac")    ? "ILAC-G8:09/2019"
+               : rule == "iso14253-1:2013" ? "ISO 14253-1:2013"
+                                           : "ISO 14253-1:2017";
 }
 
 void add_statements(const std::vector<Source>& sources, dcc::About& about) {

@@ -78,9 +78,19 @@ bool is_printed(const Results::Analysed& a) {
                      [](const Value& v) { return v.U && *v.U > 0.0; });
 }
 
+bool is_by_own_procedure(const Results::Analysed& a) {
+  return a.plugin == "circle" || a.plugin == "thermal" || a.plugin == "spindle" ||
+         a.plugin == "lengths";
+}
+
 std::vector<std::string> lacks(const OutputInput& in) {
   const Campaign& c = in.campaign;
   List list;
+  for (const Results::Analysed& a : in.results.analyses)
+    if (is_printed(a) && is_by_own_procedure(a))
+      list.want(says_something(c.certificate.procedure),
+                "certificate.procedure (site.toml; the laboratory's procedure, which is based on "
+                "the standard)");
   list.laboratory(c.laboratory.name, "name");
   list.laboratory(c.laboratory.address, "address");
   list.want(dcc::is_country(c.laboratory.country),

@@ -68,12 +68,11 @@ std::string method_of(const Source& source, const Results::Analysed& a) {
   const std::string key =
       (pages::follows_plan(source.in, a) ? "method." : "method_own_plan.") + a.plugin;
   if (source.words.get_or(key, "").empty()) return pages::analysis_title(source, a);
-  if (const Remark* rules = pages::rules_of(a)) {
-    std::string text = source.words.get(key, {{"rules", rules->texts.front().second}});
-    for (const std::string& note : pages::sureness_of(source, a)) text += " " + note;
-    return text;
-  }
-  return source.words.get(key, {{"edition", edition}, {"k", k}});
+  if (const Remark* rules = pages::rules_of(a))
+    return source.words.get(key, {{"rules", rules->texts.front().second}});
+  return source.words.get(
+      key,
+      {{"edition", edition}, {"k", k}, {"procedure", source.in.campaign.certificate.procedure}});
 }
 
 void add_title(const Source& source, Blocks& blocks) {
@@ -344,7 +343,11 @@ void add_method(const Source& source, Blocks& blocks) {
       blocks.push_back({std::move(changes), "amendment.changes"});
   blocks.push_back({Heading{label(source, "method_heading.title"), 2}, "method_heading.title"});
   add_methods(source, blocks);
-  if (!texts.procedure.empty())
+  const auto& analyses = source.in.results.analyses;
+  const bool named = std::any_of(analyses.begin(), analyses.end(), [](const auto& a) {
+    return is_printed(a) && is_by_own_procedure(a);
+  });
+  if (!texts.procedure.empty() && !named)
     paragraph(blocks,
               source.words.get("method_heading.procedure", {{"procedure", texts.procedure}}),
               "certificate.procedure");
@@ -355,9 +358,62 @@ void add_method(const Source& source, Blocks& blocks) {
   add_departures(source, blocks);
 }
 
+namespace {
+
+/// What is known of the correction of one measurement to the reference temperature.
+struct Normalised {
+  std::optional<bool> is;             ///< of the file, else as stated
+  std::optional<double> coefficient;  ///< 1/K
+};
+
+Normalised normalised(const Source& source, const pages::Measured& m) {
+  Normalised out{source.in.campaign.environment.normalised, std::nullopt};
+  if (const Axis* axis = source.in.campaign.machine.axis(m.measurement.axis))
+    out.coefficient = axis->expansion;
+  for (const Remark& note : m.observations.notes) {
+    if (note.id != "renishaw.normalised" && note.id != "renishaw.not-normalised") continue;
+    out.is = note.id == "renishaw.normalised";
+    for (const Number& n : note.evidence)
+      if (n.name == "expansion") out.coefficient = n.value;
+  }
+  return out;
+}
+
+}  // namespace
+
+/// ISO 1 and ISO 230-2: results are for 20 degC, and a document states how they came there.
+std::string reference_temperature_text(const Source& source) {
+  std::vector<std::pair<std::string, std::string>> sentences;  // words, and of which measurements
+  for (const pages::Measured& m : pages::measured(source.in)) {
+    if (!has_part(source.in, m) || m.observations.angular) continue;
+    const Normalised n = normalised(source, m);
+    std::string key = "conditions.normalised_unknown";
+    if (n.is) key = *n.is ? "conditions.normalised" : "conditions.not_normalised";
+    if (n.is == true && !n.coefficient) key = "conditions.normalised_by_unknown";
+    const std::string text = source.words.get(
+        key, {{"coefficient",
+               pages::plain_number(source, n.coefficient.value_or(0.0), Quantity::expansion) + " " +
+                   unit_text(Quantity::expansion)}});
+    const auto known = std::find_if(sentences.begin(), sentences.end(),
+                                    [&](const auto& s) { return s.first == text; });
+    if (known == sentences.end())
+      sentences.emplace_back(text, m.measurement.id);
+    else
+      known->second += ", " + m.measurement.id;
+  }
+  if (sentences.empty()) return {};
+  std::string all = source.words.get("conditions.reference");
+  for (const auto& [text, of] : sentences)
+    all += " " + (sentences.size() == 1
+                      ? text
+                      : source.words.get("method_heading.departures_of",
+                                         {{"measurement", of}, {"departures", text}}));
+  return all;
+}
+
 void add_conditions(const Source& source, Blocks& blocks) {
   const Conditions c = conditions_of(source.in.observations);
-  std::string all;
+  std::string all = reference_temperature_text(source);
   const auto add = [&](const char* key, const Range& range, Quantity q, const char* unit,
                        int decimals) {
     if (range.known())

@@ -36,7 +36,9 @@ Expected<void> check(const Campaign& c) {
 /// One for each tolerance of which something is decided, without words.
 void add_decided(const OutputInput& in, dcc::About& about) {
   const std::string& rule = in.campaign.certificate.decision_rule;
-  about.norm = rule.starts_with("ilac") ? "ILAC-G8:09/2019" : "ISO 14253-1:2013";
+  about.norm = rule.starts_with("ilac")    ? "ILAC-G8:09/2019"
+               : rule == "iso14253-1:2013" ? "ISO 14253-1:2013"
+                                           : "ISO 14253-1:2017";
   for (const Conformity& c : in.results.conformity)
     about.decided.push_back(
         {{{"", c.name + " of " + (c.measurement.empty() ? c.axis : c.measurement) + ", tolerance " +

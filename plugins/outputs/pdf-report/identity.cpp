@@ -30,7 +30,8 @@ void add_title(const Source& source, Blocks& blocks) {
   const Laboratory& laboratory = source.in.campaign.laboratory;
   Blocks title = {
       {Heading{source.words.get("title"), 0}, "title"},
-      {Paragraph{source.words.get(subtitle_of(source)), Paragraph::Look::muted}, "subtitle"}};
+      {Paragraph{source.words.get(subtitle_of(source)), Paragraph::Look::muted}, "subtitle"},
+      {Paragraph{source.words.get("not_a_certificate"), Paragraph::Look::bold}, "status"}};
   Blocks by;
   if (!laboratory.name.empty())
     by.push_back({Paragraph{laboratory.name, Paragraph::Look::bold}, "laboratory.name"});
@@ -38,9 +39,6 @@ void add_title(const Source& source, Blocks& blocks) {
   if (!laboratory.country.empty()) below += (below.empty() ? "" : " · ") + laboratory.country;
   if (!below.empty())
     by.push_back({Paragraph{below, Paragraph::Look::muted}, "laboratory.address"});
-  if (!laboratory.accreditation.empty())
-    by.push_back(
-        {Paragraph{laboratory.accreditation, Paragraph::Look::muted}, "laboratory.accreditation"});
   if (by.empty())
     std::move(title.begin(), title.end(), std::back_inserter(blocks));
   else

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A night makes drafts, a person releases them: who, why, and what an amendment says."""
 import json
+import os
+import re
 import sqlite3
+import subprocess
 import unittest
 
 from numbered import AUTOMATIC, KNOWN, NumberedTest, number
@@ -9,13 +12,18 @@ from nightly import readings
 from signing import NONIO, run
 
 
+OTHER = "nobody"  # an account that every system has
+
+
 class Releases(NumberedTest):
     def by_hand(self, extra="", more=""):
         self.release = more
         self.site_with(extra=extra)
 
-    def release_verb(self, *args, expect=None, campaign="c1", known=("--reason", KNOWN + "=it is what was ordered")):
-        done = run(NONIO, "release", self.site / campaign, *args, *known, check=False, env=self.environment)
+    def release_verb(self, *args, expect=None, campaign="c1", known=("--reason", KNOWN + "=it is what was ordered"), user=None):
+        if user:  # another account: it may read and write what this one made
+            subprocess.run(["chmod", "-R", "a+rwX", self.root], check=True)
+        done = run(NONIO, "release", self.site / campaign, *args, *known, check=False, env=self.environment, user=user)
         if expect is not None:
             self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done
@@ -107,7 +115,11 @@ class Releases(NumberedTest):
         for same in ("Ada Neri", "ada  neri "):
             self.assertIn("another person", self.release_verb("--by", same, "--as", "authoriser", expect=2).stderr)
         self.night("--force")  # the same draft: the author need not be asked again
-        self.release_verb("--by", "Bruno Verdi", "--as", "authoriser", expect=0)
+        self.assertIn("under this account", self.release_verb("--by", "Bruno Verdi", "--as", "authoriser", expect=2).stderr)
+        self.assertEqual(self.entries(), [], "two names typed by one account are one person")
+        if os.getuid() != 0:
+            self.skipTest("only root can take another account")
+        self.release_verb("--by", "Bruno Verdi", "--as", "authoriser", expect=0, user=OTHER)
         self.assertEqual(self.states(), {number(1): "issued"})
         self.assertIn(b"by Bruno Verdi author Ada Neri", self.pdf("c1").read_bytes())
         self.assertEqual([what for what, _, _ in self.journal()], ["made", "approved", "drawn", "issued"])
@@ -117,7 +129,38 @@ class Releases(NumberedTest):
         self.release_verb("--by", "Ada Neri", *reason, expect=0)
         self.change("c1", "later still")
         self.night()
-        self.release_verb("--by", "Bruno Verdi", "--as", "authoriser", *reason, expect=2)
+        self.release_verb("--by", "Bruno Verdi", "--as", "authoriser", *reason, expect=2, user=OTHER)
+
+    def test_only_a_person_whom_the_laboratory_names_releases(self):
+        self.by_hand()
+        self.signed_campaign("c1")
+        self.night()
+        for stranger in ("Topolino", "Bruno Verdi 2", "A. Bianchi; Bruno Verdi"):
+            done = self.release_verb("--by", stranger, expect=2)
+            self.assertIn("is not an authoriser of this laboratory", done.stderr)
+        self.assertEqual(self.entries(), [])
+        self.release_verb("--by", "bruno  verdi", expect=0)
+        self.assertEqual(self.states(), {number(1): "issued"})
+
+    def test_an_expired_calibration_wants_a_reason(self):
+        self.by_hand()
+        for line, finding in (("calibrated = 2019-01-12", "traceability.calibrated-long-ago"),
+                              ("calibrated = 2025-01-12\nvalid_until = 2025-06-01", "traceability.calibration-expired")):
+            name = finding.split(".")[1]
+            self.signed_campaign(name)
+            manifest = self.site / name / "campaign.toml"
+            text, n = re.subn(r"(?m)^calibrated = .*$", line, manifest.read_text(), count=1)
+            self.assertEqual(n, 1)
+            manifest.write_text(text)
+            (self.site / name / "x.csv").write_text(readings(name))
+            self.night()
+            results = json.loads((self.out / name / "results.json").read_text())
+            self.assertEqual(results["status"], "attention")
+            self.assertIn(finding, [f["id"] for a in results["analyses"] for f in a["findings"]])
+            shown = run(NONIO, "show", self.out / name, "--quiet", check=False, env=self.environment)
+            self.assertRegex(shown.stdout, "Calibrat(ion expired|ed long ago)")
+            self.assertIn(finding, self.release_verb("--by", "Bruno Verdi", campaign=name, expect=1).stderr)
+            self.release_verb("--by", "Bruno Verdi", "--reason", finding + "=compared with a second laser", campaign=name, expect=0)
 
     def test_only_the_draft_itself_is_released(self):
         self.by_hand()

@@ -143,7 +143,8 @@ class SigningTest(NightTest):
         if "[certificate]" not in extra:  # nobody releases what these nights sign
             extra += AUTOMATIC
         (self.site / "site.toml").write_text(
-            '[laboratory]\nname = "Laboratorio di Prova"\ncountry = "IT"\nauthoriser = "A. Bianchi"\n'
+            '[laboratory]\nname = "Laboratorio di Prova"\ncountry = "IT"\n'
+            'authoriser = "A. Bianchi; Bruno Verdi; Ada Neri; B"\n'
             '[run]\nanalyses = ["iso230-2"]\noutputs = ["pdf-report", "dcc"]\n[options.pdf-report]\nsign = true\n'
             f'[signing]\n{key}\n{password}\ntrust = "{keys.ca}"\nsigner = "{SIGNER}"\n{extra}')
 

@@ -263,7 +263,8 @@ def of_manifests():
         for new in news:
             add(f"{kind}-{key}={new}", kind, expected, replace(f"{key} = {old}", f"{key} = {new}"))
     values("expansion_um_per_m_K", "11.5", "unit", "refused", "0.0000115", "11500", "1.15e-5", "1e308", "-200")
-    values("expansion_um_per_m_K", "11.5", "range", "accepted", "0", "23.8", "0.5")
+    values("expansion_um_per_m_K", "11.5", "range", "accepted", "0", "23.8")
+    values("expansion_um_per_m_K", "11.5", "unit", "remarked", "0.5", "0.0115")
     values("temperature_difference_K", "0.8", "unit", "refused", "293", "293.15", "-1", "1e308", "nan", '"0.8"')
     values("temperature_range_K", "0.2", "unit", "refused", "293", "-0.2", "inf")
     values("expansion_range_um_per_m_K", "1.0", "unit", "refused", "1000", "-1", "1e308")

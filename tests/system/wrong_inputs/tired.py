@@ -259,7 +259,7 @@ def of_manifests():
     add("travel-as-length-in-m", "unit", "remarked", "travel = [0.0, 1000.0]", "travel = [0.0, 1.0]")
     add("expansion-of-plastic", "unit", "remarked", "expansion_um_per_m_K = 11.5", "expansion_um_per_m_K = 115")
     add("tolerance-in-nm", "unit", "remarked", "screw_pitch_mm = 10.0", "screw_pitch_mm = 10.0\ntolerance_um = { A = 15000 }")
-    add("tolerance-in-mm", "unit", "any", "screw_pitch_mm = 10.0", "screw_pitch_mm = 10.0\ntolerance_um = { A = 0.015 }")
+    add("tolerance-in-mm", "unit", "remarked", "screw_pitch_mm = 10.0", "screw_pitch_mm = 10.0\ntolerance_um = { A = 0.015 }")
     add("U-in-mm", "unit", "remarked", "U_fixed_um = 0.1", "U_fixed_um = 0.0001")
     add("feed-in-m-per-min", "unit", "remarked", 'file = "x.csv"', 'file = "x.csv"\nfeed_mm_per_min = 0.003')
     add("over-travel-in-um", "unit", "remarked", 'file = "x.csv"', 'file = "x.csv"\nover_travel_mm = 2000')

@@ -232,7 +232,9 @@ TEST_F(Truth, TheRuleIsNamedWithItsEditionAndItsWordsAreUsed) {
     const char *rule, *words, *pass, *fail, *norm, *risk;
   };
   const Rule rules[] = {
-      {"iso14253-1", "ISO 14253-1:2013", "conforms", "does not conform", "ISO 14253-1:2013",
+      {"iso14253-1", "ISO 14253-1:2017", "conforms", "does not conform", "ISO 14253-1:2017",
+       "at least 95 %"},
+      {"iso14253-1:2013", "ISO 14253-1:2013", "conforms", "does not conform", "ISO 14253-1:2013",
        "below 2.5 %"},
       {"ilac-g8-simple", "simple acceptance", "pass", "fail", "ILAC-G8:09/2019", "up to 50 %"},
       {"ilac-g8-guarded", "guard band w = U", "pass", "fail", "ILAC-G8:09/2019", "below 2.5 %"}};

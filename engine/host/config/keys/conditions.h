@@ -173,6 +173,12 @@ inline constexpr Key environment_keys[] = {
     {.name = "sensors",
      .holds = text,
      .help = "Positions of the temperature sensors, for the certificate."},
+    {.name = "normalised",
+     .holds = flag,
+     .help = "Whether the readings were corrected to the reference temperature 20 degC with "
+             "expansion_um_per_m_K of their axis before they came into the file, for the "
+             "certificate. Default: as the file states; else the certificate says that it is not "
+             "stated."},
     {.name = "drift_minutes",
      .holds = number,
      .help = "Duration of the drift test; for a longer measurement the drift is scaled up.",

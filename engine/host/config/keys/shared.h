@@ -98,9 +98,11 @@ inline constexpr Key run_keys[] = {
 
 inline constexpr Choice locations[] = {
     {"laboratory"}, {"customer"}, {"laboratoryBranch"}, {"customerBranch"}, {"other"}};
-inline constexpr Choice decision_rules[] = {{"iso14253-1", "in between undecided"},
-                                            {"ilac-g8-simple", "simple acceptance"},
-                                            {"ilac-g8-guarded", "guard band w = U"}};
+inline constexpr Choice decision_rules[] = {
+    {"iso14253-1", "edition 2017: guard band 1.65 u, in between indeterminate"},
+    {"iso14253-1:2013", "guard band U, in between indeterminate"},
+    {"ilac-g8-simple", "simple acceptance"},
+    {"ilac-g8-guarded", "guard band w = U"}};
 inline constexpr TextRule language = {.letters = "a-z", .shortest = 2, .longest = 2};
 inline constexpr Key languages_key = {
     .name = "languages",

@@ -93,8 +93,8 @@ constexpr Key laboratory_keys[] = {
      .help = "Number of the accreditation; for accredited laboratories only."},
     {.name = "authoriser",
      .holds = text,
-     .help = "Name of the person who authorises "
-             "certificates."},
+     .help = "Name of the person who authorises certificates; several are separated by ';'. "
+             "Nobody else can release one."},
     {.name = "contact", .holds = text, .help = "Contact of the laboratory."},
     {.name = "cmc",
      .holds = table,

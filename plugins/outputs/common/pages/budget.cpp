@@ -42,10 +42,28 @@ std::string part(const Source& source, double u, double whole, const ShortUnit& 
   return small(source, unit.factor * u, unit.quantity);
 }
 
+/// Keys of the manifest in words, each once: a customer reads "data of the machine", not
+/// "machine.axes.X.expansion_um_per_m_K".
 std::string source_text(const Source& source, const Contribution& c) {
-  constexpr std::string_view own = "readings";  // of a fit's residuals: with what they show
-  if (!c.source.starts_with(own)) return c.source;
-  return source.words.get("budget.from_readings") + c.source.substr(own.size());
+  const Wording& w = source.words;
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at < c.source.size();) {
+    const std::size_t end = std::min(c.source.find(", ", at), c.source.size());
+    std::string part = c.source.substr(at, end - at);
+    at = end + 2;
+    const std::size_t dot = part.find('.');
+    const bool is_key = part.find(' ') == part.npos && part.find_first_of("._") != part.npos;
+    if (part == "readings")
+      part = w.get("budget.from_readings");
+    else if (is_key && dot != part.npos)
+      part = w.get_or("budget.source_of." + part.substr(0, dot), w.get("budget.source_of.options"));
+    else if (is_key)
+      continue;  // "certificate of plate 400, U_um"
+    if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(part);
+  }
+  std::string all;
+  for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
+  return all;
 }
 
 std::string distribution_text(const Source& source, const Contribution& c) {

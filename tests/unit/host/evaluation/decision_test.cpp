@@ -21,10 +21,15 @@ namespace nonio::decision_test {
 TEST(Decision, UpperLimitAfterIso14253) {
   using host::evaluation::decide;
   EXPECT_EQ(decide(8.0, 1.0, 10.0), Decision::conforms);
-  EXPECT_EQ(decide(9.0, 1.0, 10.0), Decision::conforms);  // y = USL - U
-  EXPECT_EQ(decide(9.5, 1.0, 10.0), Decision::cannot_be_decided);
-  EXPECT_EQ(decide(11.0, 1.0, 10.0), Decision::cannot_be_decided);  // y = USL + U
-  EXPECT_EQ(decide(11.1, 1.0, 10.0), Decision::does_not_conform);
+  EXPECT_EQ(decide(9.175, 1.0, 10.0), Decision::conforms);  // y = USL - 1.65 u
+  EXPECT_EQ(decide(9.176, 1.0, 10.0), Decision::cannot_be_decided);
+  EXPECT_EQ(decide(10.825, 1.0, 10.0), Decision::cannot_be_decided);  // y = USL + 1.65 u
+  EXPECT_EQ(decide(10.826, 1.0, 10.0), Decision::does_not_conform);
+  const char* const older = "iso14253-1:2013";
+  EXPECT_EQ(decide(9.0, 1.0, 10.0, older), Decision::conforms);  // y = USL - U
+  EXPECT_EQ(decide(9.1, 1.0, 10.0, older), Decision::cannot_be_decided);
+  EXPECT_EQ(decide(11.0, 1.0, 10.0, older), Decision::cannot_be_decided);  // y = USL + U
+  EXPECT_EQ(decide(11.1, 1.0, 10.0, older), Decision::does_not_conform);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(decide(nan, 1.0, 10.0), Decision::cannot_be_decided);
   EXPECT_EQ(decide(8.0, nan, 10.0), Decision::cannot_be_decided);

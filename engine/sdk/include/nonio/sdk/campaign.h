@@ -83,6 +83,7 @@ struct Environment {
   std::optional<double> drift_angle;             ///< rad, the same of a rotary axis
   std::string warm_up{};                         ///< what the machine did before the test
   std::string sensors{};                         ///< where the temperature sensors were
+  std::optional<bool> normalised{};              ///< whether the readings were corrected to 20 degC
   std::optional<double> drift_time{};            ///< s, how long the drift test took
 };
 

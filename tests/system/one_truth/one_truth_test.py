@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nothing that the program prints is contradicted by another part of it: the relations of docs/dev/one-truth.md, over all
+samples, random campaigns and a laboratory.
+
+    NONIO_ONE_TRUTH=500 NONIO_SEED=7 python3 one_truth_test.py NONIO SOURCE     # so many random campaigns of that seed
+"""
+import csv
+import json
+import math
+import os
+import pathlib
+import random
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+NONIO, SOURCE = (sys.argv.pop(1), pathlib.Path(sys.argv.pop(1)).resolve()) if len(sys.argv) > 2 else (None, None)
+CAMPAIGNS = int(os.environ.get("NONIO_ONE_TRUTH", "24"))
+SEED = int(os.environ.get("NONIO_SEED", random.SystemRandom().randrange(2**31)))
+
+# Findings of one measurement of which at most one can be true.
+EXCLUDE_EACH_OTHER = (
+    {"reversal.lost-motion", "reversal.positive", "reversal.over-compensated"},
+    {"before-after.worked", "before-after.not-active", "before-after.wrong-sign", "before-after.something-else",
+     "before-after.reversal-not-active", "before-after.reversal-wrong-sign"},
+    {"reversal.elastic", "plausibility.pass-sign-turned"},
+    {"reversal.elastic", "plausibility.pass-order-turned"},
+    {"drift.parallel", "repeatability.good"},
+)
+
+
+def run(*args, expect=(0, 1)):
+    done = subprocess.run([NONIO, *map(str, args)], capture_output=True, text=True, timeout=900,
+                          env={**os.environ, "NONIO_ALLOW_ROOT": "1", "LC_ALL": "C.UTF-8", "COLUMNS": "200"})
+    if done.returncode not in expect:
+        raise AssertionError(f"{args}: {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+    return done
+
+
+def as_printed(value, U):
+    """U in two significant digits, the value in as many decimals: the rule of every table."""
+    decimals = max(0, 1 - math.floor(math.log10(U)))
+    if float(f"{U:.{decimals}f}") >= 10 ** (2 - decimals) and decimals:
+        decimals -= 1
+    return f"{value:.{decimals}f}", f"{U:.{decimals}f}"
+
+
+def values_of(results):
+    for analysis in results["analyses"]:
+        for name, v in analysis.get("values", {}).items():
+            yield analysis, name, v
+
+
+class Truth(unittest.TestCase):
+    """The relations that hold for one site and its output folder."""
+
+    def check_site(self, site, out):
+        for folder in sorted(p.parent for p in out.glob("*/results.json")):
+            with self.subTest(campaign=folder.name, seed=SEED):
+                results = json.loads((folder / "results.json").read_text())
+                self.check_csv(folder, results)
+                self.check_show(folder, results)
+                self.check_findings(results)
+                self.check_decisions(results)
+                self.check_tables(folder, results, site)
+        with self.subTest(site=site.name, seed=SEED):
+            self.check_worklist(site, out)
+            self.check_history(out)
+
+    def check_csv(self, folder, results):
+        """1. values.csv has the values, U and decisions of results.json, and no others."""
+        path = folder / "values.csv"
+        if not path.exists():
+            return
+        rows = {(r["measurement"], r["plugin"], r["name"]): r for r in csv.DictReader(path.open())}
+        wanted = {(a.get("measurement", ""), a["plugin"], name): v for a, name, v in values_of(results)}
+        self.assertEqual(set(rows), set(wanted))
+        for key, v in wanted.items():
+            self.assertAlmostEqual(float(rows[key]["value"]), v["value"], delta=1e-9 * max(1, abs(v["value"])), msg=key)
+            self.assertEqual(bool(rows[key]["U"]), "U" in v, key)
+            if "U" in v:
+                self.assertAlmostEqual(float(rows[key]["U"]), v["U"], delta=1e-9 * max(1, v["U"]), msg=key)
+            self.assertEqual(rows[key]["decision"], v.get("decision", ""), key)
+
+    def check_show(self, folder, results):
+        """2. `show` prints every value with the U of results.json, each once for a measurement and analysis."""
+        shown = run("show", folder, "--quiet").stdout
+        measurement = plugin = None
+        printed = {}
+        known = {a["plugin"] for a in results["analyses"]}
+        for line in shown.splitlines():
+            if line.startswith("measurement "):
+                measurement = line.split(" ", 1)[1].strip()
+            head = re.match(r"  (\S+) \d+\.\d+\.\d+$", line)
+            if head:
+                plugin = head[1] if head[1] in known else None
+            row = re.match(r"    (\S+)\s+(-?\d[\d.]*(?:e[-+]?\d+)?)\s+(\d[\d.]*)\s+(um|arcsec|urad|mm|um/m)\b", line)
+            if row and plugin:
+                key = (measurement, plugin, row[1])
+                self.assertNotIn(key, printed)
+                printed[key] = (row[2], row[3], row[4])
+        for a, name, v in values_of(results):
+            if "U" not in v or not v["U"] > 0:
+                continue
+            key = (a.get("measurement"), a["plugin"], name)
+            if key not in printed:
+                continue
+            value, U, unit = printed[key]
+            self.assertEqual(unit, v["unit"], key)
+            self.assertLessEqual(abs(float(value) - v["value"]), 0.51 * 10 ** -len(value.partition(".")[2]), (key, value, v))
+            self.assertLessEqual(abs(float(U) - v["U"]), 0.051 * v["U"] + 1e-12, (key, U, v))
+
+    def check_findings(self, results):
+        """3. No finding of a measurement excludes another one of it."""
+        of = {}
+        for a in results["analyses"]:
+            for f in a.get("findings", []):
+                of.setdefault(a.get("measurement", ""), set()).add(f["id"])
+        for measurement, ids in of.items():
+            for group in EXCLUDE_EACH_OTHER:
+                self.assertLessEqual(len(ids & group), 1, (measurement, ids & group))
+
+    def check_decisions(self, results):
+        """4. Every decision is that of its value, U and limit by the stated rule; each has its finding."""
+        for a, name, v in values_of(results):
+            if "decision" not in v or "tolerance" not in v or not v.get("U"):
+                continue
+            guard = 1.65 * v["U"] / v.get("k", 2.0) if v.get("k", 2.0) == 2.0 else 0.825 * v["U"]
+            size = abs(v["value"])
+            limit = v["tolerance"]
+            if v["decision"] == "conforms":
+                self.assertLessEqual(size, limit - guard + 1e-9, (name, v))
+            elif v["decision"] == "does not conform":
+                self.assertGreater(size, limit + guard - 1e-9, (name, v))
+            elif v["decision"] == "cannot be decided":
+                self.assertTrue(limit - guard - 1e-9 <= size <= limit + guard + 1e-9, (name, v))
+
+    def check_tables(self, folder, results, site):
+        """5. A table is written only where no finding forbids it, and the tables as the control reads them give the
+        prediction that is printed."""
+        drifted = {a.get("measurement") for a in results["analyses"] for f in a.get("findings", [])
+                   if f["id"].startswith("drift.") and f["severity"] == "attention"}
+        for table in results.get("tables", []):
+            files = [o["file"] for o in results["outputs"] if o["plugin"] == table["plugin"]]
+            refused = {f["measurement"] for f in table.get("findings", []) if f["id"] in ("table.refused-drift", "table.active-not-stated") and "measurement" in f}
+            for p in table.get("predictions", []):
+                self.assertNotIn(p["measurement"], refused, table["plugin"])
+                if p["measurement"] in drifted:
+                    self.assertFalse(files, (table["plugin"], p))
+            self.replay(folder, results, table, files, site)
+
+    def replay(self, folder, results, table, files, site):
+        axes = {p["measurement"] for p in table.get("predictions", []) if p["name"] == "E"}
+        if table["plugin"] not in ("siemens-840d", "heidenhain-tnc", "fanuc", "linuxcnc") or len(axes) != 1:
+            return
+        source = [p.parent for p in site.glob("**/campaign.toml") if re.search(r'(?m)^id\s*=\s*"%s"' % re.escape(results["campaign"]["id"]), p.read_text())]
+        if len(source) != 1 or any("CEC" in f or "CMA" in f for f in files):
+            return
+        given = ",".join(str(folder / f) for f in files if not f.endswith(".txt") or table["plugin"] == "heidenhain-tnc")
+        done = run("apply", given, source[0], "--control", table["plugin"], "--json", expect=(0, 1, 2))
+        if done.returncode == 2:
+            return  # these files do not say which axis they are of
+        told = {q["measurement"]: q for q in json.loads(done.stdout)["predictions"]}
+        for p in table["predictions"]:
+            if p["measurement"] not in told or p["name"] not in "EBM":
+                continue
+            after = [v for k, v in told[p["measurement"]]["after"].items() if k.startswith(p["name"] + "_")]
+            if after and after[0] is not None:
+                self.assertAlmostEqual(after[0], p["predicted"], delta=0.002 + 0.01 * abs(p["predicted"]), msg=(table["plugin"], p, files))
+
+    def check_worklist(self, site, out):
+        """6. The values that are out or open are those of the worklist's lines, in every view; the words that nothing has to
+        be done need both to be empty."""
+        told = json.loads(run("morning", out, "--json").stdout)
+        lines = json.dumps(told)
+        newest = {}
+        for path in sorted(out.glob("*/results.json")):
+            results = json.loads(path.read_text())
+            machine = results["campaign"].get("asset") or (results["campaign"].get("maker", ""), results["campaign"].get("serial", ""))
+            for c in results.get("conformity", []):
+                key = (str(machine), c.get("axis") or c.get("measurement"), c["plugin"], c["name"])
+                date = results["campaign"].get("date", "")
+                if key not in newest or date >= newest[key][0]:
+                    newest[key] = (date, results["campaign"]["id"], c)
+        open_items = [(campaign, c) for _, campaign, c in newest.values() if c["decision"] not in ("conforms", "pass")]
+        for campaign, c in open_items:
+            self.assertIn(json.dumps(campaign), lines, (campaign, c))
+        if open_items:
+            for text in (run("morning", out).stdout, (out / "summary.txt").read_text()):
+                self.assertNotRegex(text, r"[Nn]othing has to be done|nothing needs a decision|Nothing was judged")
+            index = out / "index.html"
+            if index.exists():
+                self.assertNotRegex(index.read_text(), r"[Nn]othing has to be done|nothing needs a decision|Nothing was judged")
+
+    def check_history(self, out):
+        """7. A value has one U in results and history; no forecast keeps the date of an axis that is out."""
+        by_campaign = {json.loads(p.read_text())["campaign"]["id"]: json.loads(p.read_text()) for p in out.glob("*/results.json")}
+        told = json.loads(run("history", out, "--json").stdout)
+        out_now = set()
+        for results in by_campaign.values():
+            for c in results.get("conformity", []):
+                if c["decision"] == "does not conform":
+                    out_now.add((results["campaign"]["id"], c.get("axis")))
+        for s in told["series"]:
+            for p in s["points"]:
+                results = by_campaign.get(p["campaign"])
+                if results is None or s["quantity"] != "B_mean":
+                    continue
+                for a, name, v in values_of(results):
+                    if name == "B_mean" and a["plugin"] == "iso230-2" and "U" in v and abs(v["value"] - p["value"]) < 1e-6:
+                        self.assertAlmostEqual(2 * math.hypot(p["u"], p["u_common"]), v["U"], delta=0.002 * v["U"] + 1e-9, msg=(s["machine"], p, v))
+            if s["points"] and "forecast" in s:
+                last = s["points"][-1]
+                if (last["campaign"], s["axis"]) in out_now:
+                    self.assertNotEqual(s["forecast"]["answer"], "keep", (s["machine"], s["quantity"], last))
+
+
+class Samples(Truth):
+    def test_all_samples(self):
+        with tempfile.TemporaryDirectory(prefix="nonio-truth-") as folder:
+            out = pathlib.Path(folder) / "out"
+            run("run", SOURCE / "samples/site", "--out", out, "--quiet")
+            self.check_site(SOURCE / "samples/site", out)
+
+    def test_the_laboratory(self):
+        with tempfile.TemporaryDirectory(prefix="nonio-truth-") as folder:
+            out = pathlib.Path(folder) / "out"
+            run("run", SOURCE / "samples/laboratory", "--out", out, "--quiet", "--date", "2026-11-22")
+            self.check_site(SOURCE / "samples/laboratory", out)
+
+
+CONTROLS = {"siemens-840d": "number = 1", "fanuc": "number = 1", "linuxcnc": "joint = 0", "heidenhain-tnc": None}
+
+
+def random_campaign(rng, folder, i):
+    """An axis with effects of any size: what it is made of is not known to what is tested."""
+    rotary = rng.random() < 0.25
+    axis, unit = ("C", "deg") if rotary else ("X", "mm")
+    small = "arcsec" if rotary else "um"
+    length = 360.0 if rotary else rng.choice([300.0, 800.0, 1400.0])
+    n = rng.choice([9, 11, 13])
+    targets = [round(length * (k + 0.25 * rng.uniform(-1, 1) * (0 < k < n - 1)) / (n - 1), 3) for k in range(n)]
+    runs, s = rng.choice([2, 3, 5]), rng.choice([0.1, 0.3, 1.0])
+    slope, wave, phase = rng.gauss(0, 6), rng.gauss(0, 3), rng.uniform(0, 6)
+    lost, elastic, drift, wedge = rng.choice([0, rng.gauss(0, 4)]), rng.choice([0, 0, rng.gauss(0, 3)]), rng.choice([0, 0, 0, rng.gauss(0, 10)]), rng.choice([0, 0, 0, rng.gauss(0, 10)])
+    rows, t, total = [f"run,direction,target_{unit},deviation_{small}"], 0, 2 * runs * n
+    for r in range(1, runs + 1):
+        for d in (1, -1):
+            for x in targets if d > 0 else targets[::-1]:
+                p = x / length
+                v = slope * p + wave * math.sin(2 * math.pi * p + phase) + d / 2 * (lost + elastic * math.sin(2 * math.pi * p))
+                rows.append(f"{r},{'+' if d > 0 else '-'},{x:g},{v + (drift + wedge * p) * t / total + rng.gauss(0, s):.3f}")
+                t += 1
+    control = rng.choice(list(CONTROLS))
+    limits = rng.random() < 0.8
+    machine = rng.choice([f'asset = "M-{i % 7}"\n', f'maker = "Maker"\nserial = "{i % 5}"\n', ""])
+    text = (f'format = 1\n[campaign]\nid = "c{i}"\ncustomer = "Customer"\ndate = 2026-{1 + i % 9:02}-{1 + i % 27:02}\n[machine]\nmodel = "M"\n{machine}'
+            f'control = "{control}"\n[machine.axes.{axis}]\nkind = "{"rotary" if rotary else "linear"}"\ntravel = [0, {length:g}]\n'
+            + ("" if rotary else "expansion_um_per_m_K = 11.5\n")
+            + (f'table_on = "none"\nbacklash_on_{unit} = "none"\n' if rng.random() < 0.8 else "")
+            + (f"tolerance_{small} = {{ A = {rng.choice([6.0, 10.0, 20.0])}, B = {rng.choice([2.0, 4.0, 8.0])} }}\n" if limits else "")
+            + ("[instrument]\nU_arcsec = 0.3\n[environment]\ndrift_arcsec = 0.3\n" if rotary else
+               "[instrument]\nU_fixed_um = 0.2\nU_per_m_um = 0.5\n[environment]\nmisalignment_mm = 0.5\ntemperature_range_K = 0.2\n"
+               "temperature_difference_K = 0.5\nexpansion_range_um_per_m_K = 1.0\ndrift_um = 0.4\n")
+            + f'[[measurement]]\nid = "{axis}"\nkind = "axis"\naxis = "{axis}"\nfile = "x.csv"\n'
+            + (f"[options.{control}.axes.{axis}]\n{CONTROLS[control]}\n" if CONTROLS[control] else ""))
+    folder.mkdir(parents=True)
+    (folder / "campaign.toml").write_text(text)
+    (folder / "x.csv").write_text("\n".join(rows) + "\n")
+
+
+class Random(Truth):
+    def test_random_campaigns(self):
+        print(f"seed {SEED}, {CAMPAIGNS} campaigns", flush=True)
+        rng = random.Random(SEED)
+        with tempfile.TemporaryDirectory(prefix="nonio-truth-") as folder:
+            site, out = pathlib.Path(folder) / "site", pathlib.Path(folder) / "out"
+            for i in range(CAMPAIGNS):
+                random_campaign(rng, site / f"c{i}", i)
+            run("run", site, "--out", out, "--quiet")
+            self.check_site(site, out)
+
+    def test_compare_explain_and_add_state_the_same_error(self):
+        """8. One model has one RMS, in compare, explain and model add; a table leaves no more than there was."""
+        rng = random.Random(SEED + 1)
+        for i in range(max(2, CAMPAIGNS // 8)):
+            with tempfile.TemporaryDirectory(prefix="nonio-truth-") as folder, self.subTest(i=i, seed=SEED):
+                campaign = pathlib.Path(folder) / "c0"
+                random_campaign(rng, campaign, 0)
+                for _ in range(4):
+                    explained = json.loads(run("explain", campaign, "--json").stdout)
+                    part, = explained.get("parts", [explained])
+                    compared, = json.loads(run("compare", campaign, "--json").stdout)["parts"]
+                    rms = next(k for k in part["model"] if k.startswith("rms_"))
+                    self.assertAlmostEqual(part["model"][rms], compared["model"][rms], delta=1e-6)
+                    if "after_table" in compared:
+                        after = compared["after_table"]
+                        self.assertLessEqual(after[rms], after[rms.replace("rms_", "rms_before_")] * 1.0001)
+                    if part["verdict"]["kind"] != "missing":
+                        break
+                    effect = part["verdict"]["effect"]
+                    promised = next(c[rms] for c in part["candidates"] if c["effect"] == effect)
+                    run("model", "add", campaign, effect, "--quiet")
+                    obtained, = json.loads(run("compare", campaign, "--json").stdout)["parts"]
+                    self.assertAlmostEqual(promised, obtained["model"][rms], delta=0.02 * obtained["model"][rms])
+
+
+if __name__ == "__main__":
+    unittest.main()
