@@ -120,12 +120,16 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
   const auto before = math::AxisTest::arrange(o), after = math::AxisTest::arrange(in.observations);
   const math::Reversal was = math::assess_reversal(before), is = math::assess_reversal(after);
   if (was.kind == Kind::unknown || is.kind == Kind::unknown) return {};
-  const double u =
-      std::hypot(u_of_reversal(in, environment, before), u_of_reversal(in, environment, after));
+  const double u_before = u_of_reversal(in, environment, before),
+               u_after = u_of_reversal(in, environment, after);
+  // A value that was not made from these readings has no part of their error: it counts `share` times.
+  const auto u_of = [&](double share) {
+    return std::hypot(std::max(1.0, share) * u_before, u_after);
+  };
   constexpr double level = 0.01;
   const auto fits = [&](double share) {
-    return !math::significant(
-        math::t_two_sided(math::test_ratio(is.mean - share * was.mean, u), 1e6), level);
+    const double rest = is.mean - share * was.mean;
+    return !math::significant(math::t_two_sided(math::test_ratio(rest, u_of(share)), 1e6), level);
   };
   // Where one value helps, the table takes B_mean away; else it leaves the value as it was.
   const bool taken = was.kind != Kind::not_constant && was.largest_left < was.largest;
@@ -146,7 +150,7 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
                          .evidence = {{"before", was.mean, q},
                                       {"after", is.mean, q},
                                       {"predicted", wanted * was.mean, q},
-                                      {"u", u, q},
+                                      {"u", u_of(1.0), q},
                                       {"right", taken ? -was.mean : 0.0, q},
                                       {"change", -(is.mean - wanted * was.mean), q}}}};
 }

