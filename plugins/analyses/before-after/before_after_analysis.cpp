@@ -135,24 +135,25 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
   const bool taken = was.kind != Kind::not_constant && was.largest_left < was.largest;
   const double wanted = taken ? 0.0 : 1.0;
   const char* id = nullptr;
+  bool as_predicted = false;
   if (fits(wanted)) {
     const bool told = !taken || was.kind == Kind::none || !fits(1.0);
-    if (told) return {};
-    id = "before-after.reversal-cannot-tell";
+    id = told ? "before-after.reversal-as-predicted" : "before-after.reversal-cannot-tell";
+    as_predicted = told;
   } else {
     id = taken && fits(1.0)   ? "before-after.reversal-not-active"
          : taken && fits(2.0) ? "before-after.reversal-wrong-sign"
                               : "before-after.reversal-something-else";
   }
   const Quantity q = deviation_of(in.observations.angular);
-  return {false, Finding{.id = id,
-                         .attention = true,
-                         .evidence = {{"before", was.mean, q},
-                                      {"after", is.mean, q},
-                                      {"predicted", wanted * was.mean, q},
-                                      {"u", u_of(1.0), q},
-                                      {"right", taken ? -was.mean : 0.0, q},
-                                      {"change", -(is.mean - wanted * was.mean), q}}}};
+  return {as_predicted, Finding{.id = id,
+                                .attention = !as_predicted,
+                                .evidence = {{"before", was.mean, q},
+                                             {"after", is.mean, q},
+                                             {"predicted", wanted * was.mean, q},
+                                             {"u", u_of(1.0), q},
+                                             {"right", taken ? -was.mean : 0.0, q},
+                                             {"change", -(is.mean - wanted * was.mean), q}}}};
 }
 
 /// "Worked" is said of a table only if the pitch and the reversal are both what it predicts.
