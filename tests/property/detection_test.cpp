@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
                 1},
         Planted{"reversal_along_travel",
                 {"reversal.not-constant"},
-                {"reversal.lost-motion", "reversal.over-compensated"},
+                {"reversal.lost-motion", "reversal.positive"},
                 {0.5 * um, 0.5 * um, 0.2 * um},
                 [](double x, int d, std::uint32_t) { return d * 3 * um * std::cos(4.0 * x); }},
         Planted{"asymmetric",

@@ -60,7 +60,7 @@ TEST_P(FalseAlarms, AreRare) {
     for (const Finding& f : findings) once[f.id] = 1;
     for (const auto& [id, one] : once) alarms[id] += one;
   }
-  const std::string planted = c.B < 0.0 ? "reversal.lost-motion" : "reversal.over-compensated";
+  const std::string planted = c.B < 0.0 ? "reversal.lost-motion" : "reversal.positive";
   if (c.B != 0.0) {
     EXPECT_GE(alarms[planted], campaigns * 98 / 100) << "seed " << c.seed;
     alarms.erase(planted);

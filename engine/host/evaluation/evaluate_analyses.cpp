@@ -139,10 +139,10 @@ std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Anal
       const auto standing =
           std::find_if(may_stand.begin(), may_stand.end(),
                        [&](const config::StandingFinding& one) { return one.finding == f.id; });
-      if (standing == may_stand.end())
-        open.insert(f.id);
-      else
+      if (standing != may_stand.end())
         f.texts.emplace_back(reading::stands_because, standing->reason);
+      else if (f.attention)
+        open.insert(f.id);
     }
   }
   std::string found;

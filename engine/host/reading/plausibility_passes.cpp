@@ -204,8 +204,39 @@ void push_turned(Turned how, const std::string& which, std::vector<Finding>& out
                  .texts = {{"which", which}}});
 }
 
+/// What the curves of both directions allow besides a mistake in the file.
+enum class Opposed { no_mistake, either, mistake };
+
+/// A direction that was turned as a whole differs from the other as a reversal does that varies along the
+/// axis. A mistake turns the slope too: a slope in common refutes it. What is left of the mean curve then
+/// is nothing (sign), so a drive that winds up explains it as well; or it is even about the middle (order)
+/// while the reversal is odd, which only a mistake explains, unless the mean curve is nothing or a whole
+/// turn, where an eccentricity is even too.
+Opposed opposed(const Curve& minus, const Curve& plus, Turned how, double step, bool rotary) {
+  std::vector<double> a, b;
+  minus.each([&](double target, double mean) {
+    if (const auto there = plus.mean(target)) a.push_back(mean), b.push_back(*there);
+  });
+  const auto [sum_a, freedom_a] = minus.scatter();
+  const auto [sum_b, freedom_b] = plus.scatter();
+  const double s = std::max(std::sqrt((sum_a + sum_b) / (freedom_a + freedom_b)), step);
+  const double noise = s * s * (1.0 / minus.depth() + 1.0 / plus.depth());
+  const auto n = static_cast<double>(a.size());
+  const auto about_mean = [&](const auto& value) {
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += value(i), squares += value(i) * value(i);
+    return squares - sum * sum / n;
+  };
+  const bool order = how == Turned::order;
+  const double turned_back =
+      about_mean([&](std::size_t i) { return (order ? a[a.size() - 1 - i] : -a[i]) - b[i]; });
+  if (turned_back > 6.0 * noise * n) return Opposed::no_mistake;
+  const double in_common = about_mean([&](std::size_t i) { return a[i] + b[i]; });
+  return order && !rotary && in_common > 20.0 * noise * n ? Opposed::mistake : Opposed::either;
+}
+
 /// One pass against the others of its direction; else all of one direction against the other.
-void turned_passes(const Passes& passes, std::vector<Finding>& out) {
+void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out) {
   const auto& [strokes, step] = passes;
   std::map<int, Curve> by_direction;
   for (const Stroke& s : strokes) by_direction[s.direction].add(s);
@@ -215,7 +246,11 @@ void turned_passes(const Passes& passes, std::vector<Finding>& out) {
     const Turned how = turned(one, by_direction[own.direction].without(own), step);
     if (how != Turned::not_at_all) return push_turned(how, name_of(own), out);
   }
-  push_turned(turned(by_direction[-1], by_direction[1], step), "-", out);
+  const Turned how = turned(by_direction[-1], by_direction[1], step);
+  if (how == Turned::not_at_all) return;
+  const Opposed kind = opposed(by_direction[-1], by_direction[1], how, step, rotary);
+  if (kind == Opposed::mistake) push_turned(how, "-", out);
+  if (kind == Opposed::either) out.push_back({.id = "plausibility.directions-opposed"});
 }
 
 /// Standard deviation about the median without the two readings farthest off it.
@@ -270,7 +305,7 @@ void implausible_passes(const Passes& passes, const Observations& o, bool with_d
   implausible_values(passes, o, out);
   const std::size_t before = out.size();
   swapped(passes, deviation, out);
-  if (out.size() == before) turned_passes(passes, out);
+  if (out.size() == before) turned_passes(passes, o.angular, out);
   another_size(passes, deviation, out);
   if (out.size() == before && o.size() <= most_sorted) implausible_halves(passes, o.angular, out);
 }

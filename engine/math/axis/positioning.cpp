@@ -71,12 +71,12 @@ const std::array rules = {
 };
 
 // Of a difference of two readings the environment can make as much as its whole range.
-constexpr RuleShare of_means(double means) { return {false, means, 0.0, 0.0}; }
+constexpr RuleShare share_of_reversal{false, 2.0, 0.0, 0.0, 1.0};
 
 std::vector<RuleValue> iso(const PositioningRule& rule, const AxisStatistics& axis) {
   const Iso230Result r = evaluate_iso230_2(axis, rule.k);
   const RuleShare A{true, 2.0, rule.k, 0.0}, E{true, 2.0, 0.0, 0.0}, M{true, 1.0, 0.0, 0.0},
-      both{false, 2.0, rule.k, 0.0}, one{false, 0.0, rule.k, 0.0}, B = of_means(2.0);
+      both{false, 2.0, rule.k, 0.0, 1.0}, one{false, 0.0, rule.k, 0.0};
   std::vector<RuleValue> out = {{"A", r.A, A}, {"A+", r.A_plus, A}, {"A-", r.A_minus, A}};
   if (rule.systematic)
     out.insert(out.end(),
@@ -84,8 +84,8 @@ std::vector<RuleValue> iso(const PositioningRule& rule, const AxisStatistics& ax
   out.insert(out.end(), {{"R", r.R, both},
                          {"R+", r.R_plus, one},
                          {"R-", r.R_minus, one},
-                         {"B", r.B, B},
-                         {"B_mean", r.B_mean, B}});
+                         {"B", r.B, share_of_reversal},
+                         {"B_mean", r.B_mean, {false, 2.0, 0.0, 0.0, 0.0, 1.0}}});
   return out;
 }
 
@@ -102,9 +102,9 @@ std::vector<RuleValue> vdi(const PositioningRule& rule, const AxisStatistics& ax
           {"Pa", r.Pa, {true, 1.0, 0.0, 0.0}},
           {"Ps_max", r.Ps_max, scatter},
           {"Ps_mean", r.Ps_mean, scatter},
-          {"U_max", r.U_max, of_means(2.0)},
-          {"U_mean", r.U_mean, of_means(2.0)},
-          {"PsU_max", r.PsU_max, {false, 2.0, rule.k, 0.0}, true}};
+          {"U_max", r.U_max, share_of_reversal},
+          {"U_mean", r.U_mean, share_of_reversal},
+          {"PsU_max", r.PsU_max, {false, 2.0, rule.k, 0.0, 1.0}, true}};
 }
 
 double both_of(double plus, double minus) {
@@ -130,13 +130,14 @@ std::vector<RuleValue> nmtba(const PositioningRule& rule, const AxisStatistics& 
     of_accuracy.band = 1.0;
   const RuleShare scatter{false, 0.0, rule.k / 2.0, 0.0};
   const double plus = accuracy[0].largest(), minus = accuracy[1].largest();
-  return {
-      {"+-accuracy", both_of(plus, minus), of_accuracy},
-      {"+-accuracy+", plus, of_accuracy},
-      {"+-accuracy-", minus, of_accuracy},
-      {"+-repeatability", evaluate_iso230_2(axis, rule.k).R / 2.0, {false, 0.5, rule.k / 2.0, 0.0}},
-      {"+-repeatability+", repeatability[0].largest(), scatter},
-      {"+-repeatability-", repeatability[1].largest(), scatter}};
+  return {{"+-accuracy", both_of(plus, minus), of_accuracy},
+          {"+-accuracy+", plus, of_accuracy},
+          {"+-accuracy-", minus, of_accuracy},
+          {"+-repeatability",
+           evaluate_iso230_2(axis, rule.k).R / 2.0,
+           {false, 0.5, rule.k / 2.0, 0.0, 0.5}},
+          {"+-repeatability+", repeatability[0].largest(), scatter},
+          {"+-repeatability-", repeatability[1].largest(), scatter}};
 }
 
 double spread(const AxisStatistics::Side& one) {  // a single reading has none
@@ -155,10 +156,13 @@ std::vector<RuleValue> raw(const AxisStatistics& axis) {
     B.put(std::fabs(t.B));
   }
   const RuleShare all{true, 0.0, 0.0, 1.0}, here{false, 0.0, 0.0, 1.0};
-  return {{"A'", A.range(), all},           {"A'+", A_plus.range(), all},
-          {"A'-", A_minus.range(), all},    {"R'", R.largest(), here},
-          {"R'+", R_plus.largest(), here},  {"R'-", R_minus.largest(), here},
-          {"B", B.largest(), of_means(2.0)}};
+  return {{"A'", A.range(), all},
+          {"A'+", A_plus.range(), all},
+          {"A'-", A_minus.range(), all},
+          {"R'", R.largest(), here},
+          {"R'+", R_plus.largest(), here},
+          {"R'-", R_minus.largest(), here},
+          {"B", B.largest(), share_of_reversal}};
 }
 
 // The target nearest to the middle of the travel; of two the lower one.
@@ -203,7 +207,7 @@ std::vector<RuleValue> jis(const AxisStatistics& axis) {
   }
   return {{"accuracy", axis.targets.empty() ? not_given : first_pass(axis), {true, 0.0, 0.0, 1.0}},
           {"+-repeatability", repetition.largest() / 2.0, {false, 0.0, 0.0, 0.25}},
-          {"lost_motion", lost.largest(), of_means(2.0)}};
+          {"lost_motion", lost.largest(), share_of_reversal}};
 }
 
 }  // namespace

@@ -38,7 +38,10 @@ Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput& in) {
   a.deviation = deviation_of(a.test.rotary);
   a.position = position_of(a.test.rotary);
   a.approaches = approaches_behind_means(a.test);
-  for (Finding& f : axis_findings(a.test, o, in.campaign.machine.axis(in.measurement.axis)))
+  const Axis* stated = in.campaign.machine.axis(in.measurement.axis);
+  Axis axis = stated != nullptr ? *stated : Axis{};
+  if (in.measurement.compensation == "off") axis.backlash_on = 0.0;
+  for (Finding& f : axis_findings(a.test, o, stated != nullptr ? &axis : nullptr))
     a.findings.push_back(std::move(f));
   const Observations* own = &o;
   HeldLimits limits = limits_held(in.campaign, {&own, 1});

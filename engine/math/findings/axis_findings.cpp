@@ -18,7 +18,20 @@ bool matters(const AxisTest& test, double size) {
   return !(size < share * whole);
 }
 
-void reversal_findings(const AxisTest& test, std::vector<Finding>& findings) {
+namespace {
+
+// Going too far has no cause of its own: clearances and friction make it, or a backlash value that is
+// active and too large. Only where such a value is stated is it named.
+const char* positive_reversal(std::optional<double> active) {
+  return !active         ? "reversal.positive"
+         : *active > 0.0 ? "reversal.over-compensated"
+                         : "reversal.positive-uncompensated";
+}
+
+}  // namespace
+
+void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
+                       std::optional<double> active) {
   using Kind = Reversal::Kind;
   const Reversal r = assess_reversal(test);
   const bool attention = !std::isnan(r.largest) && matters(test, r.largest);
@@ -26,18 +39,19 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings) {
   const bool constant = r.kind == Kind::lost_motion || r.kind == Kind::over_compensated;
   const char* id = constant && !(r.largest_left < r.largest) ? "reversal.one-value-worse"
                    : r.kind == Kind::lost_motion             ? "reversal.lost-motion"
-                   : r.kind == Kind::over_compensated        ? "reversal.over-compensated"
+                   : r.kind == Kind::over_compensated        ? positive_reversal(active)
                    : r.kind == Kind::not_constant            ? "reversal.not-constant"
                                                              : nullptr;
-  if (id != nullptr)
-    findings.push_back(FindingBuilder(id, attention, test.rotary)
-                           .deviation("mean", r.mean)
-                           .deviation("u_mean", r.u_mean)
-                           .deviation("max", r.largest)
-                           .deviation("left", r.largest_left)
-                           .number("p", r.kind == Kind::not_constant ? r.p_varies : r.p_mean,
-                                   Quantity::probability)
-                           .done());
+  if (id != nullptr) {
+    FindingBuilder finding(id, attention, test.rotary);
+    finding.deviation("mean", r.mean)
+        .deviation("u_mean", r.u_mean)
+        .deviation("max", r.largest)
+        .deviation("left", r.largest_left)
+        .number("p", r.kind == Kind::not_constant ? r.p_varies : r.p_mean, Quantity::probability);
+    if (r.kind == Kind::over_compensated && active) finding.deviation("active", *active);
+    findings.push_back(finding.done());
+  }
   if (r.opposed)
     findings.push_back(FindingBuilder("reversal.elastic", attention, true)
                            .deviation("amplitude", r.opposed_amplitude)
@@ -56,7 +70,7 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings) {
 std::vector<Finding> axis_findings(const AxisTest& test, const Observations& o, const Axis* axis) {
   std::vector<Finding> findings;
   drift_findings(test, findings);
-  reversal_findings(test, findings);
+  reversal_findings(test, findings, axis != nullptr ? axis->backlash_on : std::nullopt);
   scatter_findings(test, findings);
   turn_findings(test, findings);
   plan_findings(test, o, axis, findings);

@@ -12,11 +12,11 @@
 // and U_MD, U_ED as U_M, U_E of a device that has a length of its own, where that is stated.
 // With S2 = U_DEV^2 + U_MIS^2 + U_M^2 + U_E^2 (+ U_MD^2 + U_ED^2), n approaches, and R+ = 2 k s, A
 // with k s:
-//   U(B)^2 = 2 U_EVE^2/n                 systematic parts cancel
+//   U(B)^2 = 2 U_EVE^2/n + D^2           systematic parts cancel; D: drift and repetition (drift.h)
 //   U(M)^2 = S2 + U_EVE^2/n;   U(E)^2 = S2 + 2 U_EVE^2/n
-//   U(R+)  = k U_EVE;          U(R)^2 = (k U_EVE)^2 + 2 U_EVE^2/n
+//   U(R+)^2 = (k U_EVE)^2 + (2 k D_s)^2; U(R)^2 = U(R+)^2 + U(B)^2
 //   U(A)^2 = U(E)^2 + (k U_EVE)^2
-// S2 is that of the whole length, hence an upper bound; so is U(B) for B_mean.
+// S2 is that of the whole length, hence an upper bound.
 #include "nonio/math/uncertainty.h"
 
 #include <algorithm>
@@ -91,6 +91,7 @@ BudgetOrGap uncertainty_budget(const Campaign& campaign, const Environment& envi
                          : linear(campaign, environment, axis, L, out.missing);
   b.length = L;
   b.rotary = test.rotary;
+  if (b.U_EVE > 0.0) b.seen = drift_share(test);
   if (const auto exact = exact_instrument(campaign.instrument, test.rotary))
     out.missing.push_back(*exact);
   if (out.missing.empty()) out.budget = b;
@@ -109,11 +110,12 @@ Iso230Uncertainty iso230_2_uncertainty(const Budget& b, std::size_t n, double k)
   const double root_n = std::sqrt(static_cast<double>(n));
   const double two_means = std::sqrt(2.0) * b.U_EVE / root_n;
   Iso230Uncertainty U{};
-  U.B = U.B_mean = two_means;
+  U.B = root(two_means, b.seen.B);
+  U.B_mean = root(two_means, b.seen.B_mean);
   U.M = root(b.systematic(), b.U_EVE / root_n);
   U.E = U.E_plus = U.E_minus = root(b.systematic(), two_means);
-  U.R_plus = U.R_minus = k * b.U_EVE;
-  U.R = root(U.R_plus, two_means);
+  U.R_plus = U.R_minus = root(k * b.U_EVE, 2.0 * k * b.seen.s);
+  U.R = root(U.R_plus, U.B);
   U.A = U.A_plus = U.A_minus = root(U.E, k * b.U_EVE);
   return U;
 }
@@ -126,8 +128,11 @@ VdiUncertainty vdi3441_uncertainty(const Budget& b, std::size_t n) {
 
 double rule_uncertainty(const Budget& b, std::size_t n, const RuleShare& share) {
   const double S = share.systematic ? b.systematic() : 0.0, E_VE = b.U_EVE / of_range;
+  const double of_s = share.systematic ? 0.0 : 2.0 * share.scatter * b.seen.s,
+               of_B = share.B * b.seen.B, of_mean = share.B_mean * b.seen.B_mean;
   return std::sqrt(S * S + share.means * b.U_EVE * b.U_EVE / static_cast<double>(n) +
-                   share.scatter * share.scatter * b.U_EVE * b.U_EVE + share.band * E_VE * E_VE);
+                   share.scatter * share.scatter * b.U_EVE * b.U_EVE + share.band * E_VE * E_VE +
+                   of_s * of_s + of_B * of_B + of_mean * of_mean);
 }
 
 double slope_uncertainty(const Budget& b, std::size_t n) {

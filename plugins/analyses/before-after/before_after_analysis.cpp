@@ -6,9 +6,12 @@
 #include <cmath>
 
 #include "nonio/math/along.h"
+#include "nonio/math/axis_test.h"
 #include "nonio/math/before_after.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/measured_line.h"
+#include "nonio/math/reversal.h"
+#include "nonio/math/uncertainty.h"
 #include "nonio/sdk/plugin.h"
 
 using namespace nonio;
@@ -94,8 +97,75 @@ const char* name_of(BeforeAfter::Answer answer) {
   return "before-after.cannot-tell";
 }
 
+/// The reversal of an axis is corrected by a value of its own, so it is judged apart from the mean.
+struct ReversalJudged {
+  bool as_predicted = true;
+  std::optional<Finding> finding{};
+};
+
+/// Standard uncertainty of B_mean: environment, repetition, and drift that was not excluded.
+double u_of_reversal(const AnalysisInput& in, const Environment& environment,
+                     const math::AxisTest& test) {
+  const math::Budget budget =
+      math::uncertainty_budget(in.campaign, environment, in.measurement.axis, test)
+          .budget.value_or(math::Budget{.seen = math::drift_share(test)});
+  const std::size_t n = std::max<std::size_t>(math::approaches_behind_means(test), 1);
+  return math::iso230_2_uncertainty(budget, n, 2.0).B_mean / 2.0;
+}
+
+ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
+                              const Environment& environment) {
+  if (in.measurement.kind != "axis") return {};
+  using Kind = math::Reversal::Kind;
+  const auto before = math::AxisTest::arrange(o), after = math::AxisTest::arrange(in.observations);
+  const math::Reversal was = math::assess_reversal(before), is = math::assess_reversal(after);
+  if (was.kind == Kind::unknown || is.kind == Kind::unknown) return {};
+  const double u_before = u_of_reversal(in, environment, before),
+               u_after = u_of_reversal(in, environment, after);
+  // A value that was not made from these readings has no part of their error: it counts `share` times.
+  const auto u_of = [&](double share) {
+    return std::hypot(std::max(1.0, share) * u_before, u_after);
+  };
+  constexpr double level = 0.01;
+  const auto fits = [&](double share) {
+    const double rest = is.mean - share * was.mean;
+    return !math::significant(math::t_two_sided(math::test_ratio(rest, u_of(share)), 1e6), level);
+  };
+  // Where one value helps, the table takes B_mean away; else it leaves the value as it was.
+  const bool taken = was.kind != Kind::not_constant && was.largest_left < was.largest;
+  const double wanted = taken ? 0.0 : 1.0;
+  const char* id = nullptr;
+  bool as_predicted = false;
+  if (fits(wanted)) {
+    const bool told = !taken || was.kind == Kind::none || !fits(1.0);
+    id = told ? "before-after.reversal-as-predicted" : "before-after.reversal-cannot-tell";
+    as_predicted = told;
+  } else {
+    id = taken && fits(1.0)   ? "before-after.reversal-not-active"
+         : taken && fits(2.0) ? "before-after.reversal-wrong-sign"
+                              : "before-after.reversal-something-else";
+  }
+  const Quantity q = deviation_of(in.observations.angular);
+  return {as_predicted, Finding{.id = id,
+                                .attention = !as_predicted,
+                                .evidence = {{"before", was.mean, q},
+                                             {"after", is.mean, q},
+                                             {"predicted", wanted * was.mean, q},
+                                             {"u", u_of(1.0), q},
+                                             {"right", taken ? -was.mean : 0.0, q},
+                                             {"change", -(is.mean - wanted * was.mean), q}}}};
+}
+
+/// "Worked" is said of a table only if the pitch and the reversal are both what it predicts.
+const char* name_of(BeforeAfter::Answer answer, const ReversalJudged& reversal) {
+  if (answer == BeforeAfter::Answer::worked && !reversal.as_predicted)
+    return "before-after.mean-as-predicted";
+  return name_of(answer);
+}
+
 void fill(const AnalysisInput& in, const math::MeasuredLine& one, const math::MeasuredLine& two,
-          int direction, const math::ReadingModel& model, double dof, Evaluation& e) {
+          int direction, const math::ReadingModel& model, double dof,
+          const ReversalJudged& reversal, Evaluation& e) {
   const bool angular = in.observations.angular;
   const Quantity q = angular ? Quantity::angular_deviation : Quantity::deviation;
   std::vector<double> before, after, position, way_b, way_a, in_u, U;
@@ -122,7 +192,7 @@ void fill(const AnalysisInput& in, const math::MeasuredLine& one, const math::Me
                       {"after", q, way_a},
                       {"in_u", Quantity::ratio, in_u}};
   e.findings.push_back(
-      {.id = name_of(r.answer),
+      {.id = name_of(r.answer, reversal),
        .attention = r.answer != BeforeAfter::Answer::worked,
        .evidence = {{"share", r.f, Quantity::ratio},
                     {"u_share", r.u_f, Quantity::ratio},
@@ -132,6 +202,7 @@ void fill(const AnalysisInput& in, const math::MeasuredLine& one, const math::Me
                     {"p_worked", r.p[0], Quantity::probability},
                     {"p_not_active", r.p[1], Quantity::probability},
                     {"p_wrong_sign", r.p[2], Quantity::probability}}});
+  if (reversal.finding) e.findings.push_back(*reversal.finding);
 }
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
@@ -169,7 +240,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
       math::reading_model(in.campaign, limits.environment,
                           {line_of(in, one, *direction, 0), line_of(in, two, *direction, 1)});
   if (!model.missing.empty()) e.findings.push_back(math::missing_finding(model.missing));
-  fill(in, one, two, *direction, model, dof, e);
+  fill(in, one, two, *direction, model, dof, judge_reversal(in, o, limits.environment), e);
   e.notes.push_back({"method.before-after", {}, {{"before", first.id}}});
   return e;
 }

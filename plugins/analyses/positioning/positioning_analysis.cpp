@@ -99,7 +99,7 @@ PointTable table(const AxisAnalysis& a, const AxisStatistics& statistics) {
     points.columns.push_back(std::move(c));
   };
   using T = AxisStatistics::Target;
-  const double of_mean = U_of({true, 1.0, 0.0, 0.0}), of_B = U_of({false, 2.0, 0.0, 0.0}),
+  const double of_mean = U_of({true, 1.0, 0.0, 0.0}), of_B = U_of({false, 2.0, 0.0, 0.0, 1.0}),
                of_s = U_of({false, 0.0, 0.5, 0.0}), of_range = U_of({false, 0.0, 0.0, 1.0});
   column("target", a.position, NAN, [](const T& t) { return t.target; });
   column("mean+", a.deviation, of_mean, [](const T& t) { return t.plus.mean; });

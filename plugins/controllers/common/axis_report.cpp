@@ -130,7 +130,8 @@ void doubt_backlash(const AxisJob& job, OutputResult& result) {
        {{"mean", job.reversal.mean, deviation_of(job.rotary)}},
        {{"axis", job.axis}, {"setting", job.rotary ? "backlash_deg" : "backlash_mm"}},
        job.measurement,
-       "The control very likely compensates backlash already. Say how much (" +
+       "Clearances and friction cause this, or a backlash value that is active. State the active "
+       "value (" +
            std::string(job.rotary ? "backlash_deg" : "backlash_mm") + " = ... under axes." +
            job.axis +
            " in the options of this control), so that the new value is the present one less the "

@@ -38,7 +38,7 @@ TEST(Findings, NoBacklashValueIsAdvisedThatMakesTheLargestReversalLarger) {
     std::vector<Finding> findings;
     reversal_findings(test, findings);
     const bool lost = find(findings, "reversal.lost-motion") != nullptr ||
-                      find(findings, "reversal.over-compensated") != nullptr;
+                      find(findings, "reversal.positive") != nullptr;
     EXPECT_TRUE(!lost || r.largest_left < r.largest) << "seed " << seed << ", round " << round;
     advised += lost ? 1 : 0;
     worse += find(findings, "reversal.one-value-worse") != nullptr ? 1 : 0;

@@ -27,6 +27,7 @@ struct Shop {
   std::mt19937 rng{seed};
   std::vector<int> directions{1, -1};
   std::uint32_t runs = 3;
+  double half_reversal = 1 * um;  ///< of the lines from here on
 
   Shop() {
     campaign.machine.axes.push_back(Axis{.name = "X", .expansion = 1e-6});
@@ -52,7 +53,7 @@ struct Shop {
           const double x = length * static_cast<double>(i) / static_cast<double>(stops - 1);
           o.axes[0].position.push_back(x + shift);
           o.axes[0].approach.push_back(static_cast<std::int8_t>(direction));
-          o.deviation.push_back(curve(x) + direction * um + scatter * normal(rng));
+          o.deviation.push_back(curve(x) + direction * half_reversal + scatter * normal(rng));
           o.run.push_back(run);
         }
     campaign.measurements.push_back(std::move(m));
@@ -122,6 +123,7 @@ TEST(BeforeAfter, TellsWhatTheTableDidInTwoThousandCampaigns) {
       for (std::size_t i = 0; i < o.size(); ++i)
         mean[o.axes[0].position[i]] += o.deviation[i] / (2.0 * shop.runs);
       const double taken = 1.0 - story.kept;
+      shop.half_reversal = 0.0;  // its value worked
       shop.line("after", [&](double x) {
         return error_of(x) - taken * (mean.at(x) - mean.at(0.0)) + story.more(x);
       });
@@ -138,6 +140,63 @@ TEST(BeforeAfter, TellsWhatTheTableDidInTwoThousandCampaigns) {
     EXPECT_GE(inside, 0.94 * campaigns) << story.wanted;
     EXPECT_LE(inside, 0.965 * campaigns) << story.wanted;
   }
+}
+
+const Finding* finding_of(const Evaluation& e, const std::string& id) {
+  for (const Finding& f : e.findings)
+    if (f.id == "before-after." + id) return &f;
+  return nullptr;
+}
+
+double number_of(const Finding& f, const std::string& name) {
+  for (const Number& n : f.evidence)
+    if (n.name == name) return n.value;
+  return NAN;
+}
+
+// The reversal has a value of its own: "worked" is said only if both did, and the value that would have
+// worked is named.
+TEST(BeforeAfter, JudgesTheReversalApartFromThePitch) {
+  std::cout << "seed " << seed << "\n";
+  struct Reversal {
+    const char* wanted;
+    double kept;  ///< share of the reversal that is left
+  };
+  constexpr double B = -8 * um;
+  for (const Reversal& r : {Reversal{nullptr, 0.0},
+                            {"reversal-something-else", 0.5},
+                            {"reversal-not-active", 1.0},
+                            {"reversal-wrong-sign", 2.0}})
+    for (const double pitch : {0.0, 1.0}) {
+      int mean = 0, told = 0, all = 0;
+      constexpr int campaigns = 200;
+      for (int c = 0; c < campaigns; ++c) {
+        Shop shop;
+        shop.rng.seed(seed + static_cast<unsigned>(c));
+        shop.scatter = 0.3 * um;
+        shop.half_reversal = B / 2.0;
+        shop.line("before", error_of);
+        shop.half_reversal = r.kept * B / 2.0;
+        shop.line("after", [&](double x) { return pitch * error_of(x); });
+        const Evaluation e = shop.evaluate();
+        const std::string wanted = pitch > 0.0 ? "not-active"
+                                   : r.wanted  ? "mean-as-predicted"
+                                               : "worked";
+        mean += answer(e) == wanted;
+        const Finding* reversal = finding_of(e, r.wanted ? r.wanted : "reversal-as-predicted");
+        told += reversal != nullptr;
+        all += finding_of(e, "worked") != nullptr;
+        if (reversal == nullptr || r.wanted == nullptr) continue;
+        EXPECT_TRUE(reversal->attention);
+        EXPECT_NEAR(number_of(*reversal, "right"), -B, 0.6 * um);
+        EXPECT_NEAR(number_of(*reversal, "change"), -r.kept * B, 0.6 * um);
+      }
+      std::cout << "reversal kept " << r.kept << ", pitch kept " << pitch << ": mean " << mean
+                << ", reversal " << told << " of " << campaigns << "\n";
+      EXPECT_GE(mean, campaigns * 97 / 100);
+      EXPECT_GE(told, campaigns * 97 / 100);
+      if (r.wanted != nullptr || pitch > 0.0) EXPECT_EQ(all, 0);
+    }
 }
 
 TEST(BeforeAfter, ADiagonalIsALineFromItsFirstCorner) {

@@ -52,12 +52,13 @@ enum class Offset { mean_of_all, first_target, mid_range };
 double offset_of(const AxisStatistics&, Offset);
 
 /// What an uncertainty is made of: U^2 = S^2 (if systematic) + means U_EVE^2/n + (scatter U_EVE)^2 +
-/// band E_VE^2, in the symbols of uncertainty.h.
+/// band E_VE^2 + (B D_B)^2 + (B_mean D_mean)^2, in the symbols of uncertainty.h; the scatter has its D_s.
 struct RuleShare {
-  bool systematic = false;  ///< the parts that do not average out
-  double means = 0.0;       ///< variance: so many means of n readings
-  double scatter = 0.0;     ///< half of so many standard deviations
-  double band = 0.0;        ///< variance: so many ranges of the environment, squared
+  bool systematic = false;       ///< the parts that do not average out
+  double means = 0.0;            ///< variance: so many means of n readings
+  double scatter = 0.0;          ///< half of so many standard deviations
+  double band = 0.0;             ///< variance: so many ranges of the environment, squared
+  double B = 0.0, B_mean = 0.0;  ///< times what drift may make of the reversal (drift.h)
 };
 
 struct RuleValue {

@@ -20,7 +20,7 @@ struct Reversal {
     unknown,      ///< not measured from both directions at every target, or no scatter is known
     none,         ///< not distinguishable from zero
     lost_motion,  ///< constant and negative: one value compensates it
-    over_compensated,  ///< constant and positive
+    over_compensated,  ///< constant and positive, whatever the cause
     not_constant,      ///< one value does not compensate it
   };
   Kind kind = Kind::unknown;

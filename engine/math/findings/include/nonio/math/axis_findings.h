@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,9 @@ std::vector<Finding> axis_findings(const AxisTest&, const Observations&, const A
 
 /// The parts of the list above.
 void drift_findings(const AxisTest&, std::vector<Finding>&);
-void reversal_findings(const AxisTest&, std::vector<Finding>&);
+/// active: the backlash value of the control during the measurement, where it is stated; m or rad.
+void reversal_findings(const AxisTest&, std::vector<Finding>&,
+                       std::optional<double> active = std::nullopt);
 void scatter_findings(const AxisTest&, std::vector<Finding>&);
 void suspect_findings(const AxisTest&, std::vector<Finding>&);
 /// Rotary: whether a place that is met again after a whole turn deviates as it did.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "nonio/math/axis_test.h"
+#include "nonio/math/drift.h"
 #include "nonio/math/positioning.h"
 #include "nonio/sdk/budget.h"
 #include "nonio/sdk/campaign.h"
@@ -34,6 +35,7 @@ struct Budget {
   double U_EVE = 0.0;   ///< environmental variation, the drift test
   double length = 0.0;  ///< measured length for which they hold
   bool rotary = false;  ///< then only U_DEV and U_EVE
+  DriftShare seen;      ///< what drift that these readings do not exclude makes of their values
   /// What does not average out over the approaches: S, root of the sum of squares of all but U_EVE.
   double systematic() const;
 };
@@ -60,9 +62,12 @@ std::size_t approaches_behind_means(const AxisTest&);
 /// Expanded uncertainties (k = 2) of the results of ISO 230-2; m or rad. n: approaches behind each
 /// mean, 1 or more; k: coverage factor of R and A in the edition.
 ///
-///     U(B) = U(B_mean) = sqrt(2/n) U_EVE        U(R+) = U(R-) = k U_EVE
-///     U(M) = sqrt(S^2 + U_EVE^2/n)              U(R) = sqrt((k U_EVE)^2 + 2 U_EVE^2/n)
-///     U(E) = sqrt(S^2 + 2 U_EVE^2/n)            U(A) = sqrt(U(E)^2 + (k U_EVE)^2); + and - alike
+///     U(B)^2 = 2 U_EVE^2/n + D_B^2              U(R+)^2 = U(R-)^2 = (k U_EVE)^2 + (2 k D_s)^2
+///     U(B_mean)^2 = 2 U_EVE^2/n + D_mean^2      U(R)^2 = U(R+)^2 + U(B)^2
+///     U(M) = sqrt(S^2 + U_EVE^2/n)              U(A) = sqrt(U(E)^2 + (k U_EVE)^2); + and - alike
+///     U(E) = sqrt(S^2 + 2 U_EVE^2/n)
+///
+/// D_B, D_mean, D_s: of the drift that the readings do not exclude (drift.h).
 ///
 /// Derived by the GUM (docs/uncertainty.md, L): compare with the standard before claiming it.
 struct Iso230Uncertainty {
@@ -82,6 +87,7 @@ VdiUncertainty vdi3441_uncertainty(const Budget&, std::size_t n);
 /// The same for a value of any rule of positioning (positioning.h): derived by the rules of the GUM.
 ///
 ///     U^2 = S^2 (where systematic) + means U_EVE^2/n + (scatter U_EVE)^2 + band E_VE^2
+///           + D^2 of the reversal and the scatter (where not systematic)
 ///
 /// A difference of two readings is wrong by the range of the environment E_VE = U_EVE/0.6 at most.
 double rule_uncertainty(const Budget&, std::size_t n, const RuleShare&);
