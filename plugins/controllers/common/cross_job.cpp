@@ -7,8 +7,6 @@
 #include "nonio/controllers/replay.h"
 #include "nonio/controllers/size.h"
 #include "nonio/controllers/text.h"
-#include "nonio/math/axis_test.h"
-#include "nonio/math/loaded_table.h"
 
 namespace nonio::controllers {
 
@@ -116,51 +114,17 @@ std::vector<int> ways_of(const ControllerInput& in, const Results::Analysed& a, 
   return {1, -1};
 }
 
-/// Error of one side of a gantry at the reference point of its pitch table, less that at `x0`: what the table of
-/// that side leaves.
-std::optional<double> left_on_side(const ControllerInput& in, const CrossJob& job,
-                                   const std::string& axis, double x0,
-                                   const NumberTables& settings) {
-  for (std::size_t i = 0; i < std::min(in.campaign.measurements.size(), in.observations.size());
-       ++i) {
-    const Measurement& m = in.campaign.measurements[i];
-    if (m.kind != "axis" || control_axis(in.campaign.machine, m) != axis ||
-        in.observations[i].size() == 0 ||
-        std::find(job.uses.begin(), job.uses.end(), m.id) == job.uses.end())
-      continue;
-    const math::ErrorCurve e = math::error_curve(math::AxisTest::arrange(in.observations[i]));
-    if (e.position.size() < 2) return std::nullopt;
-    double reference = std::clamp(0.0, e.position.front(), e.position.back());
-    if (const auto of = settings.find(axis); of != settings.end())
-      if (const auto said = of->second.find("reference_mm"); said != of->second.end())
-        reference = said->second / 1e3;
-    const auto at = [&](double x) { return math::ErrorCurve::at(e.position, e.mean, x); };
-    return at(reference) - at(x0);
-  }
-  return std::nullopt;
-}
-
-/// The pitch tables of both sides hold the beam as it stands where they are zero. C0Y is that of the first stop, so
-/// the yaw between both places belongs to what the cross table has to take.
-void turn_to_reference(const ControllerInput& in, CrossJob& job, const NumberTables& settings) {
-  for (const Beam& beam : beams_of(in.campaign))
-    for (CrossCurve& curve : job.curves) {
-      if (curve.output != beam.axis || curve.input != beam.along) continue;
-      const double x0 = job.lines.front().at.front().at(beam.axis);
-      const auto one = left_on_side(in, job, beam.axis, x0, settings),
-                 other = left_on_side(in, job, beam.slave, x0, settings);
-      if (!one || !other) continue;
-      const double turn = (*other - *one) / (beam.at_slave - beam.at_axis);
-      for (std::size_t i = 0; i < curve.value.size(); ++i)
-        curve.value[i] += turn * (curve.position[i] - curve.position.front());
-      job.yaw_at_reference = -turn;
-    }
-}
-
 /// Both diagonals as read, at the stops of the curves.
 std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::Analysed& a) {
   const Evaluation& e = a.evaluation;
-  const char* const ending = series_of(e, "q_odd") != nullptr ? "_even" : "";
+  const bool even_only = series_of(e, "q_odd") != nullptr;
+  // After a compensation from the same two diagonals they say nothing new: what they show is left by the tables in
+  // the control, and a table of that would take their place.
+  if (even_only && std::any_of(e.findings.begin(), e.findings.end(), [](const Finding& found) {
+        return found.id == "diagonals.remeasured";
+      }))
+    return std::nullopt;
+  const char* const ending = even_only ? "_even" : "";
   const Series *f = series_of(e, std::string("EYX") + ending),
                *g = series_of(e, std::string("EXY") + ending);
   const auto *D1 = e.points.column("D1"), *D2 = e.points.column("D2");
@@ -259,6 +223,7 @@ std::vector<std::string> CrossJob::outputs() const {
   std::vector<std::string> names;
   for (const CrossCurve& c : curves)
     if (std::find(names.begin(), names.end(), c.output) == names.end()) names.push_back(c.output);
+  std::sort(names.begin(), names.end());
   return names;
 }
 

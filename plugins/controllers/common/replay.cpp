@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "nonio/controllers/kit.h"
+#include "nonio/math/axis_test.h"
 #include "nonio/math/loaded_table.h"
 
 namespace nonio::controllers {
@@ -39,6 +40,30 @@ std::optional<std::vector<double>> after(const ReadLine& line, const Replay& rep
   return out;
 }
 
+/// Error of one side of a gantry at the reference point of its pitch table, less that at `x0`: what the table of
+/// that side leaves.
+std::optional<double> left_on_side(const ControllerInput& in, const CrossJob& job,
+                                   const std::string& axis, double x0,
+                                   const NumberTables& settings) {
+  for (std::size_t i = 0; i < std::min(in.campaign.measurements.size(), in.observations.size());
+       ++i) {
+    const Measurement& m = in.campaign.measurements[i];
+    if (m.kind != "axis" || control_axis(in.campaign.machine, m) != axis ||
+        in.observations[i].size() == 0 ||
+        std::find(job.uses.begin(), job.uses.end(), m.id) == job.uses.end())
+      continue;
+    const math::ErrorCurve e = math::error_curve(math::AxisTest::arrange(in.observations[i]));
+    if (e.position.size() < 2) return std::nullopt;
+    double reference = std::clamp(0.0, e.position.front(), e.position.back());
+    if (const auto of = settings.find(axis); of != settings.end())
+      if (const auto said = of->second.find("reference_mm"); said != of->second.end())
+        reference = said->second / 1e3;
+    const auto at = [&](double x) { return math::ErrorCurve::at(e.position, e.mean, x); };
+    return at(reference) - at(x0);
+  }
+  return std::nullopt;
+}
+
 /// Several runs of a line: the worst of them.
 void keep_worst(std::vector<Prediction>& all, const Prediction& one) {
   const auto known =
@@ -69,6 +94,21 @@ std::vector<Beam> beams_of(const Campaign& campaign) {
     }
   }
   return beams;
+}
+
+void turn_to_reference(const ControllerInput& in, CrossJob& job, const NumberTables& settings) {
+  for (const Beam& beam : beams_of(in.campaign))
+    for (CrossCurve& curve : job.curves) {
+      if (curve.output != beam.axis || curve.input != beam.along) continue;
+      const double x0 = job.lines.front().at.front().at(beam.axis);
+      const auto one = left_on_side(in, job, beam.axis, x0, settings),
+                 other = left_on_side(in, job, beam.slave, x0, settings);
+      if (!one || !other) continue;
+      const double turn = (*other - *one) / (beam.at_slave - beam.at_axis);
+      for (std::size_t i = 0; i < curve.value.size(); ++i)
+        curve.value[i] += turn * (curve.position[i] - curve.position.front());
+      job.yaw_at_reference = -turn;
+    }
 }
 
 std::optional<double> Replay::moved(const std::string& axis, std::map<std::string, double> at,

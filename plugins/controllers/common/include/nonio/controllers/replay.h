@@ -27,6 +27,10 @@ struct Beam {
 /// A beam for each axis with a slave.
 std::vector<Beam> beams_of(const Campaign&);
 
+/// The pitch tables of both sides hold the beam as it is where they are zero. C0Y is that of the
+/// first stop, so the yaw between both places is added to what the cross table takes.
+void turn_to_reference(const ControllerInput&, CrossJob&, const NumberTables& settings);
+
 /// Tables in the control.
 struct Replay {
   std::vector<LoadedTable> tables;
