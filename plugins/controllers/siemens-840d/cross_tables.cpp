@@ -82,13 +82,13 @@ std::string file_text(const CrossJob& job, const ControllerInput& input, std::in
   return out + "M17\n";
 }
 
+/// What has to be enabled, once where several sets have the same axes.
 void note_enabling(const CrossJob& job, const std::vector<controllers::KnownAxis>& axes,
-                   OutputResult& result) {
+                   std::vector<Remark>& notes) {
   const Remark note{
       job.volume ? "siemens.cross-volume" : "siemens.cross", {}, {{"axes", outputs(job, axes)}}};
-  if (std::none_of(result.notes.begin(), result.notes.end(),
-                   [&](const Remark& r) { return r.id == note.id && r.texts == note.texts; }))
-    result.notes.push_back(note);
+  if (notes.empty() || notes.back().id != note.id || notes.back().texts != note.texts)
+    notes.push_back(note);
 }
 
 }  // namespace
@@ -133,6 +133,7 @@ Expected<void> write_cross_tables(const ControllerInput& input,
   }
 
   const auto jobs = controllers::cross_jobs(input, controllers::SecondSide::own_table, result);
+  std::vector<Remark> enabling;
   for (const CrossJob& job : jobs) {
     if (auto ok = controllers::fits(job, input.options); !ok) return ok;
     if (controllers::lacks_number(job.moving(), input, *axes, job.measurement, result)) continue;
@@ -146,8 +147,9 @@ Expected<void> write_cross_tables(const ControllerInput& input,
       return done;
     result.artifacts.push_back(std::move(file));
     note_chosen(job.axes(), first, job.curves.size(), result);
-    note_enabling(job, *axes, result);
+    note_enabling(job, *axes, enabling);
   }
+  result.notes.insert(result.notes.end(), enabling.begin(), enabling.end());
   return {};
 }
 

@@ -148,15 +148,21 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables.empty() ? Expected<std::vector<LoadedTable>>(fail("no block of errors")) : tables;
 }
 
+/// True, with a finding: one file holds all axes, and nothing in it is of a second side.
+bool second_side(const ControllerInput& in, OutputResult& result) {
+  for (const Axis& axis : in.campaign.machine.axes) {
+    if (axis.slave.empty()) continue;
+    controllers::refuse_second_side(axis, {}, result);
+    return true;
+  }
+  return false;
+}
+
 Expected<OutputResult> write(const ControllerInput& in) {
   OutputResult result;
   const auto table = controllers::chosen(declared(), in.options);
   if (!table) return tl::unexpected<Error>(table.error());
-  for (const Axis& axis : in.campaign.machine.axes)
-    if (!axis.slave.empty()) {  // one file holds all axes, and says nothing of a second side
-      controllers::refuse_second_side(axis, {}, result);
-      return result;
-    }
+  if (second_side(in, result)) return result;
   const controllers::Writer writer{
       "twincat-volumetric", *table, {"reference", "backlash"}, {}, parse};
   auto jobs = controllers::axis_jobs(in, writer.keys, result);
