@@ -40,6 +40,7 @@ std::string open_lines(const Page& page, const MachineHistory& m) {
     if (l.value) text += html(value_text(page, *l.value, l.u, l.unit)) + ". ";
     for (const char* part : {"says", "advice"})
       text += typeset_html(line_text(page, l, part)) + " ";
+    text += html(also_text(page, l));
     items += element("li", text);
   }
   return items.empty() ? items : element("ul", items);
