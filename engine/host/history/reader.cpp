@@ -51,6 +51,7 @@ constexpr const char* by_day = "ORDER BY c.day, c.campaign";
 constexpr const char* results_sql = R"sql(
 SELECT item, measurement, axis, quantity, unit, state, decision, conditions, source, value, u_repeat, expanded, k, tolerance
 FROM result WHERE evaluation = ? AND (source = 'followed' OR tolerance IS NOT NULL OR quantity IN ('A', 'B', 'E', 'M', 'R')
+  OR (quantity IN ('B_mean', 'centre_x', 'centre_y', 'centre_z', 'direction_i', 'direction_j', 'direction_k') AND expanded IS NOT NULL)
   OR (source = 'circle' AND quantity IN ('G_b', 'G_ccw', 'G_cw', 'H', 'D', 'F_max', 'F_min')))
 ORDER BY item
 )sql";

@@ -116,7 +116,7 @@ void fields(Io& io, T& t) { io(t.night, t.has_model, t.changes); }
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, IntervalFacts>
 void fields(Io& io, T& f) {
-  io(f.maker, f.model, f.days, f.months, f.tested, f.found, f.chart, f.refusal);
+  io(f.maker, f.model, f.days, f.months, f.tested, f.found, f.chart, f.refusal, f.out_now);
 }
 
 template <class Io, class T>

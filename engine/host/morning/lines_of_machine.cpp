@@ -9,6 +9,7 @@
 #include "host/morning/describe.h"
 #include "host/morning/lines.h"
 #include "host/morning/open_values.h"
+#include "nonio/reports/history_value.h"
 
 namespace nonio::host::morning {
 
@@ -149,7 +150,7 @@ class OfMachine {
     l.since = cause.before;
     if (!first.series->points.empty()) {
       l.value = first.series->points.back().value;
-      l.u = first.series->points.back().u;
+      l.u = reports::u_of_value(first.series->points.back());
       l.limit = first.series->limit;
     }
     l.sure = std::any_of(cause.seen.begin(), cause.seen.end(),

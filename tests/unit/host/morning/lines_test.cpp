@@ -18,6 +18,7 @@
 #include "host/morning/lines_of_machine.h"
 #include "host/morning/tables_kept.h"
 #include "made.h"
+#include "nonio/reports/history_value.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::test::lines_test {
@@ -473,6 +474,57 @@ std::vector<std::string> open_of(const MorningLine& l) {
   for (const reports::OpenValue& v : l.also)
     out.push_back(v.quantity + (v.value ? v.undecided ? "?" : "" : " without value"));
   return out;
+}
+
+const reports::HistorySeries& series_of(const reports::MachineHistory& m, const char* quantity) {
+  return *std::find_if(m.series.begin(), m.series.end(),
+                       [&](const auto& s) { return s.quantity == quantity; });
+}
+
+TEST(Forecasts, AreOfTheQuantityThatHasTheLimit) {
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-7.0, -7.0), 0.05);
+  m.judge("X", "B", flat(7.4, 7.4));  // limit 8
+  std::vector<morning::AssessedMachine> one{m.assessed()};
+  judge_all(one);
+  const auto d = morning::describe(one[0], "out", "2024-03-01", "12 months");
+  const auto &mean = series_of(d, "B_mean"), &B = series_of(d, "B");
+  ASSERT_TRUE(mean.forecast && B.forecast);
+  EXPECT_FALSE(mean.limit);
+  EXPECT_NEAR(*B.limit, 8e-6, 1e-12);
+  EXPECT_NEAR(B.forecast->value, 7.4e-6, 0.1e-6);
+  // |B_mean| of 7 um is never beyond 8 um, B at times.
+  EXPECT_GT(B.forecast->p_out, 1e-6);
+  EXPECT_EQ(mean.forecast->answer, B.forecast->answer);
+}
+
+TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOut) {
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-3.0, -3.0), 0.05);
+  m.follow("X", "scale", flat(1.0, 1.0), 0.05);
+  m.follow("Y", "scale", flat(1.0, 1.0), 0.05);
+  m.judge("X", "B", flat(4.0, 4.0));
+  m.judge("X", "R", flat(9.5, 9.5));  // out
+  std::vector<morning::AssessedMachine> one{m.assessed()};
+  judge_all(one);
+  const auto d = morning::describe(one[0], "out", "2024-03-01", "12 months");
+  for (const auto& s : d.series)
+    if (s.forecast) EXPECT_EQ(s.forecast->answer, s.axis == "X" ? "act" : "keep") << s.quantity;
+}
+
+TEST(Forecasts, AValueHasTheUOfItsCampaign) {
+  MadeMachine m("S-42", 1);
+  m.follow("X", "B_mean", {-4.0}, 0.1);
+  for (const double U : {0.4, 0.05}) {
+    MadeMachine own = m;
+    history::StoredResult r = own.stored().results[0];
+    r.followed = false, r.source = "iso230-2", r.u_repeat.reset(), r.expanded = U, r.k = 2.0;
+    own.stored().results.push_back(r);
+    const auto d = morning::describe(own.assessed(), "out", "", "");
+    ASSERT_EQ(d.series.size(), 1U);  // no second series under the same name
+    EXPECT_NEAR(d.series[0].points[0].u, 0.1e-6, 1e-12);
+    EXPECT_NEAR(2.0 * reports::u_of_value(d.series[0].points[0]), U * 1e-6, 1e-12);
+  }
 }
 
 TEST(MorningLines, ListAllThatIsOpenOfAnAxis) {
