@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "nonio/reports/history_value.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/units.h"
 #include "printable.h"
@@ -97,6 +98,7 @@ class SeriesChart {
     const std::string unit(unit_of(s_.unit).symbol);
     return printable(s_.axis) + (s_.axis.empty() ? "" : "  ") + printable(s_.quantity) +
            (unit.empty() ? "" : ", " + unit) + (s_.model.empty() ? "" : ": " + s_.model) +
+           (s_.model.empty() ? "" : "; in brackets and as bars U of comparison") +
            (s_.ended ? " (ended: measured otherwise since)" : "") + "\n";
   }
 
@@ -115,11 +117,14 @@ class SeriesChart {
       bar[i] = '-';
     bar[column(p.value)] = mark_of(p);
     const double scale = unit_of(s_.unit).per_si;
-    const auto rounded = rounded_result(p.value * scale, twice * p.u * scale);
-    std::string line =
-        "  " + p.date + "  " + padded(word_of(p), 7) +
-        padded(rounded ? rounded->value + " ± " + rounded->U : number_of(p.value, s_.unit), 18) +
-        bar + "  " + printable(p.campaign) + (p.joined ? "" : " (apart: " + p.why_not + ")");
+    const auto rounded = rounded_result(p.value * scale, twice * reports::u_of_value(p) * scale);
+    std::string shown = rounded ? rounded->value + " ± " + rounded->U : number_of(p.value, s_.unit);
+    if (const auto comparison = rounded_result(p.value * scale, twice * p.u * scale);
+        !s_.model.empty() && comparison)
+      shown += " (" + comparison->U + ")";
+    std::string line = "  " + p.date + "  " + padded(word_of(p), 7) + padded(shown, 25) + bar +
+                       "  " + printable(p.campaign) +
+                       (p.joined ? "" : " (apart: " + p.why_not + ")");
     line.erase(line.find_last_not_of(' ') + 1);
     return line + "\n";
   }
@@ -160,7 +165,11 @@ class SeriesChart {
     if (!s_.forecast) return out;
     const reports::HistoryForecast& f = *s_.forecast;
     if (f.answer == "cannot-say") return out + "  for " + f.date + " nothing can be said\n";
-    out += "  on " + f.date + ": " + with_U(f.value, f.u, s_.unit) + " expected";
+    const bool sayable = std::isfinite(f.value);
+    if (sayable) out += "  on " + f.date + ": " + with_U(f.value, f.u, s_.unit) + " expected";
+    if (!sayable || (!s_.limit && f.answer == "act"))
+      return out + (sayable ? "\n" : "") +
+             "  a value of the axis is beyond its limit: act, do not wait for " + f.date + "\n";
     if (s_.limit) {
       std::array<char, 32> percent{};
       std::snprintf(percent.data(), percent.size(), "%.1f", 100.0 * f.p_out);
@@ -207,7 +216,12 @@ std::string machine_chart(const reports::MachineHistory& machine) {
        {&machine.maker, &machine.model, &machine.serial, &machine.customer})
     if (!more->empty()) out += ", " + printable(*more);
   out += "\n";
-  if (!machine.due.empty()) out += "next calibration " + machine.due + "\n";
+  if (!machine.due.empty())
+    out += "next calibration " + machine.due +
+           (machine.proposal.why.id == "interval.out-now"
+                ? "; a value is beyond its limit now: act, do not wait for it"
+                : "") +
+           "\n";
   for (const HistorySeries& s : machine.series)
     if (!s.points.empty()) out += "\n" + SeriesChart(machine, s).text();
   return out;

@@ -80,8 +80,11 @@ Verb history_verb(Common& common) {
            {"--quantity", &wish->quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"}},
           common_arguments(common)),
       .footer =
-          "A line a campaign: o as found, x as left, + check, . not comparable, with U (k = 2); !\n"
-          "the limit, * what happened, ~ what changed, with its U and p among all that its night\n"
+          "A line a campaign: o as found, x as left, + check, . not comparable, with U (k = 2) as "
+          "in\n"
+          "its report, and in brackets U of comparison: what the scatter of the readings shows,\n"
+          "without what all campaigns with one instrument share. ! the limit, * what happened, ~ "
+          "what changed, with its U and p among all that its night\n"
           "asked. What is not told as a change was too small to be seen: from which size on one\n"
           "would have been stands below. A, E and R are shown, no line is drawn through them.\n\n"
           "--json writes schema nonio-history/1 (docs/history.md).\n\n"

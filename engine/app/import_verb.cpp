@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "host/history/identity.h"
 #include "host/storage/files.h"
 #include "host/tools/import.h"
 #include "verbs.h"
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct ImportArguments {
-  std::string folder, rule, out, reader, campaign;
+  std::string folder, rule, out, reader, campaign, asset, maker, serial;
   bool partial = false, dry_run = false;
 };
 
@@ -27,6 +28,10 @@ host::config::Checked<host::tools::ImportRule> rule_of(const ImportArguments& ar
   const auto text = host::storage::read_file(arguments.rule);
   if (!text) return tl::unexpected(std::vector<Error>{text.error()});
   return host::tools::parse_import_rule(*text, arguments.rule);
+}
+
+std::string machine_name(const host::tools::ImportedCampaign& c) {
+  return host::history::machine_of({c.asset, c.maker, {}, c.serial});
 }
 
 Json json_of(const std::vector<host::tools::ImportReport::Passed>& list) {
@@ -49,6 +54,7 @@ void print_json(const host::tools::ImportReport& report, bool dry_run) {
                        {"assumed", f.assumed},
                        {"lacks", f.lacks}});
     campaigns.push_back({{"id", c.id},
+                         {"machine", machine_name(c)},
                          {"whole", c.whole()},
                          {"written", c.written},
                          {"there", c.there},
@@ -86,6 +92,9 @@ void print(const host::tools::ImportReport& report) {
                               : ": not written")
               << (c.whole() ? "" : ", something is missing") << "\n";
     for (const std::string& lack : c.lacks) std::cout << "  expected: " << lack << "\n";
+    if (machine_name(c).empty())
+      std::cout << "  belongs to no machine, so it has no history: state --asset, or --maker and "
+                   "--serial\n";
     for (const host::tools::ImportedFile& f : c.files) {
       if (!f.same_as.empty()) {  // said once, and nothing more of this file
         std::cout << "  " << f.file << ": " << f.lacks.front() << "\n";
@@ -120,7 +129,8 @@ int import_files(const ImportArguments& arguments, const Common& common) {
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
   const auto report = host::tools::import_folder(
-      {arguments.folder, fs::absolute(arguments.out), *rule, arguments.partial, arguments.dry_run},
+      {arguments.folder, fs::absolute(arguments.out), *rule, arguments.asset, arguments.maker,
+       arguments.serial, arguments.partial, arguments.dry_run},
       plugins);
   if (!report) return complain(verb, report.error().message);
   if (common.json)
@@ -154,6 +164,10 @@ Verb import_verb(Common& common) {
                           {"--out", &arguments->out, "Site in which each campaign gets a folder"})),
            {"--reader", &arguments->reader, "Reader for all files (default: chosen by content)"},
            {"--campaign", &arguments->campaign, "Id of the campaigns, such as {date}-{machine}"},
+           {"--asset", &arguments->asset,
+            "The machine's name in the laboratory, for all campaigns"},
+           {"--maker", &arguments->maker, "Its maker; with the serial number it names the machine"},
+           {"--serial", &arguments->serial, "Its serial number"},
            {"--partial", &arguments->partial,
             "Write incomplete campaigns too, with comments for missing data"},
            {"--dry-run", &arguments->dry_run, "Print what would be done; write nothing"}},
@@ -161,10 +175,12 @@ Verb import_verb(Common& common) {
       .footer =
           "Placeholders of a pattern: {axis} (capital letters and digits; x or y2 is X or Y2), "
           "{date}\n"
-          "(20240302 or 2024-03-02), {machine}, {id} (of the measurement), any other name in "
-          "small\n"
-          "letters, {*} for any text, also empty. A placeholder that occurs twice must match "
-          "the same text.\n"
+          "(20240302 or 2024-03-02), {machine} (its model), {maker}, {serial}, {asset}, {id} (of "
+          "the measurement),\n"
+          "any other name in small letters, {*} for any text, also empty. A placeholder that "
+          "occurs "
+          "twice\n"
+          "must match the same text.\n"
           "A pattern with / applies to the path below FOLDER, otherwise to the file name. A "
           "name that can\n"
           "be read in two ways is not imported, nor is a second file with the same content. "

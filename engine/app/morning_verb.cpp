@@ -89,6 +89,7 @@ int say_morning(const MorningWish& wish, const Common& common) {
   }
   if (!wish.page.empty()) return print_page(wish, *templates, language, *assessment);
   reports::SiteHistory site = assessment->site();
+  const std::size_t all = site.lines.size();
   keep_lines(wish, site);
   const bool asks = std::any_of(site.lines.begin(), site.lines.end(), reports::asks);
   if (common.json) {
@@ -97,6 +98,7 @@ int say_morning(const MorningWish& wish, const Common& common) {
               << "\",\n \"lines\": " << host::morning::lines_json(site, *templates) << "\n}\n";
     return asks ? exit_failed : exit_done;
   }
+  if (site.lines.empty()) site.hidden = all;
   const auto text = reports::morning_text(site, *templates, language, site.lines.size());
   if (!text) return complain(morning_name, text.error().message);
   std::cout << *text;

@@ -203,7 +203,7 @@ std::string machine_text(const NewMachine& m) {
       "# All keys: docs/site.md.\n"
       "format = 1\n";
   text += text_line("asset", m.asset, "", "equal to the name of this file");
-  text += text_line("maker", "", "Sample Machines");
+  text += text_line("maker", m.maker, "Sample Machines");
   text += text_line("model", m.model, "VM 12");
   text += text_line("serial", m.serial, "S-0001");
   text += text_line("control", m.control, "siemens-840d",
@@ -248,8 +248,9 @@ std::string campaign_text(const NewCampaign& c) {
   text += text_line("site", "", "Torino", "location of the machine");
   text += text_line("operator", c.operator_name, "A. Sample");
   text += "date = " + c.date + "\n\n[machine]\n";
-  text += text_line("asset", "", "S-0001", "its record: machines/S-0001.toml of the site");
-  text += text_line("maker", "", "Sample Machines");
+  text += "# Asset, or maker and serial, name the machine: they join its campaigns.\n";
+  text += text_line("asset", c.asset, "S-0001", "its record: machines/S-0001.toml of the site");
+  text += text_line("maker", c.maker, "Sample Machines");
   text += text_line("model", marked(c.machine, example), "VM 12");
   text += text_line("serial", c.serial, "S-0001");
   text += text_line("control", c.control, "siemens-840d",
@@ -281,7 +282,7 @@ std::string campaign_text(const NewCampaign& c) {
          "# edition = 2014\n";
 }
 
-std::string example_readings(const Axis& axis) {
+std::string example_readings(const Axis& axis, const std::string& campaign) {
   constexpr int targets = 11, runs = 5;
   const Quantity at = position_of(axis.rotary);
   const auto [from, to] =
@@ -294,8 +295,10 @@ std::string example_readings(const Axis& axis) {
                      "# deviation = actual - target. Blank or nan: not taken.\n"
                      "run,direction,target" +
                      position + ",deviation" + deviation + "\n";
-  // Of each axis its own: the same readings twice would ask for attention.
-  Noise noise(7U + static_cast<unsigned char>(axis.name.front() - 'X'));
+  std::uint64_t seed = 0xcbf29ce484222325U;  // FNV-1a
+  for (const char c : campaign + '\n' + axis.name)
+    seed = (seed ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  Noise noise(seed);
   double target[targets];
   const double step = (to - from) / (targets + 1);
   for (int i = 0; i < targets; ++i) target[i] = from + step * (i + 1 + 0.2 * noise());

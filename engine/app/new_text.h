@@ -18,7 +18,7 @@ struct NewAxis {
 };
 
 struct NewCampaign {
-  std::string id, customer, operator_name, date, machine, serial, control, instrument;
+  std::string id, customer, operator_name, date, maker, machine, serial, asset, control, instrument;
   std::vector<NewAxis> axes;
   bool example() const;
 };
@@ -28,7 +28,7 @@ struct NewSite {
 };
 
 struct NewMachine {
-  std::string asset, model, serial, control;
+  std::string asset, maker, model, serial, control;
   std::vector<Axis> axes;
 };
 
@@ -37,8 +37,9 @@ std::string machine_text(const NewMachine& machine);
 std::string site_text(const NewSite& site);
 std::string campaign_text(const NewCampaign& campaign);
 
-/// CSV of readings that nobody took, and that say so: 5 runs, both directions, over the travel.
-std::string example_readings(const Axis& axis);
+/// CSV of readings that nobody took, and that say so: 5 runs, both directions, over the travel. Each
+/// campaign and axis has its own, for equal readings of two campaigns are a finding.
+std::string example_readings(const Axis& axis, const std::string& campaign);
 
 /// The nearest id that a campaign may have: "Rossi FP12" gives "rossi-fp12".
 std::string valid_id(const std::string& name);

@@ -28,8 +28,8 @@ namespace {
 const char* const new_name = "nonio new";
 
 struct NewWish {
-  std::string what, folder, id, customer, operator_name, date, machine, serial, control, instrument,
-      laboratory, address, country;
+  std::string what, folder, id, customer, operator_name, date, maker, machine, serial, asset,
+      control, instrument, laboratory, address, country;
   std::vector<std::string> axes, files;
   bool empty = false, defaults = false;
 };
@@ -218,8 +218,10 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
                 .customer = wish.customer,
                 .operator_name = wish.operator_name,
                 .date = wish.date,
+                .maker = wish.maker,
                 .machine = wish.machine,
                 .serial = wish.serial,
+                .asset = wish.asset,
                 .control = wish.control,
                 .instrument = wish.instrument,
                 .axes = {}};
@@ -230,8 +232,11 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
        {std::tuple{"--customer", "Customer", &c.customer, std::string()},
         {"--operator", "Operator", &c.operator_name, std::string()},
         {"--date", "Day of the measurement", &c.date, today()},
+        {"--maker", "Machine, maker", &c.maker, std::string()},
         {"--machine", "Machine, model", &c.machine, std::string()},
         {"--serial", "Machine, serial number", &c.serial, std::string()},
+        {"--asset", "Machine, its name in the laboratory (empty: maker and serial number)",
+         &c.asset, std::string()},
         {"--instrument", "Instrument, model", &c.instrument, std::string()}}) {
     if (auto done = ask.text(question, *to, otherwise); !done) return fail(done.error());
     if (auto done = one_line(option, *to); !done) return fail(done.error());
@@ -248,7 +253,7 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
 std::vector<Artifact> files_of(const NewCampaign& c) {
   std::vector<Artifact> files;
   for (const NewAxis& a : c.axes)
-    files.push_back({a.file, a.example() ? example_readings(a.axis) : a.bytes});
+    files.push_back({a.file, a.example() ? example_readings(a.axis, c.id) : a.bytes});
   files.push_back({host::config::manifest_name, campaign_text(c)});  // last: it shows the rest
   return files;
 }
@@ -353,7 +358,7 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
 
 /// SITE/machines/<asset>.toml.
 int new_machine(const NewWish& wish, const fs::path& path, const Common& common) {
-  NewMachine machine{path.stem().string(), wish.machine, wish.serial, wish.control, {}};
+  NewMachine machine{path.stem().string(), wish.maker, wish.machine, wish.serial, wish.control, {}};
   if (path.extension() != ".toml" || path.parent_path().filename() != host::config::machines_folder)
     return complain(new_name, "expected SITE/machines/<asset>.toml, found " + wish.folder);
   const auto axes = axes_of(wish.axes.empty() ? std::vector<std::string>{"X=0:500"} : wish.axes);
@@ -412,8 +417,10 @@ Verb new_verb(Common& common) {
            {"--customer", &wish->customer, "Customer"},
            {"--operator", &wish->operator_name, "Name of the operator"},
            {"--date", &wish->date, "Day of the measurement, such as 2026-11-03 (default: today)"},
+           {"--maker", &wish->maker, "Maker of the machine"},
            {"--machine", &wish->machine, "Model of the machine"},
-           {"--serial", &wish->serial, "Its serial number"},
+           {"--serial", &wish->serial, "Its serial number; with the maker it names the machine"},
+           {"--asset", &wish->asset, "Its name in the laboratory, in place of maker and serial"},
            {"--control", &wish->control, "Its control (`nonio controllers`)"},
            {"--instrument", &wish->instrument, "Model of the instrument"},
            {"--axis", &wish->axes,

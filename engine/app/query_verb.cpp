@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "host/history/query.h"
+#include "nonio/sdk/format.h"
 #include "printable.h"
 #include "verbs.h"
 
@@ -121,24 +121,33 @@ void print_rows(const std::vector<std::vector<std::string>>& rows, const std::st
   }
 }
 
-/// Of a standard uncertainty nobody reads more.
-std::string three_digits(const std::string& number) {
-  if (number.empty()) return number;
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", std::strtod(number.c_str(), nullptr));
-  return text.data();
+/// Value and U as everywhere: U with two digits, the value to the same place.
+std::pair<std::string, std::string> shown_result(const Point& p) {
+  const double value = std::strtod(p.value.c_str(), nullptr);
+  const double U = std::strtod(p.expanded.c_str(), nullptr);
+  if (const auto rounded = rounded_result(value, U); U > 0.0 && rounded)
+    return {rounded->value, rounded->U};
+  return {short_text(value), ""};
+}
+
+/// What compares campaigns, with two digits; of values of analyses there is none.
+std::string shown_comparison(const Point& p) {
+  const double u = std::strtod(p.u_repeat.c_str(), nullptr);
+  const auto rounded = rounded_result(0.0, 2.0 * u);
+  return p.source == "followed" && u > 0.0 && rounded ? rounded->U : "";
 }
 
 void print_table(const std::vector<Point>& points) {
-  std::vector<std::vector<std::string>> rows{
-      {"machine", "axis", "quantity", "day", "state", "value", "unit", "u", "U", "campaign"}};
+  std::vector<std::vector<std::string>> rows{{"machine", "axis", "quantity", "day", "state",
+                                              "value", "U", "unit", "U of comparison", "campaign"}};
   for (const Point& p : points) {
-    rows.push_back({p.machine, p.axis, p.quantity, p.day, p.state, p.value, p.unit,
-                    three_digits(p.u_repeat), p.expanded,
+    const auto [value, U] = shown_result(p);
+    rows.push_back({p.machine, p.axis, p.quantity, p.day, p.state, value, U, p.unit,
+                    shown_comparison(p),
                     p.campaign + (p.superseded_by.empty() ? "" : " (superseded)")});
     for (std::string& cell : rows.back()) cell = printable(cell);
   }
-  print_rows(rows, "lllllrlrrl");
+  print_rows(rows, "lllllrrlrl");
 }
 
 int print_machines(const QueryWish& wish, const Common& common) {

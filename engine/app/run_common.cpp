@@ -25,22 +25,22 @@ void print_summary(const host::batch::Night& night, const fs::path& out, bool js
       ++unchanged;
     if (c.status == host::evaluation::Status::attention) ++attention;
   }
-  if (json)
-    std::cout << Json{{"event", "end"},
-                      {"done", done},
-                      {"unchanged", unchanged},
-                      {"attention", attention},
-                      {"failed", failed},
-                      {"vanished", night.vanished.size()},
-                      {"summary", (out / "summary.json").string()}}
-                     .dump(-1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
-  else
-    std::cout << done << " done, " << unchanged << " unchanged, " << failed << " failed; "
-              << (night.vanished.empty() ? ""
-                                         : std::to_string(night.vanished.size()) + " vanished; ")
-              << attention << (attention == 1 ? " asks" : " ask")
-              << " for attention: " << (out / "summary.txt").string() << "\n";
+  // Findings are counted by campaign; what somebody must decide, by line.
+  if (json) {
+    Json end = {{"event", "end"},         {"done", done},     {"unchanged", unchanged},
+                {"attention", attention}, {"failed", failed}, {"vanished", night.vanished.size()}};
+    if (night.asking) end["decisions"] = *night.asking;
+    end["summary"] = (out / "summary.json").string();
+    std::cout << end.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+    return;
+  }
+  std::cout << done << " done, " << unchanged << " unchanged, " << failed << " failed; "
+            << (night.vanished.empty() ? "" : std::to_string(night.vanished.size()) + " vanished; ")
+            << attention << (attention == 1 ? " has findings" : " have findings");
+  if (night.asking)
+    std::cout << "; " << *night.asking << (*night.asking == 1 ? " line asks" : " lines ask")
+              << " for a decision";
+  std::cout << ": " << (out / "summary.txt").string() << "\n";
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/history/forecast.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "gls.h"
@@ -31,24 +32,25 @@ State state_at(const Series& s, const Trend& t, double time) {
   return out;
 }
 
-/// P(|state| > limit).
-double beyond(double value, double u, double limit) {
-  if (!(u > 0.0)) return std::fabs(value) > limit ? 1.0 : 0.0;
-  return normal_upper((limit - value) / u) + normal_upper((limit + value) / u);
+/// P(|state| + more > limit).
+double p_beyond(double value, double u_value, double limit, const Beyond& more) {
+  const double u = std::hypot(u_value, more.u), left = limit - more.value;
+  if (!(u > 0.0)) return std::fabs(value) > left ? 1.0 : 0.0;
+  return std::min(1.0, normal_upper((left - value) / u) + normal_upper((left + value) / u));
 }
 
-bool bound_meets(const Series& s, const Trend& t, double time, double limit) {
+bool bound_meets(const Series& s, const Trend& t, double time, double limit, const Beyond& more) {
   const State at = state_at(s, t, time);
-  return std::fabs(at.value) + one_sided * at.u >= limit;
+  return std::fabs(at.value) + more.value + one_sided * std::hypot(at.u, more.u) >= limit;
 }
 
-std::optional<double> leaving(const Series& s, const Trend& t, double limit) {
+std::optional<double> leaving(const Series& s, const Trend& t, double limit, const Beyond& more) {
   double low = s.points.back().time, high = low + years_ahead;
-  if (bound_meets(s, t, low, limit)) return low;
-  if (!bound_meets(s, t, high, limit)) return std::nullopt;
+  if (bound_meets(s, t, low, limit, more)) return low;
+  if (!bound_meets(s, t, high, limit, more)) return std::nullopt;
   for (int step = 0; step < 60; ++step) {
     const double middle = (low + high) / 2.0;
-    (bound_meets(s, t, middle, limit) ? high : low) = middle;
+    (bound_meets(s, t, middle, limit, more) ? high : low) = middle;
   }
   return high;
 }
@@ -56,7 +58,7 @@ std::optional<double> leaving(const Series& s, const Trend& t, double limit) {
 }  // namespace
 
 Forecast forecast(const Series& s, const Trend& t, double time, std::optional<double> limit,
-                  std::optional<double> u_new) {
+                  std::optional<double> u_new, Beyond more) {
   Forecast out;
   out.time = time;
   if (t.coefficients.empty() || !std::isfinite(time)) return out;
@@ -69,10 +71,10 @@ Forecast forecast(const Series& s, const Trend& t, double time, std::optional<do
     if (s.points.size() >= 3 && near) out.answer = Answer::keep;
     return out;
   }
-  out.p_out = beyond(at.value, at.u, *limit);
-  out.p_read_out = beyond(at.value, out.u_reading, *limit);
-  out.leaves = leaving(s, t, *limit);
-  if (std::fabs(s.points.back().value) > *limit)
+  out.p_out = p_beyond(at.value, at.u, *limit, more);
+  out.p_read_out = p_beyond(at.value, out.u_reading, *limit, more);
+  out.leaves = leaving(s, t, *limit, more);
+  if (std::fabs(s.points.back().value) + more.value > *limit)
     out.answer = Answer::act;
   else if (s.points.size() >= 3 && near)
     out.answer = out.p_out < keep_below    ? Answer::keep

@@ -44,18 +44,18 @@ Proposal staircase(double months, Found found, double target) {
 }
 
 Proposal control_chart(const Series& s, const Trend& t, double limit,
-                       std::optional<std::size_t> changed_after) {
+                       std::optional<std::size_t> changed_after, Beyond beyond) {
   if (s.points.size() < fewest_campaigns || t.coefficients.empty())
     return refused(Method::control_chart, "few-campaigns",
                    {{"campaigns", static_cast<double>(s.points.size())}});
   const double last = s.points.back().time, span = last - s.points.front().time;
-  if (std::fabs(s.points.back().value) > limit)
+  if (std::fabs(s.points.back().value) + beyond.value > limit)
     return refused(Method::control_chart, "out-already", {{"value", s.points.back().value}});
   const std::size_t behind = s.points.size() - (changed_after ? *changed_after + 1 : 0);
   if (behind < fewest_behind_a_change)
     return refused(Method::control_chart, "change-not-explained",
                    {{"campaigns", static_cast<double>(behind)}});
-  const Forecast f = forecast(s, t, last, limit);
+  const Forecast f = forecast(s, t, last, limit, std::nullopt, beyond);
   if (f.leaves && *f.leaves <= last)
     return refused(Method::control_chart, "out-already", {{"value", f.value}, {"u", f.u}});
   const double far = months_a_year * span / 2.0;

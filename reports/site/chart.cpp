@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "axis_scale.h"
+#include "nonio/reports/history_value.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 
@@ -228,7 +229,8 @@ class HistoryDrawing {
   }
 
   std::string forecast() const {
-    if (!series_.forecast || series_.segments.empty()) return {};
+    if (!series_.forecast || series_.segments.empty() || !std::isfinite(series_.forecast->value))
+      return {};
     const HistorySegment& s = series_.segments.back();
     const HistoryForecast& f = *series_.forecast;
     const double a = at(s.to), b = at(f.date);
@@ -242,11 +244,11 @@ class HistoryDrawing {
       if (!day_of(p.date)) continue;
       const double x = at(p.date), y = at_value(p.value);
       std::string inside =
-          element(
-              "title",
-              html(
-                  p.date + ' ' + p.campaign + ": " + value_text(page_, p.value, p.u, series_.unit) +
-                  (p.joined ? ""
+          element("title",
+                  html(p.date + ' ' + p.campaign + ": " +
+                       value_text(page_, p.value, u_of_value(p), series_.unit) +
+                       (p.joined
+                            ? ""
                             : " (" + page_.words.get_or("site.not_joined." + p.why_not, p.why_not) +
                                   ")"))) +
           line_of(x, at_value(p.value - 2 * p.u), x, at_value(p.value + 2 * p.u), "bar");

@@ -116,10 +116,33 @@ std::string proposal_text(const Page& page, const IntervalProposal& proposal) {
 }
 
 std::string line_text(const Page& page, const MorningLine& l, const char* part) {
-  Finding finding = l.finding;
-  for (auto& [name, text] : finding.texts)
+  MorningLine line = l;
+  for (auto& [name, text] : line.finding.texts)
     if (name == "event") text = event_text(page.words, text);
-  return finding_text(page.templates, page.words.language(), finding, part);
+  return reports::line_text(page.templates, page.words.language(), line, part);
+}
+
+std::string also_text(const Page& page, const MorningLine& l) {
+  std::string out;
+  for (const bool undecided : {false, true}) {
+    std::string values;
+    for (const OpenValue& v : l.also) {
+      if (v.undecided != undecided) continue;
+      std::string name = quantity_text(page, v.quantity);
+      if (v.axis.empty() && !v.measurement.empty()) name = v.measurement + " " + name;
+      const std::string limit =
+          page.words.get("site.limit", {{"limit", short_number(page, v.limit, v.unit)}});
+      values +=
+          (values.empty() ? "" : "; ") + name + " " +
+          (v.value ? value_text(page, *v.value, v.u, v.unit) : page.words.get("site.no_value")) +
+          " (" + limit + ")";
+    }
+    if (!values.empty())
+      out +=
+          (out.empty() ? "" : " ") +
+          page.words.get(undecided ? "site.also_undecided" : "site.also_out", {{"values", values}});
+  }
+  return out;
 }
 
 std::string since_text(const Page& page, const MorningLine& l) {
@@ -149,9 +172,49 @@ std::string month_text(const Page& page, std::string_view month) {
 }
 
 const char* name_of(MorningLine::Kind kind) {
-  constexpr const char* names[] = {"lost", "failed",  "out",       "changed",
-                                   "soon", "overdue", "undecided", "information"};
+  constexpr const char* names[] = {"lost",    "failed",   "out",       "changed",    "soon",
+                                   "overdue", "withheld", "undecided", "information"};
   return names[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace nonio::reports::site
+
+namespace nonio::reports {
+
+namespace {
+
+constexpr std::size_t most_named = 12;  // of the campaigns of a line; its JSON has all
+
+/// "table.refused-reversal, ..." as their titles.
+std::string titles(const Templates& templates, std::string_view language, const std::string& ids,
+                   const std::string& axis) {
+  std::string out;
+  for (std::size_t at = 0; at < ids.size();) {
+    const std::size_t end = std::min(ids.find(", ", at), ids.size());
+    Finding one;
+    one.id = ids.substr(at, end - at);
+    one.texts = {{"axis", axis}};
+    out += (out.empty() ? "" : "; ") + finding_text(templates, language, one, "title");
+    at = end + 2;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string line_text(const Templates& templates, std::string_view language, const MorningLine& l,
+                      std::string_view part) {
+  Finding finding = l.finding;
+  for (auto& [name, text] : finding.texts)
+    if (name == "withheld") text = titles(templates, language, text, l.axis);
+  if (!l.campaigns.empty()) {
+    std::string names;
+    for (std::size_t i = 0; i < std::min(l.campaigns.size(), most_named); ++i)
+      names += (i == 0 ? "" : ", ") + l.campaigns[i];
+    if (l.campaigns.size() > most_named) names += ", ...";
+    finding.texts.emplace_back("campaigns", names);
+  }
+  return finding_text(templates, language, finding, part);
+}
+
+}  // namespace nonio::reports

@@ -39,6 +39,8 @@ std::string value_text(const Page&, double value, std::optional<double> u, Quant
 std::string proposal_text(const Page&, const IntervalProposal&);
 /// What a line says or advises ("says", "advice"), with kinds of events in words; not yet typeset.
 std::string line_text(const Page&, const MorningLine&, const char* part);
+/// "Also out: A 15.5 ± 1.9 µm (limit 5)."; empty where the line has one value.
+std::string also_text(const Page&, const MorningLine&);
 /// "Since 2026-01-24."; nothing where what it says has the day already.
 std::string since_text(const Page&, const MorningLine&);
 /// Name of a quantity in words, with its symbol where it has none.

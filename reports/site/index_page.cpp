@@ -89,7 +89,9 @@ std::string limit_text(const Page& page, const MorningLine& l) {
 
 /// "S-0042 X", linked; the campaign's where there is no machine.
 std::string where(const Page& page, const MorningLine& l) {
-  if (l.machine.empty()) return link(page.to_root + l.link, html(l.campaign));
+  if (l.machine.empty())
+    return link(l.link.empty() ? "" : page.to_root + l.link, html(l.campaign)) +
+           (l.axis.empty() ? "" : " " + html(l.axis));
   return machine_link(page, l.machine) + (l.axis.empty() ? "" : " " + html(l.axis));
 }
 
@@ -108,6 +110,7 @@ std::string row_of(const Page& page, const MorningLine& l) {
                   html(value_text(page, *l.value, l.u, l.unit))) +
              html(limit_text(page, l));
   std::string text = says(page, l, "says");
+  if (const std::string also = also_text(page, l); !also.empty()) text += " " + html(also);
   if (const std::string since = since_text(page, l); !since.empty()) text += " " + html(since);
   std::string advice = says(page, l, "advice");
   if (l.state == MorningLine::State::known)
@@ -156,6 +159,7 @@ const char* style_of(Kind kind) {
     case Kind::changed:
     case Kind::soon:
     case Kind::overdue:
+    case Kind::withheld:
     case Kind::undecided:
       return "heed";
     case Kind::information:

@@ -105,6 +105,9 @@ std::string due_calendar(const Page& page) {
            folded("DTSTAMP:" + without_dashes(page.site.date) + "T000000Z") +
            folded("DTSTART;VALUE=DATE:" + without_dashes(m->due)) +
            folded("SUMMARY:" + calendar_text(what)) +
+           (m->proposal.why.id == "interval.out-now"
+                ? folded("DESCRIPTION:" + calendar_text(proposal_text(page, m->proposal)))
+                : "") +
            folded("LOCATION:" +
                   calendar_text(m->customer + (m->place.empty() ? "" : ", " + m->place))) +
            "END:VEVENT\r\n";

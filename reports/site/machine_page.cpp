@@ -4,6 +4,7 @@
 
 #include "chart.h"
 #include "html.h"
+#include "nonio/reports/history_value.h"
 #include "nonio/reports/number.h"
 #include "nonio/reports/quantity_words.h"
 #include "nonio/sdk/format.h"
@@ -40,6 +41,7 @@ std::string open_lines(const Page& page, const MachineHistory& m) {
     if (l.value) text += html(value_text(page, *l.value, l.u, l.unit)) + ". ";
     for (const char* part : {"says", "advice"})
       text += typeset_html(line_text(page, l, part)) + " ";
+    text += html(also_text(page, l));
     items += element("li", text);
   }
   return items.empty() ? items : element("ul", items);
@@ -107,19 +109,30 @@ std::string forecast(const Page& page, const HistorySeries& s) {
   const std::string p = f.p_out < least_printed
                             ? "< " + localised("0.01", page.words.language())
                             : short_number(page, 100 * f.p_out, Quantity::number);
+  if (!std::isfinite(f.value))
+    return element("p", html(page.words.get("site.forecast.out_now", {{"date", f.date}})));
   const bool asked = s.limit || f.answer == "cannot-say";
   std::string text = page.words.get(
       "site.forecast." + (asked ? f.answer : "expected"),
       {{"date", f.date}, {"value", value_text(page, f.value, f.u, s.unit)}, {"p", p}});
+  if (!asked && f.answer == "act")
+    text += " " + page.words.get("site.forecast.out_now", {{"date", f.date}});
   if (!f.leaves.empty()) text += " " + page.words.get("site.leaves", {{"date", f.leaves}});
   return element("p", html(text));
+}
+
+/// U of comparison, rounded as the value with it is.
+std::string comparison_text(const Page& page, const HistoryPoint& p, Quantity q) {
+  return printed_result(p.value, 2.0 * p.u, q, page.words.language()).U;
 }
 
 /// The numbers of the chart; where it is drawn from.
 std::string numbers(const Page& page, const HistorySeries& s) {
   std::string head;
-  for (const char* key : {"date", "state", "value", "campaign"})
-    head += element("th", html(page.words.get("site.column." + std::string(key))), "scope=\"col\"");
+  for (const char* key : {"date", "state", "value", "comparison", "campaign"})
+    if (!s.model.empty() || key != std::string_view("comparison"))
+      head +=
+          element("th", html(page.words.get("site.column." + std::string(key))), "scope=\"col\"");
   std::string rows;
   constexpr const char* states[] = {"as_found", "as_left", "check"};
   for (const HistoryPoint& p : s.points) {
@@ -130,7 +143,11 @@ std::string numbers(const Page& page, const HistorySeries& s) {
     rows += element(
         "tr",
         element("td", with_whole_days(html(p.date))) + element("td", html(state)) +
-            element("td", html(value_text(page, p.value, p.u, s.unit)), "class=\"number\"") +
+            element("td", html(value_text(page, p.value, u_of_value(p), s.unit)),
+                    "class=\"number\"") +
+            (s.model.empty()
+                 ? ""
+                 : element("td", html(comparison_text(page, p, s.unit)), "class=\"number\"")) +
             element("td", link(p.link.empty() ? "" : page.to_root + p.link, html(p.campaign))));
   }
   return element("details", element("summary", html(page.words.get("site.numbers"))) +

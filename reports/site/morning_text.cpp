@@ -24,7 +24,7 @@ std::string head_of(const Page& page, const MorningLine& l) {
 }
 
 std::string where_of(const MorningLine& l) {
-  if (l.machine.empty()) return l.campaign;
+  if (l.machine.empty()) return l.campaign + (l.axis.empty() ? "" : " " + l.axis);
   return l.machine + (l.axis.empty() ? "" : " " + l.axis);
 }
 
@@ -54,6 +54,7 @@ std::string text_of(const Page& page, const MorningLine& l) {
   else
     line += " ";
   say(line, part("says"));
+  say(line, site::also_text(page, l));
   say(line, site::since_text(page, l));
   if (l.state == State::known)
     say(line,
@@ -84,7 +85,9 @@ Expected<std::string> morning_text(const SiteHistory& history, const Templates& 
             words.get("site.kind." + std::string(site::name_of(kind))) + " " +
             std::to_string(count);
   if (!rest.empty()) out += words.get("site.more", {{"lines", rest}}) + "\n";
-  if (history.lines.empty())
+  if (history.lines.empty() && history.hidden > 0)
+    out = words.get("site.none_of", {{"count", std::to_string(history.hidden)}}) + "\n";
+  else if (history.lines.empty())
     out = words.get(history.judged ? "site.nothing" : "site.not_judged") + "\n";
   if (auto complete = words.complete(); !complete) return fail(complete.error());
   return out;

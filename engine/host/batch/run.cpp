@@ -105,7 +105,10 @@ void leave_out_forgotten(Night& night, const Expected<history::Told>& told) {
 Morning morning_of(Night& night, const RunOptions& options, const RunEvents& events,
                    const reading::Context& context) {
   auto made = make_morning(options, context, tonight_of(night, options.out, context.templates));
-  if (made) return std::move(*made);
+  if (made) {
+    night.asking = made->asking;
+    return std::move(*made);
+  }
   if (process::is_stop_requested()) return {};
   night.morning_error = "the pages of the morning were not made: " + made.error().message;
   night.notes.push_back(night.morning_error + "; the next night makes them");

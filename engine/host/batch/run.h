@@ -76,9 +76,10 @@ struct Night {
     return failed() > 0 || vanished.size() > may_vanish || !history_error.empty() ||
            !morning_error.empty();
   }
-  std::size_t may_vanish = 0;   ///< so many may, by site.toml
-  std::string morning_error{};  ///< why the pages were not made, or the mail not sent
-  std::string history_error{};  ///< why OUT/history.sqlite does not know this night
+  std::size_t may_vanish = 0;             ///< so many may, by site.toml
+  std::optional<std::uint64_t> asking{};  ///< lines of the morning that ask for a decision
+  std::string morning_error{};            ///< why the pages were not made, or the mail not sent
+  std::string history_error{};            ///< why OUT/history.sqlite does not know this night
   /// How many campaigns each shard has; of a night that was planned only.
   std::vector<std::uint64_t> planned{};
 };

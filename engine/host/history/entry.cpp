@@ -62,8 +62,13 @@ class EntryReader {
     for (const dom::object error : list_at(json_, "errors"))
       if (entry_.message.empty()) entry_.message = text_at(error, "message");
     read_followed();
-    for (const dom::object c : list_at(json_, "conformity"))
-      axes_.emplace(text_at(c, "measurement"), text_at(c, "axis"));
+    for (const dom::object c : list_at(json_, "conformity")) {
+      if (!text_at(c, "measurement").empty())
+        axes_.emplace(text_at(c, "measurement"), text_at(c, "axis"));
+      if (text_at(c, "reason") == "no-value")
+        entry_.without_value.push_back({text_at(c, "measurement"), text_at(c, "axis"),
+                                        text_at(c, "name"), text_at(c, "unit"), c["tolerance"]});
+    }
     for (const dom::object a : list_at(json_, "analyses")) read_analysis(a);
     for (const dom::object t : list_at(json_, "tables")) {
       for (const dom::object p : list_at(t, "predictions"))
@@ -267,6 +272,8 @@ std::string canonical_of(const Entry& e) {
   }
   put(e.findings.size());
   for (const FindingRow& f : e.findings) put(f.measurement)(f.source)(f.id)(f.severity);
+  for (const LimitRow& l : e.without_value)
+    put(l.measurement)(l.axis)(l.quantity)(l.unit)(l.tolerance);
   return put.take();
 }
 

@@ -49,6 +49,12 @@ struct FindingRow {
   std::string measurement, source, id, severity;
 };
 
+/// A limit with which no value could be compared.
+struct LimitRow {
+  std::string measurement, axis, quantity, unit;
+  double tolerance = 0.0;
+};
+
 struct MachineAsStated {
   std::string asset, maker, model, serial;
 };
@@ -70,6 +76,7 @@ struct Entry {
   std::vector<ResultRow> results;  ///< those with a covariance first
   std::vector<CovarianceRow> covariance;
   std::vector<FindingRow> findings;
+  std::vector<LimitRow> without_value;
   std::optional<CertificateRow> certificate;  ///< issued, no draft; not part of the digest
 };
 

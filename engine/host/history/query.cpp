@@ -2,11 +2,14 @@
 #include "host/history/query.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <map>
 
 #include "host/history/place.h"
 #include "host/storage/database.h"
 #include "host/storage/nearest.h"
+#include "nonio/sdk/format.h"
 
 namespace nonio::host::history {
 namespace fs = std::filesystem;
@@ -52,7 +55,9 @@ Expected<void> check_name(Database& database, const char* what, const char* sql,
 
 constexpr const char* points = R"sql(
 SELECT COALESCE(a.machine, c.machine) AS name, r.axis, r.quantity, r.source, r.unit, c.day, r.state, c.purpose,
-  r.value, r.u_repeat, r.u_common, r.expanded, r.k, r.tolerance, r.decision, c.campaign, r.measurement,
+  r.value, r.u_repeat, r.u_common, COALESCE(r.expanded, (SELECT MIN(2.0 * s.expanded / COALESCE(s.k, 2.0)) FROM result s
+    WHERE r.source = 'followed' AND s.evaluation = r.evaluation AND s.measurement = r.measurement AND s.quantity = r.quantity
+    AND s.unit = r.unit AND s.source <> 'followed' AND s.state <> 'predicted')), r.k, r.tolerance, r.decision, c.campaign, r.measurement,
   c.instrument_serial, c.instrument_certificate, r.conditions, e.evaluation, n.evaluation
 FROM campaign c
 LEFT JOIN machine_alias a ON a.alias = c.machine
@@ -64,6 +69,15 @@ WHERE (? = '' OR COALESCE(a.machine, c.machine) = ?) AND (? = '' OR r.axis = ?) 
   AND (? = 1 OR n.evaluation IS NULL)
 ORDER BY name, r.axis, r.quantity, r.source, c.day, r.state, c.campaign, e.evaluation, r.item
 )sql";
+
+/// Of what is followed U is that of the analysis which states it, else that of all its parts, k = 2.
+void complete(Point& p) {
+  if (p.source != "followed") return;
+  if (p.expanded.empty() && !p.u_repeat.empty())
+    append_shortest(p.expanded, 2.0 * std::hypot(std::strtod(p.u_repeat.c_str(), nullptr),
+                                                 std::strtod(p.u_common.c_str(), nullptr)));
+  if (!p.expanded.empty() && p.k.empty()) p.k = "2";
+}
 
 Point point_of(Database::Row& r) {
   return {r[0],  r[1],  r[2],  r[3],  r[4],  r[5],  r[6],  r[7],  r[8],  r[9],  r[10],
@@ -106,7 +120,7 @@ Expected<std::vector<Point>> query(const fs::path& out, const Query& wanted) {
        database.rows(points, {machine, machine, wanted.axis, wanted.axis, wanted.quantity,
                               wanted.quantity, wanted.source, wanted.source, wanted.from,
                               wanted.from, wanted.to, wanted.to, std::int64_t{wanted.superseded}}))
-    found.push_back(point_of(row));
+    complete(found.emplace_back(point_of(row)));
   if (auto well = database.take_error(); !well) return fail(well.error());
   return found;
 }

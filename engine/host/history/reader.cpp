@@ -29,30 +29,29 @@ T whole_of(std::string_view text) {
   return out;
 }
 
-constexpr const char* campaigns_sql = R"sql(
+constexpr const char* campaign_columns = R"sql(
 SELECT c.campaign, c.day, c.customer, c.purpose, e.status, c.instrument_maker, c.instrument_model,
   c.instrument_serial, c.instrument_calibrated, c.instrument_certificate, c.instrument_valid_until, e.evaluation, e.night,
   (SELECT number FROM certificate n WHERE n.campaign = c.campaign AND NOT EXISTS
      (SELECT 1 FROM certificate m WHERE m.replaces = n.number) ORDER BY number DESC LIMIT 1),
   e.place, e.control
 FROM campaign c
-JOIN evaluation e ON e.campaign = c.campaign AND e.campaign_sha256 = c.campaign_sha256
-WHERE (c.machine = ? OR c.machine IN (SELECT alias FROM machine_alias WHERE machine = ?)) AND e.status <> 'failed' AND c.day <= ?
-  AND NOT EXISTS (SELECT 1 FROM evaluation n WHERE n.supersedes = e.evaluation)
-ORDER BY c.day, c.campaign
 )sql";
 
-constexpr const char* later_sql = R"sql(
-SELECT c.campaign, c.day FROM campaign c
+constexpr const char* counted_evaluation = R"sql(
 JOIN evaluation e ON e.campaign = c.campaign AND e.campaign_sha256 = c.campaign_sha256
-WHERE (c.machine = ? OR c.machine IN (SELECT alias FROM machine_alias WHERE machine = ?)) AND e.status <> 'failed' AND c.day > ?
-  AND NOT EXISTS (SELECT 1 FROM evaluation n WHERE n.supersedes = e.evaluation)
-ORDER BY c.day, c.campaign
+WHERE e.status <> 'failed' AND NOT EXISTS (SELECT 1 FROM evaluation n WHERE n.supersedes = e.evaluation)
 )sql";
+
+constexpr const char* of_machine =
+    "AND (c.machine = ? OR c.machine IN (SELECT alias FROM machine_alias WHERE machine = ?)) ";
+constexpr const char* of_campaign = "AND c.campaign = ? AND c.campaign = ? ";
+constexpr const char* by_day = "ORDER BY c.day, c.campaign";
 
 constexpr const char* results_sql = R"sql(
 SELECT item, measurement, axis, quantity, unit, state, decision, conditions, source, value, u_repeat, expanded, k, tolerance
 FROM result WHERE evaluation = ? AND (source = 'followed' OR tolerance IS NOT NULL OR quantity IN ('A', 'B', 'E', 'M', 'R')
+  OR (quantity IN ('B_mean', 'centre_x', 'centre_y', 'centre_z', 'direction_i', 'direction_j', 'direction_k') AND expanded IS NOT NULL)
   OR (source = 'circle' AND quantity IN ('G_b', 'G_ccw', 'G_cw', 'H', 'D', 'F_max', 'F_min')))
 ORDER BY item
 )sql";
@@ -129,6 +128,32 @@ void read_results(Database& database, std::size_t campaign, std::int64_t evaluat
   }
 }
 
+/// What says that a table or a certificate was not made, or is not to be used.
+bool withholds(const FindingRow& f) {
+  return f.severity == "attention" &&
+         (f.id.starts_with("table.") || f.id.starts_with("certificate.") ||
+          f.id == "signature.not-released");
+}
+
+void read_findings(Database& database, std::size_t campaign, std::int64_t evaluation,
+                   StoredMachine& to) {
+  for (Database::Row& r : database.rows(
+           "SELECT measurement, source, finding, severity FROM finding WHERE evaluation = ? ORDER "
+           "BY item",
+           {evaluation})) {
+    FindingRow f{std::move(r[0]), std::move(r[1]), std::move(r[2]), std::move(r[3])};
+    if (auto& severity = to.findings[campaign][f.id]; severity != "attention")
+      severity = f.severity;
+    if (withholds(f)) to.asked[campaign].push_back(std::move(f));
+  }
+  for (Database::Row& r : database.rows(
+           "SELECT measurement, axis, quantity, unit, tolerance FROM limit_without_value WHERE "
+           "evaluation = ? ORDER BY item",
+           {evaluation}))
+    to.without_value.push_back({campaign, std::move(r[0]), std::move(r[1]), std::move(r[2]),
+                                std::move(r[3]), real_of(r[4])});
+}
+
 }  // namespace
 
 Expected<StoreReader> StoreReader::open(const fs::path& out) {
@@ -154,10 +179,24 @@ Expected<std::vector<MachineState>> StoreReader::machines() {
 }
 
 Expected<StoredMachine> StoreReader::machine(const std::string& name, const std::string& until) {
+  return stored(Of::machine, name, until);
+}
+
+Expected<StoredMachine> StoreReader::campaign(const std::string& id, const std::string& until) {
+  return stored(Of::campaign, id, until);
+}
+
+Expected<StoredMachine> StoreReader::stored(Of of, const std::string& name,
+                                            const std::string& until) {
   StoredMachine out;
-  for (Database::Row& r : database_.rows(later_sql, {name, name, until}))
+  const std::string which =
+      std::string(counted_evaluation) + (of == Of::machine ? of_machine : of_campaign);
+  const std::string later =
+      "SELECT c.campaign, c.day FROM campaign c" + which + "AND c.day > ? " + by_day;
+  const std::string campaigns = campaign_columns + which + "AND c.day <= ? " + by_day;
+  for (Database::Row& r : database_.rows(later.c_str(), {name, name, until}))
     out.later.push_back({std::move(r[0]), std::move(r[1])});
-  for (Database::Row& r : database_.rows(campaigns_sql, {name, name, until}))
+  for (Database::Row& r : database_.rows(campaigns.c_str(), {name, name, until}))
     out.campaigns.push_back({.id = std::move(r[0]),
                              .day = std::move(r[1]),
                              .customer = std::move(r[2]),
@@ -175,14 +214,11 @@ Expected<StoredMachine> StoreReader::machine(const std::string& name, const std:
                              .place = std::move(r[14]),
                              .control = std::move(r[15])});
   out.findings.resize(out.campaigns.size());
+  out.asked.resize(out.campaigns.size());
   for (std::size_t i = 0; i < out.campaigns.size(); ++i) {
     const std::int64_t evaluation = out.campaigns[i].evaluation;
     read_results(database_, i, evaluation, out);
-    for (Database::Row& r :
-         database_.rows("SELECT finding, severity FROM finding WHERE evaluation = ? ORDER BY item",
-                        {evaluation}))
-      if (auto& severity = out.findings[i][r[0]]; severity != "attention")
-        severity = std::move(r[1]);
+    read_findings(database_, i, evaluation, out);
   }
   if (auto well = database_.take_error(); !well) return fail(well.error());
   return out;

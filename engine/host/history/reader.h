@@ -39,6 +39,13 @@ struct StoredResult {
   std::vector<CommonPart> common{};
 };
 
+/// A limit with which no value of the campaign could be compared.
+struct LimitWithoutValue {
+  std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
+  std::string measurement, axis, quantity, unit;
+  double tolerance = 0.0;
+};
+
 /// All that the store says of one machine. A campaign that failed measured nothing: it is not here.
 struct StoredMachine {
   std::vector<StoredCampaign> campaigns;  ///< by day, then by id
@@ -46,6 +53,10 @@ struct StoredMachine {
   std::vector<StoredResult> predicted{};  ///< by tables: the same order
   /// Severity by finding of the last evaluation of each campaign.
   std::vector<std::map<std::string, std::string>> findings;
+  /// Of the last evaluation of each campaign: findings of tables and certificates that ask for
+  /// attention.
+  std::vector<std::vector<FindingRow>> asked{};
+  std::vector<LimitWithoutValue> without_value{};
   struct Later {
     std::string campaign, day;
   };
@@ -93,6 +104,8 @@ class StoreReader {
   Expected<std::vector<MachineState>> machines();
   /// `until`: what is dated after this day is not measured yet.
   Expected<StoredMachine> machine(const std::string& name, const std::string& until = "9999-12-31");
+  /// A campaign alone: of those that belong to no machine nobody knows which are of one.
+  Expected<StoredMachine> campaign(const std::string& id, const std::string& until = "9999-12-31");
   Expected<StoredLogs> logs();
   /// The machine of each campaign, aliases joined.
   Expected<std::map<std::string, std::string>> machine_of_campaigns();
@@ -106,6 +119,8 @@ class StoreReader {
   Expected<std::map<std::uint64_t, std::uint64_t>> followed_since(std::uint64_t night);
 
  private:
+  enum class Of { machine, campaign };
+  Expected<StoredMachine> stored(Of of, const std::string& name, const std::string& until);
   explicit StoreReader(storage::Database database) : database_(std::move(database)) {}
   storage::Database database_;
 };

@@ -83,6 +83,11 @@ void insert(Database& database, std::int64_t evaluation, const Known& known, con
     database.put("INSERT INTO covariance VALUES (?, ?, ?, ?)",
                  {evaluation, number(c.first), number(c.count), Database::Blob{upper}});
   }
+  for (std::size_t i = 0; i < e.without_value.size(); ++i) {
+    const LimitRow& l = e.without_value[i];
+    database.put("INSERT INTO limit_without_value VALUES (?, ?, ?, ?, ?, ?, ?)",
+                 {evaluation, number(i), l.measurement, l.axis, l.quantity, l.unit, l.tolerance});
+  }
   for (std::size_t i = 0; i < e.findings.size(); ++i) {
     const FindingRow& f = e.findings[i];
     database.put("INSERT INTO finding VALUES (?, ?, ?, ?, ?, ?)",

@@ -39,7 +39,8 @@ std::optional<int> months_of_rule(const std::string& machine, const history::Sto
 
 Due due_of(const AssessedMachine& m, const history::StoredLogs& logs) {
   const auto months = months_of_rule(m.state.machine.name, logs);
-  if (!months || m.stored.campaigns.empty()) return {};
+  // When a campaign of no machine is measured again nobody knows.
+  if (!months || m.stored.campaigns.empty() || m.state.machine.name.empty()) return {};
   return {months_later(m.stored.campaigns.back().day, *months),
           "[[due]] months = " + std::to_string(*months)};
 }
@@ -121,7 +122,7 @@ class Assessment::State {
     const bool all = what == Keep::all;
     for (const auto& [name, kept] : before_) changes.gone.insert(name);
     for (Assessed& m : machines_) {
-      const std::string& name = m.state.machine.name;
+      const std::string name = m.key();
       changes.gone.erase(name);
       const bool trends = m.fits && m.fits->is_new();
       if (!trends && !(all && m.is_new)) continue;
@@ -132,7 +133,8 @@ class Assessment::State {
     kept_.keep(changes);
   }
 
-  std::size_t count() const { return machines_.size(); }
+  /// Machines; campaigns that belong to none come behind them.
+  std::size_t count() const { return machines_with_name_; }
 
   reports::SiteHistory site;
 
@@ -152,6 +154,9 @@ class Assessment::State {
   /// One machine on its way through an assessment.
   struct Assessed {
     history::MachineState state;
+    std::string alone{};  ///< a campaign that belongs to no machine; `state` has no name then
+    /// By which it is kept: no machine's name has a line break.
+    std::string key() const { return alone.empty() ? state.machine.name : '\n' + alone; }
     std::vector<config::Event> events;
     std::vector<std::string> campaigns;  ///< those that count
     KeptMachine kept;
@@ -183,14 +188,12 @@ class Assessment::State {
     for (const config::Forgotten& f : logs_.forgotten) forgotten.insert(f.campaign);
     const MachineEvents events(*states, logs_);
     note_unknown(*states, events);
-    for (const history::MachineState& state : *states) {
+    const auto add = [&](Assessed m, const std::vector<const history::StoredEvaluation*>& all) {
       alive_();
-      Assessed m{
-          .state = state, .events = events.of(state.machine.name), .campaigns = {}, .kept = {}};
       ByteWriter rows;
       rows(learned_from_);
       put_identity(rows, m);
-      for (const history::StoredEvaluation* e : of_machine[state.machine.name]) {
+      for (const history::StoredEvaluation* e : all) {
         rows(e->campaign, e->sha256, e->night, e->counts, e->day > until_);
         if (!e->counts) continue;
         m.campaigns.push_back(e->campaign);
@@ -198,14 +201,27 @@ class Assessment::State {
       }
       if (std::all_of(m.campaigns.begin(), m.campaigns.end(),
                       [&](const std::string& id) { return forgotten.contains(id); }))
-        continue;  // everything of it was said to be gone on purpose
-      const std::string key = storage::sha256(rows.take());
-      if (const auto kept = before_.find(state.machine.name);
-          kept != before_.end() && kept->second.rows == key)
+        return;  // everything of it was said to be gone on purpose
+      const std::string rows_key = storage::sha256(rows.take());
+      if (const auto kept = before_.find(m.key());
+          kept != before_.end() && kept->second.rows == rows_key)
         m.kept = std::move(kept->second);
-      m.is_new = m.kept.rows != key;
-      m.kept.rows = key;
+      m.is_new = m.kept.rows != rows_key;
+      m.kept.rows = rows_key;
       machines_.push_back(std::move(m));
+    };
+    for (const history::MachineState& state : *states)
+      add({.state = state, .events = events.of(state.machine.name), .campaigns = {}, .kept = {}},
+          of_machine[state.machine.name]);
+    machines_with_name_ = machines_.size();
+    std::map<std::string, std::vector<const history::StoredEvaluation*>> of_campaign;
+    for (const history::StoredEvaluation* e : of_machine[""]) of_campaign[e->campaign].push_back(e);
+    for (const auto& [id, all] : of_campaign) {
+      if (std::none_of(all.begin(), all.end(), [](const auto* e) { return e->counts; }))
+        continue;  // it names its machine by now
+      history::MachineState none{};
+      for (const history::StoredEvaluation* e : all) none.night = std::max(none.night, e->night);
+      add({.state = none, .alone = id, .events = {}, .campaigns = {}, .kept = {}}, all);
     }
     return {};
   }
@@ -267,13 +283,14 @@ class Assessment::State {
   }
 
   Expected<void> read(Assessed& m) {
-    auto stored = store_.machine(m.state.machine.name, until_);
+    auto stored = m.alone.empty() ? store_.machine(m.state.machine.name, until_)
+                                  : store_.campaign(m.alone, until_);
     if (!stored) return fail(stored.error());
     AssessedMachine read{m.state, std::move(*stored), m.events, {}, {}};
-    read.followed = followed_series(read.stored, read.events);
+    if (m.alone.empty()) read.followed = followed_series(read.stored, read.events);
     read.shown = shown_series(read.stored);
     m.kept.series.resize(read.followed.size());
-    if (!m.fits) m.fits = Fits::of(kept_.trends_of(m.state.machine.name));
+    if (!m.fits) m.fits = Fits::of(kept_.trends_of(m.key()));
     for (std::size_t k = 0; k < read.followed.size(); ++k)
       m.kept.series[k].lesson = lesson_of(read.followed[k], *m.fits, learned_from_);
     m.read = std::move(read);
@@ -384,6 +401,7 @@ class Assessment::State {
     ask_others(*m.read, *m.fits);
     const Due due = due_of(*m.read, logs_);
     m.described = describe(*m.read, out_, due.day, due.why);
+    if (!m.alone.empty()) m.described->file.clear();  // it has no page of its own
     m.fitted = false;
     return {};
   }
@@ -408,9 +426,11 @@ class Assessment::State {
       standings.push_back(&s);
       instruments.push_back(&s.instruments);
       intervals.push_back(&s.interval);
+      if (s.alone) continue;
       site.machines.push_back(s.shown);
       site.months.insert(site.months.end(), s.months.begin(), s.months.end());
     }
+    intervals.resize(site.machines.size());  // those of machines come first
     auto proposals = proposals_of(intervals);
     for (std::size_t i = 0; i < proposals.size(); ++i)
       site.machines[i].proposal = std::move(proposals[i]);
@@ -421,7 +441,8 @@ class Assessment::State {
     for (const reports::MorningLine& l : site.lines) lines_[l.machine].push_back(l);
     site.instruments = joined(instruments);
     std::vector<ComparedMachine> compared;
-    for (const Standing* s : standings) compared.push_back({&s->shown, &s->compared});
+    for (const Standing* s : standings)
+      if (!s->alone) compared.push_back({&s->shown, &s->compared});
     site.comparisons = comparisons_of(compared);
     return add_sparks();
   }
@@ -453,6 +474,7 @@ class Assessment::State {
   Learned learned_{};
   std::uint64_t learned_from_ = 0;  ///< evaluations
   std::vector<Assessed> machines_{};
+  std::size_t machines_with_name_ = 0;
   std::vector<std::string> unknown_{};
   const Links links_{out_};
   /// What is dated later is not measured yet.

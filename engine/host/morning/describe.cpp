@@ -5,10 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <set>
+#include <tuple>
 
 #include "host/evaluation/record.h"
 #include "host/morning/days.h"
+#include "host/morning/lines.h"
+#include "host/morning/open_values.h"
 #include "host/morning/tables_kept.h"
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
@@ -85,6 +90,15 @@ class Describing {
     }
     const Links links(out);
     for (const StoredCampaign& c : m.stored.campaigns) links_.push_back(links.of(c.id));
+    for (const ShownSeries& s : m.shown) {
+      if (s.ended) continue;
+      for (const Judged& j : open_results(m.stored, s))
+        if (m.stored.results[j.result].decision == does_not_conform) out_now_.insert(s.axis);
+    }
+    for (std::size_t i = 0; i < m.stored.results.size(); ++i) {
+      const StoredResult& r = m.stored.results[i];
+      if (!r.followed && r.expanded) stated_[{r.campaign, r.measurement, r.quantity, r.unit}] = i;
+    }
   }
 
   HistorySeries of(const FollowedSeries& s) const {
@@ -108,8 +122,12 @@ class Describing {
     for (std::size_t i = 0; i < s.trend.changes.size(); ++i)
       if (s.told[i]) out.changes.push_back(change(s, i, q));
     if (s.trend.smallest_change) out.smallest_change = si(*s.trend.smallest_change, q);
-    if (const auto limit = limit_of(m_, s)) out.limit = si(*limit, q);
-    if (!s.ended) out.forecast = forecast(s, q);
+    const auto limit = s.ended ? std::nullopt : limit_of(m_, s);
+    const bool own = limit && limit->quantity == s.quantity;
+    if (own) out.limit = si(limit->limit, q);
+    if (!s.ended) out.forecast = forecast(s, q, limit);
+    // What comes of B is said of B: its mean alone has no limit.
+    if (out.forecast && !own) out.forecast->p_out = 0.0, out.forecast->leaves.clear();
     return out;
   }
 
@@ -126,6 +144,16 @@ class Describing {
         out.points.back().joined = false, out.points.back().why_not = "edition";
     }
     if (const auto limit = last.tolerance) out.limit = si(*limit, q);
+    if (s.ended || !last.tolerance) return out;
+    for (const FollowedSeries& f : m_.followed) {  // by which it is followed
+      if (f.axis != s.axis || f.unit != s.unit || f.ended || f.quantity == s.quantity) continue;
+      const auto limit = limit_of(m_, f);
+      if (!limit || limit->quantity != s.quantity) continue;
+      out.forecast = forecast(f, q, limit);
+      if (!out.forecast) continue;
+      out.forecast->value = std::fabs(out.forecast->value) + si(limit->beyond.value, q);
+      out.forecast->u = std::hypot(out.forecast->u, si(limit->beyond.u, q));
+    }
     return out;
   }
 
@@ -148,6 +176,13 @@ class Describing {
     double common = 0.0;
     for (const history::CommonPart& part : r.common) common += part.u * part.u;
     p.u_common = si(std::sqrt(common), q);
+    const auto stated = stated_.find({r.campaign, r.measurement, r.quantity, r.unit});
+    if (!r.followed || stated == stated_.end()) return p;
+    // The value is one, so its U is: that of the analysis.
+    const StoredResult& same = m_.stored.results[stated->second];
+    const double whole = si(*same.expanded / same.k.value_or(2.0), q);
+    const double more = whole * whole - p.u * p.u;
+    p.u_common = std::copysign(std::sqrt(std::fabs(more)), more);
     return p;
   }
 
@@ -166,22 +201,32 @@ class Describing {
     return out;
   }
 
-  std::optional<reports::HistoryForecast> forecast(const FollowedSeries& s, Quantity q) const {
+  std::optional<reports::HistoryForecast> forecast(const FollowedSeries& s, Quantity q,
+                                                   const std::optional<FollowedLimit>& of) const {
     if (!ahead_ || s.series.points.size() < 2) return std::nullopt;
-    const auto limit = limit_of(m_, s);
     const kernel::Forecast f =
-        kernel::forecast(s.series, s.trend, static_cast<double>(*ahead_) / days_a_year, limit);
+        kernel::forecast(s.series, s.trend, static_cast<double>(*ahead_) / days_a_year,
+                         of ? std::optional(of->limit) : std::nullopt, std::nullopt,
+                         of ? of->beyond : kernel::Beyond{});
     reports::HistoryForecast out{day_text(*ahead_), si(f.value, q), si(f.u, q), f.p_out, {},
                                  name_of(f.answer)};
     // Beyond half of what was observed a line is a guess.
     const double last = s.series.points.back().time, first = s.series.points.front().time;
     if (f.leaves && *f.leaves <= last + (last - first) / 2.0)
       out.leaves = day_text(static_cast<std::int64_t>(std::floor(*f.leaves * days_a_year)));
+    if (!out_now_.contains(axis_of(s.axis, s.quantity))) return out;
+    // Whatever comes, nobody may wait for it.
+    if (f.answer == kernel::Answer::cannot_say)
+      out.value = out.u = out.p_out = std::numeric_limits<double>::quiet_NaN();
+    out.answer = name_of(kernel::Answer::act);
     return out;
   }
 
   const AssessedMachine& m_;
   std::vector<std::string> links_;  ///< of each campaign
+  std::set<std::string> out_now_;   ///< axes of which a value is beyond its limit
+  /// What analyses state: by campaign, measurement, quantity and unit.
+  std::map<std::tuple<std::size_t, std::string, std::string, std::string>, std::size_t> stated_;
   std::optional<std::int64_t> ahead_{};
 };
 
@@ -258,13 +303,52 @@ std::optional<std::int64_t> usual_interval(const std::vector<StoredCampaign>& ca
   return *middle;
 }
 
-std::optional<double> limit_of(const AssessedMachine& machine, const FollowedSeries& series) {
-  if (series.quantity != "B_mean") return std::nullopt;
-  std::optional<double> out;
-  for (const ShownSeries& s : machine.shown)
-    if (s.axis == series.axis && s.quantity == "B" && s.unit == series.unit)
-      out = machine.stored.results[s.judged.back()].tolerance;
+namespace {
+
+/// By how much B was larger than |B_mean| in the campaigns since the last change that was told.
+std::optional<kernel::Beyond> beyond_mean(const AssessedMachine& m, const FollowedSeries& mean,
+                                          const ShownSeries& B) {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < mean.trend.changes.size(); ++i)
+    if (i < mean.told.size() && mean.told[i]) first = mean.trend.changes[i].after + 1;
+  std::vector<double> more;
+  double u_of_B = 0.0;
+  for (std::size_t k = first; k < mean.results.size(); ++k) {
+    const StoredResult& f = m.stored.results[mean.results[k]];
+    for (const std::size_t i : B.results) {
+      const StoredResult& r = m.stored.results[i];
+      if (r.campaign != f.campaign || r.measurement != f.measurement) continue;
+      more.push_back(std::max(0.0, std::fabs(r.value) - std::fabs(f.value)));
+      u_of_B = r.expanded.value_or(0.0) / r.k.value_or(2.0);
+    }
+  }
+  if (more.empty()) return std::nullopt;
+  const auto n = static_cast<double>(more.size());
+  kernel::Beyond out;
+  for (const double x : more) out.value += x / n;
+  double squares = 0.0;
+  for (const double x : more) squares += (x - out.value) * (x - out.value);
+  constexpr std::size_t fewest_for_scatter = 3;  // of fewer U of B says how it may vary
+  out.u =
+      more.size() < fewest_for_scatter ? u_of_B : std::sqrt(squares / (n - 1.0) * (1.0 + 1.0 / n));
   return out;
+}
+
+}  // namespace
+
+std::optional<FollowedLimit> limit_of(const AssessedMachine& machine,
+                                      const FollowedSeries& series) {
+  std::optional<FollowedLimit> own, of_B;
+  for (const ShownSeries& s : machine.shown) {
+    if (s.axis != series.axis || s.unit != series.unit || s.ended) continue;
+    const auto tolerance = machine.stored.results[s.judged.back()].tolerance;
+    if (!tolerance) continue;
+    if (s.quantity == series.quantity) own = FollowedLimit{s.quantity, *tolerance};
+    if (series.quantity != "B_mean" || s.quantity != "B") continue;
+    if (const auto more = beyond_mean(machine, series, s))
+      of_B = FollowedLimit{s.quantity, *tolerance, *more};
+  }
+  return of_B ? of_B : own;
 }
 
 reports::MachineHistory describe(const AssessedMachine& machine, const fs::path& out,

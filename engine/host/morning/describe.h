@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/morning/series.h"
+#include "nonio/history/forecast.h"
 #include "nonio/reports/site.h"
 
 namespace nonio::host::morning {
@@ -34,8 +35,15 @@ std::string link_of(const std::filesystem::path& out, const std::string& campaig
 /// Days; half of the gaps between campaign days are longer than this; none of one day.
 std::optional<std::int64_t> usual_interval(const std::vector<history::StoredCampaign>& campaigns);
 
-/// The limit that holds for a followed quantity today: of |mean reversal| that of B; none else.
-std::optional<double> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
+/// The limit that a followed quantity can tell of, in the unit of results.json: its own, or that of B
+/// for the mean reversal, with what B is larger by.
+struct FollowedLimit {
+  std::string quantity;  ///< that has the limit
+  double limit = 0.0;
+  nonio::history::Beyond beyond{};
+};
+/// None: no quantity of the axis has one, or no campaign of the series has B beside B_mean.
+std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
 
 /// What pages and programs show of a machine. `due`: day of the next calibration by a rule, `why`
 /// in words; empty: there is none, and forecasts look one usual interval ahead.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "host/morning/assess.h"
 #include "host/storage/json_writer.h"
+#include "nonio/reports/history_value.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/units.h"
 
@@ -60,6 +62,10 @@ class HistoryWriter {
         json_.null();
     } else if (s.limit) {
       number("limit", *s.limit);
+      if (s.forecast) {
+        json_.key("forecast");
+        put(*s.forecast, s.limit);
+      }
     }
     json_.end_object();
   }
@@ -91,7 +97,8 @@ class HistoryWriter {
     json_.member("state", name_of(p.state));
     number("value", p.value);
     number("u", p.u);
-    number("u_common", p.u_common);
+    number("u_common", std::max(0.0, p.u_common));
+    number("U", 2.0 * reports::u_of_value(p));
     json_.member("joined", p.joined);
     if (!p.joined) json_.member("why_not", p.why_not);
     json_.end_object();
@@ -132,7 +139,7 @@ class HistoryWriter {
     json_.key("limit");
     number_or_null(limit);
     json_.key("p_out");
-    if (says && limit)
+    if (says && limit && std::isfinite(f.p_out))
       json_.value(f.p_out);
     else
       json_.null();

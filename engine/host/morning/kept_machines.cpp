@@ -19,10 +19,17 @@ void fields(Io& io, T& f) { io(f.id, f.attention, f.evidence, f.texts, f.measure
 namespace nonio::reports {
 
 template <class Io, class T>
+requires std::is_same_v<std::remove_const_t<T>, OpenValue>
+void fields(Io& io, T& v) {
+  io(v.axis, v.quantity, v.campaign, v.measurement, v.value, v.u, v.limit, v.unit, v.undecided);
+}
+
+template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, MorningLine>
 void fields(Io& io, T& l) {
   io(l.kind, l.state, l.id, l.machine, l.axis, l.quantity, l.campaign, l.customer, l.value, l.u,
-     l.limit, l.unit, l.finding, l.since, l.link, l.by, l.until, l.why, l.sure);
+     l.limit, l.unit, l.finding, l.since, l.link, l.by, l.until, l.why, l.sure, l.also, l.campaigns,
+     l.measurement);
 }
 
 template <class Io, class T>
@@ -68,7 +75,7 @@ using storage::Database;
 constexpr const char* kept_folder = ".nonio";
 constexpr const char* machines_name = "machines.sqlite";
 /// Another program may find out something else, and come to another trend of the same series.
-constexpr std::string_view machines_version = "6 " NONIO_VERSION, trends_version = "3";
+constexpr std::string_view machines_version = "7 " NONIO_VERSION, trends_version = "3";
 constexpr std::size_t digest_size = 64;
 constexpr double patience = 5.0;  // s; without the file a night takes longer
 
@@ -109,7 +116,7 @@ void fields(Io& io, T& t) { io(t.night, t.has_model, t.changes); }
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, IntervalFacts>
 void fields(Io& io, T& f) {
-  io(f.maker, f.model, f.days, f.months, f.tested, f.found, f.chart, f.refusal);
+  io(f.maker, f.model, f.days, f.months, f.tested, f.found, f.chart, f.refusal, f.out_now);
 }
 
 template <class Io, class T>
@@ -121,8 +128,8 @@ void fields(Io& io, T& v) {
 template <class Io, class T>
 requires std::is_same_v<std::remove_const_t<T>, Standing>
 void fields(Io& io, T& s) {
-  io(s.shown, s.compared, s.lines, s.months, s.instruments, s.has_results, s.judged, s.conforms,
-     s.attention, s.reversal, s.interval, s.until);
+  io(s.name, s.alone, s.shown, s.compared, s.lines, s.months, s.instruments, s.has_results,
+     s.judged, s.conforms, s.attention, s.reversal, s.interval, s.until);
 }
 
 template <class Io, class T>

@@ -52,6 +52,7 @@ std::vector<MorningLine> lost(const Known& known) {
     put_count(line, "night", night);
     put_count(line, "count", gone.size());
     put_text(line, "of", name);
+    for (const Tonight::Vanished* v : gone) line.campaigns.push_back(v->campaign);
     out.push_back(std::move(line));
   }
   return out;
@@ -73,6 +74,7 @@ std::vector<MorningLine> failed(const Known& known) {
       line.since = alike.front()->since;
       put_count(line, "count", alike.size());
       put_text(line, "message", message);
+      for (const Tonight::Failed* f : alike) line.campaigns.push_back(f->campaign);
       out.push_back(std::move(line));
       continue;
     }
@@ -95,7 +97,7 @@ void not_judged(const Known& known, std::vector<MorningLine>& out) {
   std::size_t count = 0;
   for (const Standing* m : known.machines) {
     if (m->judged || !m->has_results) continue;
-    if (++count <= most_machines) names += (names.empty() ? "" : ", ") + m->shown.id;
+    if (++count <= most_machines) names += (names.empty() ? "" : ", ") + m->name;
   }
   if (count == 0) return;
   out.push_back(line_of(Kind::information, "morning.not-judged", "site"));
@@ -103,7 +105,27 @@ void not_judged(const Known& known, std::vector<MorningLine>& out) {
   put_text(out.back(), "machines", names + (count > most_machines ? ", ..." : ""));
 }
 
-/// Findings that ask for attention in last campaigns that conform: nobody needs to do anything.
+/// Campaigns that state neither an asset nor maker and serial: nothing joins them to others.
+void without_machine(const Known& known, std::vector<MorningLine>& out) {
+  MorningLine line = line_of(Kind::information, "morning.no-machine", "site");
+  for (const Standing* m : known.machines)
+    if (m->alone && !m->name.empty()) line.campaigns.push_back(m->name);
+  if (line.campaigns.empty()) return;
+  put_count(line, "count", line.campaigns.size());
+  line.campaign = line.campaigns.front();
+  out.push_back(std::move(line));
+}
+
+/// Drafts of certificates, which a person issues.
+void drafts(const Known& known, std::vector<MorningLine>& out) {
+  if (known.tonight.waiting.empty()) return;
+  out.push_back(line_of(Kind::information, "morning.draft", "site"));
+  out.back().campaigns = known.tonight.waiting;
+  out.back().campaign = known.tonight.waiting.front();
+  put_count(out.back(), "count", known.tonight.waiting.size());
+}
+
+/// Findings that ask for attention in last campaigns of which every judged value conforms.
 void conforming(const Known& known, std::vector<MorningLine>& out) {
   std::size_t machines = 0, lost_motion = 0;
   for (const Standing* m : known.machines) {
@@ -131,6 +153,8 @@ void unknown(const Known& known, std::vector<MorningLine>& out) {
 
 std::vector<MorningLine> of_site(const Known& known) {
   std::vector<MorningLine> out;
+  without_machine(known, out);
+  drafts(known, out);
   not_judged(known, out);
   conforming(known, out);
   unknown(known, out);
@@ -157,8 +181,7 @@ std::vector<MorningLine> of_site(const Known& known) {
   return out;
 }
 
-/// Where U decides, the same is to be done about all: a better measurement. Where many days lie
-/// ahead of the night, its own is wrong.
+/// Where many days lie ahead of the night, its own is wrong.
 void fold(std::vector<MorningLine>& lines, const char* finding, const char* several) {
   const auto is_one = [&](const MorningLine& l) {
     return l.finding.id == finding && l.state == MorningLine::State::fresh;
@@ -168,6 +191,8 @@ void fold(std::vector<MorningLine>& lines, const char* finding, const char* seve
   MorningLine all = line_of(Kind::undecided, several, "site");
   std::string names;
   std::size_t named = 0;
+  for (const MorningLine& l : lines)
+    if (is_one(l)) all.campaigns.push_back(l.campaign);
   for (const MorningLine& l : lines)
     if (is_one(l) && named++ < most_machines)
       names +=
@@ -228,7 +253,6 @@ std::vector<MorningLine> lines_of(const Known& known) {
   add(lost(known));
   add(failed(known));
   for (const Standing* m : known.machines) add(m->lines);
-  fold(out, "morning.undecided", "morning.undecided-several");
   fold(out, "morning.later", "morning.later-several");
   add(of_site(known));
   std::stable_sort(out.begin(), out.end(), comes_before);

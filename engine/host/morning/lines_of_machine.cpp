@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: all lines of one machine, which share what is known of its changes.
 #include "host/morning/lines_of_machine.h"
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 
 #include "host/morning/describe.h"
 #include "host/morning/lines.h"
+#include "host/morning/open_values.h"
+#include "nonio/reports/history_value.h"
 
 namespace nonio::host::morning {
 
@@ -16,9 +19,6 @@ using reports::MorningLine;
 using Kind = MorningLine::Kind;
 
 namespace {
-
-constexpr const char* conforms = "conforms";
-constexpr const char* does_not_conform = "does not conform";
 
 /// A change of one axis, with all quantities in which it is seen.
 struct AxisChange {
@@ -48,6 +48,7 @@ class OfMachine {
       for (const AxisChange& cause : all)
         if (!cause.told) add(changed(axis, cause));
     tables();
+    held_back();
     soon();
     overdue();
     later();
@@ -57,11 +58,16 @@ class OfMachine {
 
  private:
   MorningLine line(Kind kind, const char* finding, const std::string& of) const {
-    MorningLine l = line_of(kind, finding, d_.id + (of.empty() ? "" : ":" + of));
+    MorningLine l = line_of(kind, finding, name() + (of.empty() ? "" : ":" + of));
     l.machine = d_.id;
     l.customer = d_.customer;
-    l.link = "machines/" + d_.file;
+    if (!d_.file.empty()) l.link = "machines/" + d_.file;
     return l;
+  }
+
+  /// Of a campaign that belongs to no machine: its own.
+  const std::string& name() const {
+    return d_.id.empty() && !m_.stored.campaigns.empty() ? m_.stored.campaigns.back().id : d_.id;
   }
 
   void add(MorningLine l) { out_.push_back(std::move(l)); }
@@ -144,7 +150,7 @@ class OfMachine {
     l.since = cause.before;
     if (!first.series->points.empty()) {
       l.value = first.series->points.back().value;
-      l.u = first.series->points.back().u;
+      l.u = reports::u_of_value(first.series->points.back());
       l.limit = first.series->limit;
     }
     l.sure = std::any_of(cause.seen.begin(), cause.seen.end(),
@@ -156,36 +162,72 @@ class OfMachine {
   // ---- limits
 
   /// What was not measured along one axis is one matter for each analysis: a circle, a spindle.
-  const std::string& place_of(const ShownSeries& s) const {
-    return s.axis.empty() ? m_.stored.results[s.judged.back()].source : s.axis;
+  const std::string& place_of(const history::StoredResult& r) const {
+    return r.axis.empty() ? r.source : r.axis;
   }
 
-  /// Of each axis: the worst of what does not conform, or what cannot be decided.
+  /// Of each axis one line with all that does not conform or cannot be decided.
   void judged() {
-    std::map<std::string, std::vector<const ShownSeries*>> out, open, good, anew;
+    std::map<std::string, std::vector<Judged>> out, open, good, anew;
+    std::map<std::string, std::vector<reports::OpenValue>> missing;
     for (const ShownSeries& s : m_.shown) {
+      if (s.ended) continue;
+      const std::vector<Judged> all = open_results(m_.stored, s);
+      for (const Judged& j : all) {
+        const history::StoredResult& r = m_.stored.results[j.result];
+        (r.decision == does_not_conform ? out : open)[place_of(r)].push_back(j);
+      }
       const history::StoredResult& last = m_.stored.results[s.judged.back()];
-      if (!last.tolerance || s.ended) continue;
-      const std::string& of = place_of(s);
-      if (last.decision == does_not_conform)
-        out[of].push_back(&s);
-      else if (!last.decision.empty() && last.decision != conforms)
-        open[of].push_back(&s);
-      else if (is_fixed(s))
-        (is_judged_alike(s) ? good : anew)[of].push_back(&s);
+      if (all.empty() && last.tolerance && is_fixed(s))
+        (is_judged_alike(s) ? good : anew)[place_of(last)].push_back({&s, s.judged.back()});
     }
-    for (auto& [axis, all] : out) add(beyond(axis, all));
-    for (auto& [axis, all] : open)
-      if (!out.contains(axis)) add(limit_line(Kind::undecided, "morning.undecided", all));
+    for (const auto* limit : open_limits(m_.stored))
+      missing[limit->axis.empty() ? limit->measurement : limit->axis].push_back(
+          open_value(m_.stored, *limit));
+    for (auto& [place, all] : out) {
+      add(beyond(place, all));
+      also(out_.back(), open[place], missing[place]);
+    }
+    for (auto& [place, all] : open) {
+      if (out.contains(place) || all.empty()) continue;
+      worst_first(all);
+      const bool has_u = m_.stored.results[all.front().result].expanded.value_or(0.0) > 0.0;
+      add(limit_line(Kind::undecided, has_u ? "morning.undecided" : "morning.no-uncertainty", all));
+      also(out_.back(), {}, missing[place]);
+    }
+    for (auto& [place, all] : missing)
+      if (!out.contains(place) && !open.contains(place) && !all.empty()) add(no_value(place, all));
     for (auto& [axis, all] : good)
       if (!out.contains(axis)) add_fixed("morning.fixed", all);
     for (auto& [axis, all] : anew)
       if (!out.contains(axis) && !good.contains(axis)) add_fixed("morning.judged-anew", all);
   }
 
-  void add_fixed(const char* finding, std::vector<const ShownSeries*>& all) {
+  /// What is open beside the values of the line.
+  void also(MorningLine& l, std::vector<Judged> open,
+            const std::vector<reports::OpenValue>& missing) const {
+    worst_first(open);
+    for (const Judged& j : open) l.also.push_back(open_value(m_.stored, j.result));
+    l.also.insert(l.also.end(), missing.begin(), missing.end());
+  }
+
+  /// A limit, and nothing to compare with it.
+  MorningLine no_value(const std::string& place, const std::vector<reports::OpenValue>& all) const {
+    MorningLine l = line(Kind::undecided, "morning.no-value", place);
+    const reports::OpenValue& first = all.front();
+    l.axis = first.axis, l.quantity = first.quantity, l.campaign = first.campaign;
+    l.measurement = first.measurement, l.unit = first.unit, l.limit = first.limit;
+    for (const history::StoredCampaign& c : m_.stored.campaigns)
+      if (c.id == first.campaign) l.since = c.day;
+    l.finding.evidence.push_back({"limit", first.limit, first.unit});
+    l.also.assign(all.begin() + 1, all.end());
+    return l;
+  }
+
+  void add_fixed(const char* finding, std::vector<Judged>& all) {
     add(limit_line(Kind::out, finding, all));
     out_.back().state = MorningLine::State::fixed;
+    out_.back().also.clear();  // nothing is open
   }
 
   /// By the same definition, against no wider limit: then it is the machine that is better.
@@ -205,50 +247,48 @@ class OfMachine {
            m_.stored.campaigns[before.campaign].night < tonight_.night;
   }
 
-  double share(const ShownSeries& s) const {
-    const auto& last = m_.stored.results[s.judged.back()];
-    return *last.tolerance > 0.0 ? std::fabs(last.value) / *last.tolerance : 0.0;
+  double share(const Judged& j) const {
+    const auto& r = m_.stored.results[j.result];
+    return r.tolerance && *r.tolerance > 0.0 ? std::fabs(r.value) / *r.tolerance : 0.0;
+  }
+  void worst_first(std::vector<Judged>& all) const {
+    std::stable_sort(all.begin(), all.end(),
+                     [&](const Judged& a, const Judged& b) { return share(a) > share(b); });
   }
 
   /// The day from which on it was judged as it is.
-  std::string since(const ShownSeries& s) const {
-    const std::string& decision = m_.stored.results[s.judged.back()].decision;
+  std::string since(const ShownSeries& s, const history::StoredResult& r) const {
     std::size_t first = s.judged.size() - 1;
-    while (first > 0 && m_.stored.results[s.judged[first - 1]].decision == decision) --first;
+    while (first > 0 && m_.stored.results[s.judged[first]].campaign > r.campaign) --first;
+    while (first > 0 && m_.stored.results[s.judged[first - 1]].decision == r.decision) --first;
     return m_.stored.campaigns[m_.stored.results[s.judged[first]].campaign].day;
   }
 
-  MorningLine limit_line(Kind kind, const char* finding,
-                         std::vector<const ShownSeries*>& all) const {
-    std::stable_sort(all.begin(), all.end(),
-                     [&](const auto* a, const auto* b) { return share(*a) > share(*b); });
-    const ShownSeries& worst = *all.front();
-    const auto& last = m_.stored.results[worst.judged.back()];
-    MorningLine l = line(kind, finding, place_of(worst));
-    l.axis = worst.axis;
-    l.quantity = worst.quantity;
-    l.unit = quantity_of_unit(worst.unit);
-    l.value = si(last.value, l.unit);
-    if (last.expanded) l.u = si(*last.expanded / last.k.value_or(2.0), l.unit);
-    l.limit = si(*last.tolerance, l.unit);
-    l.campaign = m_.stored.campaigns[last.campaign].id;
-    l.since = since(worst);
+  MorningLine limit_line(Kind kind, const char* finding, std::vector<Judged>& all) const {
+    worst_first(all);
+    const Judged& worst = all.front();
+    const history::StoredResult& last = m_.stored.results[worst.result];
+    const reports::OpenValue first = open_value(m_.stored, worst.result);
+    MorningLine l = line(kind, finding, place_of(last));
+    l.axis = first.axis, l.quantity = first.quantity, l.measurement = first.measurement;
+    l.unit = first.unit, l.value = first.value, l.u = first.u, l.limit = first.limit;
+    l.campaign = first.campaign;
+    l.since = since(*worst.series, last);
     l.finding.evidence.push_back({"value", *l.value, l.unit});
     l.finding.evidence.push_back({"limit", *l.limit, l.unit});
-    std::string also;
     for (std::size_t i = 1; i < all.size(); ++i)
-      also += (also.empty() ? "" : ", ") + all[i]->quantity;
-    if (!also.empty()) put_text(l, "also", also);
+      l.also.push_back(open_value(m_.stored, all[i].result));
     return l;
   }
 
   /// Beyond its limit; with the change that made it so, if there is one.
-  MorningLine beyond(const std::string& axis, std::vector<const ShownSeries*>& all) {
+  MorningLine beyond(const std::string& axis, std::vector<Judged>& all) {
     MorningLine l = limit_line(Kind::out, "morning.out", all);
-    l.id = "morning.out:" + d_.id + ":" + axis;
+    l.id = "morning.out:" + name() + ":" + axis;
     told_[axis] = true;
     std::string first = l.since;
-    for (const ShownSeries* s : all) first = std::min(first, since(*s));
+    for (const Judged& j : all)
+      first = std::min(first, since(*j.series, m_.stored.results[j.result]));
     AxisChange* explains = nullptr;  // it came with it, or since
     for (AxisChange& cause : causes_[axis]) {
       if (cause.before < first) continue;
@@ -286,6 +326,32 @@ class OfMachine {
     return std::any_of(m_.stored.results.begin(), m_.stored.results.end(), [&](const auto& r) {
       return r.axis == axis && m_.stored.campaigns[r.campaign].day > day;
     });
+  }
+
+  /// Tables and certificates that were not made: one line for each axis of a campaign.
+  void held_back() {
+    std::map<std::string, MorningLine> all;
+    for (const Withheld& w : withheld(m_.stored)) {
+      const history::StoredCampaign& c = m_.stored.campaigns[w.campaign];
+      const bool table = w.finding.starts_with("table.");
+      MorningLine l = line(Kind::withheld, table ? "morning.no-table" : "morning.certificate",
+                           c.id + (w.axis.empty() ? "" : ":" + w.axis));
+      l.axis = w.axis, l.campaign = c.id, l.since = c.day;
+      put_text(l, "campaign", c.id);
+      auto& to = all.emplace(l.id, std::move(l)).first->second;
+      add_to_list(to, "withheld", {w.finding});
+      if (table) add_to_list(to, "outputs", w.outputs);
+    }
+    for (auto& [id, l] : all) add(std::move(l));
+  }
+
+  static void add_to_list(MorningLine& l, const char* name, const std::vector<std::string>& more) {
+    auto at = std::find_if(l.finding.texts.begin(), l.finding.texts.end(),
+                           [&](const auto& t) { return t.first == name; });
+    if (at == l.finding.texts.end()) at = l.finding.texts.insert(at, {name, ""});
+    for (const std::string& one : more)
+      if ((", " + at->second + ", ").find(", " + one + ", ") == std::string::npos)
+        at->second += (at->second.empty() ? "" : ", ") + one;
   }
 
   // ---- what comes

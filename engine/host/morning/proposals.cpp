@@ -10,6 +10,7 @@
 #include "host/morning/days.h"
 #include "host/morning/describe.h"
 #include "host/morning/lines.h"
+#include "host/morning/open_values.h"
 
 namespace nonio::host::morning {
 
@@ -133,28 +134,54 @@ std::optional<IntervalProposal> chart(const AssessedMachine& m,
   for (const FollowedSeries& s : m.followed) {
     const auto limit = limit_of(m, s);
     if (s.ended || !limit) continue;
-    const kernel::Proposal p = kernel::control_chart(s.series, s.trend, *limit, last_told(s));
+    const kernel::Proposal p =
+        kernel::control_chart(s.series, s.trend, limit->limit, last_told(s), limit->beyond);
     const Quantity q = quantity_of_unit(s.unit);
     IntervalProposal one = because(control_chart_name, p.why);
-    one.axis = s.axis, one.quantity = s.quantity;
-    one.why.texts = {{"what", kind_of(s.quantity)}, {"axis", s.axis}};
+    const bool own = limit->quantity == s.quantity;
+    one.axis = s.axis, one.quantity = limit->quantity;
+    one.why.texts = {{"what", own ? kind_of(s.quantity) : limit->quantity}, {"axis", s.axis}};
     if (!p.months && p.why == "change-not-explained") refusal = one;
-    if (!p.months || p.why != "meets-limit" || (shortest && *p.months >= least)) continue;
-    least = *p.months;
+    const bool soon = p.why == "out-already";  // the bound of today is beyond it
+    if (!soon && (!p.months || p.why != "meets-limit")) continue;
+    const double months = soon ? 0.0 : *p.months;
+    if (shortest && months >= least) continue;
+    least = months;
     if (least < 1.0) {  // sooner than any interval: it is to be measured or mended now
       one.why.id = "interval.out-already";
       one.months.reset();
     } else {
       propose(one, least);
     }
-    put(one, "limit", si(*limit, q), q);
+    put(one, "limit", si(limit->limit, q), q);
     shortest = std::move(one);
   }
   return shortest;
 }
 
+/// A value that is beyond its limit today, the worst of them.
+std::optional<IntervalProposal> out_now(const AssessedMachine& m) {
+  std::optional<IntervalProposal> out;
+  double worst = 0.0;
+  for (const ShownSeries& s : m.shown) {
+    if (s.ended) continue;
+    for (const Judged& j : open_results(m.stored, s)) {
+      const reports::OpenValue v = open_value(m.stored, j.result);
+      const double share = v.limit > 0.0 ? std::fabs(*v.value) / v.limit : 0.0;
+      if (v.undecided || (out && share <= worst)) continue;
+      worst = share;
+      out = because(staircase_name, "out-now");
+      out->axis = v.axis, out->quantity = v.quantity;
+      out->why.texts = {{"place", (v.axis.empty() ? v.measurement : v.axis) + " " + v.quantity}};
+      put(*out, "limit", v.limit, v.unit);
+    }
+  }
+  return out;
+}
+
 IntervalProposal proposal_of(const IntervalFacts& m, const Counted& counted) {
   constexpr std::uint64_t fewest_campaigns = 2;
+  if (m.out_now) return *m.out_now;  // no date helps what is out today
   if (m.days < fewest_campaigns) {
     IntervalProposal out = because(staircase_name, "few-campaigns");
     put(out, "campaigns", static_cast<double>(m.days));
@@ -189,6 +216,7 @@ IntervalFacts interval_facts(const AssessedMachine& machine, std::optional<int> 
     out.tested = tested_until(machine, found->second);
   }
   out.chart = chart(machine, out.refusal);
+  out.out_now = out_now(machine);
   return out;
 }
 

@@ -27,6 +27,7 @@ struct IntervalFacts {
   std::optional<nonio::history::Found> found{};
   std::optional<reports::IntervalProposal> chart{};    ///< the shortest of its own readings
   std::optional<reports::IntervalProposal> refusal{};  ///< why its own readings cannot say
+  std::optional<reports::IntervalProposal> out_now{};  ///< a value is beyond its limit today
 };
 
 /// `rule`: months of the site's rule for it; else the usual interval.
@@ -36,7 +37,7 @@ IntervalFacts interval_facts(const AssessedMachine& machine, std::optional<int> 
 /// of its model show (A3), else what its last calibration as found showed (staircase); after a
 /// failure not more than the staircase; never longer than the control chart of what has a limit. A
 /// machine that was measured well before its interval was over has not shown that it is good for it.
-/// Refused by name where there are fewer than two campaigns, no limit or no interval, and where the
+/// Refused by name where a value is beyond its limit today, where there are fewer than two campaigns, no limit or no interval, and where the
 /// last change has fewer than two campaigns behind it.
 std::vector<reports::IntervalProposal> proposals_of(
     const std::vector<const IntervalFacts*>& machines);

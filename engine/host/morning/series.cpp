@@ -273,11 +273,17 @@ class Joining {
   std::vector<Group> groups_;
 };
 
+/// What is followed is no second series under the same name.
+bool is_shown(const StoredResult& r) {
+  return r.tolerance || !(r.quantity == "B_mean" || r.quantity.starts_with("centre_") ||
+                          r.quantity.starts_with("direction_"));
+}
+
 std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> by_quantity(
     const StoredMachine& m, bool followed) {
   std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> out;
   for (std::size_t i = 0; i < m.results.size(); ++i)
-    if (m.results[i].followed == followed)
+    if (m.results[i].followed == followed && (followed || is_shown(m.results[i])))
       out[{m.results[i].axis, m.results[i].quantity}].push_back(i);
   return out;
 }

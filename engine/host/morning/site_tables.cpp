@@ -8,6 +8,7 @@
 
 #include "host/morning/describe.h"
 #include "host/storage/json_values.h"
+#include "nonio/reports/history_value.h"
 
 namespace nonio::host::morning {
 
@@ -126,6 +127,11 @@ std::vector<ComparedValue> compared_of(const AssessedMachine& m,
     const history::StoredResult& r = m.stored.results[*last];
     const Quantity q = quantity_of_unit(s.unit);
     ComparedValue value{s.axis, s.quantity, q, si(r.value, q), si(r.u_repeat.value_or(0.0), q)};
+    for (const reports::HistorySeries& of : described.series)
+      for (const reports::HistoryPoint& p : of.points)
+        if (of.axis == s.axis && of.quantity == s.quantity && !of.model.empty() &&
+            p.campaign == m.stored.campaigns[r.campaign].id && p.value == value.value)
+          value.u = reports::u_of_value(p);
     storage::Json json = storage::Json::parse(r.conditions, nullptr, false);
     if (json.is_object()) {
       value.rotary = std::any_of(described.curves.begin(), described.curves.end(),

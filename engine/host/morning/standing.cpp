@@ -5,7 +5,9 @@
 
 #include "host/morning/acknowledged.h"
 #include "host/morning/days.h"
+#include "host/morning/describe.h"
 #include "host/morning/lines_of_machine.h"
+#include "host/morning/open_values.h"
 
 namespace nonio::host::morning {
 
@@ -57,21 +59,28 @@ std::vector<const config::Acknowledgement*> acknowledgements_of(const std::strin
 Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& described,
                      const history::StoredLogs& logs, const Tonight& tonight,
                      const std::filesystem::path& out) {
-  Standing s{.shown = without_series(described), .compared = compared_of(m, described)};
+  Standing s;
+  s.shown = without_series(described), s.compared = compared_of(m, described);
+  s.alone = described.id.empty();
+  s.name = described.id;
+  if (s.alone && !m.stored.campaigns.empty()) s.name = m.stored.campaigns.back().id;
   s.lines = lines_of_machine(m, described, tonight);
+  for (MorningLine& l : s.lines)
+    if (l.link.empty() && !l.campaign.empty()) l.link = link_of(out, l.campaign);
   s.until = acknowledgements_of(described.id, logs).empty()
                 ? same_until(m, described, s.lines, tonight.date)
                 : tonight.date;
-  for (MorningLine& l : s.lines) acknowledge(l, m, logs, tonight.date);
+  for (std::size_t i = 0; i < s.lines.size(); ++i)  // what nobody has acknowledged comes behind
+    if (auto rest = acknowledge(s.lines[i], m, logs, tonight.date)) s.lines.push_back(*rest);
   s.months = months_of(m, described);
   s.instruments = instruments_of(m, out);
   s.has_results = !m.stored.results.empty();
-  s.conforms = true;
+  s.judged = !m.stored.without_value.empty();
+  s.conforms = open_limits(m.stored).empty();
   for (const ShownSeries& shown : m.shown) {
     if (shown.ended) continue;
-    const history::StoredResult& last = m.stored.results[shown.judged.back()];
-    s.judged = s.judged || last.tolerance.has_value();
-    s.conforms = s.conforms && (last.decision.empty() || last.decision == "conforms");
+    s.judged = s.judged || m.stored.results[shown.judged.back()].tolerance.has_value();
+    s.conforms = s.conforms && open_results(m.stored, shown).empty();
   }
   if (m.stored.findings.empty()) return s;
   for (const auto& [id, severity] : m.stored.findings.back()) {

@@ -16,6 +16,8 @@ namespace nonio::host::morning {
 
 /// What one machine has to do with the others: all that lists over the machines of a site need.
 struct Standing {
+  std::string name;               ///< of the machine; of a campaign that belongs to none, its id
+  bool alone = false;             ///< a campaign that belongs to no machine
   reports::MachineHistory shown;  ///< without series
   std::vector<ComparedValue> compared{};
   std::vector<reports::MorningLine> lines{};

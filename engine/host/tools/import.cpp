@@ -6,6 +6,7 @@
 #include <cstring>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include "host/config/toml_reader.h"
 #include "host/evaluation/evaluate.h"
@@ -265,10 +266,7 @@ class Importer {
           own->insert("date", *(*parsed)["d"].as_date());
     }
     if (!root.contains("machine")) root.insert("machine", toml::table{});
-    if (toml::table* machine = root["machine"].as_table())
-      if (const auto model = places.find("machine");
-          model != places.end() && !machine->contains("model"))
-        machine->insert("model", model->second);
+    if (toml::table* machine = root["machine"].as_table()) put_machine(*machine, places);
     std::ostringstream out;
     for (const std::string& lack : campaign.lacks) out << "# to fill: " << one_line(lack) << "\n";
     out << "format = 1\n\n" << root << "\n";
@@ -283,6 +281,21 @@ class Importer {
     }
     return out.str();
   }
+  /// What the request says of the machine; else the rule's manifest, else the name of the file.
+  void put_machine(toml::table& machine, const Places& places) const {
+    for (const auto& [key, place, said] :
+         {std::tuple("asset", "asset", &request_.asset),
+          {"maker", "maker", &request_.maker},
+          {"model", "machine", static_cast<const std::string*>(nullptr)},
+          {"serial", "serial", &request_.serial}}) {
+      const auto named = places.find(place);
+      if (said != nullptr && !said->empty())
+        machine.insert_or_assign(key, *said);
+      else if (named != places.end() && !machine.contains(key))
+        machine.insert(key, named->second);
+    }
+  }
+
   static std::string one_line(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
@@ -293,6 +306,9 @@ class Importer {
   /// into the files.
   void check(ImportedCampaign& campaign, const std::vector<Found>& found) {
     if (const auto manifest = manifest_to_read(campaign, found.front().places)) {
+      const Machine& machine = manifest->campaign.machine;
+      campaign.asset = machine.asset, campaign.maker = machine.maker;
+      campaign.serial = machine.serial;
       std::map<std::string, std::string> first;
       auto measurement = manifest->campaign.measurements.begin();
       for (std::size_t i = 0; i < found.size(); ++i) {

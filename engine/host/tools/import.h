@@ -52,6 +52,7 @@ struct ImportedCampaign {
   std::vector<ImportedFile> files;
   std::vector<std::string> lacks;  ///< of the campaign as a whole
   bool written = false;
+  std::string asset{}, maker{}, serial{};  ///< of its machine
   bool there = false;  ///< imported before: its folder has these files, and measurements of them
 
   bool whole() const;
@@ -68,6 +69,7 @@ struct ImportReport {
 struct ImportRequest {
   std::filesystem::path folder, out;
   ImportRule rule;
+  std::string asset{}, maker{}, serial{};  ///< of the machine of all campaigns; empty: not said
   bool partial = false;  ///< write campaigns that lack something too, with what is to be filled
   bool dry_run = false;
 };

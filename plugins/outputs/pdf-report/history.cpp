@@ -9,6 +9,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "nonio/reports/history_value.h"
 #include "nonio/reports/number.h"
 #include "nonio/reports/quantity_words.h"
 #include "nonio/reports/text.h"
@@ -116,7 +117,7 @@ class HistoryPage {
                                  source_.language()));
   }
   std::string printed(const HistoryPoint& p, Quantity q) const {
-    return printed(p.value, std::hypot(p.u, p.u_common), q);
+    return printed(p.value, reports::u_of_value(p), q);
   }
   std::string brief(double value, Quantity q) const {
     return localised(short_text(value * unit_of(q).per_si), source_.language());

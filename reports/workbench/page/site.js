@@ -95,7 +95,7 @@
   // ---- a line of the morning: what can be done about it ----
   const campaignOf = (line) => line.campaign || (line.link ? line.link.split("/").slice(-2)[0] : "");
   /// Those of a machine that its history judges; what is lost or failed is no opinion.
-  const canBeKnown = (line) => line.machine && line.state === "new" && ["out", "changed", "soon", "overdue", "undecided", "information"].includes(line.kind);
+  const canBeKnown = (line) => line.machine && line.state === "new" && ["out", "changed", "soon", "overdue", "withheld", "undecided", "information"].includes(line.kind);
   async function openCampaign(campaign) {
     try {
       location.href = (await net.ask("/api/open", {body: {campaign}})).path;

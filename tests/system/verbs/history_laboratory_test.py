@@ -60,7 +60,7 @@ class Laboratory(unittest.TestCase):
                 self.assertIn(p["state"], ("as-found", "as-left", "check"))
                 self.assertTrue(p["joined"] or p["why_not"])
             if "model" not in s:  # a maximum: nothing is drawn through it
-                self.assertFalse({"segments", "changes", "forecast", "smallest_change"} & set(s))
+                self.assertFalse({"segments", "changes", "smallest_change"} & set(s))
                 continue
             self.assertIn(s["model"], ("none", "level", "drift", "step", "walk"))
             for g in s["segments"]:
@@ -171,7 +171,7 @@ class Laboratory(unittest.TestCase):
                        for row in rows]
             (folder / "x-left.csv").write_text("".join(changed))
         nonio("run", site, "--out", out, "--quiet", "--date", "2025-02-01")
-        lines = json.loads(nonio("morning", out, "--json", expect=1 if left else 0).stdout)["lines"]
+        lines = json.loads(nonio("morning", out, "--json", expect=1).stdout)["lines"]  # the table that was on is not stated
         predictions = {p["name"]: p["predicted"] for t in json.loads((out / "2025-01-lab-05" / "results.json").read_text())["tables"]
                        for p in t.get("predictions", [])}
         return [line for line in lines if line["id"].startswith("morning.table")], predictions, (out / "machines" / "LAB-05.html").read_text()
@@ -199,10 +199,33 @@ class Laboratory(unittest.TestCase):
             self.assertEqual(m["proposal"]["months"] is None, m["proposal"]["why"].startswith("No proposal"))
             self.assertNotIn("{", m["proposal"]["why"])
             page = "".join(p.read_text() for p in (self.out / "machines").glob(m["machine"].replace(" ", "_") + "*"))
-            self.assertIn(m["proposal"]["why"], page.replace("&#39;", "'"))
+            self.assertIn(m["proposal"]["why"].replace(" um ", " µm "), page.replace("&#39;", "'"))
         proposals = {m["machine"]: m["proposal"] for m in self.history["machines"]}
-        self.assertEqual(proposals["LAB-02"]["months"], 3)  # out of tolerance after six months
+        self.assertIsNone(proposals["LAB-02"]["months"])  # out of its tolerance now: no date helps
+        self.assertIn("beyond its limit", proposals["LAB-02"]["why"])
         self.assertEqual(proposals["LAB-01"]["months"], 12)  # as its rule states: nothing speaks against it
+
+    def test_a_value_has_one_U_in_all_views(self):
+        points = [p for s in self.history["series"] if s["quantity"] == "B_mean" for p in s["points"]]
+        self.assertTrue(points)
+        for p in points:
+            results = json.loads((self.out / p["campaign"] / "results.json").read_text())
+            stated = [a["values"]["B_mean"]["U"] for a in results["analyses"] if "U" in a.get("values", {}).get("B_mean", {})
+                      and abs(a["values"]["B_mean"]["value"] - p["value"]) < 1e-9]
+            self.assertIn(round(p["U"], 9), [round(U, 9) for U in stated], p)
+        rows = json.loads(nonio("query", self.out, "LAB-02", "--axis", "X", "--quantity", "B_mean", "--json").stdout)["points"]
+        for campaign in {r["campaign"] for r in rows}:
+            self.assertEqual(len({round(r["U"], 9) for r in rows if r["campaign"] == campaign}), 1, rows)
+
+    def test_nothing_keeps_the_date_of_an_axis_that_is_out(self):
+        out = {(line["machine"], line["axis"]) for line in json.loads(nonio("morning", self.out, "--json", expect=1).stdout)["lines"]
+               if line["kind"] == "out"}
+        self.assertIn(("LAB-02", "X"), out)
+        for s in self.history["series"]:
+            if (s["machine"], s["axis"]) in out and s.get("forecast"):
+                self.assertEqual(s["forecast"]["answer"], "act", s["quantity"])
+            if s["quantity"] == "B_mean" and s.get("forecast"):
+                self.assertIsNone(s["forecast"]["limit"])
 
     def test_another_edition_is_not_joined(self):
         for quantity in "AER":

@@ -49,7 +49,7 @@ class HistoryVerbs(VerbTest):
         self.assertEqual([(p["campaign"], p["value"], p["unit"]) for p in points], [("d", expected, "um")])
         rows = list(csv.DictReader(io.StringIO(self.nonio("query", self.out, *wanted, "--csv").stdout)))
         self.assertEqual([(r["campaign"], float(r["value"])) for r in rows], [("d", expected)])
-        self.assertIn(repr(expected), self.nonio("query", self.out, *wanted).stdout)
+        self.assertIn(f" {expected:.2f} ", self.nonio("query", self.out, *wanted).stdout)
         (self.site / "site.toml").write_text('[[alias]]\nname = "s 0O42"\nasset = "S-0042"\nwhy = "same plate"\n')
         self.night()
         everything = self.nonio("query", self.out, "s 0O42", "--quantity", "B_mean", "--source", "iso230-2", "--json").stdout

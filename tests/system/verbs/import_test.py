@@ -237,10 +237,17 @@ class Import(unittest.TestCase):
                                       'exclude = ["FP12/X/rawdata/x_1.rtl"]')
         done = subprocess.run([NONIO, "import", str(self.source), "--rule", rule, "--out", str(self.site)],
                               capture_output=True, text=True, check=False)
-        self.assertEqual(done.stdout.count("\n"), 6, done.stdout)
+        self.assertEqual(done.stdout.count("\n"), 7, done.stdout)
         exclude = ", ".join(f'"FP12/X/rawdata/x_{n}.rtl"' for n in (1, 2, 3))
         self.assertTrue(self.run_import(rule=self.rule(f'pattern = "{rule}"\nexclude = [{exclude}]\n'))
                         ["campaigns"][0]["written"])
+
+    def test_the_machine_is_named_by_options_or_by_names_of_files(self):
+        self.file("Zayer_0417_X_20240302.rtl", rtl([1, 2, 3]))
+        rule = "{maker}_{serial}_{axis}_{date}.rtl"
+        self.assertEqual(self.run_import("--dry-run", rule=rule)["campaigns"][0]["machine"], "Zayer 0417")
+        self.assertEqual(self.run_import("--dry-run", "--asset", "S-7", rule=rule)["campaigns"][0]["machine"], "S-7")
+        self.assertEqual(self.run_import("--dry-run", rule="{*}_{axis}_{date}.rtl")["campaigns"][0]["machine"], "")
 
     def test_many_files_that_follow_no_pattern_are_counted(self):
         self.file("FP12_X_20240302.rtl", rtl([1, 2, 3]))

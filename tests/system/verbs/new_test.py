@@ -30,6 +30,25 @@ class New(VerbTest):
         self.assertEqual(done, {"first-campaign": "ok"})
         self.assertTrue((out / "first-campaign" / "report.pdf").stat().st_size > 10000)
 
+    def test_every_example_has_readings_of_its_own(self):
+        lab = self.here("lab")
+        self.nonio("new", "site", lab, "--defaults")
+        for name in ("second", "third"):
+            self.nonio("new", "campaign", lab / name, "--defaults", "--axis", "X=0:500", "--axis", "Y=0:500")
+        done, out = self.run_site(lab)
+        self.assertEqual(done, {"first-campaign": "ok", "second": "ok", "third": "ok"})
+
+    def test_maker_and_serial_or_asset_name_the_machine(self):
+        lab = self.here("lab")
+        self.nonio("new", "site", lab, "--defaults")
+        for name, options in (("a", ("--maker", "Zayer", "--serial", "1234")), ("b", ("--asset", "S-7"))):
+            self.nonio("new", "campaign", lab / name, "--defaults", *options)
+        _, out = self.run_site(lab)
+        machines = {m["machine"] for m in json.loads(self.nonio("history", out, "--json").stdout)["machines"]}
+        self.assertEqual(machines, {"Zayer 1234", "S-7"})
+        lines = json.loads(self.nonio("morning", out, "--json", expect=None).stdout)["lines"]
+        self.assertEqual([l["campaigns"] for l in lines if l["id"].startswith("morning.no-machine")], [["first-campaign"]])
+
     def test_every_commented_key_is_one(self):
         """With the # taken off, the files are still read without an error (but for placeholders)."""
         lab = self.here("lab")
@@ -159,12 +178,12 @@ class Asked(VerbTest):
 
     def test_questions_with_defaults(self):
         folder = self.site / "Officine 7"
-        status, shown = self.session("campaign", folder, answers=["", "Rossi", "", "2026-11-03", "FP 12", "0417", "", "X=0:800 C=0:360",
-                                                                  "", ""])
+        status, shown = self.session("campaign", folder, answers=["", "Rossi", "", "2026-11-03", "Zayer", "FP 12", "0417", "", "",
+                                                                  "X=0:800 C=0:360", "", ""])
         self.assertEqual(status, 0, shown)
         self.assertIn("[officine-7]", shown)
         text = (folder / "campaign.toml").read_text()
-        for part in ('id = "officine-7"', '"Rossi (EXAMPLE', "date = 2026-11-03", '"0417"', "[machine.axes.C]"):
+        for part in ('id = "officine-7"', '"Rossi (EXAMPLE', "date = 2026-11-03", 'maker = "Zayer"', '"0417"', "[machine.axes.C]"):
             self.assertIn(part, text)
         self.nonio("show", folder)
 

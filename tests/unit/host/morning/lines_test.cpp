@@ -18,6 +18,7 @@
 #include "host/morning/lines_of_machine.h"
 #include "host/morning/tables_kept.h"
 #include "made.h"
+#include "nonio/reports/history_value.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::test::lines_test {
@@ -458,11 +459,154 @@ TEST(MorningLines, ManyOfOneKindAreOneLine) {
     lab.machines.back().judge("X", "B", {8, 8, 8, 8, 8, 8, 8, 8});
   }
   const auto lines = lab.lines();
-  ASSERT_EQ(lines.size(), 3U);
+  ASSERT_EQ(lines.size(), 8U);
   EXPECT_EQ(lines[0].finding.id, "morning.lost-several");
   EXPECT_EQ(text_of(lines[0], "of"), "site-b");
+  EXPECT_EQ(lines[0].campaigns.size(), 212U);
   EXPECT_EQ(lines[1].finding.id, "morning.failed-several");
-  EXPECT_EQ(lines[2].finding.id, "morning.undecided-several");
+  EXPECT_EQ(lines[1].campaigns.size(), 9U);
+  for (std::size_t i = 2; i < lines.size(); ++i)  // each value has a line
+    EXPECT_EQ(lines[i].finding.id, "morning.undecided");
+}
+
+std::vector<std::string> open_of(const MorningLine& l) {
+  std::vector<std::string> out{l.quantity};
+  for (const reports::OpenValue& v : l.also)
+    out.push_back(v.quantity + (v.value ? v.undecided ? "?" : "" : " without value"));
+  return out;
+}
+
+const reports::HistorySeries& series_of(const reports::MachineHistory& m, const char* quantity) {
+  return *std::find_if(m.series.begin(), m.series.end(),
+                       [&](const auto& s) { return s.quantity == quantity; });
+}
+
+TEST(Forecasts, AreOfTheQuantityThatHasTheLimit) {
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-7.0, -7.0), 0.05);
+  m.judge("X", "B", flat(7.4, 7.4));  // limit 8
+  std::vector<morning::AssessedMachine> one{m.assessed()};
+  judge_all(one);
+  const auto d = morning::describe(one[0], "out", "2024-03-01", "12 months");
+  const auto &mean = series_of(d, "B_mean"), &B = series_of(d, "B");
+  ASSERT_TRUE(mean.forecast && B.forecast);
+  EXPECT_FALSE(mean.limit);
+  EXPECT_NEAR(*B.limit, 8e-6, 1e-12);
+  EXPECT_NEAR(B.forecast->value, 7.4e-6, 0.1e-6);
+  // |B_mean| of 7 um is never beyond 8 um, B at times.
+  EXPECT_GT(B.forecast->p_out, 1e-6);
+  EXPECT_EQ(mean.forecast->answer, B.forecast->answer);
+}
+
+TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOut) {
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-3.0, -3.0), 0.05);
+  m.follow("X", "scale", flat(1.0, 1.0), 0.05);
+  m.follow("Y", "scale", flat(1.0, 1.0), 0.05);
+  m.judge("X", "B", flat(4.0, 4.0));
+  m.judge("X", "R", flat(9.5, 9.5));  // out
+  std::vector<morning::AssessedMachine> one{m.assessed()};
+  judge_all(one);
+  const auto d = morning::describe(one[0], "out", "2024-03-01", "12 months");
+  for (const auto& s : d.series)
+    if (s.forecast) EXPECT_EQ(s.forecast->answer, s.axis == "X" ? "act" : "keep") << s.quantity;
+}
+
+TEST(Forecasts, AValueHasTheUOfItsCampaign) {
+  MadeMachine m("S-42", 1);
+  m.follow("X", "B_mean", {-4.0}, 0.1);
+  for (const double U : {0.4, 0.05}) {
+    MadeMachine own = m;
+    history::StoredResult r = own.stored().results[0];
+    r.followed = false, r.source = "iso230-2", r.u_repeat.reset(), r.expanded = U, r.k = 2.0;
+    own.stored().results.push_back(r);
+    const auto d = morning::describe(own.assessed(), "out", "", "");
+    ASSERT_EQ(d.series.size(), 1U);  // no second series under the same name
+    EXPECT_NEAR(d.series[0].points[0].u, 0.1e-6, 1e-12);
+    EXPECT_NEAR(2.0 * reports::u_of_value(d.series[0].points[0]), U * 1e-6, 1e-12);
+  }
+}
+
+TEST(MorningLines, ListAllThatIsOpenOfAnAxis) {
+  Laboratory lab;
+  MadeMachine m("S-42", 2);
+  m.judge("X", "A", {9, 9});
+  m.judge("X", "B", {9, 12});
+  m.judge("X", "E", {9, 8});  // cannot be decided
+  m.judge("X", "R", {9, 5});  // a newer measurement replaced it
+  m.stored().without_value = {{1, "", "X", "M", "um", 5.0}, {1, "", "Y", "A", "um", 5.0}};
+  lab.machines.push_back(m);
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);  // nobody has measured Y
+  EXPECT_EQ(open_of(lines[0]), (std::vector<std::string>{"B", "A", "E?", "M without value"}));
+  EXPECT_NEAR(*lines[0].also[0].value, 9e-6, 1e-12);
+  EXPECT_NEAR(lines[0].also[0].limit, 8e-6, 1e-12);
+  EXPECT_EQ(lines[0].also[0].campaign, "S-42-2");
+}
+
+TEST(MorningLines, ALaterCircleOfAnotherPlaneReplacesNone) {
+  Laboratory lab;
+  MadeMachine m("S-42", 2);
+  m.judge("", "G", {9}, "circle");
+  m.judge("", "G", {5, 5}, "circle");
+  auto& results = m.stored().results;
+  results[0].measurement = "XY";
+  results.erase(results.begin() + 1);
+  results[1].measurement = "YZ";
+  lab.machines.push_back(m);
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].kind, Kind::out);
+  EXPECT_EQ(lines[0].measurement, "XY");
+}
+
+TEST(MorningLines, ACampaignWithoutAMachineHasItsLines) {
+  Laboratory lab;
+  MadeMachine m("", 1);
+  m.judge("X", "B", {9});
+  lab.machines.push_back(m);
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].kind, Kind::out);
+  EXPECT_EQ(lines[0].campaign, "-1");
+  EXPECT_TRUE(lines[0].machine.empty());
+  EXPECT_EQ(lines[1].finding.id, "morning.no-machine");
+  EXPECT_EQ(lines[1].campaigns, std::vector<std::string>{"-1"});
+}
+
+TEST(MorningLines, WhatWasWithheldIsALine) {
+  Laboratory lab;
+  MadeMachine m("S-42", 3);
+  for (const char* axis : {"X", "Y"}) m.follow(axis, "scale", {1, 1}, 0.1);
+  m.follow("X", "scale", {}, 0.1);
+  m.stored().results.push_back(m.stored().results[0]);  // X once more, in the last campaign
+  m.stored().results.back().campaign = 2;
+  m.stored().asked.resize(3);
+  for (const char* axis : {"X", "Y"})
+    m.stored().asked[1].push_back({axis, "fanuc", "table.refused-reversal", "attention"});
+  m.stored().asked[0] = {{"", "certificate", "certificate.incomplete", "attention"}};
+  lab.machines.push_back(m);
+  std::vector<std::string> ids;
+  for (const MorningLine& l : lab.lines())
+    if (l.kind == Kind::withheld) ids.push_back(l.id);
+  EXPECT_EQ(ids, (std::vector<std::string>{"morning.certificate:S-42:S-42-1",
+                                           "morning.no-table:S-42:S-42-2:Y"}));
+}
+
+TEST(MorningLines, AnAcknowledgementCoversWhatWasOpenOnItsDay) {
+  Laboratory lab;
+  MadeMachine m("S-42", 2);  // 2020-01-15, 2020-07-15
+  m.judge("X", "B", {9, 9});
+  m.judge("X", "A", {9, 9});
+  m.judge("X", "R", {5, 9});  // came later
+  lab.machines.push_back(m);
+  lab.logs.acknowledged = {acknowledged("morning.out:S-42:X", "2020-03-01")};
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].state, State::fresh);
+  EXPECT_EQ(open_of(lines[0]), std::vector<std::string>{"R"});
+  EXPECT_EQ(lines[1].state, State::known);
+  EXPECT_EQ(open_of(lines[1]), (std::vector<std::string>{"A", "B"}));
 }
 
 TEST(MorningLines, TheCampaignsOfAMachineThatVanishedAreOneLine) {
@@ -509,6 +653,17 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
   lab.machines.emplace_back("S-47", 1);
   lab.machines[5].judge("X", "B", {5});
   lab.machines[5].stored().later = {{"S-47-2", "2042-03-01"}};
+  lab.machines.emplace_back("", 1);
+  lab.machines[6].judge("X", "B", {5});
+  lab.machines[6].stored().without_value = {{0, "", "X", "A", "um", 5.0}};
+  lab.machines[6].stored().asked = {{{"X", "fanuc", "table.refused-reversal", "attention"},
+                                     {"", "certificate", "certificate.incomplete", "attention"}}};
+  lab.machines.emplace_back("S-48", 1);
+  lab.machines[7].judge("X", "B", {8});
+  lab.machines[7].stored().results.back().expanded.reset();
+  lab.tonight.waiting = {"S-48-1"};
+  for (int i = 0; i < 4; ++i)
+    lab.tonight.failed.push_back({"f" + std::to_string(i), "f", "same", ""});
   lab.due = "2024-03-01";
   const auto lines = lab.lines();
   std::set<std::string> ids;
@@ -517,20 +672,27 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
     ASSERT_FALSE(words.tables.empty()) << language;
     for (const MorningLine& l : lines) {
       ids.insert(l.finding.id);
-      const std::string says = finding_text(words, language, l.finding, "says");
+      const std::string says = reports::line_text(words, language, l, "says");
       EXPECT_FALSE(says.empty()) << l.finding.id;
       EXPECT_EQ(says.find('{'), std::string::npos) << language << ": " << says;
       if (l.state == State::fixed) continue;
-      const std::string advice = finding_text(words, language, l.finding, "advice");
+      const std::string advice = reports::line_text(words, language, l, "advice");
       EXPECT_FALSE(advice.empty()) << l.finding.id;
       EXPECT_EQ(advice.find('{'), std::string::npos) << language << ": " << advice;
     }
   }
-  for (const char* id :
-       {"morning.lost", "morning.lost-several", "morning.failed", "morning.history",
-        "morning.out-changed", "morning.changed", "morning.changed-event", "morning.soon",
-        "morning.overdue", "morning.undecided", "morning.fixed", "morning.conforms",
-        "morning.not-judged", "morning.spelling", "morning.later", "morning.unknown-machine"})
+  for (const char* id : {"morning.lost",           "morning.lost-several",
+                         "morning.failed",         "morning.history",
+                         "morning.out-changed",    "morning.changed",
+                         "morning.changed-event",  "morning.soon",
+                         "morning.overdue",        "morning.undecided",
+                         "morning.fixed",          "morning.conforms",
+                         "morning.not-judged",     "morning.spelling",
+                         "morning.later",          "morning.unknown-machine",
+                         "morning.no-machine",     "morning.no-value",
+                         "morning.no-table",       "morning.certificate",
+                         "morning.no-uncertainty", "morning.draft",
+                         "morning.failed-several"})
     EXPECT_TRUE(ids.contains(id)) << id;
 }
 

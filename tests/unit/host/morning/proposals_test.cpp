@@ -23,6 +23,14 @@ MadeMachine yearly(const std::string& name, const std::vector<double>& B) {
   return m;
 }
 
+/// And what failed was adjusted in the same campaign.
+MadeMachine adjusted(MadeMachine m) {
+  history::StoredResult left = m.stored().results.back();
+  left.state = "as-left", left.decision = "conforms", left.value = 2.0;
+  m.stored().results.push_back(left);
+  return m;
+}
+
 std::vector<IntervalProposal> proposed(const std::vector<MadeMachine>& machines,
                                        const Due& due = {}) {
   std::vector<morning::AssessedMachine> assessed;
@@ -49,8 +57,8 @@ double number(const IntervalProposal& p, const std::string& name) {
 std::string why(const IntervalProposal& p) { return p.why.id; }
 
 TEST(Proposals, HalfAfterAFailureALittleMoreAfterASuccess) {
-  const auto p =
-      proposed({yearly("S-1", {5, 5, 5}), yearly("S-2", {5, 5, 9}), yearly("S-3", {5, 5, 8})});
+  const auto p = proposed(
+      {yearly("S-1", {5, 5, 5}), adjusted(yearly("S-2", {5, 5, 9})), yearly("S-3", {5, 5, 8})});
   EXPECT_EQ(why(p[0]), "interval.passed");
   EXPECT_EQ(p[0].months, 12);  // 12.45: whole months, down
   EXPECT_EQ(p[0].method, "staircase");
@@ -72,7 +80,8 @@ TEST(Proposals, BeginWithTheRuleOfTheSite) {
 
 TEST(Proposals, AMachineThatWasMeasuredEarlyHasNotShownItsInterval) {
   const auto p = proposed(
-      {yearly("S-1", {5, 5, 5}), yearly("S-2", {5, 5, 9}), yearly("S-3", {5, 5, 8})}, {{"", 36}});
+      {yearly("S-1", {5, 5, 5}), adjusted(yearly("S-2", {5, 5, 9})), yearly("S-3", {5, 5, 8})},
+      {{"", 36}});
   EXPECT_EQ(why(p[0]), "interval.early");
   EXPECT_EQ(p[0].months, 36);
   EXPECT_EQ(number(p[0], "tested"), 12.0);
@@ -86,11 +95,15 @@ TEST(Proposals, AMachineThatWasMeasuredEarlyHasNotShownItsInterval) {
 }
 
 TEST(Proposals, WhatWasLeftIsNoReason) {
-  MadeMachine m = yearly("S-1", {5, 5, 9});
-  history::StoredResult left = m.stored().results.back();
-  left.state = "as-left", left.decision = "conforms", left.value = 2.0;
-  m.stored().results.push_back(left);
-  EXPECT_EQ(why(proposed({m})[0]), "interval.failed");
+  EXPECT_EQ(why(proposed({adjusted(yearly("S-1", {5, 5, 9}))})[0]), "interval.failed");
+}
+
+TEST(Proposals, NoIntervalHelpsWhatIsOutNow) {
+  const IntervalProposal p = proposed({yearly("S-1", {5, 5, 9})}, {{"", 12}})[0];
+  EXPECT_EQ(why(p), "interval.out-now");
+  EXPECT_FALSE(p.months);
+  EXPECT_EQ(p.axis + " " + p.quantity, "X B");
+  EXPECT_NEAR(number(p, "limit"), 8e-6, 1e-12);
 }
 
 TEST(Proposals, AreRefusedByName) {
@@ -109,7 +122,7 @@ TEST(Proposals, AreRefusedByName) {
   hit.follow("X", "B_mean", {-3, -3.1, -2.9, -3, -3.1, -2.9, -3, -6}, 0.1);
   EXPECT_EQ(refusal(hit), "interval.change-not-explained");
   // It wears by 1 um a year and stands at 7.95 of 8 um.
-  MadeMachine worn = yearly("S-1", {5, 5, 5, 5, 5, 5, 5, 7});
+  MadeMachine worn = yearly("S-1", {0.95, 1.95, 2.95, 3.95, 4.95, 5.95, 6.95, 7.95});
   worn.follow("X", "B_mean", {-0.95, -1.95, -2.95, -3.95, -4.95, -5.95, -6.95, -7.95}, 0.02);
   EXPECT_EQ(refusal(worn), "interval.out-already");
 }
@@ -146,14 +159,14 @@ TEST(Proposals, AnEventThatChangedNothingIsNoReasonToRefuse) {
 
 TEST(Proposals, ATrendShortensTheInterval) {
   // 1 um a year, 5 um now, limit 8 um: before three years are over, and 36 months are the rule.
-  MadeMachine m = yearly("S-1", {1, 2, 3, 4, 5, 6, 7, 7});
+  MadeMachine m = yearly("S-1", {2, 1, 0, 1, 2, 3, 4, 5});
   m.follow("X", "B_mean", {2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0}, 0.05);
   for (auto& r : m.stored().results)
     if (r.followed) r.value -= 4.0;
   const IntervalProposal p = proposed({m}, {{"", 48}})[0];
   EXPECT_EQ(why(p), "interval.meets-limit");
   EXPECT_EQ(p.method, "control-chart");
-  EXPECT_EQ(p.axis + " " + p.quantity, "X B_mean");
+  EXPECT_EQ(p.axis + " " + p.quantity, "X B");
   ASSERT_TRUE(p.months);
   EXPECT_GE(*p.months, 30);
   EXPECT_LE(*p.months, 35);
@@ -165,7 +178,8 @@ TEST(Proposals, OfManyLikeMachinesTheFleetIsAsked) {
   // Golden: 15 of 20 in tolerance, target 95 %, 365 days: 230.85 days.
   std::vector<MadeMachine> machines;
   for (int i = 0; i < 20; ++i)
-    machines.push_back(yearly("S-" + std::to_string(100 + i), {5, 5, i < 5 ? 9.0 : 5.0}));
+    machines.push_back(i < 5 ? adjusted(yearly("S-" + std::to_string(100 + i), {5, 5, 9}))
+                             : yearly("S-" + std::to_string(100 + i), {5, 5, 5}));
   auto p = proposed(machines);
   EXPECT_EQ(why(p[19]), "interval.fleet-shorter");
   EXPECT_EQ(p[19].method, "fleet");

@@ -36,7 +36,7 @@ Proposal staircase(double months, Found, double target = 0.95);
 /// last change that was told, behind the point `changed_after`, has fewer than two campaigns behind
 /// it).
 Proposal control_chart(const Series&, const Trend&, double limit,
-                       std::optional<std::size_t> changed_after = {});
+                       std::optional<std::size_t> changed_after = {}, Beyond beyond = {});
 
 /// Method A3 of NCSL RP-1 for machines of one kind with one interval: `passed` of `machines` were
 /// in tolerance. Observed reliability R0 = passed/machines. Below the target: Q = 1 - 2 B(passed;

@@ -15,22 +15,35 @@
 /// (k = 1), links relative to index.html.
 namespace nonio::reports {
 
+/// A value that does not conform or cannot be decided; without `value` nothing was determined that
+/// could be compared with the limit.
+struct OpenValue {
+  std::string axis, quantity, campaign, measurement;
+  std::optional<double> value{}, u{};
+  double limit = 0.0;
+  Quantity unit = Quantity::deviation;
+  bool undecided = false;
+};
+
 /// One line asks for one decision, in the order of what ignoring it costs.
 struct MorningLine {
-  enum class Kind { lost, failed, out, changed, soon, overdue, undecided, information };
+  enum class Kind { lost, failed, out, changed, soon, overdue, withheld, undecided, information };
   enum class State { fresh, known, fixed };
   Kind kind = Kind::information;
   State state = State::fresh;
   std::string id;  ///< the same every night; `nonio ack` takes it
   std::string machine, axis, quantity;
   std::string campaign, customer;
+  std::string measurement{};  ///< of the value
   std::optional<double> value{}, u{}, limit{};
   Quantity unit = Quantity::deviation;
   Finding finding;      ///< its words: says, advice
   std::string since{};  ///< the night or campaign's day from which on
   std::string link{};
-  std::string by{}, until{}, why{};  ///< of an acknowledgement
-  bool sure = true;                  ///< enough for a mail
+  std::string by{}, until{}, why{};      ///< of an acknowledgement
+  bool sure = true;                      ///< enough for a mail
+  std::vector<OpenValue> also{};         ///< what else of the axis is open: every view lists it
+  std::vector<std::string> campaigns{};  ///< all of a line that is one of several
 };
 
 using nonio::HistoryChange;
@@ -119,8 +132,14 @@ struct SiteHistory {
   std::vector<MonthOfMachine> months;
   std::vector<InstrumentUse> instruments;
   std::vector<ModelComparison> comparisons;
-  bool judged = true;  ///< some campaign states a limit
+  bool judged = true;      ///< some campaign states a limit
+  std::size_t hidden = 0;  ///< lines that are not in `lines`, because nobody asked for them
 };
+
+/// A part (says, advice) of a line's words, in a language: with the titles of the findings that it
+/// names, and the campaigns that it stands for.
+std::string line_text(const Templates&, std::string_view language, const MorningLine&,
+                      std::string_view part);
 
 /// Whether somebody must decide something: it is new, and no mere note.
 bool asks(const MorningLine& line);

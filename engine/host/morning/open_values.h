@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "host/morning/series.h"
+#include "nonio/reports/site.h"
+
+namespace nonio::host::morning {
+
+inline constexpr const char* conforms = "conforms";
+inline constexpr const char* does_not_conform = "does not conform";
+
+/// A result that is compared with a limit.
+struct Judged {
+  const ShownSeries* series = nullptr;
+  std::size_t result = 0;  ///< index into StoredMachine::results
+};
+
+/// Of the newest campaign of a series all that does not conform or cannot be decided: as left where
+/// something was adjusted, else as found. What was not measured along one axis is newest for each
+/// measurement: a later circle of another plane replaces none.
+std::vector<Judged> open_results(const history::StoredMachine& machine, const ShownSeries& series);
+
+/// Limits for which the newest campaign that measured their axis has no value.
+std::vector<const history::LimitWithoutValue*> open_limits(const history::StoredMachine& machine);
+
+/// Limits of axes that no campaign has measured.
+std::vector<const history::LimitWithoutValue*> limits_not_measured(
+    const history::StoredMachine& machine);
+
+reports::OpenValue open_value(const history::StoredMachine& machine, std::size_t result);
+reports::OpenValue open_value(const history::StoredMachine& machine,
+                              const history::LimitWithoutValue& limit);
+
+/// A table or certificate that was not made, or that is not to be used.
+struct Withheld {
+  std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
+  std::string axis;          ///< of a table, where it is known
+  std::string finding;
+  std::vector<std::string> outputs;  ///< by name
+};
+
+/// Tables of the newest campaign that measured their axis; certificates of every campaign, since each
+/// is a document of its own.
+std::vector<Withheld> withheld(const history::StoredMachine& machine);
+
+}  // namespace nonio::host::morning
