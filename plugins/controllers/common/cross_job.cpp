@@ -263,6 +263,18 @@ void refuse_second_side(const Axis& axis, const std::string& measurement, Output
            axis.slave + " by slave_shift, which takes the squareness away."});
 }
 
+namespace {
+
+/// A cross table replaces the active one too; a backlash value has no part in it.
+bool all_active_stated(const ControllerInput& in, const CrossJob& job, OutputResult& result) {
+  bool all = true;
+  for (const std::string& axis : job.moving())
+    all = states_active(in, axis, job.measurement, true, result) && all;
+  return all;
+}
+
+}  // namespace
+
 std::vector<CrossJob> cross_jobs(const ControllerInput& in, SecondSide rule, OutputResult& result) {
   std::vector<CrossJob> jobs;
   const auto settings = known_settings(in);
@@ -276,7 +288,8 @@ std::vector<CrossJob> cross_jobs(const ControllerInput& in, SecondSide rule, Out
     if (auto job = volume ? of_volume(in, a, index) : of_diagonals(in, a)) {
       if (!volume && rule == SecondSide::own_table) turn_to_reference(in, *job, settings);
       for (CrossCurve& curve : job->curves) make_zero(curve, settings);
-      if (both_sides(*job, rule, in.campaign, result)) jobs.push_back(std::move(*job));
+      if (both_sides(*job, rule, in.campaign, result) && all_active_stated(in, *job, result))
+        jobs.push_back(std::move(*job));
     }
   }
   return jobs;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string>
 
 #include "nonio/controllers/replay.h"
 
@@ -110,6 +112,11 @@ Expected<OutputResult> write_skew(const ControllerInput& in, const Writer& w,
   OutputResult result;
   const auto faces = faces_of(in, result);
   if (faces.empty()) return result;
+  std::set<std::string> axes;
+  for (const Face& f : faces) axes.insert({f.first, f.second});
+  bool stated = true;
+  for (const std::string& axis : axes) stated = states_active(in, axis, {}, true, result) && stated;
+  if (!stated) return result;
   Artifact file{w.name + "-skew.cfg", text(faces)};
   const auto read = w.parse({{file}, in.campaign, in.options});
   if (!read) return tl::unexpected<Error>(read.error());

@@ -2,7 +2,7 @@
 """Nothing that the program prints is contradicted by another part of it: the relations of docs/dev/one-truth.md, over all
 samples, random campaigns and a laboratory.
 
-    NONIO_ONE_TRUTH=500 NONIO_SEED=7 python3 one_truth_test.py NONIO SOURCE     # so many random campaigns of that seed
+    NONIO_ONE_TRUTH=500 NONIO_SEED=7 ctest --test-dir build/ci -R one_truth -V     # so many random campaigns, of that seed
 """
 import csv
 import json
@@ -11,13 +11,11 @@ import os
 import pathlib
 import random
 import re
-import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 
-NONIO, SOURCE = (sys.argv.pop(1), pathlib.Path(sys.argv.pop(1)).resolve()) if len(sys.argv) > 2 else (None, None)
+NONIO, SOURCE = os.environ["NONIO"], pathlib.Path(__file__).resolve().parents[3]
 CAMPAIGNS = int(os.environ.get("NONIO_ONE_TRUTH", "24"))
 SEED = int(os.environ.get("NONIO_SEED", random.SystemRandom().randrange(2**31)))
 
