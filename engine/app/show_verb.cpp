@@ -264,7 +264,7 @@ class Page {
         most = std::max(most, v.get<double>());
       }
     if (!(least <= most)) return;
-    out_ << "    " << to_width(name, 8)
+    out_ << "    " << to_width(name + " ", 8)
          << say_("series", {{"over", s.value("over", "")},
                             {"low", fixed_text(least, 3)},
                             {"high", fixed_text(most, 3)},
