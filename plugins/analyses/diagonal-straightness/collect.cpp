@@ -322,7 +322,11 @@ class Gatherer {
   }
 
   Step find_x() {
-    const auto found = candidates("axis", out_.x_axis), yaw = candidates("angle", out_.x_axis, "Z");
+    auto found = candidates("axis", out_.x_axis);
+    // The second line is the slave's, wherever the manifest has it: `slave_shift` is of its zero.
+    std::stable_partition(found.begin(), found.end(),
+                          [&](std::size_t i) { return measurement(i).side != "slave"; });
+    const auto yaw = candidates("angle", out_.x_axis, "Z");
     if (found.empty()) return refuse("refused-pitch", {{"axis", out_.x_axis}});
     if (yaw.size() > 1)
       return refuse("refused-ambiguous", {{"axis", out_.x_axis}, {"which", ids(yaw)}});
