@@ -249,6 +249,36 @@ class Samples(unittest.TestCase):
         self.assertAlmostEqual(program[("diagonal-straightness", "D1 00", "slave_shift")] / 8.4,
                                program[("diagonal-straightness", "D1 00", "C0Y")], delta=1e-6)
 
+    def test_gantry_cross_tables_move_both_sides_and_the_diagonals_fall(self):
+        """All tables of the sample, read here: what they do to a rigid beam with X at 300 mm and X2 at 8700 mm of Y."""
+        folder = os.path.join(ROOT, "tests", "golden", "expected", "13-gantry-diagonals")
+        tables = {}
+        for name in sorted(os.listdir(folder)):
+            with open(os.path.join(folder, name), encoding="utf-8") as opened:
+                text = opened.read()
+            if name.endswith("-CEC.ini"):
+                axes = {k: (out, of) for (k, of), (_, out) in zip(
+                    re.findall(r"^\$AN_CEC_INPUT_AXIS\[(\d+)\]=\(AX(\d+)\)$", text, re.M),
+                    re.findall(r"^\$AN_CEC_OUTPUT_AXIS\[(\d+)\]=\(AX(\d+)\)$", text, re.M))}
+                for k, key in axes.items():
+                    tables[key] = [-1000.0 * float(v) for v in re.findall(r"^\$AN_CEC\[%s,\d+\]=(\S+)$" % k, text, re.M)]
+            elif name.endswith("-EEC.ini"):
+                axis = re.search(r"^\$AA_ENC_COMP\[0,0,AX(\d+)\]", text, re.M).group(1)
+                tables[(axis, axis)] = [-1000.0 * float(v) for v in re.findall(r"^\$AA_ENC_COMP\[0,\d+,AX\d+\]=(\S+)$", text, re.M)]
+        self.assertEqual(set(tables), {("1", "1"), ("2", "2"), ("4", "4"), ("2", "1"), ("1", "2"), ("4", "2")})
+        self.assertEqual(tables[("1", "2")], tables[("4", "2")])
+        n, c, s = 30, 0.8, 0.6
+        for file, rising, name in (("d1-00.csv", True, "D1"), ("d2-00.csv", False, "D2")):
+            left = []
+            for i, p in enumerate(readings("13-gantry-diagonals", file).values()):
+                j = i if rising else n - i
+                share = 1.0 - (300.0 * j - 300.0) / 8400.0
+                one, other = (tables[(side, side)][i] + tables[(side, "2")][j] for side in "14")
+                x = share * one + (1.0 - share) * other
+                y = tables[("2", "2")][j] + tables[("2", "1")][i]
+                left.append((statistics.fmean(p["+"]) + statistics.fmean(p["-"])) / 2.0 + c * x + (s if rising else -s) * y)
+            self.assertLess(max(left) - min(left), 3.0, name)
+
     def test_rotary_table_turns_about_its_lines(self):
         for file, count, point, lean in (
                 ("c.csv", 8, (412.300, 305.120, -148.600), (0.00012, -0.00008, 1.0)),

@@ -236,6 +236,14 @@ std::vector<Observations> without_tables(const Campaign& campaign,
   return raw;
 }
 
+Campaign with_one(Campaign campaign, Measurement m) {
+  m.axis = control_axis(campaign.machine, m);
+  m.side.clear();
+  for (Axis& axis : campaign.machine.axes) axis.slave.clear();
+  campaign.measurements = {std::move(m)};
+  return campaign;
+}
+
 Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign& read,
                                               const Controller& controller,
                                               const Settings& options) {
@@ -322,8 +330,7 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controlle
   for (std::size_t i = 0; i < raw.size(); ++i) {  // one at a time: an axis may be there twice
     const Measurement& m = campaign.measurements[i];
     if (m.kind != "axis" || raw[i].size() == 0) continue;
-    Campaign one = campaign;
-    one.measurements = {m};
+    const Campaign one = with_one(campaign, m);
     const auto files = write(one, {raw[i]});
     if (!files) return tl::unexpected<Error>(files.error());
     if (files->artifacts.empty()) continue;  // refused; the finding says why

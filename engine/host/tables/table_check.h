@@ -58,6 +58,10 @@ struct Underlay {
   Settings options;                    ///< with the backlash values that these tables' files hold
   std::vector<Observations> readings;  ///< as they would be without these tables
 };
+/// The campaign with this one measurement. Its axis is that of the control, no side of a gantry: who takes the axes
+/// one after the other takes both sides.
+Campaign with_one(Campaign campaign, Measurement m);
+
 /// The tables that were on, as manifest and record say; none: there was no table. An error where
 /// the control does not read them as tables of these axes.
 Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign&, const Controller&,

@@ -33,11 +33,11 @@ Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string&
       others.push_back(of);
       continue;
     }
-    one.campaign.measurements.push_back(m);
+    one.campaign = with_one(campaign, m);
     one.readings.push_back(on ? on->readings[i] : read.observations[i]);
     one.measured.push_back(read.observations[i]);
   }
-  if (one.readings.size() == 1) return one;
+  if (one.readings.size() == 1) return one;  // the campaign has this one measurement
   if (!one.readings.empty())
     return fail("axis " + axis + " has " + std::to_string(one.readings.size()) +
                 " measurements; expected one");

@@ -4,6 +4,7 @@
 
 #include "merge.h"
 #include "nonio/controllers/list.h"
+#include "nonio/controllers/replay.h"
 
 namespace nonio {
 namespace {
@@ -71,8 +72,9 @@ std::string plane(const CrossJob& job, const std::vector<controllers::KnownAxis>
   };
   std::string out = "; straightness and squareness from the diagonals of " +
                     controllers::plain(job.measurement) + "\n; " + controllers::cross_words(a) +
-                    "\n; " + controllers::cross_words(b) + "\n:START2D " + row + " " + col + " " +
-                    col + " " + row + " " + step(b) + " " + step(a) + " " +
+                    "\n; " + controllers::cross_words(b) + "\n" +
+                    controllers::comments(controllers::set_words(job), "; ") + ":START2D " + row +
+                    " " + col + " " + col + " " + row + " " + step(b) + " " + step(a) + " " +
                     std::to_string(a.position.size()) +
                     "\n:START2D POSUNIT=METRIC CORUNIT=METRIC/1000 OFFSETROW=0 OFFSETCOL=0\n";
   for (const double of_b : b.value) {
@@ -215,7 +217,8 @@ Expected<OutputResult> write(const ControllerInput& in) {
   const Campaign campaign = controllers::with_axes_of(in, *jobs);
   const auto axes = controllers::known_axes({{}, campaign, in.options});
   if (!axes) return tl::unexpected<Error>(axes.error());
-  for (const CrossJob& set : controllers::cross_jobs(in)) {
+  for (const CrossJob& set :
+       controllers::cross_jobs(in, controllers::SecondSide::not_known, result)) {
     if (set.volume || set.curves.size() != 2) continue;
     if (controllers::lacks_number(set.moving(), in, *axes, set.measurement, result)) continue;
     if (std::any_of(set.curves.begin(), set.curves.end(),

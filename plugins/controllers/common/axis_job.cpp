@@ -17,7 +17,10 @@ namespace {
 
 Expected<void> check_names(const NumberTables& settings, const ControllerInput& input) {
   std::set<std::string> known;
-  for (const Axis& a : input.campaign.machine.axes) known.insert(a.name);
+  for (const Axis& a : input.campaign.machine.axes) {
+    known.insert(a.name);
+    if (!a.slave.empty()) known.insert(a.slave);
+  }
   for (const Measurement& m : input.campaign.measurements)
     if (m.kind == "axis") known.insert(control_axis(input.campaign.machine, m));
   for (const AxisJob& job : series_jobs(input)) known.insert(job.axis);
@@ -165,7 +168,8 @@ void say_what_was_left_out(const AxisJob& job, OutputResult& result) {
     say("table.left-out").evidence = {
         {"targets", static_cast<double>(job.curve.left_out), Quantity::count}};
   if (job.from_diagonals)
-    say("table.from-diagonals").texts.emplace_back("id", job.measurement);
+    say(job.scale_known ? "table.from-diagonals" : "table.from-shape")
+        .texts.emplace_back("id", job.measurement);
   else if (!job.curve.bidirectional())
     say("table.one-direction").texts.emplace_back("direction", job.curve.plus.empty() ? "-" : "+");
   else if (job.reversal.kind == math::Reversal::Kind::unknown)

@@ -81,7 +81,9 @@ std::vector<std::string> warnings(const AxisJob& job, OutputResult& result) {
 
 std::string reversal_words(const AxisJob& job, Columns columns) {
   if (job.from_diagonals)
-    return "from the step diagonals of " + plain(job.measurement) + ": no backlash value";
+    return "from the step diagonals of " + plain(job.measurement) + ": no backlash value" +
+           (job.scale_known ? ""
+                            : "; NOT in the table: the scale of the axis, which they do not know");
   if (!job.curve.bidirectional()) return "measured from one direction only: no backlash value";
   const std::string mean = deviation_words(job, job.curve.mean_reversal());
   if (columns == Columns::both)
@@ -151,9 +153,16 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
       result.predictions.push_back({job.measurement, name, before, after, q});
   };
   const bool both = curve.bidirectional();
-  add(both ? "E" : job.from_diagonals ? "M" : curve.plus.empty() ? "E-" : "E+", was.E(), will.E());
-  add("B", was.B(), will.B());
-  add("M", was.M(), will.M());
+  // Without its scale the curve is not the error of the axis: the diagonals say what the table does.
+  if (job.scale_known) {
+    add(both                 ? "E"
+        : job.from_diagonals ? "M"
+        : curve.plus.empty() ? "E-"
+                             : "E+",
+        was.E(), will.E());
+    add("B", was.B(), will.B());
+    add("M", was.M(), will.M());
+  }
   if (!(will.E() < was.E()))
     result.findings.push_back({"table.no-gain",
                                true,

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nonio/controllers/kit.h"
+#include "nonio/controllers/replay.h"
 #include "nonio/controllers/size.h"
-#include "nonio/math/loaded_table.h"
+#include "nonio/controllers/text.h"
 
 namespace nonio::controllers {
 
@@ -38,15 +38,10 @@ const Value* value_of(const Evaluation& e, std::string_view name) {
   return nullptr;
 }
 
-double range(const std::vector<double>& v) {
-  const auto [low, high] = std::minmax_element(v.begin(), v.end());
-  return *high - *low;
-}
-
-/// The curve of one part towards `output`; nothing where a number of it is not known.
-std::optional<CrossCurve> curve_of(const Evaluation& e, const Part& part,
-                                   const std::string& output) {
-  const Series* s = series_of(e, part.series);
+/// The curve of one part towards `output`, or its even part; nothing where a number of it is not known.
+std::optional<CrossCurve> curve_of(const Evaluation& e, const Part& part, const std::string& output,
+                                   const char* ending = "") {
+  const Series* s = series_of(e, std::string(part.series) + ending);
   const Value* square = part.squareness == nullptr ? nullptr : value_of(e, part.squareness);
   if (s == nullptr || s->position.size() < 2 || (part.squareness != nullptr && square == nullptr))
     return std::nullopt;
@@ -78,22 +73,78 @@ NumberTables known_settings(const ControllerInput& in) {
   return settings_of_axes(in.options).value_or(NumberTables{});
 }
 
+const Measurement* measurement_named(const Campaign& campaign, std::string_view id) {
+  for (const Measurement& m : campaign.measurements)
+    if (m.id == id) return &m;
+  return nullptr;
+}
+
+/// Directions of X in which this diagonal was read.
+std::vector<int> ways_of(const ControllerInput& in, const Measurement& m) {
+  const auto index = static_cast<std::size_t>(&m - in.campaign.measurements.data());
+  if (index >= in.observations.size() || in.observations[index].axes.empty()) return {1, -1};
+  std::vector<int> ways;
+  for (const int way : {1, -1}) {
+    const auto& approach = in.observations[index].axes.front().approach;
+    if (std::find(approach.begin(), approach.end(), way) != approach.end()) ways.push_back(way);
+  }
+  return ways.empty() ? std::vector{1, -1} : ways;
+}
+
+/// The diagonals of the set that rise and fall over this rectangle: how each was read.
+std::vector<int> ways_of(const ControllerInput& in, const Results::Analysed& a, const Series& x,
+                         const Series& y, bool rising) {
+  std::vector<std::string> ids = a.evaluation.uses;
+  ids.push_back(a.measurement);
+  constexpr double same_place = 1e-6;  // m
+  const auto spans = [&](double from, double to, const Series& s) {
+    return std::fabs(std::min(from, to) - s.position.front()) < same_place &&
+           std::fabs(std::max(from, to) - s.position.back()) < same_place;
+  };
+  for (const std::string& id : ids) {
+    const Measurement* m = measurement_named(in.campaign, id);
+    if (m == nullptr || m->kind != "diagonal" || !m->from.contains(x.over) ||
+        !m->from.contains(y.over) || !m->to.contains(x.over) || !m->to.contains(y.over))
+      continue;
+    const double x0 = m->from.at(x.over), x1 = m->to.at(x.over), y0 = m->from.at(y.over),
+                 y1 = m->to.at(y.over);
+    if (spans(x0, x1, x) && spans(y0, y1, y) && ((x1 - x0) * (y1 - y0) > 0.0) == rising)
+      return ways_of(in, *m);
+  }
+  return {1, -1};
+}
+
 /// Both diagonals as read, at the stops of the curves.
-std::optional<CrossJob> of_diagonals(const Results::Analysed& a) {
+std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::Analysed& a) {
   const Evaluation& e = a.evaluation;
-  const Series *f = series_of(e, "EYX"), *g = series_of(e, "EXY");
+  const bool even_only = series_of(e, "q_odd") != nullptr;
+  // After a compensation from the same two diagonals they say nothing new: what they show is left by the tables in
+  // the control, and a table of that would take their place.
+  if (even_only && std::any_of(e.findings.begin(), e.findings.end(), [](const Finding& found) {
+        return found.id == "diagonals.remeasured";
+      }))
+    return std::nullopt;
+  const char* const ending = even_only ? "_even" : "";
+  const Series *f = series_of(e, std::string("EYX") + ending),
+               *g = series_of(e, std::string("EXY") + ending);
   const auto *D1 = e.points.column("D1"), *D2 = e.points.column("D2");
   if (f == nullptr || g == nullptr || D1 == nullptr || D2 == nullptr) return std::nullopt;
-  const auto along_x = curve_of(e, parts[0], g->over), along_y = curve_of(e, parts[2], f->over);
+  const auto along_x = curve_of(e, parts[0], g->over, ending),
+             along_y = curve_of(e, parts[2], f->over, ending);
   if (!along_x || !along_y) return std::nullopt;
   CrossJob job{a.measurement, e.uses, {*along_x, *along_y}, {}};
+  if (const Series* odd = series_of(e, "q_odd")) {
+    job.odd_left = 0.0;
+    for (const double q : odd->value) job.odd_left = std::max(*job.odd_left, std::fabs(q));
+  }
   const auto &x = f->position, &y = g->position;
   const double Lx = x.back() - x.front(), Ly = y.back() - y.front(), L = std::hypot(Lx, Ly);
   for (const bool rising : {true, false}) {
     ReadLine line{rising ? "D1" : "D2",
                   {{f->over, Lx / L}, {g->over, (rising ? Ly : -Ly) / L}},
                   {},
-                  (rising ? D1 : D2)->values};
+                  (rising ? D1 : D2)->values,
+                  ways_of(in, a, *f, *g, rising)};
     for (std::size_t i = 0; i < x.size(); ++i)
       line.at.push_back({{f->over, x[i]}, {g->over, y[rising ? i : y.size() - 1 - i]}});
     job.lines.push_back(std::move(line));
@@ -107,7 +158,7 @@ std::vector<ReadLine> body_diagonals(const Measurement& m, const Observations& o
   constexpr double same_part = 1e-6;
   std::vector<ReadLine> lines;
   for (const Observations::Line& of : o.lines) {
-    ReadLine line{of.name.substr(std::min(m.id.size() + 1, of.name.size())), {}, {{}}, {0.0}};
+    ReadLine line{of.name.substr(std::min(m.id.size() + 1, of.name.size())), {}, {{}}, {0.0}, {1}};
     for (std::size_t k = 0; k < o.axes.size(); ++k) {
       const auto from = m.from.find(o.axes[k].axis), to = m.to.find(o.axes[k].axis);
       if (k > 2 || from == m.from.end() || to == m.to.end()) return {};
@@ -160,7 +211,7 @@ std::vector<std::string> CrossJob::moving() const {
 std::string CrossJob::axes() const {
   std::vector<std::string> names;
   for (const CrossCurve& c : curves)
-    for (const std::string& name : {c.input, c.output})
+    for (const std::string& name : {c.input, c.side_of.empty() ? c.output : c.side_of})
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   std::sort(names.begin(), names.end());
   std::string out;
@@ -168,7 +219,51 @@ std::string CrossJob::axes() const {
   return out;
 }
 
-std::vector<CrossJob> cross_jobs(const ControllerInput& in) {
+std::vector<std::string> CrossJob::outputs() const {
+  std::vector<std::string> names;
+  for (const CrossCurve& c : curves)
+    if (std::find(names.begin(), names.end(), c.output) == names.end()) names.push_back(c.output);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+namespace {
+
+/// False, with a finding, where a table of the first side is known to move nothing but it.
+bool both_sides(CrossJob& job, SecondSide rule, const Campaign& campaign, OutputResult& result) {
+  if (rule == SecondSide::moves_along) return true;
+  std::vector<CrossCurve> all;
+  for (CrossCurve& curve : job.curves) {
+    all.push_back(curve);
+    const Axis* axis = campaign.machine.axis(curve.output);
+    if (axis == nullptr || axis->slave.empty()) continue;
+    if (rule == SecondSide::not_known) {
+      refuse_second_side(*axis, job.measurement, result);
+      return false;
+    }
+    all.push_back(curve);
+    all.back().output = axis->slave;
+    all.back().side_of = axis->name;
+  }
+  job.curves = std::move(all);
+  return true;
+}
+
+}  // namespace
+
+void refuse_second_side(const Axis& axis, const std::string& measurement, OutputResult& result) {
+  result.findings.push_back(
+      {"table.gantry-second-side",
+       true,
+       {},
+       {{"axis", axis.name}, {"slave", axis.slave}},
+       measurement,
+       "The maker does not document what such a table does to the second side of a "
+       "gantry: ask the maker, or shift the zero of " +
+           axis.slave + " by slave_shift, which takes the squareness away."});
+}
+
+std::vector<CrossJob> cross_jobs(const ControllerInput& in, SecondSide rule, OutputResult& result) {
   std::vector<CrossJob> jobs;
   const auto settings = known_settings(in);
   const auto& measurements = in.campaign.measurements;
@@ -178,9 +273,10 @@ std::vector<CrossJob> cross_jobs(const ControllerInput& in) {
     const auto index = static_cast<std::size_t>(of - measurements.begin());
     const bool volume =
         of != measurements.end() && of->kind == "step-diagonal" && index < in.observations.size();
-    if (auto job = volume ? of_volume(in, a, index) : of_diagonals(a)) {
+    if (auto job = volume ? of_volume(in, a, index) : of_diagonals(in, a)) {
+      if (!volume && rule == SecondSide::own_table) turn_to_reference(in, *job, settings);
       for (CrossCurve& curve : job->curves) make_zero(curve, settings);
-      jobs.push_back(std::move(*job));
+      if (both_sides(*job, rule, in.campaign, result)) jobs.push_back(std::move(*job));
     }
   }
   return jobs;
@@ -223,6 +319,22 @@ std::string cross_words(const CrossCurve& curve) {
          " mm, steepest " + decimal(size.slope * 1e6, 3) + " um/m";
 }
 
+std::vector<std::string> set_words(const CrossJob& job) {
+  std::vector<std::string> lines;
+  if (job.odd_left)
+    lines.push_back(
+        "NOT in these tables: the odd part of both straightnesses, which two diagonals do not "
+        "separate; "
+        "q_odd is up to " +
+        decimal(*job.odd_left * 1e6, 3) + " um and stays on both diagonals");
+  if (job.yaw_at_reference != 0.0)
+    lines.push_back(
+        "the squareness is that of the beam where the pitch tables of both sides are zero: C0Y and "
+        "a yaw of " +
+        decimal(job.yaw_at_reference * 1e6, 3) + " urad; load all of these tables or none");
+  return lines;
+}
+
 void note_cross(const CrossJob& job, OutputResult& result) {
   for (const CrossCurve& curve : job.curves) {
     const TableSize size = size_of_curve(curve);
@@ -232,6 +344,19 @@ void note_cross(const CrossJob& job, OutputResult& result) {
                              {"slope", size.slope, Quantity::deviation_per_length}},
                             {{"axis", curve.output}, {"input", curve.input}}});
   }
+  if (job.yaw_at_reference != 0.0)
+    result.notes.push_back({"table.cross-yaw-at-reference",
+                            {{"yaw", job.yaw_at_reference, Quantity::small_angle}},
+                            {},
+                            job.measurement});
+  if (job.odd_left)
+    result.findings.push_back(
+        {"table.cross-even-only",
+         false,
+         {{"q_odd", *job.odd_left, Quantity::deviation}},
+         {{"axes", job.axes()}},
+         job.measurement,
+         "Measure a third diagonal, or one straightness directly, and write the tables again."});
 }
 
 bool together(const CrossJob& set, const AxisJob& job, const Campaign& campaign) {
@@ -239,10 +364,16 @@ bool together(const CrossJob& set, const AxisJob& job, const Campaign& campaign)
   bool names_one = false;
   for (const std::string& id : set.uses) {
     if (id == job.measurement) return true;
-    for (const Measurement& m : campaign.measurements)
-      names_one = names_one || (m.id == id && m.kind == "axis" && m.axis == job.axis);
+    const Measurement* m = measurement_named(campaign, id);
+    names_one = names_one || (m != nullptr && m->kind == "axis" &&
+                              control_axis(campaign.machine, *m) == job.axis);
   }
-  return !set.volume && !names_one;  // step diagonals use runs of their own occasion only
+  if (names_one) return false;
+  if (!set.volume) return true;
+  // Step diagonals use runs of their own occasion only.
+  const Measurement *one = measurement_named(campaign, set.measurement),
+                    *other = measurement_named(campaign, job.measurement);
+  return one != nullptr && other != nullptr && state_of(*one) == state_of(*other);
 }
 
 Expected<void> fits(const CrossJob& job, const Settings& options) {
@@ -251,74 +382,6 @@ Expected<void> fits(const CrossJob& job, const Settings& options) {
     if (curve.position.size() > most)
       return fail("diagonals of " + job.measurement + ": " + std::to_string(curve.position.size()) +
                   " points, the control takes " + std::to_string(most) + " (max_points)");
-  return {};
-}
-
-void predict_lines(const CrossJob& job, const std::vector<LoadedTable>& tables,
-                   OutputResult& result) {
-  const auto after = [&](const ReadLine& line) {
-    std::map<std::string, int> direction;
-    for (const auto& [axis, sense] : line.sense) direction[axis] = sense < 0.0 ? -1 : 1;
-    std::vector<double> out;
-    for (std::size_t i = 0; i < line.deviation.size(); ++i) {
-      double v = line.deviation[i];
-      for (const auto& [axis, sense] : line.sense)
-        v += sense * math::added(tables, axis, line.at[i], direction);
-      out.push_back(v);
-    }
-    return range(out);
-  };
-  std::vector<Prediction> all;  // several runs of a line: the worst of them
-  for (const ReadLine& line : job.lines) {
-    if (line.deviation.size() < 2) continue;  // nothing of it was read at whole steps
-    const std::string name = line.name.substr(0, line.name.find(' '));
-    const Prediction one{job.measurement, name, range(line.deviation), after(line),
-                         Quantity::deviation};
-    const auto known =
-        std::find_if(all.begin(), all.end(), [&](const Prediction& p) { return p.name == name; });
-    if (known == all.end()) {
-      all.push_back(one);
-    } else {
-      known->before = std::max(known->before, one.before);
-      known->after = std::max(known->after, one.after);
-    }
-  }
-  for (Prediction& p : all) {
-    if (!(p.after < p.before))
-      result.findings.push_back({.id = "table.no-gain",
-                                 .attention = true,
-                                 .evidence = {{"before", p.before, Quantity::deviation},
-                                              {"after", p.after, Quantity::deviation}},
-                                 .texts = {{"axis", p.name}},
-                                 .measurement = job.measurement,
-                                 .advice = "These tables would not make the diagonal better."});
-    result.predictions.push_back(std::move(p));
-  }
-}
-
-Expected<void> predict_cross(const CrossJob& job, const std::vector<Artifact>& files,
-                             Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
-                             const std::vector<AxisJob>& pitch, const ControllerInput& input,
-                             OutputResult& result) {
-  const Campaign campaign = with_axes_of(input, pitch);
-  auto tables = parse({files, campaign, input.options});
-  const auto unread = [&](const std::string& why) {
-    return fail("diagonals of " + job.measurement +
-                ": the table written cannot be read back: " + why);
-  };
-  if (!tables) return unread(tables.error().message);
-  for (const CrossCurve& curve : job.curves)
-    if (std::none_of(tables->begin(), tables->end(), [&](const LoadedTable& t) {
-          return t.output == curve.output &&
-                 std::find(t.input.begin(), t.input.end(), curve.input) != t.input.end();
-        }))
-      return unread(curve.output + " by " + curve.input + " is not in it");
-  if (job.volume)
-    for (const AxisJob& of : pitch)
-      if (of.loaded && together(job, of, input.campaign))
-        tables->insert(tables->end(), of.loaded->begin(), of.loaded->end());
-  predict_lines(job, *tables, result);
-  note_cross(job, result);
   return {};
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 
 #include "nonio/controllers/size.h"
 #include "nonio/sdk/format.h"
@@ -278,6 +280,48 @@ Expected<bool> write_axis(AxisJob& job, const ControllerInput& input, const Writ
   return true;
 }
 
+/// The other side of a gantry axis of the control; empty: it has none.
+std::string other_side(const Machine& machine, const std::string& axis) {
+  for (const Axis& a : machine.axes) {
+    if (a.slave.empty()) continue;
+    if (a.name == axis) return a.slave;
+    if (a.slave == axis) return a.name;
+  }
+  return {};
+}
+
+/// A table of one side alone turns the beam of a gantry: a finding in its place.
+void withdraw_one_sided(std::vector<AxisJob>& jobs, std::vector<OutputResult>& of_jobs,
+                        const Machine& machine) {
+  std::set<std::string> written;
+  for (const AxisJob& job : jobs)
+    if (job.loaded) written.insert(job.axis);
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const std::string other = other_side(machine, jobs[i].axis);
+    if (!jobs[i].loaded || other.empty() || written.contains(other)) continue;
+    jobs[i].loaded.reset();
+    of_jobs[i] = {};
+    of_jobs[i].findings.push_back(
+        {"table.gantry-one-side",
+         true,
+         {},
+         {{"axis", jobs[i].axis}, {"other", other}},
+         jobs[i].measurement,
+         "Measure the line of " + other +
+             " too, or remove what prevents its table: both sides get one, or none."});
+  }
+}
+
+void append(OutputResult part, OutputResult& result) {
+  const auto move_to = [](auto& from, auto& to) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  move_to(part.artifacts, result.artifacts);
+  move_to(part.predictions, result.predictions);
+  move_to(part.findings, result.findings);
+  move_to(part.notes, result.notes);
+}
+
 }  // namespace
 
 std::string Sheet::at(std::size_t i) const {
@@ -370,8 +414,11 @@ Expected<ControlTable> chosen(ControlTable t, const Settings& options) {
 
 Campaign with_axes_of(const ControllerInput& input, const std::vector<AxisJob>& jobs) {
   Campaign campaign = input.campaign;
+  auto& axes = campaign.machine.axes;
+  for (const Axis& a : input.campaign.machine.axes)
+    if (!a.slave.empty() && campaign.machine.axis(a.slave) == nullptr)
+      axes.push_back({.name = a.slave, .rotary = a.rotary});
   for (const AxisJob& job : jobs) {
-    auto& axes = campaign.machine.axes;
     const auto it =
         std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == job.axis; });
     if (it == axes.end())
@@ -386,9 +433,12 @@ Expected<std::vector<AxisJob>> write_axes(const ControllerInput& input, const Wr
                                           OutputResult& result) {
   auto jobs = axis_jobs(input, w.keys, result);
   if (!jobs) return jobs;
+  std::vector<OutputResult> of_jobs;
   for (AxisJob& job : *jobs)
-    if (auto done = write_axis(job, input, w, result); !done)
+    if (auto done = write_axis(job, input, w, of_jobs.emplace_back()); !done)
       return tl::unexpected<Error>(done.error());
+  withdraw_one_sided(*jobs, of_jobs, input.campaign.machine);
+  for (OutputResult& part : of_jobs) append(std::move(part), result);
   return jobs;
 }
 

@@ -4,26 +4,56 @@
 #include <algorithm>
 
 namespace nonio::controllers {
+namespace {
+
+/// EXX, or EXX_shape where its scale is not known.
+struct Positioning {
+  bool is = false, shape = false;
+};
+
+Positioning positioning(std::string_view name) {
+  Positioning p;
+  p.shape = name.ends_with("_shape");
+  if (p.shape) name.remove_suffix(6);
+  p.is = name == "EXX" || name == "EYY" || name == "EZZ";
+  return p;
+}
+
+/// Whether the axis has a run of its own that makes the better table: among those that the step diagonals were
+/// evaluated with, or in their state of the machine.
+bool has_run(const ControllerInput& in, const Results::Analysed& a, const std::string& axis) {
+  const auto& all = in.campaign.measurements;
+  const auto of = std::find_if(all.begin(), all.end(),
+                               [&](const Measurement& m) { return m.id == a.measurement; });
+  const auto& uses = a.evaluation.uses;
+  for (std::size_t i = 0; i < std::min(all.size(), in.observations.size()); ++i)
+    if (all[i].kind == "axis" && all[i].axis == axis && in.observations[i].size() > 0 &&
+        (std::find(uses.begin(), uses.end(), all[i].id) != uses.end() ||
+         (of != all.end() && state_of(all[i]) == state_of(*of))))
+      return true;
+  return false;
+}
+
+}  // namespace
 
 std::vector<AxisJob> series_jobs(const ControllerInput& in) {
   std::vector<AxisJob> jobs;
-  const auto measured = [&](const Evaluation& e, const std::string& axis) {
-    return std::any_of(in.campaign.measurements.begin(), in.campaign.measurements.end(),
-                       [&](const Measurement& m) {
-                         return m.kind == "axis" && m.axis == axis &&
-                                std::find(e.uses.begin(), e.uses.end(), m.id) != e.uses.end();
-                       });
-  };
   for (const Results::Analysed& a : in.results.analyses)
     for (const Series& s : a.evaluation.series) {
-      const bool positioning = s.name == "EXX" || s.name == "EYY" || s.name == "EZZ";
-      if (!positioning || s.position.size() < 2 || measured(a.evaluation, s.over)) continue;
+      const Positioning p = positioning(s.name);
+      if (!p.is || s.position.size() < 2 || has_run(in, a, s.over)) continue;
       AxisJob job;
       job.axis = s.over;
       job.measurement = a.measurement;
       job.from_diagonals = true;
+      job.scale_known = !p.shape;
       job.curve.position = s.position;
       job.curve.mean = job.curve.plus = s.value;
+      jobs.push_back(job);
+      // Both sides of a gantry move as far: the diagonals see the beam's middle.
+      const Axis* axis = in.campaign.machine.axis(s.over);
+      if (axis == nullptr || axis->slave.empty()) continue;
+      job.axis = axis->slave;
       jobs.push_back(std::move(job));
     }
   return jobs;

@@ -7,8 +7,8 @@
 
 namespace nonio::controllers {
 
-/// Positioning as step diagonals give it (series EXX, EYY, EZZ), of axes whose own runs are not
-/// among what the step diagonals were evaluated with: those make the better table.
+/// Positioning as step diagonals give it (series EXX, EYY, EZZ; EXX_shape where the scale is not known), of axes
+/// without runs of their own of that state: those make the better table. On a gantry of both sides.
 std::vector<AxisJob> series_jobs(const ControllerInput&);
 
 }  // namespace nonio::controllers

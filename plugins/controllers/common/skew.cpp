@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "nonio/controllers/replay.h"
+
 namespace nonio::controllers {
 namespace {
 
@@ -124,7 +126,9 @@ Expected<OutputResult> write_skew(const ControllerInput& in, const Writer& w,
                                   std::fabs(std::atan(wanted) - std::atan(found)),
                                   Quantity::small_angle});
   }
-  for (const CrossJob& set : cross_jobs(in)) predict_lines(set, *read, result);
+  // The factor turns the commanded position, so both motors of an axis get it.
+  for (const CrossJob& set : cross_jobs(in, SecondSide::moves_along, result))
+    predict_lines(set, {.tables = *read}, result);
   result.artifacts.push_back(std::move(file));
   note_facts(w, result);
   return result;

@@ -3,6 +3,7 @@
 
 #include "merge.h"
 #include "nonio/controllers/kit.h"
+#include "nonio/controllers/replay.h"
 #include "parse.h"
 
 namespace nonio::heidenhain {
@@ -59,8 +60,14 @@ std::string com_name(const AxisJob& job, const Layout& layout) {
 
 std::vector<std::string> axis_columns(const Campaign& campaign, const AxisJob& job) {
   std::vector<std::string> names;
-  for (const Axis& a : campaign.machine.axes) names.push_back(controllers::plain(a.name));
-  if (campaign.machine.axis(job.axis) == nullptr) names.push_back(controllers::plain(job.axis));
+  const auto add = [&](const std::string& axis) {
+    const std::string name = controllers::plain(axis);
+    if (!axis.empty() && std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  };
+  for (const Axis& a : campaign.machine.axes) add(a.name);
+  for (const Axis& a : campaign.machine.axes) add(a.slave);
+  add(job.axis);
   return names;
 }
 
@@ -184,21 +191,18 @@ Crosses columns_of(const std::vector<CrossJob>& sets, const AxisJob& job,
   return states == 1 ? columns : Crosses{};
 }
 
-/// What the control makes of the columns of other axes, read from the tables of each.
-void predict_columns(const CrossJob& set, const std::vector<const AxisJob*>& written,
+/// What the control makes of the columns of other axes and of the pitch beside them, read from the tables of each.
+void predict_columns(const CrossJob& set, const std::vector<AxisJob>& jobs,
                      const ControllerInput& input, OutputResult& result) {
-  std::vector<LoadedTable> tables;
-  for (const AxisJob* job : written)
-    if (controllers::together(set, *job, input.campaign))
-      for (const LoadedTable& t : *job->loaded)
-        if (set.volume || t.output != job->axis) tables.push_back(t);
+  const controllers::Replay replay = controllers::replay_of(set, jobs, input);
   // A table that was refused takes its columns with it; its finding says why.
-  for (const CrossCurve& curve : set.curves)
-    if (std::none_of(tables.begin(), tables.end(), [&](const LoadedTable& t) {
-          return t.output == curve.output && t.input.front() == curve.input;
-        }))
-      return;
-  controllers::predict_lines(set, tables, result);
+  const bool any = std::any_of(set.curves.begin(), set.curves.end(), [&](const CrossCurve& curve) {
+    return std::any_of(replay.tables.begin(), replay.tables.end(), [&](const LoadedTable& t) {
+      return t.output == curve.output && t.input.front() == curve.input;
+    });
+  });
+  if (!any) return;
+  controllers::predict_lines(set, replay, result);
   controllers::note_cross(set, result);
   const char* note = set.volume ? "heidenhain.cross-volume" : "heidenhain.cross";
   if (std::none_of(result.notes.begin(), result.notes.end(),
@@ -235,7 +239,9 @@ Expected<OutputResult> write(const ControllerInput& input) {
                 " has no column for the negative direction: set layout = \"tnc640\" or "
                 "directions = false");
   // The columns of other axes are for one state of the machine, and have no direction.
-  auto sets = directions ? std::vector<CrossJob>{} : controllers::cross_jobs(input);
+  auto sets = directions
+                  ? std::vector<CrossJob>{}
+                  : controllers::cross_jobs(input, controllers::SecondSide::own_table, result);
   std::erase_if(sets, [&](const CrossJob& s) { return controllers::oversized(s, input, result); });
   const auto crosses = [&](const AxisJob& job) { return columns_of(sets, job, input); };
   const controllers::Writer writer{
@@ -252,7 +258,7 @@ Expected<OutputResult> write(const ControllerInput& input) {
   for (const AxisJob& job : *jobs)
     if (job.loaded) written.push_back(&job);
   if (written.empty()) return result;
-  for (const CrossJob& set : sets) predict_columns(set, written, input, result);
+  for (const CrossJob& set : sets) predict_columns(set, *jobs, input, result);
   result.artifacts.push_back(
       {"heidenhain-tnc-CONFIG.CMA",
        cma_table(written, axis_columns(input.campaign, *written.front()), layout)});

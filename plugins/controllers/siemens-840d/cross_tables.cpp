@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "nonio/controllers/replay.h"
 #include "parse.h"
 
 namespace nonio::siemens {
@@ -25,14 +26,27 @@ struct Naming {
   }
 };
 
+/// "X (AX1), Y (AX2), X2 (AX4)": the axes that these tables move.
+std::string outputs(const CrossJob& job, const std::vector<controllers::KnownAxis>& axes) {
+  std::string out;
+  for (const std::string& axis : job.outputs())
+    out += (out.empty() ? "" : ", ") + controllers::plain(axis) + " (AX" +
+           std::to_string(controllers::axis_named(axes, axis).number) + ")";
+  return out;
+}
+
 std::string table(const CrossCurve& curve, std::int64_t number, const Naming& name) {
   const std::string t = std::to_string(number);
   const auto line = [&](const char* what, const std::string& value) {
     return "$AN_CEC_" + std::string(what) + "[" + t + "]=" + value + "\n";
   };
   const auto& x = curve.position;
+  const std::string side = curve.side_of.empty()
+                               ? ""
+                               : ", the second side of the gantry axis " +
+                                     controllers::plain(curve.side_of) + ": the same entries";
   std::string out = "; table " + t + ": axis " + controllers::plain(curve.output) +
-                    " by the position of " + controllers::plain(curve.input) + "\n; " +
+                    " by the position of " + controllers::plain(curve.input) + side + "\n; " +
                     controllers::cross_words(curve) + "\n";
   for (std::size_t i = 0; i < x.size(); ++i)
     out += "$AN_CEC[" + t + "," + std::to_string(i) +
@@ -49,25 +63,32 @@ std::string file_text(const CrossJob& job, const ControllerInput& input, std::in
                       const Naming& name) {
   std::size_t points = 0;
   for (const CrossCurve& curve : job.curves) points = std::max(points, curve.position.size());
-  std::string out =
-      "%_N_NC_CEC_INI\nCHANDATA(1)\n" +
-      controllers::comments(
-          {std::string("straightness and squareness from the ") + (job.volume ? "step " : "") +
-               "diagonals of " + controllers::plain(job.measurement) + ", campaign " +
-               controllers::plain(input.campaign.id),
-           job.volume ? "pitch itself is not in these tables"
-                      : "the same points as the pitch tables; pitch itself is not in these tables",
-           std::string("the squareness is in them: do not ") +
-               (job.volume ? "enter it elsewhere too"
-                           : "shift the zero of a gantry's second side too"),
-           "entries are the error of the output axis with its own sign:",
-           "a positive entry moves the output axis towards minus",
-           "MD18342[t] >= " + std::to_string(points) + "; enable MD32710 of " +
-               (job.volume ? "all" : "both") + " output axes and SD41300[t]",
-           chosen_words(number, job.curves.size())},
-          "; ");
+  std::vector<std::string> words{
+      std::string("straightness and squareness from the ") + (job.volume ? "step " : "") +
+          "diagonals of " + controllers::plain(job.measurement) + ", campaign " +
+          controllers::plain(input.campaign.id),
+      job.volume ? "pitch itself is not in these tables"
+                 : "the same points as the pitch tables; pitch itself is not in these tables",
+      std::string("the squareness is in them: do not ") +
+          (job.volume ? "enter it elsewhere too" : "shift the zero of a gantry's second side too"),
+      "entries are the error of the output axis with its own sign:",
+      "a positive entry moves the output axis towards minus",
+      "MD18342[t] >= " + std::to_string(points) + "; enable MD32710 of " + outputs(job, name.axes) +
+          " and SD41300[t]",
+      chosen_words(number, job.curves.size())};
+  for (std::string& line : controllers::set_words(job)) words.push_back(std::move(line));
+  std::string out = "%_N_NC_CEC_INI\nCHANDATA(1)\n" + controllers::comments(words, "; ");
   for (const CrossCurve& curve : job.curves) out += table(curve, number++, name);
   return out + "M17\n";
+}
+
+/// What has to be enabled, once where several sets have the same axes.
+void note_enabling(const CrossJob& job, const std::vector<controllers::KnownAxis>& axes,
+                   std::vector<Remark>& notes) {
+  const Remark note{
+      job.volume ? "siemens.cross-volume" : "siemens.cross", {}, {{"axes", outputs(job, axes)}}};
+  if (notes.empty() || notes.back().id != note.id || notes.back().texts != note.texts)
+    notes.push_back(note);
 }
 
 }  // namespace
@@ -105,10 +126,14 @@ Expected<void> write_cross_tables(const ControllerInput& input,
   if (!axes) return tl::unexpected<Error>(axes.error());
   const Naming name{*axes, input.options.flag("quoted_axes")};
   std::int64_t first = input.options.integer("first_cec_table");
-  if (input.options.flag("directions"))
-    first += 2 * static_cast<std::int64_t>(input.campaign.machine.axes.size());
+  if (input.options.flag("directions")) {  // behind those of every axis, whatever its number
+    std::size_t most = input.campaign.machine.axes.size();
+    for (const controllers::KnownAxis& axis : *axes) most = std::max(most, axis.number);
+    first += 2 * static_cast<std::int64_t>(most);
+  }
 
-  const auto jobs = controllers::cross_jobs(input);
+  const auto jobs = controllers::cross_jobs(input, controllers::SecondSide::own_table, result);
+  std::vector<Remark> enabling;
   for (const CrossJob& job : jobs) {
     if (auto ok = controllers::fits(job, input.options); !ok) return ok;
     if (controllers::lacks_number(job.moving(), input, *axes, job.measurement, result)) continue;
@@ -122,9 +147,9 @@ Expected<void> write_cross_tables(const ControllerInput& input,
       return done;
     result.artifacts.push_back(std::move(file));
     note_chosen(job.axes(), first, job.curves.size(), result);
+    note_enabling(job, *axes, enabling);
   }
-  const bool volume = std::any_of(jobs.begin(), jobs.end(), [](const auto& j) { return j.volume; });
-  if (!jobs.empty()) result.notes.push_back({volume ? "siemens.cross-volume" : "siemens.cross"});
+  result.notes.insert(result.notes.end(), enabling.begin(), enabling.end());
   return {};
 }
 

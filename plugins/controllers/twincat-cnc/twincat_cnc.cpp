@@ -5,6 +5,7 @@
 
 #include "merge.h"
 #include "nonio/controllers/list.h"
+#include "nonio/controllers/replay.h"
 
 namespace nonio {
 namespace {
@@ -187,13 +188,14 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
 }
 
 std::string cross_list(const CrossCurve& c, const std::vector<controllers::KnownAxis>& axes,
-                       double sign, const std::string& about) {
+                       double sign, const CrossJob& job) {
   const auto units = [](double x) { return std::to_string(std::llround(x / 1e-7)); };
-  std::string out = head({about,
-                          "compensation of " + controllers::plain(c.output) +
-                              " by the position of " + controllers::plain(c.input),
-                          controllers::cross_words(c)},
-                         axis_named(axes, c.output).number, c.output);
+  std::vector<std::string> words{"from the diagonals of " + controllers::plain(job.measurement),
+                                 "compensation of " + controllers::plain(c.output) +
+                                     " by the position of " + controllers::plain(c.input),
+                                 controllers::cross_words(c)};
+  for (std::string& line : controllers::set_words(job)) words.push_back(std::move(line));
+  std::string out = head(words, axis_named(axes, c.output).number, c.output);
   out += line("kw.crosscomp.unit", "1") +
          line("kw.crosscomp.last_index", std::to_string(c.position.size() - 1)) +
          line("kw.crosscomp.master_ax_nr", std::to_string(axis_named(axes, c.input).number)) +
@@ -213,9 +215,10 @@ Expected<void> write_cross(const ControllerInput& in,
   const Campaign campaign = controllers::with_axes_of(in, pitch);
   const auto axes = controllers::known_axes({{}, campaign, in.options});
   if (!axes) return tl::unexpected<Error>(axes.error());
-  const auto jobs = controllers::cross_jobs(in);
+  if (said.empty()) return {};
+  const auto jobs = controllers::cross_jobs(in, controllers::SecondSide::own_table, result);
   for (const CrossJob& job : jobs) {
-    if (job.volume || said.empty()) continue;
+    if (job.volume) continue;
     if (auto ok = controllers::fits(job, in.options); !ok) return ok;
     if (controllers::lacks_number(job.moving(), in, *axes, job.measurement, result)) continue;
     if (controllers::oversized(job, in, result)) continue;
@@ -224,8 +227,7 @@ Expected<void> write_cross(const ControllerInput& in,
       files.push_back({"twincat-cnc-cross-" + controllers::file_part(c.output) +
                            (jobs.size() > 1 ? "-" + controllers::file_part(job.measurement) : "") +
                            ".lis",
-                       cross_list(c, *axes, said == "error" ? 1.0 : -1.0,
-                                  "from the diagonals of " + controllers::plain(job.measurement))});
+                       cross_list(c, *axes, said == "error" ? 1.0 : -1.0, job)});
     if (auto done = controllers::predict_cross(job, files, parse, pitch, in, result); !done)
       return done;
     for (Artifact& f : files) result.artifacts.push_back(std::move(f));

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "nonio/controllers/kit.h"
+#include "nonio/controllers/replay.h"
 #include "nonio/controllers/size.h"
 
 namespace nonio {
@@ -147,10 +148,21 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables.empty() ? Expected<std::vector<LoadedTable>>(fail("no block of errors")) : tables;
 }
 
+/// True, with a finding: one file holds all axes, and nothing in it is of a second side.
+bool second_side(const ControllerInput& in, OutputResult& result) {
+  for (const Axis& axis : in.campaign.machine.axes) {
+    if (axis.slave.empty()) continue;
+    controllers::refuse_second_side(axis, {}, result);
+    return true;
+  }
+  return false;
+}
+
 Expected<OutputResult> write(const ControllerInput& in) {
   OutputResult result;
   const auto table = controllers::chosen(declared(), in.options);
   if (!table) return tl::unexpected<Error>(table.error());
+  if (second_side(in, result)) return result;
   const controllers::Writer writer{
       "twincat-volumetric", *table, {"reference", "backlash"}, {}, parse};
   auto jobs = controllers::axis_jobs(in, writer.keys, result);
@@ -165,7 +177,7 @@ Expected<OutputResult> write(const ControllerInput& in) {
                              [&](const AxisJob& o) { return o.axis == j.axis; }) > 1;
       };
   std::erase_if(*jobs, twice);
-  auto sets = controllers::cross_jobs(in);
+  auto sets = controllers::cross_jobs(in, controllers::SecondSide::not_known, result);
   if (sets.size() > 1)
     return fail(
         "one file holds one state of the machine: leave one set of diagonals in the campaign");
@@ -179,6 +191,8 @@ Expected<OutputResult> write(const ControllerInput& in) {
   for (const AxisJob& j : *jobs)
     for (const std::string& warning : controllers::warnings(j, result)) words.push_back(warning);
   for (const Block& b : blocks) words.push_back(zero_words(b, *jobs));
+  for (const CrossJob& set : sets)
+    for (std::string& line : controllers::set_words(set)) words.push_back(std::move(line));
   const double sign = table->sign == ControlTable::Sign::error ? 1.0 : -1.0;
   result.artifacts.push_back({"twincat-volumetric-" + axes + ".csv", text_of(blocks, sign, words)});
   const auto read = parse({result.artifacts, in.campaign, in.options});
@@ -197,7 +211,7 @@ Expected<OutputResult> write(const ControllerInput& in) {
     controllers::note_size(job, size, result);
   }
   for (const CrossJob& set : sets) {
-    controllers::predict_lines(set, *read, result);
+    controllers::predict_lines(set, {.tables = *read}, result);
     controllers::note_cross(set, result);
   }
   controllers::note_facts(writer, result);

@@ -399,6 +399,39 @@ TEST(Cross, PitchOfStepDiagonalsGoesToEveryControl) {
   }
 }
 
+/// Step diagonals alone: of each positioning they know the shape, not the scale.
+TEST(Cross, ShapesOfStepDiagonalsAloneGiveThePitchTables) {
+  Bench bench = volume(false);
+  double worst_scale = 0.0;
+  for (Series& s : bench.results.analyses.front().evaluation.series) {
+    if (s.name[1] != s.name[2]) continue;
+    const double first = s.value.front(), last = s.value.back();
+    worst_scale += std::fabs(last - first);
+    for (std::size_t i = 0; i <= steps; ++i)
+      s.value[i] -= first + (last - first) * static_cast<double>(i) / steps;
+    s.name += "_shape";
+  }
+  const auto result = bench.write(siemens_plugin());
+  ASSERT_TRUE(result) << result.error().message;
+  for (const char* axis : {"X", "Y", "Z"}) {
+    const std::string text = file(*result, std::string("siemens-840d-") + axis + "-EEC.ini");
+    EXPECT_TRUE(contains(text, "NOT in the table: the scale of the axis")) << axis;
+    EXPECT_NE(note(*result, "table.from-shape", axis), nullptr);
+  }
+  // What is left is the scales, straight lines along each diagonal.
+  expect_diagonals_fall(*result, worst_scale + 0.3 * um);
+  for (const Prediction& p : result->predictions) EXPECT_NE(p.name, "M");
+  // A run of the axis in the same state makes the better table.
+  bench.add({.axis = "X",
+             .id = "X",
+             .targets = even(0.0, travel[0] / steps, steps + 1),
+             .plus = [](double p) { return 3 * um * p; },
+             .minus = [](double p) { return 3 * um * p; }});
+  const auto with_run = bench.write(siemens_plugin());
+  ASSERT_TRUE(with_run) << with_run.error().message;
+  EXPECT_FALSE(contains(file(*with_run, "siemens-840d-X-EEC.ini"), "the scale of the axis"));
+}
+
 TEST(Cross, EachStateOfAVolumeHasItsOwnColumns) {
   Bench bench = volume(true);
   Results::Analysed again = bench.results.analyses.front();

@@ -30,6 +30,8 @@ struct AxisJob {
   std::optional<math::ErrorCurve> measured;  ///< as measured, where `curve` is the model's
   std::optional<math::ErrorCurve> turn;      ///< of a rotary axis measured over the whole turn
   bool from_diagonals = false;  ///< positioning from step diagonals: nothing is known of reversal
+  bool scale_known =
+      true;  ///< false: `curve` is less its end line, as step diagonals alone know it
   math::Reversal reversal;
   AxisSettings settings;              ///< of this axis: option `axes`
   std::vector<std::string> drift;     ///< ids of the findings that ask for attention

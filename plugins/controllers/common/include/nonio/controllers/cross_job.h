@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,15 @@ struct CrossCurve {
   std::vector<double> position, value;
   double reference = 0.0;  ///< position of `input` where it is 0
   bool told = false;       ///< somebody says so; else 0 if it has it, else its nearest end
+  std::string
+      side_of{};  ///< where `output` is the second side of a gantry: the axis that it follows
+};
+
+/// What a control does with the second side of a gantry, where a table moves the first one.
+enum class SecondSide {
+  own_table,    ///< nothing: compensation is entered for each side, so both get the table
+  moves_along,  ///< the same: these tables change the position that is commanded
+  not_known,    ///< the maker does not say it: no table is written
 };
 
 /// A line in space as it was read: what tables do to it can be predicted.
@@ -29,6 +39,8 @@ struct ReadLine {
   std::map<std::string, double> sense;            ///< unit vector, by axis
   std::vector<std::map<std::string, double>> at;  ///< position of each axis at each stop
   std::vector<double> deviation;
+  std::vector<int> ways{1,
+                        -1};  ///< read along `sense`, against it: `deviation` is the mean of these
 };
 
 /// The curves of one evaluation: EYX over X, EXY with squareness over Y, and so on.
@@ -37,16 +49,26 @@ struct CrossJob {
   std::vector<std::string> uses;  ///< measurements that the curves are made from
   std::vector<CrossCurve> curves;
   std::vector<ReadLine> lines;
-  bool volume = false;  ///< of step diagonals: the pitch tables count in the prediction too
+  bool volume = false;  ///< of step diagonals
+  /// Two diagonals alone: the curves are the even parts of the straightnesses. Size of what is in no table, q_odd.
+  std::optional<double> odd_left{};
+  double yaw_at_reference =
+      0.0;  ///< rad, in the squareness: the beam of a gantry where its pitch tables are zero
 
-  /// X, Y, Z as far as they are in it, for names of files.
+  /// X, Y, Z as far as they are in it, for names of files; a gantry's second side goes with its axis.
   std::string axes() const;
+  /// Axes that the tables move, each once.
+  std::vector<std::string> outputs() const;
   /// Every axis that a curve is of or over.
   std::vector<std::string> moving() const;
 };
 
-/// Of the analyses that could separate the straightnesses: what is not known has no table.
-std::vector<CrossJob> cross_jobs(const ControllerInput&);
+/// Of the analyses: what is not known has no table. On a gantry each side has its curve, or a finding says why there
+/// is no table.
+std::vector<CrossJob> cross_jobs(const ControllerInput&, SecondSide, OutputResult& result);
+
+/// A finding: no such table on a gantry, as nobody says what the second side does.
+void refuse_second_side(const Axis&, const std::string& measurement, OutputResult& result);
 
 /// Whether this pitch table and these curves are of one state of the machine.
 bool together(const CrossJob&, const AxisJob&, const Campaign&);
@@ -55,22 +77,14 @@ bool together(const CrossJob&, const AxisJob&, const Campaign&);
 /// table of its output axis: settings largest_um and slope_um_per_m.
 bool oversized(const CrossJob&, const ControllerInput&, OutputResult&);
 
+/// Of the whole set, for the file: what is in no table, what the squareness is of. Notes say the same.
+std::vector<std::string> set_words(const CrossJob&);
+
 /// "Y over X: zero at 0.0 mm of X, largest entry ...", for the file; and the same as notes.
 std::string cross_words(const CrossCurve&);
 void note_cross(const CrossJob&, OutputResult&);
 
 /// More points than option `max_points` allows are an error.
 Expected<void> fits(const CrossJob&, const Settings& options);
-
-/// Ranges of the lines before, and after with these tables; tables that make one of them worse
-/// give a finding.
-void predict_lines(const CrossJob&, const std::vector<LoadedTable>&, OutputResult& result);
-
-/// The same with what `parse` makes of these files, and of a volume with the pitch tables beside
-/// them. An error where a curve is not found in the files.
-Expected<void> predict_cross(const CrossJob&, const std::vector<Artifact>&,
-                             Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
-                             const std::vector<AxisJob>& pitch, const ControllerInput&,
-                             OutputResult& result);
 
 }  // namespace nonio::controllers

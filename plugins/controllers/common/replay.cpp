@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/controllers/replay.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/controllers/kit.h"
+#include "nonio/math/axis_test.h"
+#include "nonio/math/loaded_table.h"
+
+namespace nonio::controllers {
+
+namespace {
+
+double range_of(const std::vector<double>& v) {
+  const auto [low, high] = std::minmax_element(v.begin(), v.end());
+  return *high - *low;
+}
+
+/// Where the line of this axis of the control was measured.
+const Measurement* line_on(const Campaign& campaign, const std::string& axis) {
+  for (const Measurement& m : campaign.measurements)
+    if (m.kind == "axis" && !m.at.empty() && control_axis(campaign.machine, m) == axis) return &m;
+  return nullptr;
+}
+
+/// Deviations along the line with the tables in the control: the mean of the directions in which it was read.
+std::optional<std::vector<double>> after(const ReadLine& line, const Replay& replay) {
+  std::vector<double> out = line.deviation;
+  for (const int way : line.ways)
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      std::map<std::string, int> direction;
+      for (const auto& [axis, sense] : line.sense) direction[axis] = sense < 0.0 ? -way : way;
+      for (const auto& [axis, sense] : line.sense) {
+        const auto moved = replay.moved(axis, line.at[i], direction);
+        if (!moved) return std::nullopt;
+        out[i] += sense * *moved / static_cast<double>(line.ways.size());
+      }
+    }
+  return out;
+}
+
+/// Error of one side of a gantry at the reference point of its pitch table, less that at `x0`: what the table of
+/// that side leaves.
+std::optional<double> left_on_side(const ControllerInput& in, const CrossJob& job,
+                                   const std::string& axis, double x0,
+                                   const NumberTables& settings) {
+  for (std::size_t i = 0; i < std::min(in.campaign.measurements.size(), in.observations.size());
+       ++i) {
+    const Measurement& m = in.campaign.measurements[i];
+    if (m.kind != "axis" || control_axis(in.campaign.machine, m) != axis ||
+        in.observations[i].size() == 0 ||
+        std::find(job.uses.begin(), job.uses.end(), m.id) == job.uses.end())
+      continue;
+    const math::ErrorCurve e = math::error_curve(math::AxisTest::arrange(in.observations[i]));
+    if (e.position.size() < 2) return std::nullopt;
+    double reference = std::clamp(0.0, e.position.front(), e.position.back());
+    if (const auto of = settings.find(axis); of != settings.end())
+      if (const auto said = of->second.find("reference_mm"); said != of->second.end())
+        reference = said->second / 1e3;
+    const auto at = [&](double x) { return math::ErrorCurve::at(e.position, e.mean, x); };
+    return at(reference) - at(x0);
+  }
+  return std::nullopt;
+}
+
+/// Several runs of a line: the worst of them.
+void keep_worst(std::vector<Prediction>& all, const Prediction& one) {
+  const auto known =
+      std::find_if(all.begin(), all.end(), [&](const Prediction& p) { return p.name == one.name; });
+  if (known == all.end()) return all.push_back(one);
+  known->before = std::max(known->before, one.before);
+  known->after = std::max(known->after, one.after);
+}
+
+}  // namespace
+
+std::vector<Beam> beams_of(const Campaign& campaign) {
+  std::vector<Beam> beams;
+  for (const Axis& a : campaign.machine.axes) {
+    if (a.slave.empty()) continue;
+    Beam& beam = beams.emplace_back(Beam{a.name, a.slave});
+    const Measurement *one = line_on(campaign, a.name), *other = line_on(campaign, a.slave);
+    if (one == nullptr || other == nullptr) continue;
+    for (const auto& [axis, place] : one->at) {
+      const auto there = other->at.find(axis);
+      if (there == other->at.end() || there->second == place) continue;
+      // Sides at other places of two axes: along which of them the beam lies is not known.
+      if (!beam.along.empty()) {
+        beam.along.clear();
+        break;
+      }
+      beam.along = axis, beam.at_axis = place, beam.at_slave = there->second;
+    }
+  }
+  return beams;
+}
+
+void turn_to_reference(const ControllerInput& in, CrossJob& job, const NumberTables& settings) {
+  for (const Beam& beam : beams_of(in.campaign))
+    for (CrossCurve& curve : job.curves) {
+      if (curve.output != beam.axis || curve.input != beam.along) continue;
+      const double x0 = job.lines.front().at.front().at(beam.axis);
+      const auto one = left_on_side(in, job, beam.axis, x0, settings),
+                 other = left_on_side(in, job, beam.slave, x0, settings);
+      if (!one || !other) continue;
+      const double turn = (*other - *one) / (beam.at_slave - beam.at_axis);
+      for (std::size_t i = 0; i < curve.value.size(); ++i)
+        curve.value[i] += turn * (curve.position[i] - curve.position.front());
+      job.yaw_at_reference = -turn;
+    }
+}
+
+std::optional<double> Replay::moved(const std::string& axis, std::map<std::string, double> at,
+                                    std::map<std::string, int> direction) const {
+  for (const Beam& b : beams)
+    if (at.contains(b.axis)) at[b.slave] = at[b.axis], direction[b.slave] = direction[b.axis];
+  const auto of = [&](const std::string& one) {
+    double sum = math::added(tables, one, at, direction);
+    const auto was = backlash.find(one);
+    for (const LoadedTable& t : tables)
+      if (t.output == one && t.backlash)
+        sum += (*t.backlash - (was == backlash.end() ? 0.0 : was->second)) / 2.0 * direction[one];
+    return sum;
+  };
+  const auto beam =
+      std::find_if(beams.begin(), beams.end(), [&](const Beam& b) { return b.axis == axis; });
+  const double own = of(axis);
+  if (beam == beams.end()) return own;
+  constexpr double same = 1e-12;  // m
+  const double other = of(beam->slave);
+  if (std::fabs(other - own) < same) return own;
+  const auto y = at.find(beam->along);
+  if (y == at.end()) return std::nullopt;
+  return own + (other - own) * (y->second - beam->at_axis) / (beam->at_slave - beam->at_axis);
+}
+
+Replay replay_of(const CrossJob& set, const std::vector<AxisJob>& pitch,
+                 const ControllerInput& input) {
+  Replay replay{.tables = {}, .beams = beams_of(input.campaign)};
+  for (const AxisJob& job : pitch) {
+    if (!job.loaded || !together(set, job, input.campaign)) continue;
+    for (const LoadedTable& t : *job.loaded) replay.tables.push_back(t);
+    replay.backlash[job.axis] = job.present_backlash();
+    const Axis* axis = input.campaign.machine.axis(job.axis);
+    if (axis != nullptr && axis->table_on && !axis->table_on->empty()) replay.replaces = job.axis;
+  }
+  return replay;
+}
+
+void predict_lines(const CrossJob& job, const Replay& replay, OutputResult& result) {
+  if (!replay.replaces.empty()) {
+    result.notes.push_back(
+        {"table.diagonals-not-predicted", {}, {{"axis", replay.replaces}}, job.measurement});
+    return;
+  }
+  std::vector<Prediction> all;
+  for (const ReadLine& line : job.lines) {
+    if (line.deviation.size() < 2) continue;  // nothing of it was read at whole steps
+    const auto will = after(line, replay);
+    if (!will) {
+      result.notes.push_back({"table.sides-not-placed", {}, {}, job.measurement});
+      return;
+    }
+    keep_worst(all, {job.measurement, line.name.substr(0, line.name.find(' ')),
+                     range_of(line.deviation), range_of(*will), Quantity::deviation});
+  }
+  for (Prediction& p : all) {
+    if (!(p.after < p.before))
+      result.findings.push_back({.id = "table.no-gain",
+                                 .attention = true,
+                                 .evidence = {{"before", p.before, Quantity::deviation},
+                                              {"after", p.after, Quantity::deviation}},
+                                 .texts = {{"axis", p.name}},
+                                 .measurement = job.measurement,
+                                 .advice = "These tables would not make the diagonal better."});
+    result.predictions.push_back(std::move(p));
+  }
+}
+
+Expected<void> predict_cross(const CrossJob& job, const std::vector<Artifact>& files,
+                             Expected<std::vector<LoadedTable>> (*parse)(const TableInput&),
+                             const std::vector<AxisJob>& pitch, const ControllerInput& input,
+                             OutputResult& result) {
+  const Campaign campaign = with_axes_of(input, pitch);
+  auto tables = parse({files, campaign, input.options});
+  const auto unread = [&](const std::string& why) {
+    return fail("diagonals of " + job.measurement +
+                ": the table written cannot be read back: " + why);
+  };
+  if (!tables) return unread(tables.error().message);
+  for (const CrossCurve& curve : job.curves)
+    if (std::none_of(tables->begin(), tables->end(), [&](const LoadedTable& t) {
+          return t.output == curve.output &&
+                 std::find(t.input.begin(), t.input.end(), curve.input) != t.input.end();
+        }))
+      return unread(curve.output + " by " + curve.input + " is not in it");
+  Replay replay = replay_of(job, pitch, input);
+  replay.tables.insert(replay.tables.end(), tables->begin(), tables->end());
+  predict_lines(job, replay, result);
+  note_cross(job, result);
+  return {};
+}
+
+}  // namespace nonio::controllers
