@@ -132,8 +132,9 @@ std::string size_words(const AxisJob& job, const TableSize& size) {
          with_unit(job, size.largest_at, 4) + ", steepest " +
          decimal(size.slope * slope.per_si, 3) + " " + std::string(slope.symbol) +
          limit("slope_um_per_m", "slope_arcsec_per_deg", slope.symbol) + " from " +
-         with_unit(job, size.slope_from, 4) + "; E of the axis " +
-         deviation_words(job, explained(job).E);
+         with_unit(job, size.slope_from, 4) +
+         (job.scale_known ? "; E of the axis " + deviation_words(job, explained(job).E)
+                          : std::string());
 }
 
 void note_zero(const AxisJob& job, double zero, OutputResult& result) {
@@ -144,11 +145,10 @@ void note_zero(const AxisJob& job, double zero, OutputResult& result) {
 }
 
 void note_size(const AxisJob& job, const TableSize& size, OutputResult& result) {
-  Remark note = remark(job, "table.size");
+  Remark note = remark(job, job.scale_known ? "table.size" : "table.size-of-shape");
   const Quantity q = deviation_of(job.rotary);
-  note.evidence = {{"largest", size.largest, q},
-                   {"slope", size.slope, slope_of(job.rotary)},
-                   {"E", explained(job).E, q}};
+  note.evidence = {{"largest", size.largest, q}, {"slope", size.slope, slope_of(job.rotary)}};
+  if (job.scale_known) note.evidence.push_back({"E", explained(job).E, q});
   result.notes.push_back(std::move(note));
 }
 

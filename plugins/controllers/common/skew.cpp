@@ -9,6 +9,8 @@
 
 #include "nonio/controllers/replay.h"
 
+#include "nonio/controllers/replay.h"
+
 namespace nonio::controllers {
 namespace {
 

@@ -305,8 +305,9 @@ class Gantry(BenchTest):
         self.gantry('slave = "X2"', ("master", "slave"))
         files, findings, _ = self.tables()
         self.assertIn("table.axis-number", findings)
-        self.assertIn("siemens-840d-X-EEC.ini", files)
-        self.assertFalse([n for n in files if "X2" in n])
+        # Nor does the master get one: a table of one side alone turns the beam.
+        self.assertIn("table.gantry-one-side", findings)
+        self.assertEqual(files, {})
         # The record of the machine says it too; its place among the machine's axes does not.
         self.gantry('slave = "X2"\n[machine.axes.Z]\nkind = "linear"\n' + self.none_active("X2", "linear"), ("master", "slave"))
         self.assertIn("table.axis-number", self.tables()[1])

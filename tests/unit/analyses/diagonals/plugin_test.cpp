@@ -249,6 +249,20 @@ TEST(DiagonalPlugin, RecoversTheMachineAndSaysWhatItUsed) {
   EXPECT_EQ(series(e, "q_odd"), nullptr);
 }
 
+TEST(DiagonalPlugin, TheSlaveIsShiftedWhereverTheManifestHasIt) {
+  std::mt19937 rng(seed);
+  const Rectangle rect{12.0, 9.0, 30};
+  const Errors errors = random_gantry(rng, rect);
+  for (const bool first : {true, false}) {
+    Workpiece w(rect, errors);
+    w.everything();
+    for (Measurement& m : w.campaign.measurements)
+      if (m.id == "X1" || m.id == "X2") m.side = (m.id == "X1") == first ? "slave" : "master";
+    const Evaluation e = w.evaluate();
+    EXPECT_NEAR(value(e, "slave_shift"), (first ? -8.0 : 8.0) * errors.C0Y, 0.05 * um);
+  }
+}
+
 TEST(DiagonalPlugin, NeverSplitsWhatTwoDiagonalsDoNotContain) {
   Workpiece w({12.0, 9.0, 30});
   w.errors.EXY = [](double y) { return 50 * um * std::sin(2.0 * std::numbers::pi * y / 9.0); };
