@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "nonio/reports/history_value.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/units.h"
 #include "printable.h"

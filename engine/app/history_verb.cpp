@@ -83,10 +83,10 @@ Verb history_verb(Common& common) {
           "A line a campaign: o as found, x as left, + check, . not comparable, with U (k = 2) as "
           "in\n"
           "its report, and in brackets U of comparison: what the scatter of the readings shows,\n"
-          "without what all campaigns with one instrument share. ! the limit, * what happened, ~ "
-          "what changed, with its U and p among all that its night\n"
-          "asked. What is not told as a change was too small to be seen: from which size on one\n"
-          "would have been stands below. A, E and R are shown, no line is drawn through them.\n\n"
+          "without what all campaigns with one instrument share. ! the limit, * what happened,\n"
+          "~ what changed, with its U and p among all that its night asked. What is not told as a\n"
+          "change was too small to be seen: from which size on one would have been stands below.\n"
+          "A, E and R are shown, no line is drawn through them.\n\n"
           "--json writes schema nonio-history/1 (docs/history.md).\n\n"
           "Example: nonio history out S-0042 --axis X --quantity B_mean",
       .run = [wish, &common] { return history(*wish, common); }};

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "axis_scale.h"
-#include "nonio/reports/history_value.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 

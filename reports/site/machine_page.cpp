@@ -4,7 +4,6 @@
 
 #include "chart.h"
 #include "html.h"
-#include "nonio/reports/history_value.h"
 #include "nonio/reports/number.h"
 #include "nonio/reports/quantity_words.h"
 #include "nonio/sdk/format.h"

@@ -4,7 +4,6 @@
 
 #include "host/morning/assess.h"
 #include "host/storage/json_writer.h"
-#include "nonio/reports/history_value.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/units.h"
 

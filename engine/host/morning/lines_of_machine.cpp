@@ -9,7 +9,6 @@
 #include "host/morning/describe.h"
 #include "host/morning/lines.h"
 #include "host/morning/open_values.h"
-#include "nonio/reports/history_value.h"
 
 namespace nonio::host::morning {
 

@@ -8,7 +8,6 @@
 
 #include "host/morning/describe.h"
 #include "host/storage/json_values.h"
-#include "nonio/reports/history_value.h"
 
 namespace nonio::host::morning {
 

@@ -630,6 +630,7 @@ Templates words_of(const std::string& language) {
   return out;
 }
 
+// Long: one laboratory with a line of every kind.
 TEST(MorningLines, EachHasWordsInEachLanguage) {
   Laboratory lab;
   lab.tonight.vanished = {{"gone", "gone", 4, "not there"}, {"a", "a", 4, ""}, {"b", "b", 4, ""}};

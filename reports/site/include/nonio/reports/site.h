@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "nonio/reports/history_value.h"
 #include "nonio/sdk/history.h"
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
