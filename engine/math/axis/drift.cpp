@@ -187,6 +187,29 @@ Drift estimate_drift(const AxisTest& test) {
   return drift;
 }
 
+namespace {
+
+// In the largest standard deviation of a direction, of which R is made: s^2 is that of the axis and the
+// mean square that the drift may have.
+double in_scatter(const AxisTest& test, const Drift& drift, bool minus) {
+  double largest = 0.0, share = 0.0;
+  for (std::size_t i = 0; i < test.targets.size(); ++i) {
+    const auto part = minus ? test.minus(i) : test.plus(i);
+    if (part.size() < 2) continue;
+    const double s = standard_deviation(deviations(part));
+    if (s <= largest) continue;
+    std::vector<double> runs;
+    for (const auto& reading : part) runs.push_back(reading.run);
+    const double rate = std::hypot(drift.per_run_at(test.targets[i]), drift.u_at(test.targets[i]));
+    const double left = s * s - square_of(rate * standard_deviation(runs));
+    largest = s;
+    share = s - std::sqrt(std::max(0.0, left));
+  }
+  return share;
+}
+
+}  // namespace
+
 DriftShare drift_share(const AxisTest& test) {
   constexpr double k = 2.0;
   DriftShare share;
@@ -194,18 +217,11 @@ DriftShare drift_share(const AxisTest& test) {
   if (!drift.offset.known) return share;
   const Reversal reversal = assess_reversal(test);
   const double u_mean = std::isfinite(reversal.u_mean) ? reversal.u_mean : 0.0;
+  share.s = std::max(in_scatter(test, drift, false), in_scatter(test, drift, true));
   const double k_largest = factor_of_largest(test.targets.size());
   double shift = 0.0, by_offset = 0.0, by_slope = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i) {
     const double x = test.targets[i], rate = std::fabs(drift.per_run_at(x)), u = drift.u_at(x);
-    for (const auto& part : {test.plus(i), test.minus(i)}) {
-      if (part.size() < 2) continue;
-      std::vector<double> runs;
-      for (const auto& reading : part) runs.push_back(reading.run);
-      const double s = standard_deviation(deviations(part));
-      const double of_drift = (rate + k * u) * standard_deviation(runs);
-      share.s = std::max(share.s, s - std::sqrt(std::max(0.0, s * s - of_drift * of_drift)));
-    }
     if (drift.lag.empty() || test.plus(i).empty() || test.minus(i).empty()) continue;
     const double lag = drift.lag[i], m = static_cast<double>(test.targets.size());
     const double of_B_i =

@@ -49,7 +49,7 @@ Drift estimate_drift(const AxisTest&);
 struct DriftShare {
   double B = 0.0;       ///< at the worst target
   double B_mean = 0.0;  ///< mean over the targets
-  double s = 0.0;       ///< in the standard deviation of the worst target and direction
+  double s = 0.0;       ///< in the largest standard deviation of a target and direction
 };
 DriftShare drift_share(const AxisTest&);
 
