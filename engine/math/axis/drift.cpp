@@ -191,19 +191,22 @@ namespace {
 
 // In the largest standard deviation of a direction, of which R is made: s^2 is that of the axis and the
 // mean square that the drift may have.
+// Of equal ones the larger share: rounding must not choose between them.
 double in_scatter(const AxisTest& test, const Drift& drift, bool minus) {
+  constexpr double equal = 1e-9;
   double largest = 0.0, share = 0.0;
   for (std::size_t i = 0; i < test.targets.size(); ++i) {
     const auto part = minus ? test.minus(i) : test.plus(i);
     if (part.size() < 2) continue;
     const double s = standard_deviation(deviations(part));
-    if (s <= largest) continue;
+    if (s < largest * (1.0 - equal)) continue;
     std::vector<double> runs;
     for (const auto& reading : part) runs.push_back(reading.run);
     const double rate = std::hypot(drift.per_run_at(test.targets[i]), drift.u_at(test.targets[i]));
     const double left = s * s - square_of(rate * standard_deviation(runs));
-    largest = s;
-    share = s - std::sqrt(std::max(0.0, left));
+    const double own = s - std::sqrt(std::max(0.0, left));
+    share = s > largest * (1.0 + equal) ? own : std::max(share, own);
+    largest = std::max(largest, s);
   }
   return share;
 }

@@ -249,6 +249,14 @@ bool both_sides(CrossJob& job, SecondSide rule, const Campaign& campaign, Output
   return true;
 }
 
+/// A cross table replaces the active one too; a backlash value has no part in it.
+bool all_active_stated(const ControllerInput& in, const CrossJob& job, OutputResult& result) {
+  bool all = true;
+  for (const std::string& axis : job.moving())
+    all = states_active(in, axis, job.measurement, true, result) && all;
+  return all;
+}
+
 }  // namespace
 
 void refuse_second_side(const Axis& axis, const std::string& measurement, OutputResult& result) {
@@ -262,18 +270,6 @@ void refuse_second_side(const Axis& axis, const std::string& measurement, Output
        "gantry: ask the maker, or shift the zero of " +
            axis.slave + " by slave_shift, which takes the squareness away."});
 }
-
-namespace {
-
-/// A cross table replaces the active one too; a backlash value has no part in it.
-bool all_active_stated(const ControllerInput& in, const CrossJob& job, OutputResult& result) {
-  bool all = true;
-  for (const std::string& axis : job.moving())
-    all = states_active(in, axis, job.measurement, true, result) && all;
-  return all;
-}
-
-}  // namespace
 
 std::vector<CrossJob> cross_jobs(const ControllerInput& in, SecondSide rule, OutputResult& result) {
   std::vector<CrossJob> jobs;

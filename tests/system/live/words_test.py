@@ -22,7 +22,7 @@ class Words(unittest.TestCase):
         "space.is_": ("engine/host/config/keys/machine_of_campaign.h", r"structures\[\] = (.*?);", {}), "space.": None, "more.is_": ("engine/model/diagnosis/foresight.cpp", r"wanted\{(.*?)\}", {}), 
         "check.": ("engine/sign/src/*.cpp engine/host/certificates/content_check.cpp engine/host/certificates/verify.cpp engine/host/certificates/register_check.cpp", r"(?:add\(|Check check\{|State state\) \{|push_back\(\{|sign::Check\{)\s*(\"(?:signature|file|updates|signer|certificate|xml|register|content|attachments)[a-z.-]*\")", {"dcc", "dcc_none", "dcc_values", "signature_form", "signature_time", "xml_time"}),
         "where.": ("engine/model/fit/places.cpp", r"name_of\(Factor factor\) \{(.*?)\n\}", {}),
-        "verdict.": None, "verify.": None, "x.": None, "column.": None, "key.": None, "drawn.": None, "learn.step": None, "learn.hint.": None, "site.": None,
+        "verdict.": None, "verify.": None, "verify.verdict_": None, "x.": None, "column.": None, "key.": None, "drawn.": None, "learn.step": None, "learn.hint.": None, "site.": None,
         "failing.": None, "kind.": None, "program.": None, "refused.": None,
     }
 

@@ -21,9 +21,10 @@ SEED = int(os.environ.get("NONIO_SEED", random.SystemRandom().randrange(2**31)))
 
 # Findings of one measurement of which at most one can be true.
 EXCLUDE_EACH_OTHER = (
-    {"reversal.lost-motion", "reversal.positive", "reversal.over-compensated"},
-    {"before-after.worked", "before-after.not-active", "before-after.wrong-sign", "before-after.something-else",
-     "before-after.reversal-not-active", "before-after.reversal-wrong-sign"},
+    {"reversal.lost-motion", "reversal.positive", "reversal.positive-uncompensated", "reversal.over-compensated"},
+    {"before-after.worked", "before-after.mean-as-predicted", "before-after.not-active", "before-after.wrong-sign", "before-after.something-else"},
+    {"before-after.worked", "before-after.reversal-as-predicted", "before-after.reversal-not-active", "before-after.reversal-wrong-sign",
+     "before-after.reversal-something-else", "before-after.reversal-cannot-tell"},
     {"reversal.elastic", "plausibility.pass-sign-turned"},
     {"reversal.elastic", "plausibility.pass-order-turned"},
     {"drift.parallel", "repeatability.good"},
@@ -73,7 +74,7 @@ class Truth(unittest.TestCase):
         path = folder / "values.csv"
         if not path.exists():
             return
-        rows = {(r["measurement"], r["plugin"], r["name"]): r for r in csv.DictReader(path.open())}
+        rows = {(r["measurement"], r["plugin"], r["name"]): r for r in csv.DictReader(path.read_text().splitlines())}
         wanted = {(a.get("measurement", ""), a["plugin"], name): v for a, name, v in values_of(results)}
         self.assertEqual(set(rows), set(wanted))
         for key, v in wanted.items():
@@ -95,7 +96,7 @@ class Truth(unittest.TestCase):
             head = re.match(r"  (\S+) \d+\.\d+\.\d+$", line)
             if head:
                 plugin = head[1] if head[1] in known else None
-            row = re.match(r"    (\S+)\s+(-?\d[\d.]*(?:e[-+]?\d+)?)\s+(\d[\d.]*)\s+(um|arcsec|urad|mm|um/m)\b", line)
+            row = re.match(r"    (\S+)\s+(-?\d[\d.]*(?:e[-+]?\d+)?)\s+(\d[\d.]*)\s+(\S+)", line)
             if row and plugin:
                 key = (measurement, plugin, row[1])
                 self.assertNotIn(key, printed)
@@ -207,10 +208,11 @@ class Truth(unittest.TestCase):
                 results = by_campaign.get(p["campaign"])
                 if results is None or s["quantity"] != "B_mean":
                     continue
-                for a, name, v in values_of(results):
-                    if name == "B_mean" and a["plugin"] == "iso230-2" and "U" in v and abs(v["value"] - p["value"]) < 1e-6:
-                        self.assertAlmostEqual(2 * math.hypot(p["u"], p["u_common"]), v["U"], delta=0.002 * v["U"] + 1e-9, msg=(s["machine"], p, v))
-            if s["points"] and "forecast" in s:
+                stated = [v["U"] for a, name, v in values_of(results) if name == "B_mean" and a["plugin"] == "iso230-2" and "U" in v
+                          and abs(v["value"] - p["value"]) < 1e-6]
+                if stated:  # of several measurements with this value one
+                    self.assertTrue(any(abs(p["U"] - U) <= 1e-6 * U for U in stated), (s["machine"], p, stated))
+            if s["points"] and s.get("forecast"):
                 last = s["points"][-1]
                 if (last["campaign"], s["axis"]) in out_now:
                     self.assertNotEqual(s["forecast"]["answer"], "keep", (s["machine"], s["quantity"], last))
@@ -296,7 +298,8 @@ class Random(Truth):
                     self.assertAlmostEqual(part["model"][rms], compared["model"][rms], delta=1e-6)
                     if "after_table" in compared:
                         after = compared["after_table"]
-                        self.assertLessEqual(after[rms], after[rms.replace("rms_", "rms_before_")] * 1.0001)
+                        if set(after["takes"]) == set(compared["model"]["effects"]):  # else what remains may have hidden the rest
+                            self.assertLessEqual(after[rms], after[rms.replace("rms_", "rms_before_")] * 1.0001)
                     if part["verdict"]["kind"] != "missing":
                         break
                     effect = part["verdict"]["effect"]

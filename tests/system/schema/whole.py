@@ -26,7 +26,7 @@ def campaign():
         "square": [{"id": "Q", "error_urad": -1.5, "U_urad": 1}],
         "environment": {"misalignment_mm": 0.5, "temperature_range_K": 0.2, "temperature_difference_K": 1,
                         "expansion_range_um_per_m_K": 1.0, "drift_um": 0.6, "drift_arcsec": 0.1,
-                        "drift_minutes": 30, "warm_up": "W", "sensors": "S"},
+                        "drift_minutes": 30, "warm_up": "W", "sensors": "S", "normalised": True},
         "certificate": {"languages": ["it", "en"], "template": "certificate", "location": "customer",
                         "procedure": "P", "title": {"it": "T", "en": "T"}, "decision_rule": "iso14253-1",
                         "deviations": "D", "nothing_else_by": "B", "conditions": "C", "opinions": "O", "amendment": "A",

@@ -131,11 +131,11 @@ TEST_F(PdfReport, SaysWhatTheResultsSay) {
   table.result.predictions = {{"X", "E", 11.9e-6, 1.2e-6}};
   c.results.outputs.push_back(table);
   const std::string en = text(c), it = text(c, "it");
-  for (const char* what : {"Calibration report", "Officine Rossi S.r.l.", "FP 12", "LX 80",
+  for (const char* what : {"Measurement report", "Officine Rossi S.r.l.", "FP 12", "LX 80",
                            "does not conform", "conforms", "Lost motion at reversal",
                            "some-control-X.txt", "11.90 → 1.20", "VDI/DGQ 3441"})
     EXPECT_TRUE(has(en, what)) << what;
-  for (const char* what : {"Rapporto di taratura", "non conforme", "11,90 → 1,20", "Asse X"})
+  for (const char* what : {"Relazione di misura", "non conforme", "11,90 → 1,20", "Asse X"})
     EXPECT_TRUE(has(it, what)) << what;
 }
 
@@ -202,7 +202,7 @@ TEST_F(PdfReport, NothingNeedsAttentionOnlyWhereSomethingWasJudged) {
 TEST_F(PdfReport, WhatItSaysOfTheCampaignIsSo) {
   Case axes = usual();
   const std::string positioning = "Accuracy and repeatability of positioning",
-                    rule = "Decision rule after", sign = "B = mean";
+                    rule = "Decision rule according to", sign = "B = mean";
   EXPECT_TRUE(has(text(axes), positioning));
   EXPECT_TRUE(has(text(axes), sign));
   // A limit of an axis that was not measured: no decision, and no rule of one.

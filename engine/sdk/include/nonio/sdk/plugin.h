@@ -229,7 +229,7 @@ class Registry {
 };
 
 /// The version of this interface: the one place that it stands in.
-#define NONIO_SDK_VERSION 12
+#define NONIO_SDK_VERSION 13
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
