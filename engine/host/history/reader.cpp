@@ -128,11 +128,12 @@ void read_results(Database& database, std::size_t campaign, std::int64_t evaluat
   }
 }
 
-/// What says that a table or a certificate was not made, or is not to be used.
+/// What says that a table or a certificate was not made, or is not to be used; or that the
+/// instrument had no valid calibration.
 bool withholds(const FindingRow& f) {
   return f.severity == "attention" &&
          (f.id.starts_with("table.") || f.id.starts_with("certificate.") ||
-          f.id == "signature.not-released");
+          f.id.starts_with("traceability.") || f.id == "signature.not-released");
 }
 
 void read_findings(Database& database, std::size_t campaign, std::int64_t evaluation,

@@ -333,7 +333,10 @@ class OfMachine {
     for (const Withheld& w : withheld(m_.stored)) {
       const history::StoredCampaign& c = m_.stored.campaigns[w.campaign];
       const bool table = w.finding.starts_with("table.");
-      MorningLine l = line(Kind::withheld, table ? "morning.no-table" : "morning.certificate",
+      MorningLine l = line(Kind::withheld,
+                           table                       ? "morning.no-table"
+                           : is_calibration(w.finding) ? "morning.calibration"
+                                                       : "morning.certificate",
                            c.id + (w.axis.empty() ? "" : ":" + w.axis));
       l.axis = w.axis, l.campaign = c.id, l.since = c.day;
       put_text(l, "campaign", c.id);

@@ -123,6 +123,8 @@ reports::OpenValue open_value(const StoredMachine& m, const LimitWithoutValue& l
   return out;
 }
 
+bool is_calibration(std::string_view finding) { return finding.starts_with("traceability."); }
+
 std::vector<Withheld> withheld(const StoredMachine& m) {
   const auto newest = newest_of_axes(m);
   std::map<std::tuple<std::size_t, std::string, std::string>, std::set<std::string>> found;
@@ -131,6 +133,7 @@ std::vector<Withheld> withheld(const StoredMachine& m) {
       const bool is_table = f.id.starts_with("table.");
       const std::string axis = is_table ? axis_of_measurement(m, i, f.measurement) : std::string();
       if (is_table && is_measured_later(m, newest, i, axis)) continue;
+      if (is_calibration(f.id) && is_measured_later(m, newest, i, {})) continue;
       found[{i, axis, f.id}].insert(f.source);
     }
   std::vector<Withheld> out;

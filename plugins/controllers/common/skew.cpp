@@ -9,8 +9,6 @@
 
 #include "nonio/controllers/replay.h"
 
-#include "nonio/controllers/replay.h"
-
 namespace nonio::controllers {
 namespace {
 

@@ -585,11 +585,15 @@ TEST(MorningLines, WhatWasWithheldIsALine) {
   for (const char* axis : {"X", "Y"})
     m.stored().asked[1].push_back({axis, "fanuc", "table.refused-reversal", "attention"});
   m.stored().asked[0] = {{"", "certificate", "certificate.incomplete", "attention"}};
+  for (const std::size_t campaign : {0, 1})  // the first was measured again
+    m.stored().asked[campaign].push_back(
+        {"", "plausibility", "traceability.calibration-expired", "attention"});
   lab.machines.push_back(m);
   std::vector<std::string> ids;
   for (const MorningLine& l : lab.lines())
     if (l.kind == Kind::withheld) ids.push_back(l.id);
-  EXPECT_EQ(ids, (std::vector<std::string>{"morning.certificate:S-42:S-42-1",
+  EXPECT_EQ(ids, (std::vector<std::string>{"morning.calibration:S-42:S-42-2",
+                                           "morning.certificate:S-42:S-42-1",
                                            "morning.no-table:S-42:S-42-2:Y"}));
 }
 
@@ -693,7 +697,7 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
                          "morning.no-machine",     "morning.no-value",
                          "morning.no-table",       "morning.certificate",
                          "morning.no-uncertainty", "morning.draft",
-                         "morning.failed-several"})
+                         "morning.failed-several", "morning.calibration"})
     EXPECT_TRUE(ids.contains(id)) << id;
 }
 
