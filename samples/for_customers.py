@@ -73,6 +73,7 @@ temperature_range_K = 0.2
 temperature_difference_K = 0.8
 expansion_range_um_per_m_K = 1.0
 drift_um = 0.6
+normalised = true
 warm_up = "30 min over the whole travel at 5 m/min"
 sensors = "bed, at 200 mm and 600 mm"
 

@@ -94,8 +94,8 @@ class Cases(unittest.TestCase):
                      "calibrated-later": swap("2026-01-12", "2026-03-03")}
         refused = {"expansion-small": (swap("= 11.5", "= 0.0000115"), 15, "1/K"),
                    "expansion-large": (swap("= 11.5", "= 11500"), 15, "found 11500"),
-                   "kelvin": (swap("difference_K = 0.8", "difference_K = 293"), 27, "found 293"),
-                   "uncertainty": (swap("U_fixed_um = 0.1", "U_fixed_um = 1e308"), 22, "found 1e+308")}
+                   "kelvin": (swap("difference_K = 0.8", "difference_K = 293"), 29, "found 293"),
+                   "uncertainty": (swap("U_fixed_um = 0.1", "U_fixed_um = 1e308"), 24, "found 1e+308")}
         for i, (name, change) in enumerate(attention.items()):
             self.rows[0][3] += 0.001  # other files than those of the others
             self.campaign(name, change=change)

@@ -663,9 +663,13 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
   lab.machines[6].stored().without_value = {{0, "", "X", "A", "um", 5.0}};
   lab.machines[6].stored().asked = {{{"X", "fanuc", "table.refused-reversal", "attention"},
                                      {"", "certificate", "certificate.incomplete", "attention"}}};
+  lab.machines.emplace_back("S-49", 1);
+  lab.machines[7].judge("X", "B", {5});
+  lab.machines[7].stored().asked = {
+      {{"", "plausibility", "traceability.calibration-expired", "attention"}}};
   lab.machines.emplace_back("S-48", 1);
-  lab.machines[7].judge("X", "B", {8});
-  lab.machines[7].stored().results.back().expanded.reset();
+  lab.machines[8].judge("X", "B", {8});
+  lab.machines[8].stored().results.back().expanded.reset();
   lab.tonight.waiting = {"S-48-1"};
   for (int i = 0; i < 4; ++i)
     lab.tonight.failed.push_back({"f" + std::to_string(i), "f", "same", ""});
