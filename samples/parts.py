@@ -142,8 +142,8 @@ def toml(value):
 
 def manifest(story, ident, customer, place, date, machine, axes, measurements, instrument=None,
              environment=None, analyses=None, model=None, operator="A. Sample", campaign=None, options=None,
-             outputs=None):
-    """`campaign`: more keys of [campaign]; `options`: {plugin: {key: value}}."""
+             outputs=None, none_active=True):
+    """`campaign`: more keys of [campaign]; `options`: {plugin: {key: value}}; `none_active`: no compensation was."""
     out = ["# Constructed: nobody measured this machine, and customer and machine are invented."]
     out += ["# " + line for line in story]
     out += ["format = 1", "", "[campaign]", 'id = "%s"' % ident, 'customer = "%s"' % customer,
@@ -151,7 +151,7 @@ def manifest(story, ident, customer, place, date, machine, axes, measurements, i
     out += ['%s = "%s"' % item for item in (campaign or {}).items()] + ["", "[machine]"]
     out += ['%s = "%s"' % item for item in machine.items()]
     for name, keys in axes.items():
-        active = {"table_on": '"none"', "backlash_on_%s" % ("deg" if "rotary" in keys["kind"] else "mm"): '"none"'}
+        active = {} if not none_active else {"table_on": '"none"', "backlash_on_%s" % ("deg" if "rotary" in keys["kind"] else "mm"): '"none"'}
         out += ["", "[machine.axes.%s]" % name] + ["%s = %s" % item for item in {**keys, **active}.items()]
     out += ["", "[instrument]"] + ["%s = %s" % item for item in (instrument or INTERFEROMETER).items()]
     if environment:

@@ -57,7 +57,7 @@ def common_machine(lab, k, calm=False, prefix="S", models=MODELS):
     model, axes = models[k % len(models)]
     made = [linear_axis(noise, name, travel, calm) for name, travel in axes]
     machine = Machine("%s-%04d" % (prefix, k + 1), "%s %d" % (model, 1 + k % 7), "%s-%04d" % (prefix, k + 1), made, "Example Customer %02d" % (k // 3 + 1),
-                      "Exampletown", structure="other" if model == "LT" else "single-column", tolerance={"linear": {"A": 18.0, "B": 8.0, "R": 8.0}},
+                      "Exampletown", structure="other" if model == "LT" else "single-column", tolerance={"linear": {"A": 18.0, "B": 8.0, "R": 10.0}},
                       hall=Hall("%s/hall %d" % (lab.seed, k // 3), swing=noise.uniform(1.0, 3.0)))
     for axis in made:
         axis.installed = lab.start - noise.uniform(100.0, 900.0)

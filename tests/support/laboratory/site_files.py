@@ -137,7 +137,7 @@ def campaign_files(laboratory, machine, plan, set_up, measured, known):
     text = manifest(machine.story, plan.ident, machine.customer, machine.place, date_of(plan.day), record, axes_of(machine, plan),
                     [measurement(m, plan) for m in measured], instrument=instrument_of(plan, machine.centre),
                     environment={k: "%g" % v for k, v in life.ROOM.items()}, analyses=more, model=model, operator=plan.operator.name,
-                    campaign=new_keys(plan, known), options=options)
+                    campaign=new_keys(plan, known), options=options, none_active=False)
     return {"campaign.toml": text} | {file_of(m): csv(m, set_up, laboratory.decimals) for m in measured}
 
 

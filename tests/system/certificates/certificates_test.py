@@ -138,6 +138,10 @@ class Certificates(NumberedTest):
         for name, (_, _, finding) in cases.items():
             self.assertFalse(self.pdf(name).exists(), name)
             self.assertIn(name, self.ids("attention"))
+            if "ago" in finding or "expired" in finding:  # may be issued for a reason, not by rules
+                found = [f["id"] for a in self.results(name)["analyses"] for f in a["findings"]]
+                self.assertIn(finding, found, name)
+                continue
             self.assertIsNotNone(self.finding(name, finding), name)
             self.assertIsNotNone(self.finding(name, "certificate.incomplete"), name)
         evidence = self.finding("sensor", "traceability.calibrated-later")["evidence"]

@@ -2,7 +2,6 @@
 """A night makes drafts, a person releases them: who, why, and what an amendment says."""
 import json
 import os
-import re
 import sqlite3
 import subprocess
 import unittest
@@ -21,9 +20,11 @@ class Releases(NumberedTest):
         self.site_with(extra=extra)
 
     def release_verb(self, *args, expect=None, campaign="c1", known=("--reason", KNOWN + "=it is what was ordered"), user=None):
-        if user:  # another account: it may read and write what this one made
-            subprocess.run(["chmod", "-R", "a+rwX", self.root], check=True)
+        if user:  # another account, to which site, output and key belong now
+            subprocess.run(["chown", "-R", user, self.root], check=True)
         done = run(NONIO, "release", self.site / campaign, *args, *known, check=False, env=self.environment, user=user)
+        if user:
+            subprocess.run(["chown", "-R", str(os.getuid()), self.root], check=True)
         if expect is not None:
             self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done
@@ -33,7 +34,7 @@ class Releases(NumberedTest):
 
     def out_of_tolerance(self, campaign="c1"):
         manifest = self.site / campaign / "campaign.toml"
-        manifest.write_text(manifest.read_text().replace('kind = "linear"\n', 'kind = "linear"\ntolerance_um = { E = 0.01 }\n', 1))
+        manifest.write_text(manifest.read_text().replace('kind = "linear"\n', 'kind = "linear"\ntolerance_um = { E = 0.2 }\n', 1))
 
     def journal(self):
         with sqlite3.connect(self.site / "certificates.sqlite") as register:
@@ -149,9 +150,7 @@ class Releases(NumberedTest):
             name = finding.split(".")[1]
             self.signed_campaign(name)
             manifest = self.site / name / "campaign.toml"
-            text, n = re.subn(r"(?m)^calibrated = .*$", line, manifest.read_text(), count=1)
-            self.assertEqual(n, 1)
-            manifest.write_text(text)
+            manifest.write_text(manifest.read_text() + f'[instrument]\nserial = "L-1"\n{line}\n')
             (self.site / name / "x.csv").write_text(readings(name))
             self.night()
             results = json.loads((self.out / name / "results.json").read_text())
