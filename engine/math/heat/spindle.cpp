@@ -90,15 +90,24 @@ std::optional<Turns> turns_of(const SpindleTrack& k) {
   return out;
 }
 
-std::optional<Turns> rotating(const Turns& X, const Turns& Y) {
+std::optional<Turns> rotating(const Turns& X, const Turns& Y, int sense) {
   if (X.n != Y.n || X.N != Y.N) return {};
   Turns out = X;
   for (std::size_t i = 0; i < out.r.size(); ++i) {
     const double t = X.angle(i % X.n);
-    out.r[i] = X.r[i] * std::cos(t) + Y.r[i] * std::sin(t);
+    out.r[i] = X.r[i] * std::cos(t) + sense * Y.r[i] * std::sin(t);
   }
   out.resampled = X.resampled || Y.resampled;
   return out;
+}
+
+int sense_of(const ErrorMotion& X, const ErrorMotion& Y) {
+  constexpr double clearly = 3.0;
+  const double f = std::hypot(X.a + Y.b, X.b - Y.a) / 2.0;
+  const double g = std::hypot(X.a - Y.b, X.b + Y.a) / 2.0;
+  const double noise = 4.0 * std::hypot(X.u_ab, Y.u_ab);
+  if (!(std::max(f, g) > std::max({X.synchronous, Y.synchronous, noise}))) return 0;
+  return f >= clearly * g ? 1 : g >= clearly * f ? -1 : 0;
 }
 
 double range_of(std::span<const double> values) {

@@ -201,7 +201,14 @@ class Worker {
     for (const auto& [x, y] : {std::pair{"X", "Y"}, {"X1", "Y1"}}) {
       const Turns *X = first(x), *Y = first(y);
       if (X == nullptr || Y == nullptr) continue;
-      if (auto R = math::rotating(*X, *Y)) return one({"R", std::move(*R)}, nullptr);
+      const int sense = math::sense_of(math::error_motion(*X), math::error_motion(*Y));
+      auto R = math::rotating(*X, *Y, sense == 0 ? 1 : sense);
+      if (!R) continue;
+      out_.findings.push_back({.id = sense > 0   ? "spindle.sense-x-to-y"
+                                     : sense < 0 ? "spindle.sense-y-to-x"
+                                                 : "spindle.sense-not-known",
+                               .attention = sense == 0});
+      return one({"R", std::move(*R)}, nullptr);
     }
     if (!set_ups_.of.empty())
       out_.findings.push_back({.id = "spindle.fixed-only", .attention = false});

@@ -174,12 +174,14 @@ std::string set_up_name(const Sensor& s, const SetUp& at) {
 Expected<std::vector<double>> angles_of(const Table& table, const std::vector<std::size_t>& rows) {
   std::vector<double> out;
   if (const auto* angle = table.column("angle_deg")) {
+    // Of a spindle that turns the other way the angles fall: the angle that it has turned grows.
+    const bool falls = rows.size() > 1 && (*angle)[rows[1]] < (*angle)[rows[0]];
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      out.push_back((*angle)[rows[k]] * heat_deg);
+      out.push_back((*angle)[rows[k]] * (falls ? -heat_deg : heat_deg));
       if (k > 0 && !(out[k] > out[k - 1]))
         return fail(at_line(table.line[rows[k]], "angle_deg",
-                            "expected angles that grow from row to row and go on beyond 360, "
-                            "found " +
+                            "expected angles that grow (or fall) from row to row and go on beyond "
+                            "360, found " +
                                 short_text((*angle)[rows[k]], 9) + " behind " +
                                 short_text((*angle)[rows[k - 1]], 9)));
     }

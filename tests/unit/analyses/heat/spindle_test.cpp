@@ -66,6 +66,27 @@ TEST(Spindle, RotatingSensitiveDirectionDoesNotSeeTheSetUp) {
   EXPECT_NEAR(value(evaluated(spindle(), oval), "sync_R")->value, 2e-6, 1e-12);
 }
 
+TEST(Spindle, TheEccentricityTellsTheSenseOfRotation) {
+  const auto made = [](double sense, double eccentricity) {
+    Made t = empty();
+    const auto r = [](double a) { return 1e-6 * std::cos(2.0 * a) + 0.4e-6 * std::cos(3.0 * a); };
+    add_line(t, "X", 0, 0, 8, 64,
+             [&](double a) { return eccentricity * std::cos(a + 0.3) + r(a) * std::cos(a); });
+    add_line(t, "Y", 0, 0, 8, 64, [&](double a) {
+      return sense * (eccentricity * std::sin(a + 0.3) + r(a) * std::sin(a));
+    });
+    return evaluated(spindle(), t);
+  };
+  const auto counter = made(1.0, 8e-6), clockwise = made(-1.0, 8e-6);
+  EXPECT_NE(finding(counter, "spindle.sense-x-to-y"), nullptr);
+  EXPECT_NE(finding(clockwise, "spindle.sense-y-to-x"), nullptr);
+  for (const char* name : {"total_R", "sync_R", "async_R"})
+    EXPECT_NEAR(value(clockwise, name)->value, value(counter, name)->value, 1e-12) << name;
+  const Finding* unknown = finding(made(1.0, 0.2e-6), "spindle.sense-not-known");
+  ASSERT_NE(unknown, nullptr);
+  EXPECT_TRUE(unknown->attention);
+}
+
 TEST(Spindle, OneSensorIsAFixedSensitiveDirectionAndSaysSo) {
   Made t = empty();
   add_line(t, "X", 0, 0, 4, 64, spindle_motion);

@@ -45,8 +45,9 @@ struct Turns {
 /// eighth of a turn.
 std::optional<Turns> turns_of(const SpindleTrack&);
 
-/// r = X cos t + Y sin t; none if the turns of both differ.
-std::optional<Turns> rotating(const Turns& X, const Turns& Y);
+/// r = X cos t + Y sin t, t growing from X to Y; `sense` -1: t grows from X to -Y, r = X cos t - Y sin
+/// t. None if the turns of both differ.
+std::optional<Turns> rotating(const Turns& X, const Turns& Y, int sense = 1);
 
 struct ErrorMotion {
   double mean = 0.0, a = 0.0, b = 0.0;
@@ -71,6 +72,16 @@ struct Separated {
 Separated donaldson(std::span<const double> T1, std::span<const double> T2);
 /// T[k]: with the ball at k 360/K.
 Separated multi_step(std::span<const std::vector<double>> T);
+
+/// The sense in which t grows, from the eccentricity of the ball, which X and Y see a quarter of a
+/// turn apart:
+///
+///     f = |(aX + bY) + i (bX - aY)|/2     it turns from X to Y       a, b of r = a cos t + b sin t
+///     g = |(aX - bY) + i (bX + aY)|/2     it turns from X to -Y
+///
+/// +1 if f >= 3 g, -1 if g >= 3 f; 0, not known, otherwise, or where the larger is not more than the
+/// range of the synchronous motion: an error of two waves per turn has such a part too.
+int sense_of(const ErrorMotion& X, const ErrorMotion& Y);
 
 double range_of(std::span<const double>);
 
