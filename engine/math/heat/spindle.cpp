@@ -102,7 +102,7 @@ std::optional<Turns> rotating(const Turns& X, const Turns& Y, int sense) {
 }
 
 int sense_of(const ErrorMotion& X, const ErrorMotion& Y) {
-  constexpr double clearly = 3.0;
+  constexpr double clearly = 3.0;  // docs/constants.md, A27
   const double f = std::hypot(X.a + Y.b, X.b - Y.a) / 2.0;
   const double g = std::hypot(X.a - Y.b, X.b + Y.a) / 2.0;
   const double noise = 4.0 * std::hypot(X.u_ab, Y.u_ab);

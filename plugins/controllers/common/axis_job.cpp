@@ -10,6 +10,7 @@
 #include "nonio/math/axis_findings.h"
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/format.h"
+#include "resolution.h"
 #include "series_jobs.h"
 
 namespace nonio::controllers {
@@ -128,6 +129,7 @@ AxisJob job_of(const ControllerInput& input, std::size_t index) {
   if (job.rotary) job.turn = math::closed_turn(job.curve);
   job.reversal = math::assess_reversal(test);
   job.drift = drift_of(test);
+  job.unresolved = unresolved_step(test, job.curve);
   job.suspects = suspects_of(test, job);
   return job;
 }
@@ -340,6 +342,10 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
     }
     if (!job.drift.empty() && !job.takes_drift()) {
       refuse_drift(job, result);
+      continue;
+    }
+    if (job.unresolved) {
+      refuse_unresolved(job, *job.unresolved, result);
       continue;
     }
     if (number_unsaid(job, keys)) {

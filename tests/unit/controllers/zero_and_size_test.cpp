@@ -2,6 +2,7 @@
 //
 // Three ways in which a table made a machine worse in silence: a constant of the instrument, an
 // entry larger than its maker allows, a file that was cut.
+#include <algorithm>
 #include <cmath>
 
 #include "nonio/controllers/size.h"
@@ -269,6 +270,29 @@ TEST(Cut, ALineThatIsNoneIsNotTheEnd) {
   EXPECT_TRUE(contains(comment.error().message, "linuxcnc-X.comp, line 2: expected three numbers"))
       << comment.error().message;
   EXPECT_FALSE(read("0 0 0\n50 50 5"));
+}
+
+// A dial of 10 um: one digit over 10 um of travel is a step no slide makes.
+TEST(Resolution, OneDigitBetweenCloseTargetsIsNoTable) {
+  for (const bool close : {true, false})
+    for (const Kind& k : kinds()) {
+      Measured m;
+      m.targets = even(k.below ? -400 * mm : 0.0, 25 * mm, 17);
+      if (close) m.targets.push_back(k.below ? -200 * mm + 10 * um : 200 * mm - 10 * um);
+      std::sort(m.targets.begin(), m.targets.end());
+      m.plus = [](double x) { return 10 * um * std::floor(std::fabs(x) / (25 * mm) + 1e-9); };
+      m.minus = m.plus;
+      const auto r = Bench(m).write(plugin(k.path), with(k, ""));
+      const std::string where = std::string(k.name) + (close ? ", close" : ", apart");
+      ASSERT_TRUE(r) << where << ": " << r.error().message;
+      const auto refused =
+          std::find_if(r->findings.begin(), r->findings.end(),
+                       [](const Finding& f) { return f.id == "table.refused-resolution"; });
+      EXPECT_EQ(refused != r->findings.end(), close) << where;
+      EXPECT_EQ(r->artifacts.empty(), close) << where;
+      if (refused == r->findings.end()) continue;
+      EXPECT_NEAR(refused->evidence.at(0).value, 10 * um, 1e-9) << where;
+    }
 }
 
 // P-AXIS-00103 is a whole number of 0.1 um.

@@ -20,6 +20,14 @@ namespace nonio::controllers {
 /// The columns of a table: one of the mean of both directions, or one for each direction.
 enum class Columns { mean, both };
 
+/// A step of the curve between neighbouring targets that is not larger than the resolution of the
+/// readings and their scatter, and that a table would make steep.
+struct Unresolved {
+  double from = 0.0, to = 0.0;  ///< positions, m or rad
+  double step = 0.0;            ///< m or rad
+  double resolution = 0.0;      ///< smallest difference of two readings, m or rad
+};
+
 /// One measured axis of which a table is to be written. SI.
 struct AxisJob {
   std::string axis, measurement;
@@ -33,8 +41,9 @@ struct AxisJob {
   bool scale_known =
       true;  ///< false: `curve` is less its end line, as step diagonals alone know it
   math::Reversal reversal;
-  AxisSettings settings;              ///< of this axis: option `axes`
-  std::vector<std::string> drift;     ///< ids of the findings that ask for attention
+  AxisSettings settings;           ///< of this axis: option `axes`
+  std::vector<std::string> drift;  ///< ids of the findings that ask for attention
+  std::optional<Unresolved> unresolved{};
   std::vector<std::string> suspects;  ///< readings: "190.0 mm (3, +)"
   std::vector<std::string> about;     ///< machine, axis, date: plain ASCII lines
 
