@@ -10,7 +10,8 @@
 namespace nonio::controllers {
 namespace {
 
-constexpr double least_step = 1e-6, least_angle = 1.0 / arcsec_per_rad, steepest = 1e-3;
+constexpr double least_step = 1e-6, least_angle = 1.0 / arcsec_per_rad, steepest = 1e-3,
+                 impossible = 1e-2;
 
 /// Smallest difference of two readings that differ; 0 if all are equal.
 double resolution_of(const math::AxisTest& test) {
@@ -62,8 +63,8 @@ std::optional<Unresolved> unresolved_step(const math::AxisTest& test,
     const double step = std::fabs(curve.mean[i] - curve.mean[i - 1]);
     const double apart = curve.position[i] - curve.position[i - 1];
     const double explained = std::max(resolution, 3.0 * std::sqrt(variance[i] + variance[i - 1]));
-    if (!(step > (test.rotary ? least_angle : least_step)) || step > explained * (1.0 + 1e-9) ||
-        !(step > slope * apart))
+    if (!(step > (test.rotary ? least_angle : least_step)) || !(step > slope * apart) ||
+        (step > explained * (1.0 + 1e-9) && !(step > impossible * apart)))
       continue;
     slope = step / apart;
     found = {curve.position[i - 1], curve.position[i], step, resolution};

@@ -8,9 +8,9 @@
 
 namespace nonio::controllers {
 
-/// The steepest step that the resolution of the instrument and the scatter explain by themselves, if
-/// it is larger than 1 um (1 arcsec) and steeper than 1000 um/m (0.36 deg per turn): one digit of a
-/// dial between two close targets. docs/constants.md, A26.
+/// The steepest step that is larger than 1 um (1 arcsec) and either steeper than 1000 um/m (0.36 deg
+/// per turn) though the resolution of the instrument and the scatter explain it, or steeper than ten
+/// times that: digits of a dial between two close targets. docs/constants.md, A26.
 std::optional<Unresolved> unresolved_step(const math::AxisTest& test,
                                           const math::ErrorCurve& curve);
 

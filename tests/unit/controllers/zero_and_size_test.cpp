@@ -272,26 +272,35 @@ TEST(Cut, ALineThatIsNoneIsNotTheEnd) {
   EXPECT_FALSE(read("0 0 0\n50 50 5"));
 }
 
-// A dial of 10 um: one digit over 10 um of travel is a step no slide makes.
-TEST(Resolution, OneDigitBetweenCloseTargetsIsNoTable) {
-  for (const bool close : {true, false})
+// A dial of 10 um: digits over a short travel are a step no slide makes.
+TEST(Resolution, DigitsBetweenCloseTargetsAreNoTable) {
+  struct Case {
+    double apart, digits;
+    bool refused;
+  };
+  for (const Case& c : {Case{10 * um, 1, true}, Case{10 * um, 3, true}, Case{1 * mm, 1, true},
+                        Case{1 * mm, 2, true}, Case{25 * mm, 1, false}})
     for (const Kind& k : kinds()) {
+      const double sign = k.below ? -1 : 1, extra = sign * (200 * mm - c.apart);
       Measured m;
       m.targets = even(k.below ? -400 * mm : 0.0, 25 * mm, 17);
-      if (close) m.targets.push_back(k.below ? -200 * mm + 10 * um : 200 * mm - 10 * um);
+      if (c.apart < 25 * mm) m.targets.push_back(extra);
       std::sort(m.targets.begin(), m.targets.end());
-      m.plus = [](double x) { return 10 * um * std::floor(std::fabs(x) / (25 * mm) + 1e-9); };
+      m.plus = [&](double x) {
+        return 10 * um * (std::fabs(x) < 200 * mm - 1 * um ? 8 - c.digits : 8);
+      };
       m.minus = m.plus;
       const auto r = Bench(m).write(plugin(k.path), with(k, ""));
-      const std::string where = std::string(k.name) + (close ? ", close" : ", apart");
+      const std::string where = std::string(k.name) + ", " + std::to_string(c.apart) + " m, " +
+                                std::to_string(c.digits) + " digits";
       ASSERT_TRUE(r) << where << ": " << r.error().message;
       const auto refused =
           std::find_if(r->findings.begin(), r->findings.end(),
                        [](const Finding& f) { return f.id == "table.refused-resolution"; });
-      EXPECT_EQ(refused != r->findings.end(), close) << where;
-      EXPECT_EQ(r->artifacts.empty(), close) << where;
+      EXPECT_EQ(refused != r->findings.end(), c.refused) << where;
+      EXPECT_EQ(r->artifacts.empty(), c.refused) << where;
       if (refused == r->findings.end()) continue;
-      EXPECT_NEAR(refused->evidence.at(0).value, 10 * um, 1e-9) << where;
+      EXPECT_NEAR(refused->evidence.at(0).value, c.digits * 10 * um, 1e-9) << where;
     }
 }
 

@@ -337,35 +337,6 @@ TEST(Thermal, BadTables) {
     EXPECT_FALSE(read_text(bad, "thermal")) << bad;
 }
 
-TEST(Spindle, ASetUpIsALine) {
-  const auto obs =
-      read_text("angle_deg,ball_deg,sensor_deg,x_um,y_um\n0,0,0,1,2\n90,0,0,3,nan\n0,180,180,5,6\n",
-                "spindle");
-  ASSERT_TRUE(obs) << obs.error().message;
-  ASSERT_EQ(obs->lines.size(), 4U);
-  EXPECT_EQ(obs->lines[2].name, "X ball 180 sensor 180");
-  EXPECT_NEAR(obs->lines[2].sense[0], -1.0, 1e-12);  // it stands on the other side
-  EXPECT_NEAR(obs->lines[1].sense[1], 1.0, 1e-12);
-  EXPECT_EQ(obs->size(), 5U);
-  EXPECT_EQ(obs->missing, 1U);
-  ASSERT_EQ(obs->axes.size(), 3U);
-  EXPECT_NEAR(obs->axes[1].position.back(), std::numbers::pi, 1e-12);
-}
-
-TEST(Spindle, PulsesDivideATurnEvenly) {
-  const auto obs =
-      read_text("index,x_um\n0,9\n1,1\n0,2\n0,3\n0,4\n1,5\n0,6\n1,7\n0,8\n", "spindle");
-  ASSERT_TRUE(obs) << obs.error().message;
-  ASSERT_EQ(obs->size(), 7U);  // one before the first pulse, one behind the last
-  ASSERT_EQ(obs->notes.size(), 1U);
-  EXPECT_EQ(obs->notes[0].id, "csv.outside-pulses");
-  EXPECT_NEAR(obs->axes[0].position[1], 2.0 * std::numbers::pi / 4.0, 1e-12);
-  EXPECT_NEAR(obs->axes[0].position[5], 2.0 * std::numbers::pi * 1.5, 1e-12);
-  for (const char* bad : {"index,x_um\n0.5,1\n", "x_um\n1\n", "angle_deg,x_um\n0,1\n0,2\n",
-                          "angle_deg,x_um\n90,1\n0,2\n", "angle_deg\n1\n", "index,x_um\n0,1\n"})
-    EXPECT_FALSE(read_text(bad, "spindle")) << bad;
-}
-
 TEST(Lengths, TestAndPositionAreALine) {
   const auto obs = read_text(
       "test,position,length_mm,repeat,deviation_um\nE0,1,100,1,0.5\nE0,1,100,2,n/"
