@@ -168,7 +168,8 @@ class SeriesChart {
     if (sayable) out += "  on " + f.date + ": " + with_U(f.value, f.u, s_.unit) + " expected";
     if (!sayable || (!s_.limit && f.answer == "act"))
       return out + (sayable ? "\n" : "") +
-             "  a value of the axis is beyond its limit: act, do not wait for " + f.date + "\n";
+             "  a value of the axis is beyond its limit or indeterminate: act, do not wait for " +
+             f.date + "\n";
     if (s_.limit) {
       std::array<char, 32> percent{};
       std::snprintf(percent.data(), percent.size(), "%.1f", 100.0 * f.p_out);

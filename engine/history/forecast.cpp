@@ -9,7 +9,7 @@
 namespace nonio::history {
 namespace {
 
-constexpr double keep_below = 0.05, act_beyond = 0.5;
+constexpr double act_beyond = 0.5;
 constexpr double one_sided = 1.6448536269514722;  // of 95 %
 constexpr double farthest = 0.5;                  // of the observed span
 constexpr double years_ahead = 20.0;

@@ -39,7 +39,7 @@ std::optional<Knew> known_on(const AssessedMachine& m, const MorningLine& l,
   return out;
 }
 
-/// What has a forecast for its value does not move as readings do.
+/// What is expected has been acknowledged until its day, whatever is measured before.
 bool has_moved(const config::Acknowledgement& a, const AssessedMachine& m, const MorningLine& l) {
   if (!l.value || l.kind == MorningLine::Kind::soon) return false;
   const double now = *l.value * unit_of(l.unit).per_si;

@@ -93,7 +93,9 @@ class Assessment::State {
     const Assessed& m = machines_[i];
     const auto lines = lines_.find(m.state.machine.name);
     ByteWriter w;
-    w(m.kept.stood, templates, lines == lines_.end() ? std::string() : bytes_of(lines->second),
+    // With the days on which it stands the page says which dates have passed.
+    w(m.kept.stood, m.kept.standing.until, templates,
+      lines == lines_.end() ? std::string() : bytes_of(lines->second),
       bytes_of(site.machines[i].proposal));
     return storage::sha256(w.take());
   }
@@ -400,7 +402,7 @@ class Assessment::State {
     }
     ask_others(*m.read, *m.fits);
     const Due due = due_of(*m.read, logs_);
-    m.described = describe(*m.read, out_, due.day, due.why);
+    m.described = describe(*m.read, out_, due.day, due.why, tonight_.date);
     if (!m.alone.empty()) m.described->file.clear();  // it has no page of its own
     m.fitted = false;
     return {};

@@ -81,7 +81,9 @@ const char* name_of(kernel::Answer answer) {
 
 class Describing {
  public:
-  Describing(const AssessedMachine& m, const fs::path& out, const std::string& due) : m_(m) {
+  Describing(const AssessedMachine& m, const fs::path& out, const std::string& due,
+             const std::string& today)
+      : m_(m), today_(today) {
     if (const auto day = day_number(due)) {
       ahead_ = day;
     } else if (const auto interval = usual_interval(m.stored.campaigns)) {
@@ -92,8 +94,7 @@ class Describing {
     for (const StoredCampaign& c : m.stored.campaigns) links_.push_back(links.of(c.id));
     for (const ShownSeries& s : m.shown) {
       if (s.ended) continue;
-      for (const Judged& j : open_results(m.stored, s))
-        if (m.stored.results[j.result].decision == does_not_conform) out_now_.insert(s.axis);
+      if (!open_results(m.stored, s).empty()) open_now_.insert(s.axis);
     }
     for (std::size_t i = 0; i < m.stored.results.size(); ++i) {
       const StoredResult& r = m.stored.results[i];
@@ -143,8 +144,10 @@ class Describing {
       if (r.source == last.source && r.conditions != last.conditions)
         out.points.back().joined = false, out.points.back().why_not = "edition";
     }
-    if (const auto limit = last.tolerance) out.limit = si(*limit, q);
-    if (s.ended || !last.tolerance) return out;
+    if (s.judged.empty()) return out;
+    // A campaign that states no limit does not lift the one before.
+    out.limit = si(*m_.stored.results[s.judged.back()].tolerance, q);
+    if (s.ended) return out;
     for (const FollowedSeries& f : m_.followed) {  // by which it is followed
       if (f.axis != s.axis || f.unit != s.unit || f.ended || f.quantity == s.quantity) continue;
       const auto limit = limit_of(m_, f);
@@ -214,7 +217,10 @@ class Describing {
     const double last = s.series.points.back().time, first = s.series.points.front().time;
     if (f.leaves && *f.leaves <= last + (last - first) / 2.0)
       out.leaves = day_text(static_cast<std::int64_t>(std::floor(*f.leaves * days_a_year)));
-    if (!out_now_.contains(axis_of(s.axis, s.quantity))) return out;
+    const bool open = open_now_.contains(axis_of(s.axis, s.quantity));
+    if (!open && out.date < today_ && f.answer != kernel::Answer::cannot_say)
+      out.answer = "overdue";
+    if (!open) return out;
     // Whatever comes, nobody may wait for it.
     if (f.answer == kernel::Answer::cannot_say)
       out.value = out.u = out.p_out = std::numeric_limits<double>::quiet_NaN();
@@ -224,7 +230,8 @@ class Describing {
 
   const AssessedMachine& m_;
   std::vector<std::string> links_;  ///< of each campaign
-  std::set<std::string> out_now_;   ///< axes of which a value is beyond its limit
+  std::string today_;
+  std::set<std::string> open_now_;  ///< axes of which a value is beyond its limit or indeterminate
   /// What analyses state: by campaign, measurement, quantity and unit.
   std::map<std::tuple<std::size_t, std::string, std::string, std::string>, std::size_t> stated_;
   std::optional<std::int64_t> ahead_{};
@@ -340,9 +347,8 @@ std::optional<FollowedLimit> limit_of(const AssessedMachine& machine,
                                       const FollowedSeries& series) {
   std::optional<FollowedLimit> own, of_B;
   for (const ShownSeries& s : machine.shown) {
-    if (s.axis != series.axis || s.unit != series.unit || s.ended) continue;
+    if (s.axis != series.axis || s.unit != series.unit || s.ended || s.judged.empty()) continue;
     const auto tolerance = machine.stored.results[s.judged.back()].tolerance;
-    if (!tolerance) continue;
     if (s.quantity == series.quantity) own = FollowedLimit{s.quantity, *tolerance};
     if (series.quantity != "B_mean" || s.quantity != "B") continue;
     if (const auto more = beyond_mean(machine, series, s))
@@ -352,7 +358,8 @@ std::optional<FollowedLimit> limit_of(const AssessedMachine& machine,
 }
 
 reports::MachineHistory describe(const AssessedMachine& machine, const fs::path& out,
-                                 const std::string& due, const std::string& why) {
+                                 const std::string& due, const std::string& why,
+                                 const std::string& today) {
   const history::NamedMachine& named = machine.state.machine;
   reports::MachineHistory m;
   m.id = named.name, m.maker = named.stated.maker;
@@ -366,7 +373,7 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
     m.events.push_back({e.date, e.axis, e.kind, e.text});
   m.tables = tables_kept(machine);
   m.due = due, m.why_due = why, m.file = file_of(named.name);
-  const Describing describing(machine, out, due);
+  const Describing describing(machine, out, due, today);
   for (const FollowedSeries& s : machine.followed) m.series.push_back(describing.of(s));
   for (const ShownSeries& s : machine.shown) m.series.push_back(describing.of(s));
   return m;

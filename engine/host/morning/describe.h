@@ -46,8 +46,10 @@ struct FollowedLimit {
 std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
 
 /// What pages and programs show of a machine. `due`: day of the next calibration by a rule, `why`
-/// in words; empty: there is none, and forecasts look one usual interval ahead.
+/// in words; empty: there is none, and forecasts look one usual interval ahead. A forecast for a day
+/// before `today` is overdue.
 reports::MachineHistory describe(const AssessedMachine& machine, const std::filesystem::path& out,
-                                 const std::string& due, const std::string& why);
+                                 const std::string& due, const std::string& why,
+                                 const std::string& today = {});
 
 }  // namespace nonio::host::morning

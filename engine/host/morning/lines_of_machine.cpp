@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "host/morning/describe.h"
 #include "host/morning/lines.h"
 #include "host/morning/open_values.h"
+#include "nonio/history/forecast.h"
 
 namespace nonio::host::morning {
 
@@ -175,10 +177,11 @@ class OfMachine {
       for (const Judged& j : all) {
         const history::StoredResult& r = m_.stored.results[j.result];
         (r.decision == does_not_conform ? out : open)[place_of(r)].push_back(j);
+        open_.emplace(s.axis, s.quantity);
       }
+      if (!all.empty() || !is_fixed(s)) continue;
       const history::StoredResult& last = m_.stored.results[s.judged.back()];
-      if (all.empty() && last.tolerance && is_fixed(s))
-        (is_judged_alike(s) ? good : anew)[place_of(last)].push_back({&s, s.judged.back()});
+      (is_judged_alike(s) ? good : anew)[place_of(last)].push_back({&s, s.judged.back()});
     }
     for (const auto* limit : open_limits(m_.stored))
       missing[limit->axis.empty() ? limit->measurement : limit->axis].push_back(
@@ -361,20 +364,28 @@ class OfMachine {
   void soon() {
     for (const HistorySeries& s : d_.series) {
       const std::string axis = axis_of(s.axis, s.quantity);
-      if (!s.forecast || !s.limit || told_.contains(axis)) continue;
-      if (s.forecast->answer != "watch" && s.forecast->answer != "act") continue;
-      MorningLine l = line(Kind::soon, "morning.soon", axis + ":" + s.quantity);
+      if (!s.forecast || !s.limit || told_.contains(axis) || s.points.empty()) continue;
+      if (open_.contains({s.axis, s.quantity}) || s.forecast->answer == "cannot-say" ||
+          !(s.forecast->p_out >= nonio::history::keep_below))
+        continue;
+      const std::string leaves = s.forecast->leaves.empty() ? s.forecast->date : s.forecast->leaves;
+      const bool may_be_now = leaves <= tonight_.date || s.forecast->date < tonight_.date;
+      MorningLine l = line(Kind::soon, may_be_now ? "morning.soon-now" : "morning.soon",
+                           axis + ":" + s.quantity);
+      l.id = "morning.soon:" + d_.id + ":" + axis + ":" + s.quantity;
       l.axis = axis;
       l.quantity = s.quantity;
       l.unit = s.unit;
-      l.value = s.forecast->value;
-      l.u = s.forecast->u;
+      l.value = s.points.back().value;
+      l.u = reports::u_of_value(s.points.back());
       l.limit = s.limit;
       l.campaign = s.points.back().campaign;
       l.since = s.points.back().date;
+      l.finding.evidence.push_back({"expected", s.forecast->value, s.unit});
+      l.finding.evidence.push_back({"U", 2.0 * s.forecast->u, s.unit});
       l.finding.evidence.push_back({"percent", 100.0 * s.forecast->p_out, Quantity::number});
       put_text(l, "date", s.forecast->date);
-      put_text(l, "leaves", std::max(s.forecast->leaves, tonight_.date));
+      if (!may_be_now) put_text(l, "leaves", leaves);
       told_[axis] = true;
       add(std::move(l));
     }
@@ -426,6 +437,7 @@ class OfMachine {
   const Tonight& tonight_;
   std::map<std::string, std::vector<AxisChange>> causes_;
   std::map<std::string, bool> told_;  ///< axes with a line that says all of a change
+  std::set<std::pair<std::string, std::string>> open_;  ///< axis and quantity of what has a line
   std::vector<MorningLine> out_;
 };
 

@@ -60,19 +60,22 @@ bool is_measured_later(const StoredMachine& m, const std::map<std::string, std::
 }  // namespace
 
 std::vector<Judged> open_results(const StoredMachine& m, const ShownSeries& s) {
+  // A campaign without the limit has judged nothing: what was judged before remains.
   std::map<std::string, std::vector<std::size_t>> groups;
   for (const std::size_t i : s.results)
-    groups[s.axis.empty() ? m.results[i].measurement : std::string()].push_back(i);
+    if (const StoredResult& r = m.results[i]; !r.decision.empty())
+      groups[s.axis.empty() ? r.measurement : std::string()].push_back(i);
   std::vector<Judged> out;
   for (const auto& [measurement, results] : groups) {
-    const std::size_t newest = m.results[results.back()].campaign;
-    const auto is_of = [&](std::size_t i, bool left) {
-      return m.results[i].campaign == newest && (m.results[i].state == "as-left") == left;
-    };
-    const bool left =
-        std::any_of(results.begin(), results.end(), [&](std::size_t i) { return is_of(i, true); });
-    for (const std::size_t i : results)
-      if (is_of(i, left) && is_open(m.results[i])) out.push_back({&s, i});
+    const auto day_of = [&](std::size_t i) { return m.campaigns[m.results[i].campaign].day; };
+    const std::string newest = day_of(results.back());
+    const bool left = std::any_of(results.begin(), results.end(), [&](std::size_t i) {
+      return day_of(i) == newest && m.results[i].state == "as-left";
+    });
+    for (const std::size_t i : results) {
+      const bool replaced = day_of(i) != newest || (left && m.results[i].state == "as-found");
+      if (!replaced && is_open(m.results[i])) out.push_back({&s, i});
+    }
   }
   return out;
 }

@@ -20,9 +20,10 @@ struct Judged {
   std::size_t result = 0;  ///< index into StoredMachine::results
 };
 
-/// Of the newest campaign of a series all that does not conform or cannot be decided: as left where
-/// something was adjusted, else as found. What was not measured along one axis is newest for each
-/// measurement: a later circle of another plane replaces none.
+/// All that does not conform or is indeterminate among the results of the last day on which this
+/// quantity was compared with a limit; campaigns that state no limit for it replace nothing. If
+/// results as left exist for that day, they replace those as found. Results without an axis are
+/// replaced by those of the same measurement only: a circle in another plane replaces none.
 std::vector<Judged> open_results(const history::StoredMachine& machine, const ShownSeries& series);
 
 /// Limits for which the newest campaign that measured their axis has no value.

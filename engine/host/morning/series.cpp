@@ -321,6 +321,7 @@ std::vector<std::size_t> deciding(const StoredMachine& m, const std::vector<std:
   };
   std::vector<std::size_t> out;
   for (const std::size_t i : results) {
+    if (m.results[i].decision.empty()) continue;
     if (out.empty() || m.results[out.back()].campaign != m.results[i].campaign)
       out.push_back(i);
     else if (decides(m.results[i], m.results[out.back()]))

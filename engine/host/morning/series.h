@@ -45,8 +45,8 @@ struct FollowedSeries {
 struct ShownSeries {
   std::string axis, quantity, unit;
   std::vector<std::size_t> results;
-  /// Of each campaign the one that decides: what was left, not what was found; the worst of several
-  /// lines of the axis.
+  /// Of each campaign that compares the quantity with a limit, the result that decides: as left
+  /// before as found; the worst of several lines of the axis. Empty if none does.
   std::vector<std::size_t> judged{};
   bool ended = false;  ///< later campaigns have it in another unit: the axis is another
 };

@@ -26,8 +26,8 @@ reports::MachineHistory without_series(const reports::MachineHistory& whole) {
   return out;
 }
 
-/// Overdue begins after the due date, what an event does on its own day, and a line of what comes
-/// soon names no day that has passed.
+/// Overdue begins after the due date, what an event does on its own day; a forecast is worded
+/// differently once its day has passed, and so is a line of what comes soon.
 std::string same_until(const AssessedMachine& m, const reports::MachineHistory& described,
                        const std::vector<MorningLine>& lines, const std::string& date) {
   std::string until = for_ever;
@@ -37,9 +37,11 @@ std::string same_until(const AssessedMachine& m, const reports::MachineHistory& 
   };
   for (const config::Event& e : m.events) before(e.date);
   if (!described.due.empty() && described.due >= date) until = described.due;
+  for (const reports::HistorySeries& s : described.series)
+    if (s.forecast && s.forecast->date >= date) until = std::min(until, s.forecast->date);
   for (const MorningLine& l : lines)
     for (const auto& [name, text] : l.finding.texts)
-      if (l.kind == MorningLine::Kind::soon && name == "leaves") until = std::min(until, text);
+      if (l.kind == MorningLine::Kind::soon && name == "leaves") before(text);
   return until;
 }
 
@@ -79,7 +81,7 @@ Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& de
   s.conforms = open_limits(m.stored).empty();
   for (const ShownSeries& shown : m.shown) {
     if (shown.ended) continue;
-    s.judged = s.judged || m.stored.results[shown.judged.back()].tolerance.has_value();
+    s.judged = s.judged || !shown.judged.empty();
     s.conforms = s.conforms && open_results(m.stored, shown).empty();
   }
   if (m.stored.findings.empty()) return s;

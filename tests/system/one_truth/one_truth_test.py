@@ -195,7 +195,8 @@ class Truth(unittest.TestCase):
                 self.assertNotRegex(index.read_text(), r"[Nn]othing has to be done|nothing needs a decision|Nothing was judged")
 
     def check_history(self, out):
-        """7. A value has one U in results and history; no forecast keeps the date of an axis that is out."""
+        """7. A value has one U in results and history; no forecast keeps the date of an axis that is out, or one that has
+        passed; a line of what comes soon has the last value of the history."""
         by_campaign = {json.loads(p.read_text())["campaign"]["id"]: json.loads(p.read_text()) for p in out.glob("*/results.json")}
         told = json.loads(run("history", out, "--json").stdout)
         out_now = set()
@@ -217,9 +218,16 @@ class Truth(unittest.TestCase):
                     self.assertTrue(any(abs(p["U"] - U) <= 1e-6 * U for U in stated), (s["machine"], p, stated))
             if s["points"] and s.get("forecast"):
                 last = s["points"][-1]
+                if s["forecast"]["date"] < told["date"]:
+                    self.assertIn(s["forecast"]["answer"], ("act", "overdue", "cannot-say"), (s["machine"], s["quantity"]))
                 if (last["campaign"], s["axis"]) in out_now and not any(
                         date >= last["date"] and c != last["campaign"] for date, c in measured[s["machine"], s["axis"]]):
                     self.assertNotEqual(s["forecast"]["answer"], "keep", (s["machine"], s["quantity"], last))
+        for line in json.loads(run("morning", out, "--json").stdout)["lines"]:
+            if line["kind"] == "soon":
+                last = [s["points"][-1]["value"] for s in told["series"] if s["points"] and not s.get("ended")
+                        and (s["machine"], s["quantity"]) == (line["machine"], line["quantity"]) and s["axis"] in ("", line["axis"])]
+                self.assertTrue(any(abs(v - line["value"]) < 1e-9 for v in last), (line, last))
 
 
 class Samples(Truth):

@@ -46,8 +46,8 @@ struct Laboratory {
     morning::find_changes(assessed, asked, fits, not_asked);
     std::vector<morning::Standing> standings;
     for (const auto& m : assessed)
-      standings.push_back(morning::standing_of(m, morning::describe(m, "out", due, "12 months"),
-                                               logs, tonight, "out"));
+      standings.push_back(morning::standing_of(
+          m, morning::describe(m, "out", due, "12 months", tonight.date), logs, tonight, "out"));
     std::vector<const morning::Standing*> all;
     for (const auto& s : standings) all.push_back(&s);
     return morning::lines_of({tonight, all, machine_of_campaign, spellings, learned, unknown});
@@ -445,6 +445,83 @@ TEST(MorningLines, TheWorstLineOfAnAxisDecidesAndWhatWasLeft) {
   EXPECT_TRUE(lab.lines().empty());
 }
 
+TEST(MorningLines, ACampaignWithoutTheLimitReplacesNothing) {
+  Laboratory lab;
+  MadeMachine m("S-42", 4);
+  m.judge("X", "A", {5, 9, 9, 5});
+  for (std::size_t i : {2, 3}) m.stored().results[i].decision.clear();
+  for (std::size_t i : {2, 3}) m.stored().results[i].tolerance.reset();
+  m.stored().results.push_back(
+      m.stored().results[0]);  // another quantity of the axis, judged later
+  m.stored().results.back().quantity = "B", m.stored().results.back().campaign = 3;
+  lab.machines.push_back(m);
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].id + " " + lines[0].quantity, "morning.out:S-42:X A");
+  EXPECT_EQ(lines[0].campaign + " " + lines[0].since, "S-42-2 2020-07-15");
+  // Judged again, it is closed.
+  history::StoredResult& last = lab.machines[0].stored().results[3];
+  last.tolerance = 8.0, last.decision = "conforms";
+  EXPECT_TRUE(lab.lines().empty());
+  // As left without the limit: what was found remains.
+  last.tolerance.reset(), last.decision.clear(), last.state = "as-left";
+  EXPECT_EQ(lab.lines().size(), 1U);
+}
+
+TEST(MorningLines, OneOfTwoCampaignsOfADayReplacesTheOtherOnlyAsLeft) {
+  Laboratory lab;
+  MadeMachine m("S-42", 0);
+  m.add_campaign("2024-01-15", 1), m.add_campaign("2024-01-15", 1);
+  m.judge("X", "A", {9, 5});
+  lab.machines.push_back(m);
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].campaign, "S-42-1");
+  lab.machines[0].stored().results[1].state = "as-left";
+  EXPECT_TRUE(lab.lines().empty());
+  // Whatever the campaigns are called.
+  lab.machines[0].stored().results[1].state = "as-found";
+  lab.machines[0].stored().results[0].state = "as-left";
+  EXPECT_EQ(lab.lines().size(), 1U);
+  lab.machines[0].stored().results[0].value = 5.0;
+  lab.machines[0].stored().results[0].decision = "conforms";
+  lab.machines[0].stored().results[1].value = 9.0;
+  lab.machines[0].stored().results[1].decision = "does not conform";
+  EXPECT_TRUE(lab.lines().empty());
+}
+
+MadeMachine worn() {
+  MadeMachine m("S-45");
+  m.follow("X", "B_mean", {-0.9, -1.9, -2.7, -3.7, -4.5, -5.5, -6.3, -7.2}, 0.1);
+  m.judge("X", "B", {1, 2, 2.8, 3.8, 4.6, 5.6, 6.4, 7.3});
+  return m;
+}
+
+TEST(MorningLines, SoonIsTheLastValueWithItsForecast) {
+  Laboratory lab;
+  lab.machines.push_back(worn());
+  lab.tonight.date = "2023-07-20", lab.due = "2024-03-01";
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "morning.soon");
+  EXPECT_NEAR(*lines[0].value, 7.3e-6, 1e-12);
+  EXPECT_NEAR(*lines[0].u, 0.25e-6, 1e-12);
+  EXPECT_EQ(text_of(lines[0], "date"), "2024-03-01");
+  EXPECT_GT(text_of(lines[0], "leaves"), lab.tonight.date);
+  // Its day has passed.
+  lab.tonight.date = "2024-06-01";
+  lines = lab.lines();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].finding.id, "morning.soon-now");
+  EXPECT_EQ(lines[0].id, "morning.soon:S-45:X:B");
+  EXPECT_EQ(text_of(lines[0], "leaves"), "");
+  EXPECT_EQ(lines[1].kind, Kind::overdue);
+  // The value is indeterminate: that line asks for more.
+  auto& last = lab.machines[0].stored().results.back();
+  last.value = 7.6, last.decision = "cannot be decided";
+  for (const MorningLine& l : lab.lines()) EXPECT_NE(l.kind, Kind::soon);
+}
+
 TEST(MorningLines, ManyOfOneKindAreOneLine) {
   Laboratory lab;
   for (int i = 0; i < 212; ++i) {
@@ -510,6 +587,21 @@ TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOut) {
   const auto d = morning::describe(one[0], "out", "2024-03-01", "12 months");
   for (const auto& s : d.series)
     if (s.forecast) EXPECT_EQ(s.forecast->answer, s.axis == "X" ? "act" : "keep") << s.quantity;
+}
+
+TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOpenOrOverdue) {
+  MadeMachine m("S-42");
+  m.follow("X", "scale", flat(1.0, 1.0), 0.05);
+  m.follow("Y", "scale", flat(1.0, 1.0), 0.05);
+  m.judge("X", "R", flat(8.0, 8.0));  // indeterminate
+  std::vector<morning::AssessedMachine> one{m.assessed()};
+  judge_all(one);
+  for (const std::string today : {"2024-03-01", "2024-03-02"})
+    for (const auto& s : morning::describe(one[0], "out", "2024-03-01", "", today).series)
+      if (s.forecast)
+        EXPECT_EQ(s.forecast->answer, s.axis == "X"           ? "act"
+                                      : today == "2024-03-01" ? "keep"
+                                                              : "overdue");
 }
 
 TEST(Forecasts, AValueHasTheUOfItsCampaign) {
@@ -693,7 +785,7 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
   for (const char* id : {"morning.lost",           "morning.lost-several",
                          "morning.failed",         "morning.history",
                          "morning.out-changed",    "morning.changed",
-                         "morning.changed-event",  "morning.soon",
+                         "morning.changed-event",  "morning.soon-now",
                          "morning.overdue",        "morning.undecided",
                          "morning.fixed",          "morning.conforms",
                          "morning.not-judged",     "morning.spelling",

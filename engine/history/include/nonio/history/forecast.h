@@ -7,6 +7,8 @@
 
 namespace nonio::history {
 
+inline constexpr double keep_below = 0.05;  ///< probability of a value beyond the limit
+
 enum class Answer { keep, watch, act, cannot_say };
 
 struct Forecast {

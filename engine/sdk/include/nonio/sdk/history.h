@@ -46,7 +46,7 @@ struct HistoryForecast {
   double value = 0.0, u = 0.0;
   double p_out = 0.0;
   std::string leaves{};  ///< day on which the 95 % bound meets the limit; empty: never
-  std::string answer;    ///< keep, watch, act, cannot-say
+  std::string answer;    ///< keep, watch, act, overdue, cannot-say
 };
 
 struct HistorySeries {
