@@ -7,6 +7,8 @@
 namespace nonio {
 namespace {
 
+constexpr std::size_t most_entries = 256;
+
 using controllers::AxisJob;
 using controllers::Sheet;
 using Confidence = ControlTable::Confidence;
@@ -17,7 +19,7 @@ ControlTable declared() {
   t.entry = ControlTable::Entry::position;
   t.grid = ControlTable::Grid::listed;
   t.position_step = t.value_step = {1e-11, 1e-8 / deg_per_rad};
-  t.points = 256;
+  t.points = most_entries;
   t.bidirectional = true;
   t.facts = {{"sign", Confidence::run, "Type 0 holds actual positions, type 1 corrections."},
              {"grid", Confidence::run, "256 lines, linear between them, the ends hold outside."}};
@@ -124,7 +126,11 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
   const auto all = controllers::lines_of(f.bytes);
   std::size_t last = all.size();
   while (last > 0 && controllers::trimmed(all[last - 1]).empty()) --last;
-  if (taken < last && taken < 256)
+  if (taken < last && taken == most_entries)
+    return fail(f.name + ", line " + std::to_string(taken + 1) +
+                ": the control refuses more than " + std::to_string(most_entries) +
+                " entries (\"too many compensation entries\")");
+  if (taken < last)
     return fail(f.name + ", line " + std::to_string(taken + 1) +
                 ": expected three numbers, found \"" + std::string(all[taken].substr(0, 60)) +
                 "\"; the control stops reading there without a message");
@@ -144,7 +150,8 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
 }
 
 // As the controller's source and runs of it show: reading stops for good at the first line that is
-// not three numbers; a nominal that does not rise drops its line; trims are floats. The file knows
+// not three numbers; a nominal that does not rise drops its line, which no table is meant to have;
+// trims are floats. The file knows
 // no axis: its name does, or there is one axis only.
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const auto axes = controllers::known_axes(in);
@@ -158,13 +165,17 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     std::size_t taken = 0;
     for (const std::string_view line : controllers::lines_of(f.bytes)) {
       const auto words_of_line = controllers::words_of(line);
-      if (line.size() > 254 || raw.position.size() == 256 || words_of_line.size() < 3) break;
+      if (line.size() > 254 || taken == most_entries || words_of_line.size() < 3) break;
       const auto x = controllers::real(words_of_line[0]),
                  plus = controllers::real(words_of_line[1]),
                  minus = controllers::real(words_of_line[2]);
       if (!x || !plus || !minus) break;
       ++taken;
-      if (!raw.position.empty() && !(*x > raw.position.back())) continue;
+      if (!raw.position.empty() && !(*x > raw.position.back()))
+        return fail(f.name + ", line " + std::to_string(taken) + ": the nominal position " +
+                    std::string(words_of_line[0]) +
+                    " is not larger than that of the line before; the control ignores this line "
+                    "without a message");
       raw.position.push_back(*x);
       raw.plus.push_back(*plus);
       raw.minus.push_back(*minus);

@@ -89,6 +89,29 @@ TEST(LinuxCnc, MoreThan256LinesAreThinnedOrRefused) {
   EXPECT_TRUE(Bench(m).write(linuxcnc_plugin()));
 }
 
+// What the control refuses, or ignores without a message, is no shorter table.
+TEST(LinuxCnc, WhatTheControlRefusesOrIgnoresIsAnError) {
+  const auto table = [](int lines, double step) {
+    std::string text;
+    for (int i = 0; i < lines; ++i)
+      text += fixed_text(step * i, 3) + " " + fixed_text(step * i, 3) + " " +
+              fixed_text(step * i, 3) + "\n";
+    return text;
+  };
+  const auto read = [&](const std::string& text) {
+    return read_back(linuxcnc_plugin(), {{"linuxcnc-X.comp", text}});
+  };
+  EXPECT_TRUE(read(table(256, 2.0)));
+  const auto many = read(table(257, 2.0));
+  ASSERT_FALSE(many);
+  EXPECT_TRUE(contains(many.error().message, "line 257: the control refuses more than 256"));
+  for (const double step : {-2.0, 0.0}) {  // usual for Z from 0 to -200
+    const auto falling = read(table(11, step));
+    ASSERT_FALSE(falling);
+    EXPECT_TRUE(contains(falling.error().message, "line 2: the nominal position")) << step;
+  }
+}
+
 TEST(LinuxCnc, InchMachine) {
   const auto r = Bench(invented()).write(linuxcnc_plugin(), {{"units", std::string("inch")}});
   ASSERT_TRUE(r);
