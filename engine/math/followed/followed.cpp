@@ -85,10 +85,13 @@ Eigen::MatrixXd legendre_columns(const AxisTest& test, int columns) {
   return X;
 }
 
-/// Rows: coefficient of each column in a least-squares fit to the targets, by target.
+/// Rows: coefficient of each column, which are independent, in a least-squares fit to the targets, by
+/// target. No larger than X: there may be many targets.
 Eigen::MatrixXd fit_rows(const Eigen::MatrixXd& X) {
-  return Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(X).solve(
-      Eigen::MatrixXd::Identity(X.rows(), X.rows()));
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(X);
+  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(X.rows(), X.cols());
+  const auto R = qr.matrixR().topRows(X.cols()).triangularView<Eigen::Upper>();
+  return qr.colsPermutation() * Eigen::MatrixXd(R.solve(Q.transpose()));
 }
 
 void add_scale(Following& work) {
