@@ -172,9 +172,8 @@ Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questio
   if (!host::config::is_campaign_id(id)) {
     const std::string nearest = valid_id(id);
     return fail(
-        "id: expected a-z 0-9 . _ - and no more than 100, not starting with a point; found \"" +
-        id + "\"" +
-        (host::config::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
+        "id: expected a-z 0-9 . _ - and no more than 100, not starting with . or -; found \"" + id +
+        "\"" + (host::config::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
   }
   if (const auto site = site_above(folder))
     if (const fs::path other = holder_of(id, *site); !other.empty())

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/history/query.h"
+#include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "printable.h"
 #include "verbs.h"
@@ -58,21 +59,15 @@ constexpr auto query_columns = std::to_array<QueryColumn>({
     {"superseded_by", &Point::superseded_by, true},
 });
 
-/// RFC 4180: in quotes where it needs them.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 void print_csv(const std::vector<Point>& points) {
   for (std::size_t i = 0; i < query_columns.size(); ++i)
     std::cout << (i == 0 ? "" : ",") << query_columns[i].name;
   std::cout << "\n";
   for (const Point& p : points) {
     for (std::size_t i = 0; i < query_columns.size(); ++i)
-      std::cout << (i == 0 ? "" : ",") << csv_field(p.*query_columns[i].member);
+      std::cout << (i == 0 ? "" : ",")
+                << (query_columns[i].number ? p.*query_columns[i].member
+                                            : csv_text(p.*query_columns[i].member));
     std::cout << "\n";
   }
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Long: one run, in the order of its steps.
 #include "host/batch/run.h"
 
 #include <algorithm>
@@ -92,11 +93,14 @@ Expected<void> note_certificates(Night& night, const RunOptions& options,
   return {};
 }
 
+bool is_campaign(const Vanished& v) { return config::is_campaign_id(v.id); }
+
 /// Campaigns that somebody has said to be gone are none that vanished.
 void leave_out_forgotten(Night& night, const Expected<history::Told>& told) {
   if (!told) return;
   std::erase_if(night.vanished, [&](const Vanished& v) {
-    return std::any_of(told->logs.forgotten.begin(), told->logs.forgotten.end(),
+    return is_campaign(v) &&
+           std::any_of(told->logs.forgotten.begin(), told->logs.forgotten.end(),
                        [&](const config::Forgotten& f) { return f.campaign == v.id; });
   });
 }
@@ -132,7 +136,8 @@ void write_mail(Night& night, const RunOptions& options, const RunEvents& events
 
 /// First what cannot be left lying; then what the register says; the summary last.
 Expected<void> close_night(Night& night, const RunOptions& options, const RunEvents& events,
-                           const reading::Context& context, NightState& state) {
+                           const SetUp& place, NightState& state) {
+  const reading::Context& context = place.context;
   if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
   if (auto noted = note_certificates(night, options, context, state); !noted) return noted;
   const Morning morning = morning_of(night, options, events, context);
@@ -140,17 +145,21 @@ Expected<void> close_night(Night& night, const RunOptions& options, const RunEve
   const config::TerminalWords words(context.templates, context.site.language);
   if (auto written = write_summary(night, options.out, options.version, words, morning); !written)
     return written;
+  if (auto kept = place.parts.keep(state.of()); !kept) return kept;
   return end_night(options.out, state, {state.of(), night.campaigns.size(), night.failed()});
 }
 
 /// All of them stand in the summary; of very many the messages name the first.
 void tell_vanished(const Night& night, const RunEvents& events) {
   constexpr std::size_t most = 100;
-  for (std::size_t i = 0; i < std::min(most, night.vanished.size()); ++i)
-    events.note("campaign " + night.vanished[i].id + " has vanished: " + night.vanished[i].why);
+  for (std::size_t i = 0; i < std::min(most, night.vanished.size()); ++i) {
+    const Vanished& v = night.vanished[i];
+    events.note(is_campaign(v) ? "campaign " + v.id + " has vanished: " + v.why
+                               : v.id + " " + v.why);
+  }
   if (night.vanished.size() > most)
     events.note("and " + std::to_string(night.vanished.size() - most) +
-                " more campaigns have vanished: see the summary");
+                " more have vanished: see the summary");
 }
 
 /// Which campaigns there are, and what is to do with each.
@@ -195,9 +204,10 @@ struct Plan {
 };
 
 /// Surveyed and told. An error: the night ends here; empty if somebody wants to stop.
-Expected<Plan> plan_night(const RunOptions& options, const RunEvents& events,
-                          const reading::Context& context, const NightState& state,
-                          const std::optional<Known>& known, Night& night) {
+Expected<Plan> plan_night(const RunOptions& options, const RunEvents& events, const SetUp& place,
+                          const NightState& state, const std::optional<Known>& known,
+                          Night& night) {
+  const reading::Context& context = place.context;
   const std::size_t notes_so_far = night.notes.size();
   const auto surveyed = survey_site(options, context, state, known, night);
   if (process::is_stop_requested()) return fail("");
@@ -208,6 +218,8 @@ Expected<Plan> plan_night(const RunOptions& options, const RunEvents& events,
     if (!one) return fail(one.error());
     only = std::move(*one);
   }
+  const auto& lost = place.parts.lost();
+  night.vanished.insert(night.vanished.end(), lost.begin(), lost.end());
   Plan plan{read_told(options, context), std::move(only)};
   leave_out_forgotten(night, plan.told);
   for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
@@ -322,7 +334,7 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
     }
   }
   const auto plan = planned ? planned_night_of(options, events, place, *planned, known, night)
-                            : plan_night(options, events, context, *state, known, night);
+                            : plan_night(options, events, place, *state, known, night);
   if (!plan) return refuse(plan.error().message);
   if (options.dry_run) return;
   if (options.step == RunOptions::Step::plan) {
@@ -335,7 +347,7 @@ void do_night(const RunOptions& options, const RunEvents& events, const std::str
     return refuse(done.error().message);
   leave_out_new(*state, night.campaigns);
   tell_stage(events, "pages");
-  const auto closed = close_night(night, options, events, context, *state);
+  const auto closed = close_night(night, options, events, place, *state);
   if (closed && planned) {
     auto gone = remove_plan(options.out);
     if (gone) gone = storage::sweep_packs(options.out);

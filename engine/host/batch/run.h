@@ -41,10 +41,10 @@ struct RunOptions {
   double patience = 0.0;  ///< s, for results of other hosts to appear here; of a merge
 };
 
-/// A campaign that has results and is not in the site any more. Its results stay; a
-/// person says that this was meant (forgotten.toml).
+/// A campaign that has results and is not in the site any more, or another part of the site that is
+/// lost (SiteParts). Results stay; a person says that this was meant (forgotten.toml).
 struct Vanished {
-  std::string id, folder;   ///< folder: where it was, as text
+  std::string id, folder;   ///< folder: where it was, as text; id of a part: the same
   std::uint64_t night = 0;  ///< in which it was done last
   std::string why;          ///< what is there instead, and what to do
 };
@@ -70,13 +70,14 @@ struct Night {
       issued;  ///< certificates that are new since the night before
   std::vector<certificates::WaitingDraft> waiting;  ///< for their release
   std::vector<Vanished> vanished;                   ///< ordered by id
-  std::size_t failed() const;  ///< campaigns, and folders that could not be listed
+  std::size_t failed() const;      ///< campaigns, and folders that could not be listed
+  std::size_t lost_parts() const;  ///< so many in `vanished` are no campaigns
   /// Whether anything failed or vanished, or is not in the history.
   bool any_failed() const {
-    return failed() > 0 || vanished.size() > may_vanish || !history_error.empty() ||
-           !morning_error.empty();
+    return failed() > 0 || lost_parts() > 0 || vanished.size() > may_vanish ||
+           !history_error.empty() || !morning_error.empty();
   }
-  std::size_t may_vanish = 0;             ///< so many may, by site.toml
+  std::size_t may_vanish = 0;             ///< so many campaigns may vanish, by site.toml
   std::optional<std::uint64_t> asking{};  ///< lines of the morning that ask for a decision
   std::string morning_error{};            ///< why the pages were not made, or the mail not sent
   std::string history_error{};            ///< why OUT/history.sqlite does not know this night

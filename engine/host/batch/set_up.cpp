@@ -104,12 +104,17 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
                                        [&](const fs::path& path) { signs.reading(path.string()); });
       });
   if (!files) return fail(all_of({files.error()}));
+  auto parts = SiteParts::compare(options.site, options.out);
+  if (!parts) return fail(parts.error());
+  place->parts = std::move(*parts);
+  if (const std::string why = place->parts.refusal(); !why.empty()) return fail(why);
   auto site = config::site_in(*files, context.site_sha256);
   if (!site) return fail(all_of(site.error()));
   context.site = std::move(*site);
   place->notes = context.site.notes;
   auto machines = config::read_machines(options.site);
   if (!machines) return fail(all_of({machines.error()}));
+  place->parts.complete(*machines);
   context.machines = std::move(*machines);
   const bool signs =
       options.step == RunOptions::Step::whole || options.step == RunOptions::Step::merge;

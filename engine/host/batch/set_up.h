@@ -8,6 +8,7 @@
 
 #include "host/batch/plugin_host.h"
 #include "host/batch/run.h"
+#include "host/batch/site_parts.h"
 #include "host/certificates/signer.h"
 
 namespace nonio::host::batch {
@@ -18,6 +19,7 @@ struct SetUp {
   std::optional<certificates::Signer> signer;
   loader::Plugins plugins;  ///< what they say of themselves: this process has none of their code
   std::optional<PluginHost> host;
+  SiteParts parts;
   std::vector<std::string> notes;  ///< for the morning's reader
   std::string unstamped;           ///< for the summary alone: it is the same every night
   std::string no_key;              ///< why nothing can be signed; empty: it can

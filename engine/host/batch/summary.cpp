@@ -117,10 +117,11 @@ struct Lists {
   std::map<std::string, Fresh> fresh_by_heading;  ///< those that ask for attention
 
   void add(const Vanished& v) {
-    vanished.add(v.id + ": " + v.why, {{"campaign", v.id},
-                                       {"folder", v.folder},
-                                       {"last_done_night", v.night},
-                                       {"message", v.why}});
+    vanished.add(v.id + (config::is_campaign_id(v.id) ? ": " : " ") + v.why,
+                 {{"campaign", v.id},
+                  {"folder", v.folder},
+                  {"last_done_night", v.night},
+                  {"message", v.why}});
   }
 
   /// An error if what the campaign's record says cannot be read.
@@ -339,6 +340,12 @@ std::size_t Night::failed() const {
   return static_cast<std::size_t>(
       std::count_if(campaigns.begin(), campaigns.end(),
                     [](const CampaignState& c) { return c.status == evaluation::Status::failed; }));
+}
+
+std::size_t Night::lost_parts() const {
+  return static_cast<std::size_t>(
+      std::count_if(vanished.begin(), vanished.end(),
+                    [](const Vanished& v) { return !config::is_campaign_id(v.id); }));
 }
 
 std::string first_error(const CampaignState& c, const config::TerminalWords& words) {

@@ -98,23 +98,34 @@ const Key& specification_file();
 /// What tells the kind of axis that a cycle moves; settled by the code that reads cycles.
 inline constexpr std::string_view cycle_axis = "(axis)";
 
-/// What the nightly run writes beside the folders of the campaigns.
-inline constexpr std::string_view files_of_a_night[] = {"summary.json",
-                                                        "summary.txt",
-                                                        "history.sqlite",
-                                                        "history.json",
-                                                        "index.html",
-                                                        "due.html",
-                                                        "due.ics",
-                                                        "instruments.html",
-                                                        "compare.html",
-                                                        "machines",
-                                                        "history.sqlite-journal"};
+/// Files that a run writes next to the folders of the campaigns, and files of a site next to its
+/// campaigns: no campaign can have such a name.
+inline constexpr std::string_view reserved_names[] = {"summary.json",
+                                                      "summary.txt",
+                                                      "history.sqlite",
+                                                      "history.json",
+                                                      "index.html",
+                                                      "due.html",
+                                                      "due.ics",
+                                                      "instruments.html",
+                                                      "compare.html",
+                                                      "machines",
+                                                      "history.sqlite-journal",
+                                                      "history.sqlite-shm",
+                                                      "history.sqlite-wal",
+                                                      "site.toml",
+                                                      "events.toml",
+                                                      "acknowledged.toml",
+                                                      "forgotten.toml",
+                                                      "templates"};
 /// Its record is the file of that name in SITE/machines.
 inline constexpr TextRule asset_rule{.not_letters = "/\\\n\t", .not_first = ". ", .longest = 100};
 /// Folders of results are named by it.
+inline constexpr const char* campaign_id_wanted =
+    "expected a-z 0-9 . _ - and no more than 100, not starting with . or -, and no name of a file "
+    "of the program (summary.json, machines); found \"{}\"";
 inline constexpr TextRule campaign_id_rule{
-    .letters = "a-z0-9._-", .not_first = ".", .longest = 100, .except = files_of_a_night};
+    .letters = "a-z0-9._-", .not_first = ".-", .longest = 100, .except = reserved_names};
 
 bool obeys(std::string_view text, const TextRule& rule);
 bool in_range(double value, const Key& key);

@@ -193,34 +193,56 @@ std::string machine_input(const Machine& m) {
   return {};
 }
 
+namespace {
+
+/// Whose record it is.
+Machine machine_of(const RecordFile& r) {
+  Machine out;
+  out.maker = r.record ? r.record->maker : r.maker;
+  out.serial = r.record ? r.record->serial : r.serial;
+  return out;
+}
+
+/// Wrong, and nobody knows what was meant.
+bool may_be_of_any(const RecordFile& r) { return !r.record && r.maker.empty() && r.serial.empty(); }
+
+}  // namespace
+
 std::string machine_digest(const MachineRecords& records, std::string_view input) {
-  std::string all;
+  std::string all, of_any;
+  const auto add = [](std::string& to, const std::string& digest) {
+    to += (to.empty() ? "" : " ") + digest;
+  };
+  const std::string asset_prefix = std::string(machine_prefix) + "asset ";
   for (const RecordFile& r : records) {
-    Machine by_asset, by_serial;
+    Machine by_asset;
     by_asset.asset = r.asset;
-    if (r.record) by_serial.maker = r.record->maker, by_serial.serial = r.record->serial;
-    if (machine_input(by_asset) == input || machine_input(by_serial) == input)
-      all += (all.empty() ? "" : " ") + r.sha256;
+    if (machine_input(by_asset) == input || machine_input(machine_of(r)) == input)
+      add(all, r.sha256);
+    else if (may_be_of_any(r) && !input.starts_with(asset_prefix))
+      add(of_any, "unreadable " + r.sha256);
   }
-  return all.empty() ? absent : all;
+  return !all.empty() ? all : !of_any.empty() ? of_any : absent;
 }
 
 Expected<const RecordFile*> record_of(const MachineRecords& records, const Machine& machine) {
-  const RecordFile* found = nullptr;
+  const RecordFile *found = nullptr, *any = nullptr;
   for (const RecordFile& r : records) {
     if (!machine.asset.empty()) {
       if (r.asset == machine.asset) return &r;
       continue;
     }
-    if (machine.maker.empty() || machine.serial.empty() || !r.record ||
-        r.record->maker != machine.maker || r.record->serial != machine.serial)
-      continue;
+    if (machine.maker.empty() || machine.serial.empty()) continue;
+    if (may_be_of_any(r)) any = &r;
+    const Machine of = machine_of(r);
+    if (of.maker != machine.maker || of.serial != machine.serial) continue;
     if (found != nullptr)
-      return fail(found->record->file + " and " + r.record->file + " both are of " + machine.maker +
+      return fail(std::string(machines_folder) + "/" + found->asset + ".toml and " +
+                  machines_folder + "/" + r.asset + ".toml both are of " + machine.maker +
                   ", serial " + machine.serial + ": say asset in [machine]");
     found = &r;
   }
-  return found;
+  return found != nullptr ? found : any;
 }
 
 std::string packed(const RecordFile& record) {

@@ -38,14 +38,16 @@ struct MachineRecord {
 Checked<MachineRecord> parse_machine(std::string_view text, const std::string& file,
                                      const std::string& asset);
 
-/// One file of the folder; one that is wrong fails the campaigns of its machine, and no others.
+/// One file of the folder. One that is wrong fails the campaigns of its machine; if nobody knows
+/// whose it is, all campaigns that name no asset and for whose machine no other record exists.
 struct RecordFile {
   std::string asset;   ///< the name of the file
   std::string bytes;   ///< empty where it cannot be read
   std::string sha256;  ///< of it and of the tables that it names
   Checked<MachineRecord> record;
   std::map<std::string, std::vector<Artifact>>
-      tables{};  ///< by axis: those that are in the control
+      tables{};                   ///< by axis: those that are in the control
+  std::string maker{}, serial{};  ///< of a record that is wrong: as it was when it was right last
 };
 using MachineRecords = std::vector<RecordFile>;
 
@@ -60,7 +62,8 @@ inline constexpr std::string_view machine_prefix = "machine ";
 /// The record's digest, `absent` where there is none.
 std::string machine_digest(const MachineRecords& records, std::string_view input);
 
-/// The record of this machine; null: there is none. An error where two have its maker and serial.
+/// The record of this machine; null: there is none. It may be wrong: then it is, or may be, that of
+/// the machine. An error where two have its maker and serial.
 Expected<const RecordFile*> record_of(const MachineRecords& records, const Machine& machine);
 
 /// What the manifest and the record of its machine say otherwise, with both places.

@@ -16,6 +16,7 @@ namespace nonio::host::config {
 
 inline constexpr const char* manifest_name = "campaign.toml";
 inline constexpr const char* site_name = "site.toml";
+inline constexpr const char* templates_folder = "templates";
 
 /// Stands for the SHA-256 of a file that cannot be read.
 inline constexpr const char* absent = "absent";

@@ -9,12 +9,21 @@
 #include <charconv>
 #include <functional>
 
+#include "host/config/machines.h"
 #include "host/config/toml_reader.h"
 #include "host/storage/files.h"
 #include "nonio/sdk/statement.h"
 
 namespace nonio::host::config {
 namespace fs = std::filesystem;
+
+bool is_site_part(std::string_view path) {
+  for (const std::string_view file : {site_name, events_name, acknowledged_name, forgotten_name})
+    if (path == file) return true;
+  for (const std::string_view folder : {machines_folder, templates_folder})
+    if (path == folder || (path.starts_with(folder) && path[folder.size()] == '/')) return true;
+  return false;
+}
 
 namespace {
 
@@ -233,8 +242,13 @@ Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
 
 Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file) {
   return parse_log<Forgotten>(text, file, forgotten_file(), "forgotten", [](TableReader& reader) {
-    return Forgotten{reader.date("date"), reader.text("campaign"), reader.text("by"),
-                     reason_of(reader)};
+    const std::string what = reader.text("campaign");
+    if (!what.empty() && !is_campaign_id(what) && !is_site_part(what))
+      reader.error("campaign",
+                   "expected the id of a campaign, or a file of the site (machines/S-0042.toml, "
+                   "templates, events.toml); found \"" +
+                       what + "\"");
+    return Forgotten{reader.date("date"), what, reader.text("by"), reason_of(reader)};
   });
 }
 

@@ -17,6 +17,9 @@ inline constexpr const char* events_name = "events.toml";
 inline constexpr const char* acknowledged_name = "acknowledged.toml";
 inline constexpr const char* forgotten_name = "forgotten.toml";
 
+/// Whether this is a file or folder of a site besides its campaigns, as a path below the site.
+bool is_site_part(std::string_view path);
+
 struct Event {
   std::string date, machine, axis, kind, text, by;  ///< axis: empty: the whole machine
   std::uint64_t line = 0;
@@ -36,7 +39,9 @@ struct Withdrawal {
 };
 
 struct Forgotten {
-  std::string date, campaign, by, why;
+  std::string date;
+  std::string campaign;  ///< or a path for which `is_site_part` holds
+  std::string by, why;
   std::uint64_t line = 0;
 };
 

@@ -54,12 +54,37 @@ Expected<std::optional<Kept>> kept_in(const fs::path& folder) {
   return Kept{good, std::move((*record)->record)};
 }
 
-Expected<std::string> earlier_bytes(const fs::path& folder) {
-  for (const fs::path& path :
-       {folder / earlier_name, folder / evaluation::last_good_name / earlier_name}) {
+std::string if_restored(const fs::path& folder) {
+  return "; restore it from a copy of the output folder, or remove it and " +
+         (folder / evaluation::record_name).string() + " to go on without what was known before";
+}
+
+/// What the record says of it; empty: that there was none, or nothing that can be relied on.
+std::string recorded_digest(const fs::path& folder) {
+  const auto last = evaluation::last_record(folder);
+  if (!last || !*last || !(*last)->whole) return {};
+  for (const auto& f : (*last)->record.files)
+    if (f.name == earlier_name) return f.sha256;
+  return {};
+}
+
+/// It is the only copy: what is missing or changed is an error, never "nothing was known".
+Expected<std::string> earlier_bytes(const fs::path& campaign) {
+  for (const fs::path& folder : {campaign, campaign / evaluation::last_good_name}) {
+    const fs::path path = folder / earlier_name;
     const auto there = storage::is_there(path);
     if (!there) return fail(there.error());
-    if (*there) return storage::read_file(path);
+    const std::string recorded = recorded_digest(folder);
+    if (!*there && recorded.empty()) continue;
+    if (!*there)
+      return fail(path.string() + ", with the results that were replaced, is missing" +
+                  if_restored(folder));
+    auto bytes = storage::read_file(path);
+    if (bytes && !recorded.empty() && storage::sha256(*bytes) != recorded)
+      return fail(path.string() +
+                  ", with the results that were replaced, was changed: expected SHA-256 " +
+                  recorded + if_restored(folder));
+    return bytes;
   }
   return std::string();
 }
@@ -79,14 +104,14 @@ Known known_in(dom::object json) {
           read_entry(json["results"], inputs)};
 }
 
-/// What earlier.json says. It is the only copy: damage is an error, never "nothing was known".
+/// What earlier.json says. Damage is an error here too.
 Expected<FolderHistory> earlier_in(const std::string& bytes, const fs::path& folder) {
   FolderHistory history;
   if (bytes.empty()) return history;
   const auto damaged = [&](const std::string& why) {
     return fail((folder / earlier_name).string() +
                 " is damaged, and with it what was known of the campaign before: " + why +
-                "; bring it back from a copy of the output folder, or remove it to go on without");
+                if_restored(folder));
   };
   if (!bytes.starts_with(head) || !bytes.ends_with(end_of_list))
     return damaged("it does not begin or end as it was written");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "host/config/manifest.h"
 #include "host/morning/lines_of_machine.h"
 
 namespace nonio::host::morning {
@@ -24,13 +25,19 @@ void put_count(MorningLine& line, const char* name, std::size_t n) {
 /// What vanished, by machine; where many did, by the folder that they had in common.
 std::vector<MorningLine> lost(const Known& known) {
   std::map<std::string, std::vector<const Tonight::Vanished*>> by_machine, by_folder;
+  std::vector<MorningLine> out;
   for (const Tonight::Vanished& v : known.tonight.vanished) {
+    if (!config::is_campaign_id(v.campaign)) {
+      out.push_back(line_of(Kind::lost, "morning.lost-part", v.campaign));
+      put_text(out.back(), "part", v.campaign);
+      put_text(out.back(), "why", v.why);
+      continue;
+    }
     const auto machine = known.machine_of_campaign.find(v.campaign);
     by_machine[machine == known.machine_of_campaign.end() ? "" : machine->second].push_back(&v);
     by_folder[v.folder.substr(0, v.folder.find('/'))].push_back(&v);
   }
   const bool many = by_machine.size() > most_machines;
-  std::vector<MorningLine> out;
   for (const auto& [name, gone] : many ? by_folder : by_machine) {
     if (gone.size() == 1 || (!many && name.empty())) {
       for (const Tonight::Vanished* v : gone) {

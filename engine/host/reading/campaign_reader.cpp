@@ -88,6 +88,11 @@ void look_up_machine(const CampaignSource& from, ReadCampaign& out) {
   const config::RecordFile& file = **found;
   if (!file.record) {
     for (const Error& e : file.record.error()) report_in(out, e);
+    if (machine.asset.empty() && file.serial.empty())
+      report_in(out, key_error(from, out, "machine",
+                               "the record machines/" + file.asset +
+                                   ".toml cannot be read, and may be that of this machine; "
+                                   "correct it, or state asset in [machine]"));
     return;
   }
   for (Error& e : config::contradictions(*out.manifest, *file.record)) report_in(out, std::move(e));

@@ -328,7 +328,9 @@ Expected<fs::path> path_inside(const fs::path& base, const std::string& relative
 
 bool is_artifact_name(std::string_view name) {
   if (name.empty() || name.size() > 200 || name.front() == '.') return false;
-  if (name == "results.json" || name == "run.json" || name == "earlier.json") return false;
+  for (const char* own : {"results.json", "run.json", "earlier.json", "last-good"})
+    if (name == own) return false;
+  if (name.ends_with(leftover_suffix)) return false;  // what a later run would remove
   for (const char c : name)
     if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return false;
   return true;

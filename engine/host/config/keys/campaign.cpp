@@ -12,8 +12,7 @@ constexpr Key campaign_keys[] = {
      .holds = text,
      .help = "Name of the campaign, unique in the site: a-z 0-9 . _ -, at most 100.",
      .required = true,
-     .wanted = "expected a-z 0-9 . _ - and no more than 100, not starting with a point; found "
-               "\"{}\"",
+     .wanted = campaign_id_wanted,
      .text = campaign_id_rule},
     {.name = "customer", .holds = text, .help = "Name of the customer."},
     {.name = "site", .holds = text, .help = "Location of the machine."},

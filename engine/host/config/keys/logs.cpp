@@ -76,11 +76,9 @@ constexpr Key forgotten_keys[] = {
     {.name = "date", .holds = date, .help = "Day of the entry.", .required = true},
     {.name = "campaign",
      .holds = text,
-     .help = "Id of a campaign that was removed on purpose.",
-     .required = true,
-     .wanted = "expected a-z 0-9 . _ - and no more than 100, not starting with a point; found "
-               "\"{}\"",
-     .text = campaign_id_rule},
+     .help = "Id of a campaign, or another file or folder of the site (machines/S-0042.toml, "
+             "events.toml), that was removed on purpose.",
+     .required = true},
     written_by,
     {.name = "why", .holds = text, .help = "Reason for the removal.", .required = true},
 };
@@ -109,7 +107,7 @@ constexpr Key forgotten_file_keys[] = {
     format_key,
     {.name = "forgotten",
      .holds = tables,
-     .help = "Campaigns that were removed on purpose, [[forgotten]].",
+     .help = "What was removed on purpose, [[forgotten]].",
      .keys = forgotten_keys},
 };
 
@@ -123,10 +121,11 @@ constexpr Key acknowledged_toml = {
     .help = "Known findings of the machines of a site, and until when.",
     .keys = acknowledged_file_keys};
 
-constexpr Key forgotten_toml = {.name = "forgotten.toml",
-                                .holds = table,
-                                .help = "Campaigns of a site that were removed on purpose.",
-                                .keys = forgotten_file_keys};
+constexpr Key forgotten_toml = {
+    .name = "forgotten.toml",
+    .holds = table,
+    .help = "Campaigns and other files of a site that were removed on purpose.",
+    .keys = forgotten_file_keys};
 
 }  // namespace declared
 

@@ -103,8 +103,8 @@ TEST_F(Files, FilesAreReadWhole) {
 TEST_F(Files, ArtifactNames) {
   for (const char* good : {"report.pdf", "siemens-840d-X-EEC.ini", "points X+.csv"})
     EXPECT_TRUE(storage::is_artifact_name(good)) << good;
-  for (const char* bad :
-       {"", "../x", "a/b", "/x", ".hidden", "results.json", "run.json", "a\nb", ".."})
+  for (const char* bad : {"", "../x", "a/b", "/x", ".hidden", "results.json", "run.json", "a\nb",
+                          "..", "earlier.json", "last-good", "x.nonio-tmp"})
     EXPECT_FALSE(storage::is_artifact_name(bad)) << bad;
 }
 

@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every file of a site besides its campaigns, and earlier.json: lost, emptied, cut, swapped, wrong or renamed, one at a time.
+Each loss is reported, no table that depended on it is written, nothing else changes, and what is restored or removed on
+purpose leaves no trace. NONIO_SITE_MACHINES=60 for a laboratory."""
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import unittest
+
+from nightly import NONIO, NightTest, readings, tree
+
+MACHINES = int(os.environ.get("NONIO_SITE_MACHINES", "4"))
+RECORD = """format = 1
+asset = "{asset}"
+maker = "Mk"
+serial = "{serial}"
+control = "siemens-840d"
+[axes.X]
+number = 3
+table = "none"
+backlash_mm = 0.012
+since = 2026-01-01
+"""
+BROKEN = {
+    "syntax": lambda t: t.replace("= 0.012", "= 0.012.3"),
+    "unknown key": lambda t: t.replace("backlash_mm", "backlash_mmm"),
+    "wrong type": lambda t: t.replace("= 0.012", '= "0.012"'),
+    "comma": lambda t: t.replace("= 0.012", "= 0,012"),
+    "no asset": lambda t: re.sub("asset = .*\n", "", t),
+    "no since": lambda t: re.sub("since = .*\n", "", t),
+    "two keys": lambda t: t + "backlash_mm = 0.02\n",
+    "open quote": lambda t: t.replace('"Mk"', '"Mk'),
+    "empty": lambda t: "",
+    "blank": lambda t: "\n\n",
+    "cut in a line": lambda t: t[: len(t) // 2],
+    "cut before an axis": lambda t: t[: t.index("[axes")],
+    "Latin-1": lambda t: t.encode() + b"# M\xfcller\n",
+    "UTF-16": lambda t: t.encode("utf-16"),
+    "missing": lambda t: None,
+}
+
+
+def put(path, content):
+    if content is None:
+        path.unlink()
+    elif isinstance(content, bytes):
+        path.write_bytes(content)
+    else:
+        path.write_text(content, encoding="utf-8")
+
+
+class SiteParts(NightTest):
+    def setUp(self):
+        super().setUp()
+        self.parts = {"site.toml": 'language = "en"\n[limits]\nvanished = 9\n',
+                      "events.toml": 'format = 1\n[[event]]\ndate = 2026-10-01\nmachine = "S-1"\nkind = "crash"\ntext = "hit"\n'
+                                     '[[event]]\ndate = 2026-10-02\nmachine = "S-1"\nkind = "repair"\ntext = "nut"\n',
+                      "acknowledged.toml": 'format = 1\n[[acknowledged]]\ndate = 2026-10-01\nfinding = "reversal.constant"\n'
+                                           'machine = "S-1"\nuntil = 2027-01-01\nby = "B"\nwhy = "nut is ordered"\n',
+                      "forgotten.toml": 'format = 1\n[[forgotten]]\ndate = 2026-10-01\ncampaign = "old"\nby = "B"\nwhy = "machine was sold"\n',
+                      "templates/words/en/own.toml": '[a]\nb = "own words"\nc = "more own words"\n'}
+        for i in range(MACHINES):
+            asset, serial = f"S-{i}", f"m{i}"
+            self.parts[f"machines/{asset}.toml"] = RECORD.format(asset=asset, serial=serial)
+            named = f'asset = "{asset}"\n' if i % 2 else f'maker = "Mk"\nserial = "{serial}"\n'
+            self.campaign(f"c{i}", text=(
+                f'format = 1\n[campaign]\nid = "c{i}"\ndate = 2026-11-03\n[machine]\nmodel = "M"\n{named}[machine.axes.X]\n'
+                'kind = "linear"\nexpansion_um_per_m_K = 11.5\n[run]\noutputs = ["json", "siemens-840d"]\n'
+                '[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n'), seed=i)
+        for name, text in self.parts.items():
+            (self.site / name).parent.mkdir(parents=True, exist_ok=True)
+            (self.site / name).write_text(text)
+        self.night("2026-11-10", expect=0)
+        self.tables = self.backlash()
+        self.assertEqual(len(self.tables), MACHINES, "the parts have tables that depend on them")
+
+    def night(self, date, expect=None):
+        return self.run_nonio("--date", date, "--quiet", expect=expect)
+
+    def backlash(self):
+        """Of each campaign the value that goes to the control."""
+        found = {}
+        for p in sorted(self.out.glob("c*/siemens-840d*backlash*")):
+            found[p.parent.name] = re.search(r"BACKLASH\[0,AX3\]=(\S+)", p.read_text())[1]
+        return found
+
+    def lines(self):
+        return [line for line in json.loads((self.out / "summary.json").read_text())["lines"] if line["kind"] in ("lost", "failed")]
+
+    def forget(self, what, date):
+        done = subprocess.run([NONIO, "forget", self.site, what, "--by", "B. Sample", "--why", "no longer used", "--date", date],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_wrong_record_changes_no_value(self):
+        """In the first run too, where nobody knows whose it was."""
+        name = "machines/S-0.toml"
+        for fresh in (False, True):
+            for what, change in BROKEN.items():
+                if fresh and what in ("missing", "cut before an axis"):
+                    continue  # nothing tells that there was more
+                with self.subTest(what, fresh=fresh):
+                    if fresh:
+                        shutil.rmtree(self.out)
+                    put(self.site / name, change(self.parts[name]))
+                    done = self.night("2026-11-11", expect=1)
+                    self.assertIn("machines/S-0.toml", done.stderr)
+                    tables = self.backlash()
+                    self.assertNotIn("c0", tables)
+                    if not fresh:
+                        self.assertEqual(tables, {c: v for c, v in self.tables.items() if c != "c0"})
+                        copy = self.out / ".nonio/site" / name
+                        self.assertEqual(copy.read_text(), self.parts[name])
+                    for c, value in tables.items():
+                        self.assertEqual(value, self.tables[c])
+                    self.assertTrue(any("machines/S-0.toml" in line["says"] for line in self.lines()), self.lines())
+                    put(self.site / name, self.parts[name])
+                    self.night("2026-11-12", expect=0)
+                    self.assertEqual(self.backlash(), self.tables)
+                    self.assertEqual(self.lines(), [])
+
+    def test_every_part_that_is_lost_is_reported_until_somebody_has_removed_it(self):
+        before = tree(self.out)
+        for name, text in self.parts.items():
+            refused = name == "site.toml" or name.startswith("templates/")
+            for what in ("missing", "empty", "cut", "a folder"):
+                with self.subTest(name, what=what):
+                    path = self.site / name
+                    path.unlink()
+                    if what == "a folder":
+                        path.mkdir()
+                    elif what != "missing":
+                        path.write_text("" if what == "empty" else text[: text.rstrip().rindex("\n") + 1])
+                    done = self.night("2026-11-11")
+                    self.assertIn(done.returncode, (1, 2), done.stderr)
+                    self.assertIn(name, done.stderr)
+                    if refused:
+                        self.assertEqual(done.returncode, 2)
+                        self.assertEqual(tree(self.out), before)
+                    elif done.returncode == 1:
+                        self.assertTrue(any(name in line["says"] for line in self.lines()), self.lines())
+                        self.assertLessEqual(self.backlash().items(), self.tables.items())
+                    if what == "a folder":
+                        path.rmdir()
+                    path.write_text(text)
+                    self.night("2026-11-12", expect=0)
+                    self.assertEqual(self.backlash(), self.tables)
+                    before = tree(self.out)
+
+    def test_removed_on_purpose(self):
+        for day, name in enumerate(("acknowledged.toml", "templates", "machines/S-1.toml", "site.toml"), 11):
+            with self.subTest(name):
+                path = self.site / name
+                shutil.rmtree(path) if path.is_dir() else path.unlink()
+                self.assertIn(self.night(f"2026-11-{day}").returncode, (1, 2))
+                self.forget(name, f"2026-11-{day}")
+                done = self.night(f"2026-11-{day}")
+                self.assertNotIn(name + " is missing", done.stderr)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertFalse((self.out / ".nonio/site" / name).is_file())
+        (self.site / "acknowledged.toml").write_text(self.parts["acknowledged.toml"])
+        self.night("2026-11-15", expect=0)
+        (self.site / "acknowledged.toml").unlink()
+        self.assertIn("acknowledged.toml is missing", self.night("2026-11-16", expect=1).stderr, "an older entry was for an earlier loss")
+
+    def test_a_folder_that_is_gone_is_one_line(self):
+        (self.site / "machines").rename(self.site / "Machines")
+        done = self.night("2026-11-11", expect=1)
+        self.assertIn(f"machines none of its {MACHINES} files exists any more", done.stderr)
+        self.assertEqual(self.backlash(), {})
+        self.assertEqual(len([line for line in self.lines() if line["kind"] == "lost"]), 1)
+        (self.site / "Machines").rename(self.site / "machines")
+        self.night("2026-11-12", expect=0)
+        self.assertEqual(self.backlash(), self.tables)
+
+    def test_a_renamed_file_is_named(self):
+        (self.site / "templates/words/en/own.toml").rename(self.site / "templates/words/en/other.toml")
+        self.assertIn("templates/words/en/other.toml has its contents", self.night("2026-11-11", expect=2).stderr)
+
+    def test_an_edit_is_no_loss(self):
+        name = "machines/S-0.toml"
+        put(self.site / name, self.parts[name].replace("0.012", "0.010"))
+        put(self.site / "events.toml", self.parts["events.toml"].replace('text = "hit"\n', 'text = "hit the vice"\n'))
+        put(self.site / "site.toml", 'language = "de"\n')
+        self.night("2026-11-11", expect=0)
+        self.assertNotEqual(self.backlash()["c0"], self.tables["c0"])
+        self.assertEqual((self.out / ".nonio/site" / name).read_text(), (self.site / name).read_text())
+
+    def test_the_inventory_itself(self):
+        inventory = self.out / ".nonio/site.json"
+        for content in (None, "", "{", '{"schema": "nonio-site/1"}'):
+            with self.subTest(content):
+                put(inventory, content)
+                (self.site / "events.toml").unlink()
+                done = self.night("2026-11-11", expect=1)
+                self.assertIn("site.json is", done.stderr)
+                self.assertIn("events.toml is missing", done.stderr)
+                put(self.site / "events.toml", self.parts["events.toml"])
+                self.night("2026-11-12", expect=0)
+
+    def test_replaced_results_are_the_only_copy(self):
+        (self.site / "c0/x.csv").write_text(readings("other"))
+        self.night("2026-11-11", expect=0)
+        earlier = self.out / "c0/earlier.json"
+        whole = earlier.read_text()
+        number = re.search(r'"value": ?(-?\d+\.\d{3})', whole)
+        changed = whole[: number.start(1)] + "123.456" + whole[number.end(1):]
+        rows = self.rows()
+        for content in (None, "", whole[:-1], whole[: len(whole) // 2], changed):
+            with self.subTest(content and len(content)):
+                put(earlier, content)
+                done = self.night("2026-11-12", expect=1)
+                self.assertIn("earlier.json", done.stderr)
+                self.assertEqual(self.rows(), rows, "the history keeps what it knows")
+                put(earlier, whole)
+                self.night("2026-11-13", expect=0)
+                self.assertEqual(earlier.read_text(), whole)
+
+    def rows(self):
+        done = subprocess.run([NONIO, "query", self.out, "Mk m0", "--quantity", "B_mean", "--superseded", "--json"], capture_output=True, text=True)
+        return done.stdout
+
+
+if __name__ == "__main__":
+    unittest.main()
