@@ -348,7 +348,7 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
       continue;
     }
     if (job.unresolved) {
-      refuse_unresolved(job, *job.unresolved, result);
+      refuse_unresolved(job.axis, job.measurement, job.rotary, *job.unresolved, result);
       continue;
     }
     if (number_unsaid(job, keys)) {

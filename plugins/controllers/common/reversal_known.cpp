@@ -38,7 +38,9 @@ void take_uncertainties(const ControllerInput& input, std::size_t index, AxisJob
   if (!job.curve.bidirectional() || job.reversal.kind == Kind::not_constant ||
       job.reversal.kind == Kind::unknown || !(job.U.B_mean >= largest_share * std::fabs(mean)))
     return;
-  job.held = {mean, job.reversal.kind != Kind::none || math::matters(test, job.U.B_mean)};
+  // It stays: how large it may be decides who has to know.
+  job.held = {
+      mean, job.reversal.kind != Kind::none || math::matters(test, std::fabs(mean) + job.U.B_mean)};
   if (!job.measured) job.measured = job.curve;
   job.curve.plus = job.curve.minus = job.curve.mean;
 }

@@ -81,6 +81,7 @@ TEST(LinuxCnc, OneDirectionFillsBothColumns) {
 
 TEST(LinuxCnc, MoreThan256LinesAreThinnedOrRefused) {
   Measured m = invented();
+  m.plus = m.minus = [](double x) { return 10 * um * std::sin(20 * x); };
   m.targets = even(0.0, 2 * mm, 300);
   EXPECT_FALSE(Bench(m).write(linuxcnc_plugin()));
   const auto r = Bench(m).write(linuxcnc_plugin(), {{"step_mm", 4.0}});

@@ -23,9 +23,10 @@ enum class Columns { mean, both };
 /// A step of the curve between neighbouring targets that is not larger than the resolution of the
 /// readings and their scatter, and that a table would make steep.
 struct Unresolved {
-  double from = 0.0, to = 0.0;  ///< positions, m or rad
-  double step = 0.0;            ///< m or rad
-  double resolution = 0.0;      ///< smallest difference of two readings, m or rad
+  double from = 0.0, to = 0.0;      ///< positions, m or rad
+  double step = 0.0;                ///< m or rad
+  double resolution = 0.0;          ///< smallest difference of two readings, m or rad
+  double slope = 0.0, limit = 0.0;  ///< of the step, and what it exceeds; a ratio
 };
 
 /// Expanded uncertainties of what a table compensates; 0: not known. A prediction is never below them.
@@ -36,7 +37,7 @@ struct Uncertainties {
 /// A mean reversal of which U is half or more: no value is made of it.
 struct HeldReversal {
   double mean = 0.0;       ///< m or rad
-  bool attention = false;  ///< the runs repeat it, or U matters for the accuracy of the axis
+  bool attention = false;  ///< the runs repeat it, or it may be a fifth of A
 };
 
 /// One measured axis of which a table is to be written. SI.
