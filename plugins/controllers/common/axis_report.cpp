@@ -176,10 +176,10 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
     add("B", was.B(), promised(was.B(), will.B(), U_B));
     add("M", was.M(), promised(was.M(), will.M(), job.U.M));
   }
-  if (!(E_after < was.E()))
+  if (!(will.E() < was.E()))
     result.findings.push_back({"table.no-gain",
                                true,
-                               {{"before", was.E(), q}, {"after", E_after, q}},
+                               {{"before", was.E(), q}, {"after", will.E(), q}},
                                {{"axis", job.axis}},
                                job.measurement,
                                "This table would not make the axis better."});
