@@ -224,10 +224,13 @@ double square_sum(const std::vector<double>& values) {
 /// All passes of one direction against those of the other.
 Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& scatter, double step,
                         bool rotary) {
+  constexpr double least_travel = 1e-3;  // m
   constexpr double ratio = 9.0, ratio_of_odd = 5.0, chance = 1e-5;
   const Pair p = in_common(minus, plus);
   const std::size_t n = p.at.size();
   if (n < fewest_compared || scatter.freedom <= 0.0) return Turned::not_at_all;
+  // Over small steps the reversal is what the targets are made to show, not the pitch.
+  if (!rotary && !(p.at.back() - p.at.front() > least_travel)) return Turned::not_at_all;
   const double s = std::max(std::sqrt(scatter.squares / scatter.freedom), step);
   const double variance = s * s * (1.0 / minus.depth() + 1.0 / plus.depth()) / 4.0;
   std::vector<double> u, v;
