@@ -54,6 +54,9 @@ void implausible_values(const Passes& passes, const Observations& o, std::vector
 void implausible_passes(const Passes& passes, const Observations& o, bool with_directions,
                         std::vector<Finding>& out);
 
+/// A pass, or all of one direction, with the other sign or from the other end.
+void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out);
+
 /// A pass that agrees with the others only if each reading belongs to the target one row further:
 /// copied one row too high or too low. Two passes of its direction besides it, or nothing is said.
 void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>& out);

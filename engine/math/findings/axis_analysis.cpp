@@ -41,13 +41,14 @@ Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput& in) {
   const Axis* stated = in.campaign.machine.axis(in.measurement.axis);
   Axis axis = stated != nullptr ? *stated : Axis{};
   if (in.measurement.compensation == "off") axis.backlash_on = 0.0;
-  for (Finding& f : axis_findings(a.test, o, stated != nullptr ? &axis : nullptr))
-    a.findings.push_back(std::move(f));
   const Observations* own = &o;
   HeldLimits limits = limits_held(in.campaign, {&own, 1});
   const BudgetOrGap of =
       uncertainty_budget(in.campaign, limits.environment, in.measurement.axis, a.test);
   a.budget = of.budget;
+  const double U_mean = a.budget ? iso230_2_uncertainty(*a.budget, a.approaches, 2.0).B_mean : 0.0;
+  for (Finding& f : axis_findings(a.test, o, stated != nullptr ? &axis : nullptr, U_mean))
+    a.findings.push_back(std::move(f));
   for (Finding& f : limits.findings) a.findings.push_back(std::move(f));
   a.findings.push_back(budget_finding(of, a.test.rotary));
   if (of.budget && of.budget->U_EVE == 0.0)

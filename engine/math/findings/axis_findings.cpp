@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/finding_builder.h"
+#include "nonio/math/drift.h"
 #include "nonio/math/iso230_2.h"
 #include "nonio/math/reversal.h"
 #include "nonio/sdk/format.h"
@@ -31,7 +32,7 @@ const char* positive_reversal(std::optional<double> active) {
 }  // namespace
 
 void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
-                       std::optional<double> active) {
+                       std::optional<double> active, double U_mean) {
   using Kind = Reversal::Kind;
   const Reversal r = assess_reversal(test);
   const bool attention = !std::isnan(r.largest) && matters(test, r.largest);
@@ -43,11 +44,13 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
                    : r.kind == Kind::not_constant            ? "reversal.not-constant"
                                                              : nullptr;
   if (id != nullptr) {
+    // A value corrects nothing better than it is known.
+    const double left = std::max({r.largest_left, drift_share(test).B_mean, U_mean});
     FindingBuilder finding(id, attention, test.rotary);
     finding.deviation("mean", r.mean)
         .deviation("u_mean", r.u_mean)
         .deviation("max", r.largest)
-        .deviation("left", r.largest_left)
+        .deviation("left", left)
         .number("p", r.kind == Kind::not_constant ? r.p_varies : r.p_mean, Quantity::probability);
     if (r.kind == Kind::over_compensated && active) finding.deviation("active", *active);
     findings.push_back(finding.done());
@@ -67,10 +70,11 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
             .done());
 }
 
-std::vector<Finding> axis_findings(const AxisTest& test, const Observations& o, const Axis* axis) {
+std::vector<Finding> axis_findings(const AxisTest& test, const Observations& o, const Axis* axis,
+                                   double U_mean) {
   std::vector<Finding> findings;
   drift_findings(test, findings);
-  reversal_findings(test, findings, axis != nullptr ? axis->backlash_on : std::nullopt);
+  reversal_findings(test, findings, axis != nullptr ? axis->backlash_on : std::nullopt, U_mean);
   scatter_findings(test, findings);
   turn_findings(test, findings);
   plan_findings(test, o, axis, findings);

@@ -21,6 +21,15 @@ constexpr double least_u = 1e-9;   // m, m/m; what is stated counts with no smal
 
 Vector3d vector_of(const Corner& c) { return {c[0], c[1], c[2]}; }
 
+/// Where a ball was. A coordinate that was not measured is that of a plane across it: a tilt of that plane
+/// changes the others in second order only.
+Vector3d place_of(const ArtefactPlacement& p, std::size_t i) {
+  Vector3d at = vector_of(p.at[i]);
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!p.measured[k]) at[static_cast<Index>(k)] = 0.0;
+  return at;
+}
+
 /// Where an artefact stands: a ball at q is at R (q - from) + to.
 struct Stand {
   Matrix3d R = Matrix3d::Identity();
@@ -58,8 +67,7 @@ class Frame {
       if (a_.balls[b].stated) q_[b] = vector_of(*a_.balls[b].stated);
     if (!stated && !a_.placements.empty()) {
       const ArtefactPlacement& first = a_.placements.front();
-      for (std::size_t i = 0; i < first.ball.size(); ++i)
-        q_[first.ball[i]] = vector_of(first.at[i]);
+      for (std::size_t i = 0; i < first.ball.size(); ++i) q_[first.ball[i]] = place_of(first, i);
     }
     for (bool more = true; more;) {
       more = false;
@@ -83,13 +91,13 @@ class Frame {
     std::vector<Vector3d> q, at;
     for (std::size_t i = 0; i < placement.ball.size(); ++i)
       if (q_[placement.ball[i]])
-        q.push_back(*q_[placement.ball[i]]), at.push_back(vector_of(placement.at[i]));
+        q.push_back(*q_[placement.ball[i]]), at.push_back(place_of(placement, i));
     if (q.empty()) return false;
     const Stand stand = best_stand(q, at);
     const bool all = q.size() == placement.ball.size();
     if (!all && !stand.turned_by_all) return false;
     for (std::size_t i = 0; i < placement.ball.size(); ++i)
-      if (auto& ball = q_[placement.ball[i]]; !ball) ball = stand.back(vector_of(placement.at[i]));
+      if (auto& ball = q_[placement.ball[i]]; !ball) ball = stand.back(place_of(placement, i));
     stands_[p] = stand;
     return true;
   }
@@ -102,8 +110,10 @@ class Frame {
     for (std::size_t p = 0; p < stands_.size(); ++p)
       for (std::size_t i = 0; i < a_.placements[p].ball.size(); ++i) {
         const std::size_t b = a_.placements[p].ball[i];
-        see((stands_[p]->place(*q_[b]) - vector_of(a_.placements[p].at[i])).norm(),
-            a_.placements[p].name, a_.balls[b].name);
+        Vector3d apart = stands_[p]->place(*q_[b]) - place_of(a_.placements[p], i);
+        for (std::size_t k = 0; k < 3; ++k)
+          if (!a_.placements[p].measured[k]) apart[at(k)] = 0.0;
+        see(apart.norm(), a_.placements[p].name, a_.balls[b].name);
       }
     for (const ArtefactLength& l : a_.lengths)
       if (q_[l.a] && q_[l.b])
@@ -128,6 +138,7 @@ void put_placement(const Artefact& a, const Frame& frame, std::size_t p, std::si
   for (std::size_t i = 0; i < n; ++i)
     size = std::max(size, (stand.place(frame.ball(placement.ball[i])) - stand.to).norm());
   for (std::size_t k = 0; k < 3; ++k) {
+    if (!placement.measured[k]) continue;
     RigidLine line;
     line.kind = RigidLine::Kind::point;
     line.group = group;
@@ -139,7 +150,12 @@ void put_placement(const Artefact& a, const Frame& frame, std::size_t p, std::si
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t b = placement.ball[i];
       const Vector3d place = stand.place(frame.ball(b)), lever = place - stand.to;
-      line.readings.push_back({placement.at[i], sense, 1, place[at(k)] - placement.at[i][k]});
+      // The errors are those where the stand has the ball: at the places as read, their scatter would seem to
+      // tell the scale, which only a certificate does.
+      Corner where = placement.at[i];
+      for (std::size_t c = 0; c < 3; ++c)
+        if (placement.measured[c]) where[c] = place[at(c)];
+      line.readings.push_back({where, sense, 1, place[at(k)] - placement.at[i][k]});
       for (std::size_t j = 0; j < 3; ++j) {
         const double turned = Vector3d::Unit(at(j)).cross(lever)[at(k)];
         if (std::fabs(turned) > no_lever * size) line.shared[1 + j].of_reading[i] = turned;
@@ -149,6 +165,7 @@ void put_placement(const Artefact& a, const Frame& frame, std::size_t p, std::si
       }
     }
     out.lines.push_back(std::move(line));
+    out.of.push_back({p, k});
   }
 }
 

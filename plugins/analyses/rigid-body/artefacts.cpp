@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -47,6 +48,15 @@ void put_certificate(const Observations& o, Artefact& a) {
   }
 }
 
+/// Where the axes stood that were not read: as the manifest states it, else NaN.
+Corner stood_at(const Measurement& m) {
+  Corner at;
+  at.fill(std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [axis, position] : m.at)
+    if (const std::size_t k = coordinate_of(axis); k < 3) at[k] = position;
+  return at;
+}
+
 /// The means of each ball, and when each of its readings was taken.
 struct Probed {
   math::ArtefactPlacement placement;
@@ -61,6 +71,13 @@ Probed probed(const Measurement& m, const Observations& o, Artefact& a) {
                    [&](std::size_t x, std::size_t y) { return times[x] < times[y]; });
   Probed out;
   out.placement.name = m.id;
+  auto& measured = out.placement.measured;
+  for (std::size_t k = 0; k < 3; ++k)
+    measured[k] = std::any_of(o.lines.begin(), o.lines.end(),
+                              [k](const auto& line) { return line.sense[k] != 0.0; });
+  const Corner stood = stood_at(m);
+  const auto first = static_cast<std::size_t>(std::find(measured.begin(), measured.end(), true) -
+                                              measured.begin());
   std::map<std::size_t, std::size_t> place;  // of a ball in the placement
   std::vector<std::array<std::size_t, 3>> count;
   for (const std::size_t i : order) {
@@ -68,7 +85,9 @@ Probed probed(const Measurement& m, const Observations& o, Artefact& a) {
     const auto [at, fresh] = place.try_emplace(b, place.size());
     if (fresh) {
       out.placement.ball.push_back(b);
-      out.placement.at.push_back({});
+      Corner& at_ball = out.placement.at.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k)
+        if (!measured[k]) at_ball[k] = stood[k];
       count.push_back({});
     }
     for (std::size_t k = 0; k < 3; ++k) {
@@ -77,10 +96,11 @@ Probed probed(const Measurement& m, const Observations& o, Artefact& a) {
       double& mean = out.placement.at[at->second][k];
       ++n;
       mean += (o.deviation[i] - mean) / static_cast<double>(n);
-      if (k == 0) out.visits.push_back({times[i], at->second, 1.0});
+      if (k == first) out.visits.push_back({times[i], at->second, 1.0});
     }
   }
-  for (auto& visit : out.visits) visit.weight = 1.0 / static_cast<double>(count[visit.reading][0]);
+  for (auto& visit : out.visits)
+    visit.weight = 1.0 / static_cast<double>(count[visit.reading][first]);
   return out;
 }
 
@@ -154,13 +174,17 @@ void take_artefact(const AnalysisInput& in, const std::string& name, std::size_t
   auto made = math::artefact_lines(a, unknowns, group);
   if (!made) return refuse(in, name, made.error(), out);
   unknowns += made->unknowns;
+  std::size_t common = 0;
   for (std::size_t l = 0; l < made->lines.size(); ++l) {
     math::RigidLine& line = made->lines[l];
-    if (l < 3 * placements.size()) {
-      // What the three coordinates of a placement have in common is one for all of them.
-      const std::size_t common = out.lines.size() - l % 3;
-      out.budget.push_back(budget_of(in, line, l % 3, placements[l / 3].visits, common));
-      if (l % 3 == 0) out.used.push_back(a.placements[l / 3].name);
+    if (l < made->of.size()) {
+      const auto [placement, k] = made->of[l];
+      // What the coordinates of a placement have in common is one for all of them.
+      if (l == 0 || made->of[l - 1].placement != placement) {
+        common = out.lines.size();
+        out.used.push_back(a.placements[placement].name);
+      }
+      out.budget.push_back(budget_of(in, line, k, placements[placement].visits, common));
     } else {
       out.stated.push_back({out.lines.size(), name, {}});
       out.budget.push_back(stated_budget(line.readings.size(), out.lines.size()));

@@ -11,6 +11,7 @@
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/format.h"
 #include "resolution.h"
+#include "reversal_known.h"
 #include "series_jobs.h"
 
 namespace nonio::controllers {
@@ -126,8 +127,9 @@ AxisJob job_of(const ControllerInput& input, std::size_t index) {
   job.curve = math::error_curve(test);
   if (input.measured != nullptr && index < input.measured->size())
     job.measured = math::error_curve(math::AxisTest::arrange((*input.measured)[index]));
-  if (job.rotary) job.turn = math::closed_turn(job.curve);
   job.reversal = math::assess_reversal(test);
+  take_uncertainties(input, index, job);
+  if (job.rotary) job.turn = math::closed_turn(job.curve);
   job.drift = drift_of(test);
   job.unresolved = unresolved_step(test, job.curve);
   job.suspects = suspects_of(test, job);
@@ -141,6 +143,7 @@ void say_what_was_left_out(const AxisJob& job, OutputResult& result) {
   if (job.curve.left_out > 0)
     say("table.left-out").evidence = {
         {"targets", static_cast<double>(job.curve.left_out), Quantity::count}};
+  if (job.held) say_held(job, result);
   if (job.from_diagonals)
     say(job.scale_known ? "table.from-diagonals" : "table.from-shape")
         .texts.emplace_back("id", job.measurement);
@@ -345,7 +348,7 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
       continue;
     }
     if (job.unresolved) {
-      refuse_unresolved(job, *job.unresolved, result);
+      refuse_unresolved(job.axis, job.measurement, job.rotary, *job.unresolved, result);
       continue;
     }
     if (number_unsaid(job, keys)) {

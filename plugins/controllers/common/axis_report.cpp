@@ -85,7 +85,11 @@ std::string reversal_words(const AxisJob& job, Columns columns) {
            (job.scale_known ? ""
                             : "; NOT in the table: the scale of the axis, which they do not know");
   if (!job.curve.bidirectional()) return "measured from one direction only: no backlash value";
-  const std::string mean = deviation_words(job, job.curve.mean_reversal());
+  const std::string mean = deviation_words(job, job.mean_reversal());
+  if (job.held)
+    return "mean reversal B = " + mean + ", U = " + deviation_words(job, job.U.B_mean) +
+           ": not identifiable, so it is not in the table; backlash parameter = " +
+           with_unit(job, job.present_backlash(), 6) + ", as while it was measured";
   if (columns == Columns::both)
     return "mean reversal B = " + mean +
            ": contained in the two directions of the table; backlash parameter = " +
@@ -100,6 +104,7 @@ std::string reversal_words(const AxisJob& job, Columns columns) {
 }
 
 void doubt_backlash(const AxisJob& job, OutputResult& result) {
+  if (job.held) return;
   const Quantity q = deviation_of(job.rotary);
   if (job.reversal.kind == math::Reversal::Kind::not_constant) {
     result.findings.push_back(
@@ -140,6 +145,15 @@ void doubt_backlash(const AxisJob& job, OutputResult& result) {
            "excess."});
 }
 
+namespace {
+
+/// What is not known cannot be taken away: a gain ends at U of what is compensated.
+double promised(double before, double after, double U) {
+  return after < before ? std::min(before, std::max(after, U)) : after;
+}
+
+}  // namespace
+
 void predict(const AxisJob& job, const math::Correction& whole, OutputResult& result) {
   const double present = job.present_backlash();
   const math::Correction correction = [&](double x, int direction) {
@@ -154,15 +168,13 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
       result.predictions.push_back({job.measurement, name, before, after, q});
   };
   const bool both = curve.bidirectional();
+  const double U_B = both && !job.held ? job.U.B_mean : 0.0;
+  const double E_after = promised(was.E(), will.E(), std::max(job.U.E, U_B));
   // Without its scale the curve is not the error of the axis: the diagonals say what the table does.
   if (job.scale_known) {
-    add(both                 ? "E"
-        : job.from_diagonals ? "M"
-        : curve.plus.empty() ? "E-"
-                             : "E+",
-        was.E(), will.E());
-    add("B", was.B(), will.B());
-    add("M", was.M(), will.M());
+    add(both ? "E" : job.from_diagonals ? "M" : curve.plus.empty() ? "E-" : "E+", was.E(), E_after);
+    add("B", was.B(), promised(was.B(), will.B(), U_B));
+    add("M", was.M(), promised(was.M(), will.M(), job.U.M));
   }
   if (!(will.E() < was.E()))
     result.findings.push_back({"table.no-gain",

@@ -7,6 +7,7 @@
 #include "nonio/controllers/replay.h"
 #include "nonio/controllers/size.h"
 #include "nonio/controllers/text.h"
+#include "resolution.h"
 
 namespace nonio::controllers {
 
@@ -284,6 +285,7 @@ std::vector<CrossJob> cross_jobs(const ControllerInput& in, SecondSide rule, Out
     if (auto job = volume ? of_volume(in, a, index) : of_diagonals(in, a)) {
       if (!volume && rule == SecondSide::own_table) turn_to_reference(in, *job, settings);
       for (CrossCurve& curve : job->curves) make_zero(curve, settings);
+      if (any_unresolved(in, *job, result)) continue;
       if (both_sides(*job, rule, in.campaign, result) && all_active_stated(in, *job, result))
         jobs.push_back(std::move(*job));
     }

@@ -242,7 +242,7 @@ Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table,
 void look_at_reversal(const AxisJob& job, const ControlTable& t, OutputResult& result) {
   if (!t.backlash.empty()) return doubt_backlash(job, result);
   Remark stays = remark(job, "table.reversal-stays");
-  stays.evidence = {{"mean", job.curve.mean_reversal(), deviation_of(job.rotary)}};
+  stays.evidence = {{"mean", job.mean_reversal(), deviation_of(job.rotary)}};
   result.notes.push_back(std::move(stays));
 }
 
@@ -362,7 +362,7 @@ std::vector<std::string> Sheet::words() const {
   for (std::string& line : zero_and_size()) lines.push_back(std::move(line));
   lines.push_back(points_said + std::to_string(plus_steps.size()));
   const bool stays = table.backlash.empty() && !directions && job.curve.bidirectional();
-  lines.push_back(stays ? "mean reversal B = " + deviation_words(job, job.curve.mean_reversal()) +
+  lines.push_back(stays ? "mean reversal B = " + deviation_words(job, job.mean_reversal()) +
                               ": it stays, the table is of the mean of both directions"
                         : reversal_words(job, columns()));
   if (!table.backlash.empty() && job.curve.bidirectional())

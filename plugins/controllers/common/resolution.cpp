@@ -3,22 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <utility>
 
 #include "nonio/math/statistics.h"
 
 namespace nonio::controllers {
 namespace {
 
-constexpr double least_step = 1e-6, least_angle = 1.0 / arcsec_per_rad, steepest = 1e-3,
-                 impossible = 1e-2;
+constexpr double least_step = 1e-6, least_angle = 1.0 / arcsec_per_rad, digits = 3.0,
+                 steepest = 1e-3, impossible = 1e-2;
 
 /// Smallest difference of two readings that differ; 0 if all are equal.
-double resolution_of(const math::AxisTest& test) {
-  std::vector<double> all;
-  for (std::size_t i = 0; i < test.targets.size(); ++i)
-    for (const auto& readings : {test.plus(i), test.minus(i)})
-      for (const auto& r : readings) all.push_back(r.deviation);
+double resolution_of(std::vector<double> all) {
   std::sort(all.begin(), all.end());
   const double size = all.empty() ? 0.0 : std::max(std::fabs(all.front()), std::fabs(all.back()));
   double least = 0.0;
@@ -29,11 +25,14 @@ double resolution_of(const math::AxisTest& test) {
   return least;
 }
 
-/// Variance of the mean of both directions at a target, by its repeats.
-double variance_at(const math::AxisTest& test, std::size_t i) {
+enum class Side { plus, minus, both };
+
+/// Variance of the mean of these directions at a target, by its repeats.
+double variance_at(const math::AxisTest& test, std::size_t i, Side side) {
   double sum = 0.0, sides = 0.0;
-  for (const auto& readings : {test.plus(i), test.minus(i)}) {
-    if (readings.empty()) continue;
+  for (const bool minus : {false, true}) {
+    const auto readings = minus ? test.minus(i) : test.plus(i);
+    if (readings.empty() || side == (minus ? Side::plus : Side::minus)) continue;
     ++sides;
     if (readings.size() < 2) continue;
     std::vector<double> values;
@@ -44,46 +43,81 @@ double variance_at(const math::AxisTest& test, std::size_t i) {
   return sides > 0.0 ? sum / (sides * sides) : 0.0;
 }
 
+/// Keeps the steepest step. variance: of each value, or none is known.
+void look_at(const std::vector<double>& position, const std::vector<double>& value,
+             const std::vector<double>& variance, double resolution, bool rotary,
+             std::optional<Unresolved>& found) {
+  for (std::size_t i = 1; i < value.size(); ++i) {
+    const double step = std::fabs(value[i] - value[i - 1]);
+    const double slope = step / (position[i] - position[i - 1]);
+    const double scatter = variance.empty() ? 0.0 : std::sqrt(variance[i] + variance[i - 1]);
+    const double explained = std::max(digits * resolution, 3.0 * scatter) * (1.0 + 1e-9);
+    const double limit = step > explained ? impossible : steepest;
+    if (!(step > (rotary ? least_angle : least_step)) || !(slope > limit) ||
+        (found && !(slope > found->slope)))
+      continue;
+    found = {position[i - 1], position[i], step, resolution, slope, limit};
+  }
+}
+
 }  // namespace
 
 std::optional<Unresolved> unresolved_step(const math::AxisTest& test,
                                           const math::ErrorCurve& curve) {
-  const double resolution = resolution_of(test);
-  std::vector<double> variance;
-  for (const double x : curve.position) {
-    const auto at = std::find(test.targets.begin(), test.targets.end(), x);
-    variance.push_back(
-        at == test.targets.end()
-            ? 0.0
-            : variance_at(test, static_cast<std::size_t>(at - test.targets.begin())));
-  }
+  std::vector<double> all;
+  for (const auto& r : test.readings()) all.push_back(r.deviation);
+  const double resolution = resolution_of(std::move(all));
   std::optional<Unresolved> found;
-  double slope = steepest;
-  for (std::size_t i = 1; i < curve.position.size(); ++i) {
-    const double step = std::fabs(curve.mean[i] - curve.mean[i - 1]);
-    const double apart = curve.position[i] - curve.position[i - 1];
-    const double explained = std::max(resolution, 3.0 * std::sqrt(variance[i] + variance[i - 1]));
-    if (!(step > (test.rotary ? least_angle : least_step)) || !(step > slope * apart) ||
-        (step > explained * (1.0 + 1e-9) && !(step > impossible * apart)))
-      continue;
-    slope = step / apart;
-    found = {curve.position[i - 1], curve.position[i], step, resolution};
+  for (const auto& [value, side] :
+       {std::pair{&curve.mean, Side::both}, std::pair{&curve.plus, Side::plus},
+        std::pair{&curve.minus, Side::minus}}) {
+    std::vector<double> variance;
+    for (const double x : curve.position) {
+      const auto at = std::find(test.targets.begin(), test.targets.end(), x);
+      const auto i = static_cast<std::size_t>(at - test.targets.begin());
+      variance.push_back(at == test.targets.end() ? 0.0 : variance_at(test, i, side));
+    }
+    look_at(curve.position, *value, variance, resolution, test.rotary, found);
   }
   return found;
 }
 
-void refuse_unresolved(const AxisJob& job, const Unresolved& step, OutputResult& result) {
-  const Quantity at = position_of(job.rotary), q = deviation_of(job.rotary);
+std::optional<Unresolved> unresolved_step(const ControllerInput& in, const std::string& measurement,
+                                          const std::vector<double>& position,
+                                          const std::vector<double>& value) {
+  const auto& all = in.campaign.measurements;
+  double resolution = 0.0;
+  for (std::size_t i = 0; i < std::min(all.size(), in.observations.size()); ++i)
+    if (all[i].id == measurement) resolution = resolution_of(in.observations[i].deviation);
+  std::optional<Unresolved> found;
+  look_at(position, value, {}, resolution, false, found);
+  return found;
+}
+
+void refuse_unresolved(const std::string& axis, const std::string& measurement, bool rotary,
+                       const Unresolved& step, OutputResult& result) {
+  const Quantity at = position_of(rotary), q = deviation_of(rotary), slope = slope_of(rotary);
   result.findings.push_back({"table.refused-resolution",
                              true,
                              {{"step", step.step, q},
                               {"from", step.from, at},
                               {"to", step.to, at},
+                              {"slope", step.slope, slope},
+                              {"limit", step.limit, slope},
                               {"resolution", step.resolution, q}},
-                             {{"axis", job.axis}},
-                             job.measurement,
+                             {{"axis", axis}},
+                             measurement,
                              "Leave out one of the two targets, or measure them with an "
                              "instrument of finer resolution."});
+}
+
+bool any_unresolved(const ControllerInput& in, const CrossJob& job, OutputResult& result) {
+  for (const CrossCurve& curve : job.curves)
+    if (const auto step = unresolved_step(in, job.measurement, curve.position, curve.value)) {
+      refuse_unresolved(curve.output, job.measurement, false, *step, result);
+      return true;
+    }
+  return false;
 }
 
 }  // namespace nonio::controllers

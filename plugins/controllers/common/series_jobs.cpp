@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "resolution.h"
+
 namespace nonio::controllers {
 namespace {
 
@@ -49,6 +51,7 @@ std::vector<AxisJob> series_jobs(const ControllerInput& in) {
       job.scale_known = !p.shape;
       job.curve.position = s.position;
       job.curve.mean = job.curve.plus = s.value;
+      job.unresolved = unresolved_step(in, a.measurement, s.position, s.value);
       jobs.push_back(job);
       // Both sides of a gantry move as far: the diagonals see the beam's middle.
       const Axis* axis = in.campaign.machine.axis(s.over);

@@ -95,8 +95,9 @@ std::string words(const Sheet& s, const std::string& comp) {
           : "COMP_FILE_TYPE = 1: columns 2 and 3 are added to the motor's position, the opposite "
             "of the deviation (actual - nominal)");
   lines.push_back(
-      job.curve.bidirectional()
-          ? "mean reversal B = " + controllers::deviation_words(job, job.curve.mean_reversal()) +
+      job.held ? controllers::reversal_words(job, controllers::Columns::both)
+      : job.curve.bidirectional()
+          ? "mean reversal B = " + controllers::deviation_words(job, job.mean_reversal()) +
                 ": contained in the two columns; BACKLASH is ignored beside a table"
           : "measured from one direction only: both columns have its deviation; "
             "BACKLASH is ignored beside a table");

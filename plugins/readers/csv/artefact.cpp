@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Balls of an artefact: their centres as the machine probed them, and what its certificate states.
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -21,14 +22,16 @@ Expected<void> sound_name(const std::string& name, const Table& table, std::size
       "expected the name of a ball, up to 20 characters without a blank, found \"" + name + "\""));
 }
 
-/// Lines of balls: three each, along X, Y and Z, whose names are that of the ball and x, y or z.
+/// Lines of balls: one along each coordinate, whose names are that of the ball and x, y or z.
 class BallLines {
  public:
-  explicit BallLines(Observations& obs) : obs_(obs) {}
+  BallLines(Observations& obs, std::vector<std::size_t> coordinates)
+      : obs_(obs), coordinates_(std::move(coordinates)) {}
   std::uint32_t first(const std::string& ball) {
     const auto [at, fresh] =
         first_.try_emplace(ball, static_cast<std::uint32_t>(obs_.lines.size()));
-    for (std::size_t k = 0; k < 3 && fresh; ++k) {
+    for (const std::size_t k : coordinates_) {
+      if (!fresh) break;
       Observations::Line line{ball + " " + "xyz" [k], {}};
       line.sense[k] = 1.0;
       obs_.lines.push_back(std::move(line));
@@ -38,12 +41,22 @@ class BallLines {
 
  private:
   Observations& obs_;
+  std::vector<std::size_t> coordinates_;
   std::map<std::string, std::uint32_t> first_;
 };
 
-std::array<double, 3> centre_in(const Table& table, std::size_t row) {
-  return {(*table.column("x_mm"))[row] * per_mm, (*table.column("y_mm"))[row] * per_mm,
-          (*table.column("z_mm"))[row] * per_mm};
+constexpr const char* coordinate_columns[] = {"x_mm", "y_mm", "z_mm"};
+
+/// Those that were measured: a hole in a plate has no height.
+std::vector<std::size_t> coordinates_in(const Table& table) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (table.column(coordinate_columns[k]) != nullptr) out.push_back(k);
+  return out;
+}
+
+double coordinate_in(const Table& table, std::size_t k, std::size_t row) {
+  return (*table.column(coordinate_columns[k]))[row] * per_mm;
 }
 
 Expected<void> few_enough(const Table& table) {
@@ -69,8 +82,13 @@ class Once {
 Expected<Observations> centres_of(const ReadInput& input, const Table& table) {
   if (auto few = few_enough(table); !few) return fail(few.error());
   Observations obs = begin(input.measurement, table);
-  obs.axes = {{"X", false, {}, {}}, {"Y", false, {}, {}}, {"Z", false, {}, {}}};
-  BallLines lines(obs);
+  const auto coordinates = coordinates_in(table);
+  if (coordinates.size() < 2)
+    return fail(
+        "missing column: expected two of x_mm, y_mm and z_mm, and all three that were measured");
+  for (const std::size_t k : coordinates)
+    obs.axes.push_back({std::string(1, "XYZ"[k]), false, {}, {}});
+  BallLines lines(obs, coordinates);
   Once once;
   const auto& balls = table.words.find("ball")->second;
   const auto* run = table.column("run");
@@ -81,14 +99,15 @@ Expected<Observations> centres_of(const ReadInput& input, const Table& table) {
             once.see(balls[row] + " " + std::to_string(number), table, row, "a ball and run");
         !first)
       return fail(first.error());
-    const auto centre = centre_in(table, row);
-    if (!std::isfinite(centre[0] + centre[1] + centre[2])) {
+    std::vector<double> centre;
+    for (const std::size_t k : coordinates) centre.push_back(coordinate_in(table, k, row));
+    if (std::any_of(centre.begin(), centre.end(), [](double c) { return !std::isfinite(c); })) {
       ++obs.missing;
       continue;
     }
     const std::uint32_t line = lines.first(balls[row]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t c = 0; c < 3; ++c) obs.axes[c].position.push_back(centre[c]);
+    for (std::size_t k = 0; k < centre.size(); ++k) {
+      for (std::size_t c = 0; c < centre.size(); ++c) obs.axes[c].position.push_back(centre[c]);
       obs.deviation.push_back(centre[k]);
       obs.line.push_back(line + static_cast<std::uint32_t>(k));
       put_common(obs, table, row);
@@ -108,7 +127,7 @@ Expected<Observations> certificate_of(const ReadInput& input, const Table& table
   if (auto few = few_enough(table); !few) return fail(few.error());
   Observations obs = begin(input.measurement, table);
   obs.axes = {{"certificate", false, {}, {}}};
-  BallLines lines(obs);
+  BallLines lines(obs, {0, 1, 2});
   Once once;
   const auto put = [&](std::size_t row, double value, double u, std::uint32_t line) {
     obs.axes[0].position.push_back(static_cast<double>(row + 1));
@@ -139,10 +158,9 @@ Expected<Observations> certificate_of(const ReadInput& input, const Table& table
       continue;
     }
     if (auto first = once.see(balls[row], table, row, "a ball"); !first) return fail(first.error());
-    const auto centre = centre_in(table, row);
     const std::uint32_t line = lines.first(balls[row]);
     for (std::size_t k = 0; k < 3; ++k)
-      put(row, centre[k], *u, line + static_cast<std::uint32_t>(k));
+      put(row, coordinate_in(table, k, row), *u, line + static_cast<std::uint32_t>(k));
   }
   return obs;
 }
@@ -151,9 +169,9 @@ Expected<Observations> certificate_of(const ReadInput& input, const Table& table
 
 Expected<Observations> read_artefact(const ReadInput& input) {
   const auto table = table_of(input, with_common({{"ball", Kind::word, true},
-                                                  {"x_mm", Kind::number, true},
-                                                  {"y_mm", Kind::number, true},
-                                                  {"z_mm", Kind::number, true}}));
+                                                  {"x_mm", Kind::number},
+                                                  {"y_mm", Kind::number},
+                                                  {"z_mm", Kind::number}}));
   if (!table) return fail(table.error());
   auto obs = centres_of(input, *table);
   return in_file(obs ? complete(std::move(*obs)) : std::move(obs), input);

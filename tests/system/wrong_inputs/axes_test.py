@@ -150,6 +150,26 @@ class Axes(unittest.TestCase):
                     B = results["analyses"][0]["values"]["B_mean"]
                     self.assertLessEqual(abs(B["value"] - -2.0), B["U"])
 
+    def test_no_backlash_value_of_two_runs_whose_passes_shift(self):
+        shifts = (0.0, 3.3, 6.7, 10.0)
+        for control in ("siemens-840d", "heidenhain-tnc", "fanuc", "linuxcnc"):
+            with self.subTest(control=control):
+                results, files = self.results(f"steps-{control}", control=control, runs=2, scatter=0.3,
+                                              drift=lambda t, x: shifts[int(4 * t)], more="backlash_on_mm = 0.0",
+                                              curve=lambda x, d: 10 * math.sin(x / 150) - d)
+                B = results["analyses"][0]["values"]["B_mean"]
+                self.assertLessEqual(abs(B["value"] - -2.0), B["U"])
+                found = {f["id"]: f for t in results["tables"] for f in t.get("findings", [])}
+                held = found["table.backlash-not-identifiable"]
+                self.assertEqual(held["severity"], "attention")
+                self.assertAlmostEqual(held["evidence"]["mean_um"], B["value"], places=6)
+                self.assertAlmostEqual(held["evidence"]["U_um"], B["U"], places=6)
+                self.assertTrue(self.tables(files, control), files)  # the pitch
+                for p in (p for t in results["tables"] for p in t.get("predictions", []) if p["name"] == "B"):
+                    self.assertAlmostEqual(p["before"], p["predicted"], places=3)
+                left = [f["evidence"]["left_um"] for f in results["analyses"][0]["findings"] if "left_um" in f["evidence"]]
+                self.assertTrue(all(v >= B["U"] - 1e-6 for v in left), (left, B))
+
     def test_positive_reversal(self):
         for name, more, wanted in (("none", "backlash_on_mm = 0.0", "reversal.positive-uncompensated"),
                                    ("active", "backlash_on_mm = 0.02", "reversal.over-compensated"),

@@ -455,6 +455,46 @@ TEST(Cross, EachStateOfAVolumeHasItsOwnColumns) {
   EXPECT_NEAR(y("heidenhain-tnc-X-SD_final.COM"), y("heidenhain-tnc-X-X.COM") / 10.0, 0.2 * um);
 }
 
+// Two digits of a dial of 10 um over 5 mm: in a cross table of diagonals, in one and in a pitch table of step diagonals.
+TEST(Resolution, DigitsInCurvesOfDiagonalsAreNoTable) {
+  const auto spoil = [](Series& s) {
+    s.position[1] = s.position[0] + 5 * mm;
+    s.value[1] = s.value[0] + 20 * um;
+  };
+  const auto refused = [](const OutputResult& r, const std::string& axis) {
+    for (const Finding& f : r.findings)
+      if (f.id == "table.refused-resolution" && f.texts.front().second == axis) return true;
+    return false;
+  };
+  const auto in_digits = [](Observations& o) {
+    for (double& d : o.deviation) d = 10 * um * std::round(d / (10 * um));
+  };
+  for (const bool steep : {false, true}) {
+    Bench plane = gantry();
+    plane.results.analyses.push_back(analysed(true));
+    Measurement m;
+    m.id = "D1", m.kind = "diagonal";
+    plane.campaign.measurements.push_back(m);
+    plane.observations.emplace_back();
+    plane.observations.back().deviation = {0.0, 10 * um, 30 * um};
+    if (steep) spoil(plane.results.analyses[0].evaluation.series[0]);
+    const auto cross = plane.write(siemens_plugin());
+    ASSERT_TRUE(cross) << cross.error().message;
+    EXPECT_EQ(refused(*cross, "Y"), steep);
+    EXPECT_EQ(has_file(*cross, "siemens-840d-XY-CEC.ini"), !steep);
+
+    Bench whole = volume(false);
+    in_digits(whole.observations.back());
+    if (steep)
+      for (Series& s : whole.results.analyses[0].evaluation.series)
+        if (s.name == "EXX") spoil(s);
+    const auto pitch = whole.write(siemens_plugin());
+    ASSERT_TRUE(pitch) << pitch.error().message;
+    EXPECT_EQ(refused(*pitch, "X"), steep);
+    EXPECT_EQ(has_file(*pitch, "siemens-840d-X-EEC.ini"), !steep);
+  }
+}
+
 }  // namespace
 
 }  // namespace cross_test

@@ -126,14 +126,14 @@ TEST(EveryTable, NoBacklashValueMakesTheLargestReversalLarger) {
       ASSERT_TRUE(r) << k.name << ", seed " << seed;
       if (r->artifacts.empty()) continue;  // refused
       const Finding* alone = finding(*r, "table.backlash-no-gain");
+      if (alone == nullptr) alone = finding(*r, "table.backlash-not-identifiable");
       left_alone += alone != nullptr ? 1 : 0;
       const Prediction& B = prediction(*r, "B");
       if (k.name == std::string("linuxcnc")) continue;  // its columns hold each direction
       EXPECT_LE(B.after, B.before + 2.5 * k.resolution)
           << k.name << ", seed " << seed << ", round " << round;
     }
-    const bool asked_for = k.name != std::string("linuxcnc");
-    EXPECT_EQ(left_alone > 0, asked_for) << k.name;
+    EXPECT_GT(left_alone, 0) << k.name;
   }
 }
 
@@ -147,9 +147,10 @@ TEST(EveryTable, DirectionTablesTakeAnElasticReversalAwayToo) {
       const Bench b(random_axis(random, true));
       const auto r = b.write(output, k.options);
       ASSERT_TRUE(r) << k.name << ": " << r.error().message << ", seed " << seed;
-      EXPECT_LE(prediction(*r, "E").after, 2.5 * k.resolution + 0.01 * um)
+      const double U = U_of_mean_reversal(b);  // no prediction is better
+      EXPECT_LE(prediction(*r, "E").after, std::max(U, 2.5 * k.resolution + 0.01 * um))
           << k.name << ", seed " << seed << ", round " << round;
-      EXPECT_LE(prediction(*r, "B").after, 2.5 * k.resolution + 0.01 * um);
+      EXPECT_LE(prediction(*r, "B").after, std::max(U, 2.5 * k.resolution + 0.01 * um));
     }
   }
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "nonio/math/compensation.h"
+#include "nonio/math/drift.h"
 #include "nonio/math/loaded_table.h"
 #include "nonio/sdk/plugin.h"
 
@@ -208,6 +209,11 @@ struct Bench {
     return output.write({campaign, observations, results, s});
   }
 };
+
+/// By drift and repetition alone: what no prediction of a bench without a budget is better than.
+inline double U_of_mean_reversal(const Bench& b) {
+  return math::drift_share(math::AxisTest::arrange(b.observations.at(0))).B_mean;
+}
 
 inline std::string file(const OutputResult& r, const std::string& name) {
   for (const Artifact& a : r.artifacts)

@@ -277,9 +277,11 @@ TEST(Resolution, DigitsBetweenCloseTargetsAreNoTable) {
   struct Case {
     double apart, digits;
     bool refused;
+    bool one_side = false;
   };
   for (const Case& c : {Case{10 * um, 1, true}, Case{10 * um, 3, true}, Case{1 * mm, 1, true},
-                        Case{1 * mm, 2, true}, Case{25 * mm, 1, false}})
+                        Case{1 * mm, 2, true}, Case{25 * mm, 1, false}, Case{5 * mm, 2, true},
+                        Case{5 * mm, 1, true, true}, Case{5 * mm, 2, true, true}})
     for (const Kind& k : kinds()) {
       const double sign = k.below ? -1 : 1, extra = sign * (200 * mm - c.apart);
       Measured m;
@@ -290,6 +292,7 @@ TEST(Resolution, DigitsBetweenCloseTargetsAreNoTable) {
         return 10 * um * (std::fabs(x) < 200 * mm - 1 * um ? 8 - c.digits : 8);
       };
       m.minus = m.plus;
+      if (c.one_side) m.minus = [](double) { return 60 * um; };
       const auto r = Bench(m).write(plugin(k.path), with(k, ""));
       const std::string where = std::string(k.name) + ", " + std::to_string(c.apart) + " m, " +
                                 std::to_string(c.digits) + " digits";
@@ -301,6 +304,10 @@ TEST(Resolution, DigitsBetweenCloseTargetsAreNoTable) {
       EXPECT_EQ(r->artifacts.empty(), c.refused) << where;
       if (refused == r->findings.end()) continue;
       EXPECT_NEAR(refused->evidence.at(0).value, c.digits * 10 * um, 1e-9) << where;
+      EXPECT_EQ(refused->evidence.at(3).name, "slope");
+      EXPECT_NEAR(refused->evidence[3].value, c.digits * 10 * um / c.apart, 1e-6) << where;
+      EXPECT_EQ(refused->evidence.at(4).name, "limit");
+      EXPECT_GT(refused->evidence[3].value, refused->evidence[4].value) << where;
     }
 }
 

@@ -29,6 +29,22 @@ TEST(Artefact, EachBallIsThreeLines) {
   EXPECT_EQ(obs->run[3], 2U);
 }
 
+TEST(Artefact, ACoordinateThatWasNotMeasuredHasNoLine) {
+  const auto obs = read_as("artefact", "ball,x_mm,y_mm\nh1,10,1\nh2,20,2\n");
+  ASSERT_TRUE(obs) << obs.error().message;
+  ASSERT_EQ(obs->size(), 4U);
+  ASSERT_EQ(obs->axes.size(), 2U);
+  ASSERT_EQ(obs->lines.size(), 4U);
+  for (const auto& line : obs->lines) EXPECT_EQ(line.sense[2], 0.0);
+  EXPECT_EQ(obs->lines[3].name, "h2 y");
+  EXPECT_EQ(obs->missing, 0U);
+  const auto across = read_as("artefact", "ball,x_mm,z_mm\nh1,10,1\n");
+  ASSERT_TRUE(across) << across.error().message;
+  EXPECT_EQ(across->axes[1].axis, "Z");
+  EXPECT_EQ(across->lines[1].sense[2], 1.0);
+  EXPECT_FALSE(read_as("artefact", "ball,x_mm\nh1,10\n"));
+}
+
 TEST(Artefact, ACertificateStatesPlacesOrLengthsWithTheirU) {
   const auto places = read_as("artefact-certificate", "ball,x_mm,y_mm,z_mm,U_um\nb1,1,2,3,0.4\n");
   ASSERT_TRUE(places) << places.error().message;

@@ -18,13 +18,15 @@ namespace nonio::math {
 
 /// Everything that does not depend on the standard: drift, reversal, scatter, suspected readings,
 /// what was not measured, and what the test plan of ISO 230-2 asked.
-std::vector<Finding> axis_findings(const AxisTest&, const Observations&, const Axis* axis);
+/// U_mean: of the mean reversal by the budget, m or rad; 0: not known.
+std::vector<Finding> axis_findings(const AxisTest&, const Observations&, const Axis* axis,
+                                   double U_mean = 0.0);
 
 /// The parts of the list above.
 void drift_findings(const AxisTest&, std::vector<Finding>&);
 /// active: the backlash value of the control during the measurement, where it is stated; m or rad.
 void reversal_findings(const AxisTest&, std::vector<Finding>&,
-                       std::optional<double> active = std::nullopt);
+                       std::optional<double> active = std::nullopt, double U_mean = 0.0);
 void scatter_findings(const AxisTest&, std::vector<Finding>&);
 void suspect_findings(const AxisTest&, std::vector<Finding>&);
 /// Rotary: whether a place that is met again after a whole turn deviates as it did.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -46,6 +47,8 @@ struct ArtefactPlacement {
   std::string name;
   std::vector<std::size_t> ball;
   std::vector<Corner> at;  ///< what the axes showed
+  /// A coordinate that was not measured gives no reading. `at` has there where the axis stood, or NaN.
+  std::array<bool, 3> measured{true, true, true};
 };
 
 struct Artefact {
@@ -57,9 +60,13 @@ struct Artefact {
 };
 
 struct ArtefactLines {
-  /// Three of each placement, along X, Y and Z; behind them one of what is stated, if anything is:
-  /// coordinates by ball, lengths, and last the scale c.
+  /// One for each placement and coordinate that was measured, along X, Y and Z; behind them one of
+  /// what is stated, if anything is: coordinates by ball, lengths, and last the scale c.
   std::vector<RigidLine> lines;
+  struct Of {
+    std::size_t placement, coordinate;
+  };
+  std::vector<Of> of;        ///< of these lines but the last
   std::size_t unknowns = 0;  ///< shared
   bool states = false;       ///< whether the last line is of what is stated
 };

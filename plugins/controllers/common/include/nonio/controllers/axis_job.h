@@ -23,9 +23,21 @@ enum class Columns { mean, both };
 /// A step of the curve between neighbouring targets that is not larger than the resolution of the
 /// readings and their scatter, and that a table would make steep.
 struct Unresolved {
-  double from = 0.0, to = 0.0;  ///< positions, m or rad
-  double step = 0.0;            ///< m or rad
-  double resolution = 0.0;      ///< smallest difference of two readings, m or rad
+  double from = 0.0, to = 0.0;      ///< positions, m or rad
+  double step = 0.0;                ///< m or rad
+  double resolution = 0.0;          ///< smallest difference of two readings, m or rad
+  double slope = 0.0, limit = 0.0;  ///< of the step, and what it exceeds; a ratio
+};
+
+/// Expanded uncertainties of what a table compensates; 0: not known. A prediction is never below them.
+struct Uncertainties {
+  double B_mean = 0.0, E = 0.0, M = 0.0;  ///< m or rad
+};
+
+/// A mean reversal of which U is half or more: no value is made of it.
+struct HeldReversal {
+  double mean = 0.0;       ///< m or rad
+  bool attention = false;  ///< the runs repeat it, or it may be a fifth of A
 };
 
 /// One measured axis of which a table is to be written. SI.
@@ -44,8 +56,10 @@ struct AxisJob {
   AxisSettings settings;           ///< of this axis: option `axes`
   std::vector<std::string> drift;  ///< ids of the findings that ask for attention
   std::optional<Unresolved> unresolved{};
-  std::vector<std::string> suspects;  ///< readings: "190.0 mm (3, +)"
-  std::vector<std::string> about;     ///< machine, axis, date: plain ASCII lines
+  Uncertainties U;
+  std::optional<HeldReversal> held{};  ///< `curve` is the mean in both directions then
+  std::vector<std::string> suspects;   ///< readings: "190.0 mm (3, +)"
+  std::vector<std::string> about;      ///< machine, axis, date: plain ASCII lines
 
   /// What its files are to the control once they are loaded; nothing where it was refused.
   std::optional<std::vector<LoadedTable>> loaded{};
@@ -58,6 +72,8 @@ struct AxisJob {
   double backlash() const {
     return one_value_helps() ? present_backlash() - curve.mean_reversal() : present_backlash();
   }
+  /// As measured, whether the table contains it or not.
+  double mean_reversal() const { return held ? held->mean : curve.mean_reversal(); }
   /// Decided apart from the pitch: the reversal is constant enough that one value takes most of it.
   bool one_value_helps() const;
   /// The table of an axis that drifted was asked for: setting `drifted`.

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reversal_known.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/math/axis_findings.h"
+#include "nonio/math/budget.h"
+#include "nonio/math/drift.h"
+#include "nonio/math/uncertainty.h"
+
+namespace nonio::controllers {
+namespace {
+
+// docs/constants.md, A28.
+constexpr double largest_share = 0.5;  // of the mean reversal that its U may have
+
+Uncertainties uncertainties(const Campaign& campaign, const Measurement& m, const Observations& o,
+                            const math::AxisTest& test) {
+  const Observations* own = &o;
+  const auto limits = math::limits_held(campaign, {&own, 1});
+  const auto budget = math::uncertainty_budget(campaign, limits.environment, m.axis, test).budget;
+  const auto U = math::iso230_2_uncertainty(budget.value_or(math::Budget{}),
+                                            math::approaches_behind_means(test), 2.0);
+  const double seen = math::drift_share(test).B_mean;
+  return budget ? Uncertainties{std::max(U.B_mean, seen), U.E, U.M} : Uncertainties{seen, 0.0, 0.0};
+}
+
+}  // namespace
+
+void take_uncertainties(const ControllerInput& input, std::size_t index, AxisJob& job) {
+  using Kind = math::Reversal::Kind;
+  const bool of_model = input.measured != nullptr && index < input.measured->size();
+  const Observations& o = of_model ? (*input.measured)[index] : input.observations[index];
+  const math::AxisTest test = math::AxisTest::arrange(o);
+  job.U = uncertainties(input.campaign, input.campaign.measurements[index], o, test);
+  const double mean = job.curve.mean_reversal();
+  if (!job.curve.bidirectional() || job.reversal.kind == Kind::not_constant ||
+      job.reversal.kind == Kind::unknown || !(job.U.B_mean >= largest_share * std::fabs(mean)))
+    return;
+  // It stays: how large it may be decides who has to know.
+  job.held = {
+      mean, job.reversal.kind != Kind::none || math::matters(test, std::fabs(mean) + job.U.B_mean)};
+  if (!job.measured) job.measured = job.curve;
+  job.curve.plus = job.curve.minus = job.curve.mean;
+}
+
+void say_held(const AxisJob& job, OutputResult& result) {
+  const Quantity q = deviation_of(job.rotary);
+  result.findings.push_back(
+      {"table.backlash-not-identifiable",
+       job.held->attention,
+       {{"mean", job.held->mean, q}, {"U", job.U.B_mean, q}},
+       {{"axis", job.axis}},
+       job.measurement,
+       "The reversal is not known well enough: the backlash value stays as it was while the axis "
+       "was measured."});
+}
+
+}  // namespace nonio::controllers
