@@ -669,7 +669,8 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
   lab.machines.emplace_back("S-49", 1);
   lab.machines[7].judge("X", "B", {5});
   lab.machines[7].stored().asked = {
-      {{"", "plausibility", "traceability.calibration-expired", "attention"}}};
+      {{"", "plausibility", "traceability.calibration-expired", "attention"},
+       {"D1", "diagonal-straightness", "diagonals.refused-place", "attention"}}};
   lab.machines.emplace_back("S-48", 1);
   lab.machines[8].judge("X", "B", {8});
   lab.machines[8].stored().results.back().expanded.reset();
