@@ -144,7 +144,7 @@ def gauge():
         R = 12.5 + 0.0008 * math.cos(3.0 * a) * r + 0.0002 * noise.normal()
         ball.append("%.4f,%.4f,%.4f" % (312.5 + R * r * math.cos(a), 200.0 + R * r * math.sin(a), 40.0 + R * z))
     story = ["A machining centre measures its parts with a probe. A step gauge in seven positions says how well: the limit of",
-             "its maker is kept along the axes; on the diagonal it cannot be decided with this gauge."]
+             "its maker is kept; on the diagonal only just, by the guard band of the decision rule."]
     return {"lengths.csv": text("test,position,length_mm,repeat,deviation_um", rows, MADE_UP),
             "sphere.csv": text("x_mm,y_mm,z_mm", ball, MADE_UP),
             "campaign.toml": manifest(story, "44-lengths", "Esempio Quarantaquattro S.r.l.", "Padova", "2026-06-16",

@@ -112,6 +112,24 @@ void take_issued(evaluation::Evaluated& evaluated) {
   remove_unsigned(evaluated);
 }
 
+/// Those that the certificate states. If two persons gave one for the same finding, each is stated.
+void put_reasons(const Releasing& releasing, Issue& issue) {
+  for (const evaluation::KnownFinding& f : releasing.draft.findings) {
+    if (!reading::is_expired_calibration(f.id)) continue;
+    const auto& author = releasing.draft.author;
+    for (const Approval* one : {author ? &*author : nullptr, &releasing.by}) {
+      if (one == nullptr) continue;
+      const auto given = one->reasons.find(finding_key(f));
+      if (given == one->reasons.end()) continue;
+      const bool known =
+          std::any_of(issue.reasons.begin(), issue.reasons.end(), [&](const Issue::Reason& r) {
+            return r.finding == f.id && r.text == given->second && r.by == one->by;
+          });
+      if (!known) issue.reasons.push_back({f.id, given->second, one->by});
+    }
+  }
+}
+
 }  // namespace
 
 const config::StandingRule* rule_for(const config::Numbering& numbering,
@@ -292,6 +310,7 @@ Expected<evaluation::Certificate> Numbers::find_or_draw(const evaluation::Evalua
   if (releasing_ != nullptr) {
     issue.released_by = releasing_->by.by;
     if (releasing_->draft.author) issue.author = releasing_->draft.author->by;
+    put_reasons(*releasing_, issue);
   }
   return certificate;
 }

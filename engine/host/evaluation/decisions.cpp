@@ -2,22 +2,9 @@
 #include <cmath>
 
 #include "host/evaluation/evaluation.h"
+#include "nonio/math/decision.h"
 
 namespace nonio::host::evaluation {
-
-Decision decide(double value, double U, double tolerance, std::string_view rule) {
-  const bool simple = rule == "ilac-g8-simple", guarded = rule == "ilac-g8-guarded";
-  // One-sided 95 % of a normal distribution, in units of U with k = 2.
-  constexpr double one_sided = 1.65 / 2.0;
-  const double guard = rule == "iso14253-1:2013" ? U : one_sided * U;
-  if (!std::isfinite(value) || !std::isfinite(U)) return Decision::cannot_be_decided;
-  if (simple || guarded)
-    return value <= (guarded ? tolerance - U : tolerance) ? Decision::conforms
-                                                          : Decision::does_not_conform;
-  if (value <= tolerance - guard) return Decision::conforms;
-  if (value > tolerance + guard) return Decision::does_not_conform;
-  return Decision::cannot_be_decided;
-}
 
 namespace {
 
@@ -38,8 +25,8 @@ Conformity decided(const Campaign& campaign, const Held& held, const std::string
                .decision = Decision::cannot_be_decided,
                .reason = "no-uncertainty"};
   if (!v.U || !(*v.U > 0.0)) return c;
-  c.decision =
-      decide(std::fabs(v.value), *v.U, held.tolerance.limit, campaign.certificate.decision_rule);
+  c.decision = math::decide(std::fabs(v.value), *v.U, held.tolerance.limit,
+                            campaign.certificate.decision_rule);
   c.reason = c.decision == Decision::cannot_be_decided ? "near-limit" : "";
   return c;
 }

@@ -74,6 +74,12 @@ std::optional<Results::Analysed> analysed_with(
   return Results::Analysed{analysis.info.name, analysis.info.version, id, std::move(*evaluation)};
 }
 
+const ControlTable* control_table(const Work& work) {
+  for (const auto& one : work.context.plugins->controllers())
+    if (one.info.name == work.campaign().machine.control) return &one.table;
+  return nullptr;
+}
+
 }  // namespace
 
 std::vector<Results::Analysed> run_analyses(const Work& work) {
@@ -98,8 +104,8 @@ std::vector<Results::Analysed> run_analyses(const Work& work) {
           work.asks_to_apply("analysis " + analysis->info.name, " (measurement " + m.id + ")",
                              [&] { return analysis->applies(work.campaign(), m); }))
         add(analysed_with(work, *analysis, &m, [&](const Settings& options) {
-          return analysis->analyse(
-              {work.campaign(), m, read.observations[i], options, &read.observations});
+          return analysis->analyse({work.campaign(), m, read.observations[i], options,
+                                    &read.observations, control_table(work)});
         }));
   }
   for (const Analysis* analysis : analyses)

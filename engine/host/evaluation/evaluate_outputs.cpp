@@ -266,7 +266,9 @@ std::optional<NumberRequest> number_request(const Work& work,
   }
   request.missing = std::move(*missing);
   request.incomplete.findings = reading::traceability_findings(work.campaign());
-  std::erase_if(request.incomplete.findings, reading::is_expired_calibration);  // wants a reason
+  std::erase_if(request.incomplete.findings, [](const Finding& f) {  // requires a reason
+    return reading::is_expired_calibration(f.id);
+  });
   for (const Finding& f : request.incomplete.findings)
     request.missing.push_back(finding_text(work.context.templates, "en", f, "title") + " (" + f.id +
                               ")");

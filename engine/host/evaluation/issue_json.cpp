@@ -36,6 +36,20 @@ void put_changes(storage::JsonWriter& json, const std::vector<FileChange>& chang
   json.end_array();
 }
 
+void put_reasons(storage::JsonWriter& json, const Issue& issue) {
+  if (issue.reasons.empty()) return;
+  json.key("reasons");
+  json.begin_array();
+  for (const Issue::Reason& r : issue.reasons) {
+    json.begin_object();
+    json.member("finding", r.finding);
+    json.member("reason", r.text);
+    json.member("by", r.by);
+    json.end_object();
+  }
+  json.end_array();
+}
+
 void put_register(storage::JsonWriter& json, const Issue& issue) {
   if (issue.register_id.empty()) return;
   json.key("register");
@@ -100,6 +114,7 @@ void put_certificate(storage::JsonWriter& json, const Certificate& certificate) 
   }
   put_if_there(json, "released_by", issue.released_by);
   put_if_there(json, "author", issue.author);
+  put_reasons(json, issue);
   json.member("readings_sha256", issue.readings_sha256);
   json.member("templates_sha256", certificate.templates_sha256);
   put_register(json, issue);
@@ -124,6 +139,8 @@ Certificate certificate_of(const storage::Json& json) {
   issue.why = text_in(json, "why");
   issue.released_by = text_in(json, "released_by");
   issue.author = text_in(json, "author");
+  for (const storage::Json& r : list_in(json, "reasons"))
+    issue.reasons.push_back({text_in(r, "finding"), text_in(r, "reason"), text_in(r, "by")});
   if (json.is_object() && json.contains("register")) {
     issue.register_id = text_in(json["register"], "id");
     issue.register_entry = text_in(json["register"], "entry");

@@ -128,12 +128,13 @@ void read_results(Database& database, std::size_t campaign, std::int64_t evaluat
   }
 }
 
-/// What says that a table or a certificate was not made, or is not to be used; or that the
-/// instrument had no valid calibration.
+/// What says that a table or a certificate was not made, or is not to be used; that the instrument
+/// had no valid calibration; or that the readings gave no result.
 bool withholds(const FindingRow& f) {
   return f.severity == "attention" &&
          (f.id.starts_with("table.") || f.id.starts_with("certificate.") ||
-          f.id.starts_with("traceability.") || f.id == "signature.not-released");
+          f.id.starts_with("traceability.") || f.id == "signature.not-released" ||
+          is_refusal(f.id));
 }
 
 void read_findings(Database& database, std::size_t campaign, std::int64_t evaluation,
@@ -156,6 +157,10 @@ void read_findings(Database& database, std::size_t campaign, std::int64_t evalua
 }
 
 }  // namespace
+
+bool is_refusal(std::string_view finding) {
+  return finding.find(".refused") != std::string_view::npos || finding.ends_with("-needed");
+}
 
 Expected<StoreReader> StoreReader::open(const fs::path& out) {
   auto database = open_store(out);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/config/site_logs.h"
@@ -46,6 +47,9 @@ struct LimitWithoutValue {
   double tolerance = 0.0;
 };
 
+/// A finding with which an analysis gives no result: "diagonals.refused-place", "-yaw-needed".
+bool is_refusal(std::string_view finding);
+
 /// All that the store says of one machine. A campaign that failed measured nothing: it is not here.
 struct StoredMachine {
   std::vector<StoredCampaign> campaigns;  ///< by day, then by id
@@ -54,7 +58,7 @@ struct StoredMachine {
   /// Severity by finding of the last evaluation of each campaign.
   std::vector<std::map<std::string, std::string>> findings;
   /// Of the last evaluation of each campaign: findings of tables and certificates that ask for
-  /// attention.
+  /// attention, and refusals of analyses.
   std::vector<std::vector<FindingRow>> asked{};
   std::vector<LimitWithoutValue> without_value{};
   struct Later {

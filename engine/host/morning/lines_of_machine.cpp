@@ -330,22 +330,23 @@ class OfMachine {
     });
   }
 
-  /// Tables and certificates that were not made: one line for each axis of a campaign.
+  /// Tables, results and certificates that were not made: one line for each axis of a campaign.
   void held_back() {
     std::map<std::string, MorningLine> all;
     for (const Withheld& w : withheld(m_.stored)) {
       const history::StoredCampaign& c = m_.stored.campaigns[w.campaign];
       const bool table = w.finding.starts_with("table.");
       MorningLine l = line(Kind::withheld,
-                           table                       ? "morning.no-table"
-                           : is_calibration(w.finding) ? "morning.calibration"
-                                                       : "morning.certificate",
+                           table                            ? "morning.no-table"
+                           : is_calibration(w.finding)      ? "morning.calibration"
+                           : history::is_refusal(w.finding) ? "morning.no-result"
+                                                            : "morning.certificate",
                            c.id + (w.axis.empty() ? "" : ":" + w.axis));
       l.axis = w.axis, l.campaign = c.id, l.since = c.day;
       put_text(l, "campaign", c.id);
       auto& to = all.emplace(l.id, std::move(l)).first->second;
       add_to_list(to, "withheld", {w.finding});
-      if (table) add_to_list(to, "outputs", w.outputs);
+      if (table || history::is_refusal(w.finding)) add_to_list(to, "outputs", w.outputs);
     }
     for (auto& [id, l] : all) add(std::move(l));
   }

@@ -40,8 +40,8 @@ reports::OpenValue open_value(const history::StoredMachine& machine,
 /// A finding that the calibration of the instrument was not valid on the day of the measurement.
 bool is_calibration(std::string_view finding);
 
-/// A table or certificate that was not made, or that is not to be used; or a measurement with an
-/// instrument whose calibration had expired.
+/// A table, result or certificate that was not made, or that is not to be used; or a measurement
+/// with an instrument whose calibration had expired.
 struct Withheld {
   std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
   std::string axis;          ///< of a table, where it is known
@@ -49,7 +49,8 @@ struct Withheld {
   std::vector<std::string> outputs;  ///< by name
 };
 
-/// Tables of the newest campaign that measured their axis; calibrations of the newest campaign;
+/// Tables of the newest campaign that measured their axis; calibrations and results that an analysis
+/// refuses of the newest campaign;
 /// certificates of every campaign, since each is a document of its own.
 std::vector<Withheld> withheld(const history::StoredMachine& machine);
 

@@ -196,7 +196,7 @@ std::vector<Finding> implausible_campaign(const config::Manifest& manifest,
     if (f.id == "traceability.calibrated-later") {
       f.id = "plausibility.calibrated-later";
       out.push_back(std::move(f));
-    } else if (is_expired_calibration(f)) {
+    } else if (is_expired_calibration(f.id)) {
       out.push_back(std::move(f));
     }
   for (const Statement& s : statements(c))

@@ -57,8 +57,8 @@ void calibration(const Calibrated& one, const std::string& first, const std::str
 
 }  // namespace
 
-bool is_expired_calibration(const Finding& f) {
-  return f.id == "traceability.calibration-expired" || f.id == "traceability.calibrated-long-ago";
+bool is_expired_calibration(std::string_view id) {
+  return id == "traceability.calibration-expired" || id == "traceability.calibrated-long-ago";
 }
 
 std::vector<Finding> traceability_findings(const Campaign& c) {

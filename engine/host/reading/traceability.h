@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "nonio/sdk/campaign.h"
@@ -19,7 +20,7 @@ inline constexpr int unstated_validity = 2;
 /// unless the person who releases it states a reason.
 std::vector<Finding> traceability_findings(const Campaign& campaign);
 /// A calibration that held no longer on the day of the measurement, or was too long ago to hold.
-bool is_expired_calibration(const Finding& finding);
+bool is_expired_calibration(std::string_view id);
 
 /// Keys with a day that has not come yet on `today`, and why they stop a certificate. Days are
 /// YYYY-MM-DD.

@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "nonio/math/decision.h"
+
 namespace nonio::math {
 
 double LengthLimit::at(double L) const {
@@ -30,14 +32,15 @@ constexpr std::uint32_t repeats_of_plan = 3;
 }  // namespace
 
 LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimit& limit,
-                           const std::vector<double>& U, bool by_2001) {
+                           const std::vector<double>& U, bool by_2001, std::string_view rule) {
   constexpr std::size_t most_forgiven = 5;
   LengthAnswer out;
   double nearest = -INFINITY;
   std::vector<int> verdict(all.size());  // -1 inside, 0 undecided, 1 outside
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const double over = std::fabs(all[i].E) - limit.at(all[i].L);
-    verdict[i] = over <= -U[i] ? -1 : over > U[i] ? 1 : 0;
+    const double most = limit.at(all[i].L), over = std::fabs(all[i].E) - most;
+    const Decision one = decide(std::fabs(all[i].E), U[i], most, rule);
+    verdict[i] = one == Decision::conforms ? -1 : one == Decision::does_not_conform ? 1 : 0;
     if (over > nearest) nearest = over, out.worst = i;
   }
   std::set<std::size_t> forgiven;

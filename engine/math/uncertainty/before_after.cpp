@@ -38,21 +38,44 @@ Eigen::MatrixXd covariance_of(const std::vector<std::vector<double>>& J,
   return V;
 }
 
-/// Contrasts to the first stop of after - before.
-std::vector<std::vector<double>> contrasts(std::size_t n) {
+/// Contrasts to the first stop of the sum of both lines with these weights.
+std::vector<std::vector<double>> contrasts(std::size_t n, double before, double after) {
   std::vector<std::vector<double>> J;
   for (std::size_t i = 1; i < n; ++i) {
     std::vector<double>& row = J.emplace_back(2 * n, 0.0);
-    row[i] = -1.0, row[0] = 1.0;
-    row[n + i] = 1.0, row[n] = -1.0;
+    row[i] = before, row[0] = -before;
+    row[n + i] = after, row[n] = -after;
   }
   return J;
+}
+
+/// W: what a table of these means leaves of them, as it has points and entries of its own.
+Eigen::MatrixXd covariance_of_table(std::span<const double> means, const std::vector<double>& place,
+                                    double entry_step) {
+  const std::size_t n = means.size(), m = n - 1;
+  double h = INFINITY;
+  for (std::size_t i = 0; i < m; ++i) h = std::min(h, place[i + 1] - place[i]);
+  const auto slope = [&](std::size_t i) {
+    return (means[i + 1] - means[i]) / (place[i + 1] - place[i]);
+  };
+  std::vector<double> corner(n);
+  for (std::size_t i = 0; i < n; ++i)
+    corner[i] = ((i < m ? slope(i) : 0.0) - (i > 0 ? slope(i - 1) : 0.0)) * h / 4.0;
+  const auto own = [&](std::size_t i) {
+    return corner[i] * corner[i] / 3.0 + entry_step * entry_step / 12.0;
+  };
+  Eigen::MatrixXd W(at(m), at(m));
+  for (std::size_t a = 0; a < m; ++a)
+    for (std::size_t b = 0; b < m; ++b)
+      W(at(a), at(b)) = own(0) + (a == b ? own(a + 1) : 0.0) +
+                        (corner[a + 1] - corner[0]) * (corner[b + 1] - corner[0]) / 3.0;
+  return W;
 }
 
 }  // namespace
 
 BeforeAfter before_after(std::span<const double> before, std::span<const double> after,
-                         const ReadingModel& model, double dof) {
+                         const ReadingModel& model, double dof, double entry_step) {
   const std::size_t n = before.size(), m = n - 1;
   Eigen::VectorXd b(at(m)), a(at(m));
   for (std::size_t i = 1; i < n; ++i) {
@@ -60,25 +83,29 @@ BeforeAfter before_after(std::span<const double> before, std::span<const double>
     a[at(i - 1)] = after[i] - after[0];
   }
   BeforeAfter out;
-  const Eigen::MatrixXd V = covariance_of(contrasts(n), model);
-  const Eigen::LDLT<Eigen::MatrixXd> inverse(V);
+  const Eigen::MatrixXd V = covariance_of(contrasts(n, -1.0, 1.0), model),
+                        W = covariance_of_table(before, model.lines.front().length, entry_step);
   const double freedom = static_cast<double>(m);
-  for (std::size_t k = 0; k < out.p.size(); ++k) {
-    const Eigen::VectorXd r = a - static_cast<double>(k) * b;
-    const double chi2 = r.dot(inverse.solve(r));
-    out.p[k] = f_upper(chi2 / freedom, freedom, std::min(dof, 1e6));
-    if (k > 0) continue;
-    out.predicted.assign(n, 0.0);
-    out.rest.push_back(0.0), out.u.push_back(0.0);
-    for (std::size_t i = 0; i < m; ++i) {
-      out.rest.push_back(r[at(i)]);
-      out.u.push_back(std::sqrt(V(at(i), at(i))));
-    }
-    for (std::size_t i = 1; i < n; ++i)
-      if (out.worst == 0 ||
-          std::fabs(out.rest[i]) * out.u[out.worst] > std::fabs(out.rest[out.worst]) * out.u[i])
-        out.worst = i;
+  const auto p_of = [&](double k, const Eigen::MatrixXd& covariance) {
+    const Eigen::VectorXd r = a - k * b;
+    const double chi2 = r.dot(covariance.ldlt().solve(r));
+    return f_upper(chi2 / freedom, freedom, std::min(dof, 1e6));
+  };
+  const Eigen::MatrixXd of_other_readings =
+      covariance_of(contrasts(n, -2.0, 1.0), model) + covariance_of(contrasts(n, 1.0, 0.0), model);
+  out.p = {p_of(0.0, V + W), p_of(1.0, V),
+           std::max(p_of(2.0, V + W), p_of(2.0, of_other_readings + W))};
+  out.predicted.assign(n, 0.0);
+  out.rest.push_back(0.0), out.u.push_back(0.0);
+  for (std::size_t i = 0; i < m; ++i) {
+    out.rest.push_back(a[at(i)]);
+    out.u.push_back(std::sqrt(V(at(i), at(i)) + W(at(i), at(i))));
   }
+  for (std::size_t i = 1; i < n; ++i)
+    if (out.worst == 0 ||
+        std::fabs(out.rest[i]) * out.u[out.worst] > std::fabs(out.rest[out.worst]) * out.u[i])
+      out.worst = i;
+  const Eigen::LDLT<Eigen::MatrixXd> inverse(V);
   const Eigen::VectorXd weighted = inverse.solve(b);
   out.f = weighted.dot(a) / weighted.dot(b);
   out.u_f = 1.0 / std::sqrt(weighted.dot(b));

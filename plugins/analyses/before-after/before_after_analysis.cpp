@@ -178,7 +178,8 @@ void fill(const AnalysisInput& in, const math::MeasuredLine& one, const math::Me
     way_b.push_back(before.back() - before.front());
     way_a.push_back(after.back() - after.front());
   }
-  const BeforeAfter r = math::before_after(before, after, model, dof);
+  const double entry_step = in.control == nullptr ? 0.0 : in.control->value_step.of(angular);
+  const BeforeAfter r = math::before_after(before, after, model, dof, entry_step);
   const double k = math::coverage_factor(std::min(dof, 1e6));
   for (std::size_t i = 0; i < r.rest.size(); ++i) {
     in_u.push_back(r.u[i] > 0.0 ? r.rest[i] / r.u[i] : 0.0);
@@ -187,23 +188,30 @@ void fill(const AnalysisInput& in, const math::MeasuredLine& one, const math::Me
   e.values.push_back({"left_share", r.f, Quantity::ratio});
   (model.missing.empty() ? e.values.back().U : e.values.back().repeatability) = k * r.u_f;
   e.values.back().k = k;
-  e.points.columns = {{"target", angular ? Quantity::angle : Quantity::length, position},
-                      {"before", q, way_b},
-                      {"predicted", q, r.predicted},
-                      {"U_predicted", q, U},
-                      {"after", q, way_a},
-                      {"in_u", Quantity::ratio, in_u}};
-  e.findings.push_back(
-      {.id = name_of(r.answer, reversal),
-       .attention = r.answer != BeforeAfter::Answer::worked,
-       .evidence = {{"share", r.f, Quantity::ratio},
-                    {"u_share", r.u_f, Quantity::ratio},
-                    {"rest", r.rest[r.worst], q},
-                    {"u", r.u[r.worst], q},
-                    {"at", position[r.worst], angular ? Quantity::angle : Quantity::length},
-                    {"p_worked", r.p[0], Quantity::probability},
-                    {"p_not_active", r.p[1], Quantity::probability},
-                    {"p_wrong_sign", r.p[2], Quantity::probability}}});
+  const Quantity length = angular ? Quantity::angle : Quantity::length;
+  e.points.columns = {{"target", length, position},  {"before", q, way_b},
+                      {"predicted", q, r.predicted}, {"U_predicted", q, U},
+                      {"after", q, way_a},           {"in_u", Quantity::ratio, in_u}};
+  const auto largest = static_cast<std::size_t>(
+      std::max_element(way_b.begin(), way_b.end(),
+                       [](double a, double b) { return std::fabs(a) < std::fabs(b); }) -
+      way_b.begin());
+  e.findings.push_back({.id = name_of(r.answer, reversal),
+                        .attention = r.answer != BeforeAfter::Answer::worked,
+                        .evidence = {{"share", r.f, Quantity::ratio},
+                                     {"u_share", r.u_f, Quantity::ratio},
+                                     {"rest", r.rest[r.worst], q},
+                                     {"u", r.u[r.worst], q},
+                                     {"at", position[r.worst], length},
+                                     {"p_worked", r.p[0], Quantity::probability},
+                                     {"p_not_active", r.p[1], Quantity::probability},
+                                     {"p_wrong_sign", r.p[2], Quantity::probability}}});
+  if (r.answer == BeforeAfter::Answer::wrong_sign) {
+    auto& evidence = e.findings.back().evidence;
+    evidence.push_back({"largest_at", position[largest], length});
+    evidence.push_back({"now", way_b[largest], q});
+    evidence.push_back({"right", -way_b[largest], q});
+  }
   if (reversal.finding) e.findings.push_back(*reversal.finding);
 }
 

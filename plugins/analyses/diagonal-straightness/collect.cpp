@@ -92,8 +92,7 @@ class Gatherer {
     const std::size_t widest =
         *std::max_element(lines.begin(), lines.end(),
                           [&](std::size_t a, std::size_t b) { return area(a) < area(b); });
-    out_.x_axis = observations(widest).axes[0].axis;
-    out_.y_axis = observations(widest).axes[1].axis;
+    if (auto carrier = find_carrier(widest); !carrier) return carrier;
     std::vector<std::size_t> up, down;
     for (const std::size_t i : lines) {
       const bool whole = same_ends(i, widest);
@@ -116,6 +115,40 @@ class Gatherer {
     return {};
   }
 
+  /// The kernel takes the axis that carries the other one as X: its yaw acts over the travel of the
+  /// other, so it is measured on two lines. On a gantry this is the axis that is driven on both sides.
+  Step find_carrier(std::size_t widest) {
+    const std::string &x = observations(widest).axes[0].axis,
+                      &y = observations(widest).axes[1].axis;
+    const auto lines_x = candidates("axis", x), lines_y = candidates("axis", y);
+    const bool sides_x = two_sides(x, lines_x), sides_y = two_sides(y, lines_y);
+    bool carries_y = sides_y && !sides_x;
+    if (sides_x == sides_y && lines_y.size() == 2 && lines_x.size() == 1 &&
+        candidates("angle", x, "Z").empty()) {
+      const std::string& structure = in_.campaign.machine.structure;
+      carries_y = structure == "gantry" || structure == "bridge";
+      if (!carries_y)
+        return refuse("refused-carrier", {{"axis", y}, {"other", x}, {"which", ids(lines_y)}});
+    }
+    out_.x_axis = carries_y ? y : x;
+    out_.y_axis = carries_y ? x : y;
+    out_.mirrored = carries_y;
+    first_ = carries_y ? 1 : 0;
+    return {};
+  }
+
+  bool two_sides(const std::string& name, const std::vector<std::size_t>& lines) const {
+    const Axis* axis = in_.campaign.machine.axis(name);
+    return (axis != nullptr && !axis->slave.empty()) ||
+           std::any_of(lines.begin(), lines.end(),
+                       [&](std::size_t i) { return !measurement(i).side.empty(); });
+  }
+
+  math::MeasuredLine curve_of_line(std::size_t i) const {
+    return math::measured_line(observations(i), first_);
+  }
+  double sense_of(std::size_t i) const { return observations(i).lines.front().sense[first_]; }
+
   bool same_ends(std::size_t a, std::size_t b) const {
     for (std::size_t k = 0; k < 2; ++k) {
       const std::string& one = observations(a).axes[k].axis;
@@ -136,8 +169,8 @@ class Gatherer {
     auto& r = out_.readings;
     r.Lx = x.second - x.first;
     r.Ly = y.second - y.first;
-    d1_ = math::measured_line(observations(out_.D1), 0);
-    d2_ = math::measured_line(observations(out_.D2), 0);
+    d1_ = curve_of_line(out_.D1);
+    d2_ = curve_of_line(out_.D2);
     if (d1_.stops.size() != d2_.stops.size())
       return refuse("refused-stops", {{"why", std::to_string(d1_.stops.size()) + " / " +
                                                   std::to_string(d2_.stops.size())},
@@ -185,13 +218,13 @@ class Gatherer {
     return refuse("refused-one-direction", {{"which", ids(which)}});
   }
 
-  /// Sensed in the direction in which X grows, whichever way the line was named.
+  /// Sensed in the direction in which the kernel's X grows, whichever way the line was named.
   math::GridLine line_of(std::size_t i, const math::MeasuredLine& curve) {
     const auto& sense = observations(i).lines.front().sense;
-    const double sign = sense[0] < 0.0 ? -1.0 : 1.0;
+    const double sign = sense_of(i) < 0.0 ? -1.0 : 1.0;
     math::GridLine line;
-    line.cx = sign * sense[0];
-    line.cy = sign * sense[1];
+    line.cx = sign * sense[first_];
+    line.cy = sign * sense[1 - first_];
     line.x_direction = curve.direction().value_or(0);
     line.y_direction = rises(i) ? line.x_direction : -line.x_direction;
     for (const math::MeasuredLine::Stop& stop : curve.stops)
@@ -279,8 +312,7 @@ class Gatherer {
     };
     add(of_x ? r.D2.x_direction : r.D2.y_direction);
     for (const std::size_t i : third_)
-      if (const auto d = math::measured_line(observations(i), 0).direction())
-        add(of_x || rises(i) ? *d : -*d);
+      if (const auto d = curve_of_line(i).direction()) add(of_x || rises(i) ? *d : -*d);
     return out;
   }
 
@@ -314,6 +346,9 @@ class Gatherer {
     return {};
   }
 
+  /// How the manifest states the place of a line of X; the advice shows it.
+  std::string place_example() const { return "{ " + out_.y_axis + " = 500 }"; }
+
   /// Where a line of X lies: `at` by the name of the other axis.
   const double* place(std::size_t i) const {
     const auto& at = measurement(i).at;
@@ -333,13 +368,19 @@ class Gatherer {
     if (found.size() == 1 && yaw.empty()) {
       const bool column = in_.campaign.machine.structure == "single-column";
       return refuse(column ? "refused-single-column" : "yaw-needed",
-                    {{"axis", out_.x_axis}, {"id", ids(found)}},
+                    {{"axis", out_.x_axis},
+                     {"at", place_example()},
+                     {"curve", out_.mirrored ? "EXY" : "EYX"},
+                     {"id", ids(found)}},
                     {{"bias", 1e-6 * out_.readings.Lx / 2.0, Quantity::deviation}});
     }
     const bool placed =
         std::all_of(found.begin(), found.end(), [&](std::size_t i) { return place(i) != nullptr; });
     if (found.size() <= 2 && !placed)
-      return refuse("refused-place", {{"axis", out_.y_axis}, {"which", ids(found)}});
+      return refuse("refused-place", {{"axis", out_.y_axis},
+                                      {"of", out_.x_axis},
+                                      {"at", place_example()},
+                                      {"which", ids(found)}});
     if (found.size() > 2 ||
         (found.size() == 2 && !(std::fabs(*place(found[1]) - *place(found[0])) > math::same_stop)))
       return refuse("refused-ambiguous", {{"axis", out_.x_axis}, {"which", ids(found)}});
@@ -353,6 +394,7 @@ class Gatherer {
       reversal_x_ += curve->mean_reversal() / static_cast<double>(found.size());
     }
     out_.lines_of_x = ids(found);
+    if (found.size() == 2) out_.sides_apart = std::fabs(*place(found[1]) - *place(found[0]));
     return yaw.empty() ? Step{} : find_yaw(yaw);
   }
 
@@ -364,6 +406,8 @@ class Gatherer {
     if (!put_all(yaw, {}, *curve, true)) return one_direction(found);
     const double stated = in_.options.number("yaw_u_urad") * 1e-6;
     for (math::MeanCurve& of : yaw) {
+      if (out_.mirrored)  // positive from the real X towards Y
+        for (double& v : of.mean) v = -v;
       of.u = stated > 0.0 ? stated : curve->u_mean(of.direction);
       of.dof = stated > 0.0 ? INFINITY : static_cast<double>(curve->dof);
     }
@@ -455,7 +499,7 @@ class Gatherer {
   /// Lines beside the two diagonals, as far as their stops are points of the grid.
   void add_third_lines() {
     for (const std::size_t i : third_) {
-      const math::MeasuredLine curve = math::measured_line(observations(i), 0);
+      const math::MeasuredLine curve = curve_of_line(i);
       math::GridLine line = line_of(i, curve);
       const auto goes_with = [](const auto& curves, int direction) {
         return std::any_of(curves.begin(), curves.end(),
@@ -498,7 +542,7 @@ class Gatherer {
                              .attention = true,
                              .evidence = {{"bias", 1e-6 * ratio / 2.0, Quantity::deviation}},
                              .texts = {{"turns", y_turns ? out_.y_axis : out_.x_axis},
-                                       {"curve", y_turns ? "EYX" : "EXY"},
+                                       {"curve", y_turns != out_.mirrored ? "EYX" : "EXY"},
                                        {"one", measurement(out_.D1).id},
                                        {"other", measurement(out_.D2).id}}});
   }
@@ -508,7 +552,7 @@ class Gatherer {
     const auto& r = out_.readings;
     const double c = std::fabs(r.D1.cx), s = std::fabs(r.D1.cy);
     const auto along = [&](std::size_t i, const math::MeasuredLine& curve) {
-      return (observations(i).lines.front().sense[0] < 0.0 ? -1.0 : 1.0) * curve.mean_reversal();
+      return (sense_of(i) < 0.0 ? -1.0 : 1.0) * curve.mean_reversal();
     };
     out_.reversal_of_diagonals = along(out_.D1, d1_) + along(out_.D2, d2_);
     out_.reversal_of_axes = 2.0 * (c * reversal_x_ + s * reversal_y_);
@@ -528,6 +572,7 @@ class Gatherer {
   math::MeasuredLine d1_, d2_, y_;
   std::vector<math::MeasuredLine> x_;
   std::vector<std::size_t> third_, used_;
+  std::size_t first_ = 0;  ///< column of the kernel's X in the observations of a line
   double reversal_x_ = 0.0, reversal_y_ = 0.0;
 };
 

@@ -60,7 +60,10 @@ class Report {
     }
     add_squareness();
     compare_squares();
-    series("ECX", c_.x_axis, r_.ECX, Quantity::small_angle);
+    if (c_.mirrored)
+      series("ECY", c_.y_axis, r_.ECX, Quantity::small_angle);
+    else
+      series("ECX", c_.x_axis, r_.ECX, Quantity::small_angle);
     if (r_.separable())
       add_both();
     else
@@ -136,11 +139,10 @@ class Report {
     value("C0Y", r_.C0Y, Quantity::small_angle, r_.u_C0Y, r_.shares_C0Y);
     value("C0Y_LSQ", r_.lsq.C0Y, Quantity::small_angle, r_.lsq.u_C0Y, r_.lsq.shares_C0Y);
     if (r_.slave_shift) {
-      const double W = c_.readings.X.back().across - c_.readings.X.front().across;
       math::Shares shares = r_.shares_C0Y;
       for (auto* parts : {&shares.u, &shares.in_residuals, &shares.rectangular})
-        for (double& u : *parts) u *= std::fabs(W);
-      value("slave_shift", *r_.slave_shift, Quantity::deviation, std::fabs(W) * r_.u_C0Y, shares);
+        for (double& u : *parts) u *= c_.sides_apart;
+      value("slave_shift", *r_.slave_shift, Quantity::deviation, c_.sides_apart * r_.u_C0Y, shares);
     }
     if (r_.racking) add_racking(*r_.racking);
   }
@@ -285,7 +287,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   for (const std::size_t i : set->lines)
     if (in.campaign.measurements[i].id != in.measurement.id)
       e.uses.push_back(in.campaign.measurements[i].id);
-  const auto collected = collect(in, sets, *set);
+  auto collected = collect(in, sets, *set);
   if (!collected) {
     e.findings.push_back(collected.error());
     return e;
@@ -298,8 +300,9 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
       math::reading_model(in.campaign, limits.environment, budget_lines(*collected, in.campaign));
   e.findings.insert(e.findings.end(), limits.findings.begin(), limits.findings.end());
   if (!model.missing.empty()) e.findings.push_back(math::missing_finding(model.missing));
-  const auto solved = math::solve_diagonals(collected->readings, &model);
+  auto solved = math::solve_diagonals(collected->readings, &model);
   if (!solved) return fail(solved.error());
+  if (collected->mirrored) turn_back(*collected, *solved);
   Report(in, *collected, *solved, model, *set, e).fill(set == &sets.front());
   return e;
 }

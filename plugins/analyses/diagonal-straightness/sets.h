@@ -25,6 +25,9 @@ const Set* set_led_by(const std::vector<Set>&, const Campaign&, const Measuremen
 struct Collected {
   math::DiagonalReadings readings;
   std::string x_axis, y_axis;
+  /// Y carries X: the kernel's X is the machine's Y, which mirrors the plane, until `turn_back`.
+  bool mirrored = false;
+  double sides_apart = 0.0;       ///< distance of the two lines of X, m; 0: there is one
   double x0 = 0.0, y0 = 0.0;      ///< origin of the grid, m
   std::vector<std::string> uses;  ///< ids
   std::string lines_of_x;         ///< ids of the positioning of X, in words
@@ -36,6 +39,9 @@ struct Collected {
 
 template <class T>
 using OrRefusal = tl::expected<T, Finding>;
+
+/// Readings and results of a mirrored plane by the names and signs of the machine's own axes.
+void turn_back(Collected&, math::DiagonalResult&);
 
 OrRefusal<Collected> collect(const AnalysisInput&, const std::vector<Set>&, const Set&);
 

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "nonio/math/budget.h"
+#include "nonio/math/decision.h"
 #include "nonio/math/lengths.h"
 
 namespace nonio {
@@ -128,7 +129,8 @@ class Worker {
       U.push_back(budget.expand(0.0, shares.back()).U.value_or(NAN));
     }
     const LengthLimit limit = limit_of(in_.options, test);
-    const math::LengthAnswer answer = math::judge_lengths(errors, limit, U, by_2001_);
+    const math::LengthAnswer answer =
+        math::judge_lengths(errors, limit, U, by_2001_, in_.campaign.certificate.decision_rule);
     std::size_t most = 0, least = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) {
       if (errors[i].E > errors[most].E) most = i;
@@ -236,9 +238,7 @@ class Worker {
   void decide_value(const char* name, const Value& v, double limit) {
     Decided d{name, v.value, limit, v.U.value_or(NAN)};
     if (v.U)
-      d.decision = v.value <= limit - *v.U  ? Decision::conforms
-                   : v.value > limit + *v.U ? Decision::does_not_conform
-                                            : Decision::cannot_be_decided;
+      d.decision = math::decide(v.value, *v.U, limit, in_.campaign.certificate.decision_rule);
     d.outside = d.decision == Decision::does_not_conform,
     d.undecided = d.decision == Decision::cannot_be_decided;
     decide(d);

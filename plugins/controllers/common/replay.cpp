@@ -107,7 +107,7 @@ void turn_to_reference(const ControllerInput& in, CrossJob& job, const NumberTab
       const double turn = (*other - *one) / (beam.at_slave - beam.at_axis);
       for (std::size_t i = 0; i < curve.value.size(); ++i)
         curve.value[i] += turn * (curve.position[i] - curve.position.front());
-      job.yaw_at_reference = -turn;
+      job.yaw_at_reference = beam.along.front() == 'X' ? turn : -turn;  // +X turns towards +Y
     }
 }
 

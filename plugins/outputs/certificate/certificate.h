@@ -82,6 +82,10 @@ std::string not_reported_text(const Source&);
 /// Directions of approach and their signs mean something: a test over targets is printed.
 bool has_directions(const OutputInput&);
 
+/// Instruments whose calibration was not valid on the day of the measurement, and who has approved
+/// the certificate in spite of it, for which reason; empty if there are none.
+std::string expired_text(const Source&);
+
 /// What it says of the certificate that it replaces, with every change; empty if there is none.
 std::string amendment_text(const Source&);
 

@@ -105,6 +105,44 @@ std::vector<std::string> departures_of(const Source& source, const pages::Measur
   return sentences.take();
 }
 
+namespace {
+
+/// "instrument L-1", "sensor pressure 77" in the words of the document.
+std::string instrument_name(const Source& source, const std::string& name) {
+  constexpr std::string_view instrument = "instrument", sensor = "sensor ";
+  if (name.starts_with(instrument))
+    return source.words.get("instrument.title") + name.substr(instrument.size());
+  if (!name.starts_with(sensor)) return name;
+  const std::string rest = name.substr(sensor.size());
+  const std::size_t end = std::min(rest.find(' '), rest.size());
+  return source.words.get_or("sensor." + rest.substr(0, end), rest.substr(0, end)) +
+         rest.substr(end);
+}
+
+}  // namespace
+
+std::string expired_text(const Source& source) {
+  std::string all;
+  const auto add = [&](const std::string& text) { all += (all.empty() ? "" : " ") + text; };
+  std::vector<std::string> said;  // ids, whose reasons follow once
+  for (const Results::Analysed& a : source.in.results.analyses)
+    for (const Finding& f : a.evaluation.findings) {
+      const std::string words = source.words.get_or("expired." + f.id, "");
+      if (words.empty()) continue;
+      Finding named = f;
+      for (auto& [key, text] : named.texts)
+        if (key == "instrument") text = instrument_name(source, text);
+      add(ended(source, typeset(filled(words, named, source.language()))));
+      if (std::find(said.begin(), said.end(), f.id) == said.end()) said.push_back(f.id);
+    }
+  for (const std::string& id : said)
+    for (const Issue::Reason& r : source.in.issue->reasons)
+      if (r.finding == id)
+        add(ended(source,
+                  source.words.get("expired.approved", {{"by", r.by}, {"reason", r.text}})));
+  return all;
+}
+
 bool is_printed(const pages::Measured& m) {
   return std::any_of(m.analyses.begin(), m.analyses.end(),
                      [](const Results::Analysed* a) { return is_printed(*a); });

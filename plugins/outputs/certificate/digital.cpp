@@ -132,6 +132,8 @@ void add_statements(const std::vector<Source>& sources, dcc::About& about) {
         return s.words.get("method_heading.traceability",
                            {{"certificate", in.campaign.instrument.certificate}});
       }));
+  if (!expired_text(sources.front()).empty())
+    add("", in_all(sources, [](const Source& s) { return expired_text(s); }));
   if (!in.issue->replaces.empty())
     add("basic_revision", in_all(sources, [](const Source& s) { return amendment_text(s); }));
   own("method_heading.title", t.procedure);

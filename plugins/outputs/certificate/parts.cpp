@@ -355,6 +355,7 @@ void add_method(const Source& source, Blocks& blocks) {
             source.words.get("method_heading.traceability",
                              {{"certificate", source.in.campaign.instrument.certificate}}),
             "instrument.certificate");
+  paragraph(blocks, expired_text(source), "instrument.valid_until");
   add_departures(source, blocks);
 }
 

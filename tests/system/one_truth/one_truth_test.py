@@ -3,6 +3,7 @@
 samples, random campaigns and a laboratory.
 
     NONIO_ONE_TRUTH=500 NONIO_SEED=7 ctest --test-dir build/ci -R one_truth -V     # so many random campaigns, of that seed
+    NONIO_ONE_TRUTH_LABORATORY=200 ctest --test-dir build/ci -R one_truth.samples -V    # a made laboratory of about so many
 """
 import csv
 import json
@@ -11,13 +12,22 @@ import os
 import pathlib
 import random
 import re
+import shutil
 import subprocess
+import sys
 import tempfile
+import tomllib
 import unittest
 
 NONIO, SOURCE = os.environ["NONIO"], pathlib.Path(__file__).resolve().parents[3]
 CAMPAIGNS = int(os.environ.get("NONIO_ONE_TRUTH", "24"))
 SEED = int(os.environ.get("NONIO_SEED", random.SystemRandom().randrange(2**31)))
+LABORATORY = int(os.environ.get("NONIO_ONE_TRUTH_LABORATORY", "24"))  # campaigns of the made laboratory, about
+
+WORDS = [tomllib.loads(p.read_text("utf-8"))["results"] for p in sorted(SOURCE.glob("templates/words/*/results.toml"))]
+# What a decision of results.json is called on paper, in any language and by any rule.
+DECIDED = {"conforms": ("conforms", "pass"), "does not conform": ("does_not_conform", "fail"), "cannot be decided": ("cannot_be_decided",)}
+ON_PAPER = {decision: {w[key] for w in WORDS for key in keys if key in w} for decision, keys in DECIDED.items()}
 
 # Findings of one measurement of which at most one can be true.
 EXCLUDE_EACH_OTHER = (
@@ -40,11 +50,28 @@ def run(*args, expect=(0, 1)):
 
 
 def as_printed(value, U):
-    """U in two significant digits, the value in as many decimals: the rule of every table."""
-    decimals = max(0, 1 - math.floor(math.log10(U)))
-    if float(f"{U:.{decimals}f}") >= 10 ** (2 - decimals) and decimals:
+    """U in two significant digits, the value in as many decimals, nine at most: the rule of every table."""
+    decimals = min(9, 1 - math.floor(math.log10(U)))
+    if round(U, decimals) >= 0.999999 * 10 ** (2 - decimals):  # 9.96 is 10
         decimals -= 1
-    return f"{value:.{decimals}f}", f"{U:.{decimals}f}"
+    return tuple(f"{round(v, decimals) if decimals < 0 else v:.{max(0, decimals)}f}" for v in (value, U))
+
+
+def page_lines(pdf):
+    """The lines of a PDF, numbers as results.json writes them: a point, a hyphen as minus."""
+    text = subprocess.run(["pdftotext", "-layout", str(pdf), "-"], capture_output=True, text=True, check=True).stdout
+    return [re.sub(r"(?<=\d),(?=\d)", ".", line.replace("\u2212", "-")) for line in text.splitlines()]
+
+
+def row_of(v):
+    """What finds a value with its U in a line: a value halfway between two printed ones is either of them. None where its U
+    is smaller than nine decimals (a direction)."""
+    if v["U"] < 5e-10:
+        return None
+    last = 1e-11 * max(abs(v["value"]), v["U"])
+    either = {as_printed(v["value"] + d, v["U"])[0] for d in (-last, 0.0, last)}
+    either = sorted(re.sub(r"^-(?=[0.]*$)", "", text) for text in either)  # zero has no sign
+    return re.compile(r"(?<![\d.\-])(?:%s)\s+%s(?![\d.])" % ("|".join(map(re.escape, either)), re.escape(as_printed(0.0, v["U"])[1])))
 
 
 def values_of(results):
@@ -61,6 +88,7 @@ class Truth(unittest.TestCase):
             with self.subTest(campaign=folder.name, seed=SEED):
                 results = json.loads((folder / "results.json").read_text())
                 self.check_csv(folder, results)
+                self.check_pages(folder / "report.pdf", results)
                 self.check_show(folder, results)
                 self.check_findings(results)
                 self.check_decisions(results)
@@ -83,6 +111,37 @@ class Truth(unittest.TestCase):
             if "U" in v:
                 self.assertAlmostEqual(float(rows[key]["U"]), v["U"], delta=1e-9 * max(1, v["U"]), msg=key)
             self.assertEqual(rows[key]["decision"], v.get("decision", ""), key)
+
+    def check_pages(self, pdf, results, certificate=False):
+        """1. A table of a PDF has each value with its U in one row, and no other decision than that of results.json."""
+        if not pdf.exists() or not shutil.which("pdftotext"):
+            return
+        lines = page_lines(pdf)
+        for a, name, v in values_of(results):
+            if not v.get("U", 0) > 0 or a["plugin"] == "model-fit":
+                continue
+            number = row_of(v)
+            if number is None:
+                continue
+            rows = [line for line in lines if number.search(line)]
+            self.assertTrue(rows, (pdf.name, a["plugin"], a.get("measurement"), name, number.pattern, v))
+            if "decision" not in v or v["decision"] not in ON_PAPER or ":" in name:  # rules side by side have no column for it
+                continue
+            wanted = ON_PAPER[v["decision"]]
+            judged = [line for line in rows if any(re.search(r"(?<!\w)%s\s*$" % re.escape(w), line) for w in wanted)]
+            if not certificate:
+                self.assertTrue(judged, (pdf.name, a["plugin"], a.get("measurement"), name, v, rows))
+        told = {}
+        for a, name, v in values_of(results):
+            if v.get("U", 0) > 0 and "decision" in v:
+                told.setdefault(row_of(v), set()).add(v["decision"])
+        for line in lines:  # and the other way round: a row that ends with a decision is one of a value
+            for number, decisions in told.items():
+                if number is None or not number.search(line):
+                    continue
+                found = {d for d, words in ON_PAPER.items() for w in words if re.search(r"\s\s%s\s*$" % re.escape(w), line)}
+                if len(found) == 1:
+                    self.assertLessEqual(found, decisions, (pdf.name, line, decisions))
 
     def check_show(self, folder, results):
         """2. `show` prints every value with the U of results.json, each once for a measurement and analysis."""
@@ -247,6 +306,70 @@ class Samples(Truth):
             out = pathlib.Path(folder) / "out"
             run("run", SOURCE / "samples/laboratory", "--out", out, "--quiet", "--date", "2026-11-22")
             self.check_site(SOURCE / "samples/laboratory", out)
+
+
+    def test_a_made_laboratory(self):
+        """As many campaigns as NONIO_ONE_TRUTH_LABORATORY says, about: machines over years, with pages and files."""
+        print(f"seed {SEED}, about {LABORATORY} campaigns", flush=True)
+        with tempfile.TemporaryDirectory(prefix="nonio-truth-") as folder:
+            site, out = pathlib.Path(folder) / "site", pathlib.Path(folder) / "out"
+            per_machine = 8
+            subprocess.run([sys.executable, "-B", SOURCE / "tests/support/laboratory/make_laboratory.py", "mixed", site, "--seed", str(SEED),
+                            "--machines", str(max(3, LABORATORY // per_machine)), "--count", str(per_machine)], check=True)
+            text = (site / "site.toml").read_text()
+            (site / "site.toml").write_text(re.sub(r"(?m)^outputs = .*$", 'outputs = ["csv", "pdf-report"]', text))
+            run("run", site, "--out", out, "--quiet")
+            self.check_site(site, out)
+
+
+class Certificates(Truth):
+    """The certificate of samples/certificates, issued with a key of its own."""
+
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory(prefix="nonio-truth-")
+        self.addCleanup(holder.cleanup)
+        self.site, self.out = pathlib.Path(holder.name) / "site", pathlib.Path(holder.name) / "out"
+        if not shutil.which("openssl"):
+            self.skipTest("there is no openssl to make a key with")
+        shutil.copytree(SOURCE / "samples/certificates", self.site, ignore=shutil.ignore_patterns("keys", "*.sqlite"))
+        subprocess.run(["bash", self.site / "make-key.sh"], check=True, capture_output=True)
+
+    def issued(self, reason):
+        run("run", self.site, "--out", self.out, "--quiet")
+        draft, = json.loads(run("release", self.site, "--list", "--json").stdout)["drafts"]
+        findings = sorted({f["id"] for f in draft["findings"] if f["severity"] == "attention"})
+        run("release", self.site / "adjusted", "--by", "B. Sample", *(part for f in findings for part in ("--reason", f"{f}={reason}")), expect=(0,))
+        return self.out / "adjusted/certificate.pdf"
+
+    def test_the_certificate_has_the_values_and_decisions_of_the_results(self):
+        pdf = self.issued("as found")
+        results = json.loads((self.out / "adjusted/results.json").read_text())
+        self.check_pages(pdf, results, certificate=True)
+        text = " ".join(" ".join(page_lines(pdf)).split())
+        for c in results.get("conformity", []):
+            if c["decision"] in ON_PAPER:
+                self.assertTrue(any(w in text for w in ON_PAPER[c["decision"]]), c)
+        self.assertNotIn("as found", text)
+
+    def test_an_expired_calibration_is_on_the_paper_with_the_reason_of_its_approval(self):
+        manifest = self.site / "adjusted/campaign.toml"
+        text = manifest.read_text()
+        date = re.search(r"(?m)^date = (\S+)", text)[1]
+        expired = str(int(date[:4]) - 1) + date[4:]
+        text = re.sub(r"(?m)^valid_until = .*\n", "", text)
+        text = re.sub(r"(?m)^(calibrated = ).*$", r"\g<1>%d%s\nvalid_until = %s" % (int(date[:4]) - 2, date[4:], expired), text, count=1)
+        manifest.write_text(text)
+        pdf = self.issued("compared with the reference of Turin")
+        for paper in (" ".join(" ".join(page_lines(pdf)).split()), (self.out / "adjusted/certificate.xml").read_text()):
+            self.assertIn(expired, paper)
+            self.assertIn("compared with the reference of Turin", paper)
+            self.assertRegex(paper, r"(Approvato da|Approved by) B\. Sample")
+        results = json.loads((self.out / "adjusted/results.json").read_text())
+        self.assertEqual([r["finding"] for r in results["certificate"]["reasons"]], ["traceability.calibration-expired"])
+        answers = json.loads(run("verify", pdf, "--site", self.site, "--json", expect=(0, 3)).stdout)  # 3: there is no revocation list
+        checks = {c["id"]: c["state"] for c in answers["checks"]}
+        for check in ("content.values", "content.printed"):
+            self.assertEqual(checks.get(check), "holds", answers)
 
 
 CONTROLS = {"siemens-840d": "number = 1", "fanuc": "number = 1", "linuxcnc": "joint = 0", "heidenhain-tnc": None}

@@ -100,6 +100,81 @@ TEST_F(Truth, WhatWasExcludedIsSaidWithItsReasonAndWithoutOneThereIsNoCertificat
   EXPECT_TRUE(has(dcc(c), said));
 }
 
+// ISO 17025 7.2.2: a test that follows a standard only in part is one by the laboratory's procedure, which has a name.
+TEST_F(Truth, ATestThatIsOnlyBasedOnAStandardNamesTheLaboratorysProcedure) {
+  for (const auto& [plugin, standard] : {std::pair{"circle", "ISO 230-4"},
+                                         {"thermal", "ISO 230-3"},
+                                         {"spindle", "ISO 230-7"},
+                                         {"lengths", "ISO 10360-2"}}) {
+    Case c = whole_case(plugins);
+    Results::Analysed own;
+    own.plugin = plugin, own.version = "1.0.0", own.measurement = "X";
+    own.evaluation.values.push_back({"D", 1e-6, Quantity::deviation, 0.5e-6, 2.0, {}});
+    c.results.analyses.push_back(own);
+    c.campaign.certificate.procedure = "";
+    const auto keys = output().certificate->missing_requirements(input(c));
+    EXPECT_TRUE(std::any_of(keys.begin(), keys.end(), [](const std::string& key) {
+      return key.starts_with("certificate.procedure");
+    })) << plugin;
+    c.campaign.certificate.procedure = "PT-07";
+    for (const std::string& text : {page(c), dcc(c)})
+      EXPECT_TRUE(has(text, std::string("Laboratory procedure PT-07, based on ") + standard))
+          << plugin << text;
+  }
+}
+
+// Paper and DCC state that a calibration had expired, and who approved the certificate in spite of it.
+TEST_F(Truth, AnExpiredCalibrationAndTheReasonOfTheApprovalAreStated) {
+  struct Expired {
+    const char* id;
+    std::vector<std::pair<std::string, std::string>> texts;
+    const char* says;
+  };
+  const std::vector<Expired> all{
+      {"traceability.calibration-expired",
+       {{"instrument", "instrument L-1"},
+        {"valid_until", "2026-06-01"},
+        {"measured", "2026-11-20"}},
+       "The calibration of Measuring instrument L-1 expired on 2026-06-01, before the measurement "
+       "of "
+       "2026-11-20."},
+      {"traceability.calibrated-long-ago",
+       {{"instrument", "sensor pressure P-9"},
+        {"calibrated", "2019-01-12"},
+        {"measured", "2026-11-20"},
+        {"years", "2"}},
+       "Air pressure P-9 was calibrated on 2019-01-12, more than 2 years before the measurement of "
+       "2026-11-20; the validity of its calibration is not stated."}};
+  const Case plain = whole_case(plugins);
+  EXPECT_FALSE(has(page(plain), "expired"));
+  for (const Expired& one : all) {
+    Case c = plain;
+    Results::Analysed found;
+    found.plugin = "plausibility";
+    found.evaluation.findings.push_back({.id = one.id, .attention = true, .texts = one.texts});
+    c.results.analyses.push_back(found);
+    issue.reasons.clear();
+    for (const std::string& text : {page(c), dcc(c)}) {
+      EXPECT_TRUE(has(text, one.says)) << text;
+      EXPECT_FALSE(has(text, "Approved by"));
+    }
+    issue.reasons = {{one.id, "compared with a second laser", "B. Verdi"},
+                     {"traceability.other", "of another finding", "B. Verdi"}};
+    for (const std::string& text : {page(c), dcc(c)}) {
+      EXPECT_TRUE(has(text, std::string(one.says) +
+                                " Approved by B. Verdi because: compared with a second laser."))
+          << text;
+      EXPECT_FALSE(has(text, "of another finding"));
+    }
+    for (const char* language : {"it", "de", "es", "zh"}) {
+      c.campaign.certificate.languages = {language};
+      const std::string text = page(c);
+      EXPECT_TRUE(has(text, "compared with a second laser")) << language;
+      EXPECT_FALSE(has(text, "{")) << language << text;
+    }
+  }
+}
+
 TEST_F(Truth, ReadingsThatWereNotTakenAreCounted) {
   Case c = whole_case(plugins);
   c.observations[0].missing = 3;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <random>
 
 #include "loaded_analysis.h"
@@ -28,8 +31,12 @@ struct Shop {
   std::vector<int> directions{1, -1};
   std::uint32_t runs = 3;
   double half_reversal = 1 * um;  ///< of the lines from here on
+  std::vector<double> targets;
+  std::optional<ControlTable> control;
 
   Shop() {
+    for (std::size_t i = 0; i < stops; ++i)
+      targets.push_back(length * static_cast<double>(i) / static_cast<double>(stops - 1));
     campaign.machine.axes.push_back(Axis{.name = "X", .expansion = 1e-6});
     campaign.instrument.U_fixed = 1e-9, campaign.instrument.U_per_length = 1e-10;
     Environment& e = campaign.environment;
@@ -49,8 +56,7 @@ struct Shop {
     o.axes.push_back({"X", false, {}, {}});
     for (std::uint32_t run = 1; run <= runs; ++run)
       for (const int direction : directions)
-        for (std::size_t i = 0; i < stops; ++i) {
-          const double x = length * static_cast<double>(i) / static_cast<double>(stops - 1);
+        for (const double x : targets) {
           o.axes[0].position.push_back(x + shift);
           o.axes[0].approach.push_back(static_cast<std::int8_t>(direction));
           o.deviation.push_back(curve(x) + direction * half_reversal + scatter * normal(rng));
@@ -82,7 +88,8 @@ struct Shop {
     const Settings none;
     EXPECT_FALSE(analysis.applies(campaign, campaign.measurements[0]));
     EXPECT_TRUE(analysis.applies(campaign, campaign.measurements[1]));
-    const auto e = analysis.analyse({campaign, campaign.measurements[1], all[1], none, &all});
+    const auto e = analysis.analyse(
+        {campaign, campaign.measurements[1], all[1], none, &all, control ? &*control : nullptr});
     EXPECT_TRUE(e) << (e ? "" : e.error().message);
     return e.value_or(Evaluation{});
   }
@@ -152,6 +159,125 @@ double number_of(const Finding& f, const std::string& name) {
   for (const Number& n : f.evidence)
     if (n.name == name) return n.value;
   return NAN;
+}
+
+/// What a control makes of these means: entries of step q at points of its own, no further apart than the stops,
+/// linear between them, the last value outside.
+Curve table_of(const std::map<double, double>& mean, double q, std::mt19937& rng) {
+  std::vector<double> x, y;
+  for (const auto& [at, value] : mean) x.push_back(at), y.push_back(value - mean.begin()->second);
+  const auto line = [](const std::vector<double>& xs, const std::vector<double>& ys, double at) {
+    if (at <= xs.front()) return ys.front();
+    if (at >= xs.back()) return ys.back();
+    const auto k =
+        static_cast<std::size_t>(std::upper_bound(xs.begin(), xs.end(), at) - xs.begin());
+    return ys[k - 1] + (ys[k] - ys[k - 1]) * (at - xs[k - 1]) / (xs[k] - xs[k - 1]);
+  };
+  double closest = INFINITY;
+  for (std::size_t i = 1; i < x.size(); ++i) closest = std::min(closest, x[i] - x[i - 1]);
+  const double step = closest * std::uniform_real_distribution<double>(0.4, 1.0)(rng);
+  std::vector<double> points, entries;
+  const double first = x.front() - step * std::uniform_real_distribution<double>(0.0, 1.0)(rng);
+  for (double at = first; at < x.back() + step; at += step) {
+    const double value = line(x, y, at);
+    points.push_back(at), entries.push_back(q > 0.0 ? q * std::round(value / q) : value);
+  }
+  return [=](double at) { return line(points, entries, at); };
+}
+
+// Long: one campaign, and what seven things do to it.
+// Tables have points and entries of their own, and some are made from other readings.
+TEST(BeforeAfter, KnowsWhatTablesOfOtherPointsDid) {
+  std::cout << "seed " << seed << "\n";
+  enum class After {
+    doubled,
+    doubled_exactly,
+    doubled_by_older_table,
+    worked,
+    not_active,
+    half,
+    step
+  };
+  struct Case {
+    After after;
+    const char *name, *wanted;
+  };
+  for (const Case& one :
+       {Case{After::doubled, "doubled", "wrong-sign"},
+        {After::doubled_exactly, "exactly doubled", "wrong-sign"},
+        {After::doubled_by_older_table, "doubled by an older table", "wrong-sign"},
+        {After::worked, "worked", "worked"},
+        {After::not_active, "unchanged", "not-active"},
+        {After::half, "halved", "something-else"},
+        {After::step, "a step came later", "something-else"}}) {
+    std::map<std::string, int> told;
+    constexpr int campaigns = 1000;
+    for (int c = 0; c < campaigns; ++c) {
+      std::mt19937 rng(seed + 10000U + static_cast<unsigned>(c));
+      const auto any = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(rng);
+      };
+      Shop shop;
+      shop.rng.seed(seed + 20000U + static_cast<unsigned>(c));
+      shop.scatter = any(0.1, 0.6) * um;
+      shop.targets.clear();
+      const int n = 9 + c % 5;
+      for (int i = 0; i < n; ++i)
+        shop.targets.push_back(length * (i + (i > 0 && i < n - 1 ? any(-0.2, 0.2) : 0.0)) /
+                               (n - 1));
+      const double slope = any(10, 20) * um, wave = any(3, 8) * um, phase = any(0, 6);
+      const Curve e = [=](double x) {
+        return slope * x + wave * (std::sin(5.0 * x + phase) - std::sin(phase));
+      };
+      const double q = std::array{0.0, 0.1 * um, 1.0 * um}[static_cast<std::size_t>(c % 3)];
+      shop.control.emplace();
+      shop.control->value_step.linear = q;
+      shop.half_reversal = 0.0;
+      const auto mean_of = [&](const Observations& o) {
+        std::map<double, double> mean;
+        for (std::size_t i = 0; i < o.size(); ++i)
+          mean[o.axes[0].position[i]] += o.deviation[i] / (2.0 * shop.runs);
+        return mean;
+      };
+      shop.line("before", e);
+      auto mean = mean_of(shop.all.back());
+      if (one.after == After::doubled_by_older_table) {
+        shop.line("older", e);
+        mean = mean_of(shop.all.back());
+        shop.all.pop_back(), shop.campaign.measurements.pop_back();
+      }
+      const Curve table = table_of(mean, q, rng);
+      shop.line("after", [&](double x) {
+        switch (one.after) {
+          case After::doubled:
+          case After::doubled_by_older_table:
+            return e(x) + table(x);
+          case After::doubled_exactly:
+            return 2.0 * e(x);
+          case After::worked:
+            return e(x) - table(x);
+          case After::not_active:
+            return e(x);
+          case After::half:
+            return e(x) - table(x) / 2.0;
+          case After::step:
+            return e(x) - table(x) + (x > 0.5 ? 6 * um : 0.0);
+        }
+        return 0.0;
+      });
+      const Evaluation found = shop.evaluate();
+      ++told[answer(found)];
+      if (const Finding* f = finding_of(found, "wrong-sign")) {
+        const double at = number_of(*f, "largest_at");
+        EXPECT_NEAR(number_of(*f, "right"), -e(at) + e(0.0), 1.5 * um);
+        EXPECT_EQ(number_of(*f, "now"), -number_of(*f, "right"));
+      }
+    }
+    std::cout << one.name << ":";
+    for (const auto& [name, count] : told) std::cout << " " << name << " " << count;
+    std::cout << "\n";
+    EXPECT_GE(told[one.wanted], campaigns * 98 / 100) << one.name;
+  }
 }
 
 // The reversal has a value of its own: "worked" is said only if both did, and the value that would have

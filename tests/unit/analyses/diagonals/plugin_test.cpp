@@ -456,6 +456,111 @@ TEST(DiagonalPlugin, ADiagonalNamedFromTheOtherEndIsTheSame) {
     EXPECT_NEAR(series(a, "q_odd")->value[i], series(b, "q_odd")->value[i], 0.01 * um);
 }
 
+/// The same readings of the machine's mirror image, in which Y carries X. What is read about Z has the other sign.
+Workpiece mirror_image(Workpiece w) {
+  const auto other = [](std::string& axis) { axis = axis == "X" ? "Y" : axis == "Y" ? "X" : axis; };
+  const auto others = [&](std::map<std::string, double>& places) {
+    std::map<std::string, double> out;
+    for (const auto& [axis, place] : places) {
+      std::string name = axis;
+      other(name);
+      out[name] = place;
+    }
+    places = std::move(out);
+  };
+  for (std::size_t i = 0; i < w.all.size(); ++i) {
+    Measurement& m = w.campaign.measurements[i];
+    Observations& o = w.all[i];
+    other(m.axis), other(m.lateral), others(m.at), others(m.from), others(m.to);
+    for (auto& axis : o.axes) other(axis.axis);
+    if (o.axes.size() == 2) std::swap(o.axes[0], o.axes[1]);
+    for (auto& of : o.lines) std::swap(of.sense[0], of.sense[1]);
+    if (o.angular)
+      for (double& v : o.deviation) v = -v;
+  }
+  return w;
+}
+
+void expect_mirrored(const Evaluation& a, const Evaluation& b) {
+  for (const char* name : {"C0Y", "C0Y_LSQ", "slave_shift", "racking", "S_n", "S_odd"})
+    for (const Value& v : a.values) {
+      if (v.name != name) continue;
+      EXPECT_NEAR(value(b, name), v.value, 1e-6 * um + 1e-9 * std::fabs(v.value)) << name;
+      for (const Value& of : b.values)
+        if (of.name == name && v.U) {
+          EXPECT_NEAR(of.U.value_or(0.0), *v.U, 1e-6 * *v.U) << name;
+        }
+    }
+  const std::vector<std::array<const char*, 3>> pairs{
+      {"EYX", "EXY", ""},           {"EXY", "EYX", ""},     {"EYX_even", "EXY_even", ""},
+      {"EXY_even", "EYX_even", ""}, {"q_odd", "q_odd", ""}, {"ECX", "ECY", "-"}};
+  for (const auto& [one, two, sign] : pairs) {
+    const Series *f = series(a, one), *g = series(b, two);
+    ASSERT_EQ(f == nullptr, g == nullptr) << one << ids(b);
+    if (f == nullptr) continue;
+    EXPECT_EQ(g->over, std::string(one) == "q_odd" ? "X" : f->over == "X" ? "Y" : "X");
+    for (std::size_t i = 0; i < f->value.size(); ++i)
+      EXPECT_NEAR(g->value[i], *sign == '-' ? -f->value[i] : f->value[i], 1e-6 * um) << one << i;
+  }
+  const auto *D1 = a.points.column("D1"), *E1 = b.points.column("D1"), *D2 = a.points.column("D2"),
+             *E2 = b.points.column("D2");
+  ASSERT_TRUE(D1 && E1 && D2 && E2);
+  for (std::size_t i = 0; i < D1->values.size(); ++i) {
+    EXPECT_NEAR(E1->values[i], D1->values[i], 1e-6 * um);
+    // The second diagonal begins at small X: in the image this is its other end.
+    EXPECT_NEAR(E2->values[i], D2->values.back() - D2->values[D2->values.size() - 1 - i],
+                1e-6 * um);
+  }
+}
+
+TEST(DiagonalPlugin, AYThatCarriesXIsTheMirrorImage) {
+  std::mt19937 rng(seed + 9);
+  std::cout << "seed " << seed + 9 << "\n";
+  const Rectangle rect{12.0, 9.0, 30};
+  for (int c = 0; c < 8; ++c) {
+    Workpiece w(rect, random_gantry(rng, rect));
+    w.scatter = 0.3 * um;
+    w.states_all();
+    w.everything();
+    if (c == 5) w.yaw(0.05e-6);
+    if (c % 2 == 1) w.diagonal("D3", half_diagonal(w.errors, rect));
+    const bool sides = c % 4 < 2;
+    Workpiece image = mirror_image(w);
+    image.campaign.machine.axes[1].slave = sides ? "Y2" : "";
+    w.campaign.machine.axes[0].slave = sides ? "X2" : "";
+    for (Workpiece* of : {&w, &image})
+      for (Measurement& m : of->campaign.measurements)
+        if (sides && m.id[0] == 'X') m.side = m.id == "X1" ? "master" : "slave";
+    image.campaign.machine.structure = sides ? "" : c % 4 == 2 ? "gantry" : "bridge";
+    const Evaluation a = w.evaluate(), b = image.evaluate();
+    ASSERT_NE(series(a, c % 2 == 1 ? "EYX" : "EYX_even"), nullptr) << ids(a);
+    expect_mirrored(a, b);
+  }
+}
+
+TEST(DiagonalPlugin, AYOnTwoLinesOfWhichNobodySaysThatItCarriesXIsRefused) {
+  Workpiece w({12.0, 9.0, 10});
+  w.everything();
+  Workpiece image = mirror_image(w);
+  image.campaign.machine.structure = "";
+  expect_refused(image, "refused-carrier");
+  image.campaign.machine.axes[1].slave = "Y2";
+  EXPECT_NE(finding(image.evaluate(), "not-separable"), nullptr);
+  for (Measurement& m : image.campaign.measurements) m.at.clear();
+  expect_refused(image, "refused-place");
+}
+
+TEST(DiagonalPlugin, OneDirectionOnAYThatCarriesXNamesTheRightCurve) {
+  Workpiece w({12.0, 9.0, 30});
+  w.X("X1", 0.5), w.X("X2", 8.5), w.Y();
+  w.directions = {1};
+  w.D1(), w.D2();
+  const Evaluation e = mirror_image(w).evaluate();
+  ASSERT_NE(finding(e, "one-direction"), nullptr) << ids(e);
+  EXPECT_EQ(finding(e, "one-direction")->texts[0].second, "X");
+  EXPECT_EQ(finding(e, "one-direction")->texts[1].second, "EXY");
+}
+
 TEST(DiagonalPlugin, ClosureRefusesAChangedPitch) {
   Workpiece w({12.0, 9.0, 30});
   w.scatter = 0.5 * um;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nonio/math/decision.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +21,7 @@
 namespace nonio::decision_test {
 
 TEST(Decision, UpperLimitAfterIso14253) {
-  using host::evaluation::decide;
+  using math::decide;
   EXPECT_EQ(decide(8.0, 1.0, 10.0), Decision::conforms);
   EXPECT_EQ(decide(9.175, 1.0, 10.0), Decision::conforms);  // y = USL - 1.65 u
   EXPECT_EQ(decide(9.176, 1.0, 10.0), Decision::cannot_be_decided);
@@ -36,7 +38,7 @@ TEST(Decision, UpperLimitAfterIso14253) {
 }
 
 TEST(Decision, UpperLimitAfterIlacG8) {
-  using host::evaluation::decide;
+  using math::decide;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const char* rule : {"ilac-g8-simple", "ilac-g8-guarded"}) {
     const bool guarded = std::string(rule) == "ilac-g8-guarded";

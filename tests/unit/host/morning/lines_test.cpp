@@ -680,13 +680,16 @@ TEST(MorningLines, WhatWasWithheldIsALine) {
   for (const std::size_t campaign : {0, 1})  // the first was measured again
     m.stored().asked[campaign].push_back(
         {"", "plausibility", "traceability.calibration-expired", "attention"});
+  for (const std::size_t campaign : {0, 1})
+    m.stored().asked[campaign].push_back(
+        {"D1", "diagonal-straightness", "diagonals.refused-carrier", "attention"});
   lab.machines.push_back(m);
   std::vector<std::string> ids;
   for (const MorningLine& l : lab.lines())
     if (l.kind == Kind::withheld) ids.push_back(l.id);
-  EXPECT_EQ(ids, (std::vector<std::string>{"morning.calibration:S-42:S-42-2",
-                                           "morning.certificate:S-42:S-42-1",
-                                           "morning.no-table:S-42:S-42-2:Y"}));
+  EXPECT_EQ(ids, (std::vector<std::string>{
+                     "morning.calibration:S-42:S-42-2", "morning.certificate:S-42:S-42-1",
+                     "morning.no-result:S-42:S-42-2", "morning.no-table:S-42:S-42-2:Y"}));
 }
 
 TEST(MorningLines, AnAcknowledgementCoversWhatWasOpenOnItsDay) {
@@ -758,7 +761,8 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
   lab.machines.emplace_back("S-49", 1);
   lab.machines[7].judge("X", "B", {5});
   lab.machines[7].stored().asked = {
-      {{"", "plausibility", "traceability.calibration-expired", "attention"}}};
+      {{"", "plausibility", "traceability.calibration-expired", "attention"},
+       {"D1", "diagonal-straightness", "diagonals.refused-place", "attention"}}};
   lab.machines.emplace_back("S-48", 1);
   lab.machines[8].judge("X", "B", {8});
   lab.machines[8].stored().results.back().expanded.reset();
@@ -793,7 +797,8 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
                          "morning.no-machine",     "morning.no-value",
                          "morning.no-table",       "morning.certificate",
                          "morning.no-uncertainty", "morning.draft",
-                         "morning.failed-several", "morning.calibration"})
+                         "morning.failed-several", "morning.calibration",
+                         "morning.no-result"})
     EXPECT_TRUE(ids.contains(id)) << id;
 }
 

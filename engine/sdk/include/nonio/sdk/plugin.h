@@ -127,6 +127,9 @@ struct AnalysisInput {
   /// One entry for each measurement of the campaign, in its order; empty where nothing could read
   /// it. For methods that need more than one: its ids stand in Evaluation::uses.
   const std::vector<Observations>* all = nullptr;
+  /// What the machine's control takes, as its plugin declares it; null where none of that name is
+  /// loaded.
+  const ControlTable* control = nullptr;
 };
 
 struct CampaignInput {
@@ -229,7 +232,7 @@ class Registry {
 };
 
 /// The version of this interface: the one place that it stands in.
-#define NONIO_SDK_VERSION 13
+#define NONIO_SDK_VERSION 14
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)

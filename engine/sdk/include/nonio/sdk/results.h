@@ -143,6 +143,11 @@ struct Issue {
   std::string why{};                    ///< the other one is replaced
   std::string released_by{};  ///< the person; empty: the laboratory's rules for automatic release
   std::string author{};       ///< who has approved it before, where that is another person
+  /// Why it is issued in spite of a finding that a certificate states: an expired calibration.
+  struct Reason {
+    std::string finding, text, by;  ///< id of the finding; the reason; who stated it
+  };
+  std::vector<Reason> reasons{};
   /// Of the register: its identity, no two have the same; the entry under which the number was
   /// drawn, and the digest of the register up to there.
   std::string register_id{}, register_entry{}, register_sha256{};

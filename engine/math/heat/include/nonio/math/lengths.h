@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "nonio/sdk/results.h"
@@ -17,8 +18,9 @@
 ///     R0 = largest range of the repeats of one length
 ///     P = largest - least radial distance of the points from the centre of the least-squares sphere
 ///
-/// Decision (ISO 14253-1), for each error with its U(L): conforms where abs(E) <= MPE - U for all;
-/// does not where abs(E) > MPE + U for one; else it cannot be decided. The repeats are errors of their
+/// Decision (decision.h) for each error with its U(L), guard band g of the rule (ISO 14253-1:2017:
+/// 1.65 u): conforms where abs(E) <= MPE - g for all; does not where abs(E) > MPE + g for one; else
+/// it cannot be decided. The repeats are errors of their
 /// own: their scatter is in E, not in U (ISO/TS 23165, after common knowledge).
 ///
 /// Edition 2001: of at most five lengths one of the three repeats may lie outside; each of these
@@ -45,14 +47,15 @@ struct LengthError {
 struct LengthAnswer {
   Decision decision = Decision::cannot_be_decided;
   std::size_t worst = 0;      ///< error that is nearest to its limit, or farthest beyond
-  std::size_t outside = 0;    ///< errors beyond MPE + U
-  std::size_t undecided = 0;  ///< errors nearer to MPE than U
+  std::size_t outside = 0;    ///< errors beyond MPE + g
+  std::size_t undecided = 0;  ///< errors nearer to MPE than g
   std::size_t to_repeat = 0;  ///< edition 2001: lengths that have to be measured ten times more
 };
 
-/// U: of each error. by_2001: with its five lengths.
+/// U: of each error. by_2001: with its five lengths. rule: of the certificate.
 LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimit& limit,
-                           const std::vector<double>& U, bool by_2001);
+                           const std::vector<double>& U, bool by_2001,
+                           std::string_view rule = "iso14253-1");
 
 /// Largest range of the first three repeats; none where no length has two.
 struct RepeatRange {

@@ -18,6 +18,23 @@
 ///     chi2 = r' V^-1 r, F = chi2/m with m and nu degrees of freedom
 ///     f by generalised least squares: b' V^-1 a/(b' V^-1 b), u^2 = 1/(b' V^-1 b)
 ///
+/// A table is not b itself. It has entries of a step q at points of its own, and is linear between
+/// them; outside it holds its last value. Where a stop is between two points that are h apart, the
+/// table passes the corner of b there at a distance of
+///
+///     theta_i k_i,   k_i = (s_right - s_left) h/4,   0 <= theta_i = 4 t (1 - t) <= 1
+///
+/// s: slopes of b on both sides of the stop; t: its place between the points. h is not known, but
+/// no table is coarser than the smallest distance of the stops. theta_i is not known either: its
+/// second moment, if uniform, is 1/3, and it is one for all stops (even steps) or one for each, so
+/// both are added. Rounding is rectangular, q^2/12. For f = 0 and 2, where a table is active, V is
+/// therefore V + W with
+///
+///     W = J [diag(k^2/3 + q^2/12) + k k'/3] J'     J: each stop less the first one
+///
+/// Where the table was made from other readings b0 = E + n_0, f = 2 leaves r = n_a + n_0 - 2 n_b:
+/// the larger one of both p counts. For f = 0 it is n_a - n_0, which has the covariance V too.
+///
 /// Derived; tests hold it against simulated campaigns.
 namespace nonio::math {
 
@@ -31,8 +48,8 @@ struct BeforeAfter {
 };
 
 /// The model has the line before and then the one after, a reading for each mean. dof: of the
-/// repetition. `cannot_tell` where before is too small to tell the answers apart.
+/// repetition. entry_step: q, 0 where the control is not known. `cannot_tell` where before is too small to tell the answers apart.
 BeforeAfter before_after(std::span<const double> before, std::span<const double> after,
-                         const ReadingModel& model, double dof);
+                         const ReadingModel& model, double dof, double entry_step = 0.0);
 
 }  // namespace nonio::math
