@@ -77,7 +77,7 @@ std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::siz
   const math::FollowedAxis found = math::followed_quantities(
       test, campaign, m.axis, mean_temperature(o), across ? math::Across::yes : math::Across::no);
   if (found.quantities.empty()) return std::nullopt;
-  FollowedGroup out{{}, found.covariance};
+  FollowedGroup out{{}, found.covariance, compared_targets(test, found.other_targets)};
   const std::size_t n = found.quantities.size();
   for (std::size_t i = 0; i < n; ++i) {
     const math::Followed& f = found.quantities[i];
@@ -326,6 +326,13 @@ void put_covariance(storage::JsonWriter& json, const FollowedGroup& group, std::
       json.value(printed(printed(one, group.quantities[i].quantity), group.quantities[j].quantity));
     }
   json.end_array();
+  if (group.targets) {
+    std::vector<Quantity> quantities;
+    std::vector<double> variances;
+    for (std::size_t i = 0; i < n; ++i)
+      quantities.push_back(group.quantities[i].quantity), variances.push_back(v[i * n + i]);
+    put_other_targets(json, *group.targets, quantities, variances);
+  }
   json.end_object();
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "host/evaluation/other_targets.h"
 #include "host/reading/campaign_reader.h"
 #include "host/storage/json_writer.h"
 #include "nonio/sdk/results.h"
@@ -37,6 +39,8 @@ struct FollowedQuantity {
 struct FollowedGroup {
   std::vector<FollowedQuantity> quantities;
   std::vector<double> covariance;
+  /// Of quantities that are functions of values at targets.
+  std::optional<ComparedTargets> targets{};
 };
 
 /// Of everything that was evaluated. Nothing of measurements that cannot say how sure they are.

@@ -126,6 +126,8 @@ class EntryReader {
     }
     for (const dom::object c : list_at(json_, "followed_covariance")) {
       CovarianceRow row{c["first"], c["count"], {}};
+      if (dom::element targets; c["other_targets"].get(targets) == simdjson::SUCCESS)
+        row.other_targets = simdjson::minify(targets);
       for (const double x : list_at(c, "upper")) row.upper.push_back(x);
       if (row.count > entry_.results.size() || row.first > entry_.results.size() - row.count ||
           row.upper.size() != row.count * (row.count + 1) / 2)
@@ -269,6 +271,7 @@ std::string canonical_of(const Entry& e) {
   for (const CovarianceRow& c : e.covariance) {
     put(std::to_string(c.first))(std::to_string(c.count));
     for (const double x : c.upper) put(x);
+    if (!c.other_targets.empty()) put(c.other_targets);
   }
   put(e.findings.size());
   for (const FindingRow& f : e.findings) put(f.measurement)(f.source)(f.id)(f.severity);

@@ -43,6 +43,8 @@ struct ResultRow {
 struct CovarianceRow {
   std::uint64_t first = 0, count = 0;
   std::vector<double> upper;
+  /// JSON, as results.json has it: what a comparison with campaigns that have other targets needs.
+  std::string other_targets{};
 };
 
 struct FindingRow {

@@ -105,6 +105,18 @@ void read_results(Database& database, std::size_t campaign, std::int64_t evaluat
            "SELECT item, source, u FROM common_part WHERE evaluation = ? ORDER BY item, part",
            {evaluation}))
     common[row[0]].push_back({std::move(row[1]), real_of(row[2])});
+  const auto targets =
+      database.rows("SELECT first_item, items, other_targets FROM covariance WHERE evaluation = ? "
+                    "AND other_targets <> '' ORDER BY first_item",
+                    {evaluation});
+  const auto put_targets = [&, first = to.other_targets.size()](std::size_t item, StoredResult& r) {
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const auto begin = whole_of<std::size_t>(targets[i][0]);
+      if (item >= begin && item - begin < whole_of<std::size_t>(targets[i][1]))
+        r.targets = first + i, r.place = item - begin;
+    }
+  };
+  for (const Database::Row& row : targets) to.other_targets.push_back(row[2]);
   for (Database::Row& r : database.rows(results_sql, {evaluation})) {
     StoredResult result{.campaign = campaign,
                         .measurement = std::move(r[1]),
@@ -123,6 +135,7 @@ void read_results(Database& database, std::size_t campaign, std::int64_t evaluat
     if (const auto parts = common.find(r[0]); parts != common.end())
       result.common = std::move(parts->second);
     result.followed = result.source == "followed";
+    if (result.followed) put_targets(whole_of<std::size_t>(r[0]), result);
     auto& list = result.state == predicted_state ? to.predicted : to.results;
     list.push_back(std::move(result));
   }

@@ -38,6 +38,10 @@ struct StoredResult {
   double value = 0.0;
   std::optional<double> u_repeat{}, expanded{}, k{}, tolerance{};
   std::vector<CommonPart> common{};
+  /// Index into StoredMachine::other_targets, and the place of the number in it; none if the number
+  /// does not depend on targets.
+  std::optional<std::size_t> targets{};
+  std::size_t place = 0;
 };
 
 /// A limit with which no value of the campaign could be compared.
@@ -55,6 +59,8 @@ struct StoredMachine {
   std::vector<StoredCampaign> campaigns;  ///< by day, then by id
   std::vector<StoredResult> results;      ///< in the order of their campaigns
   std::vector<StoredResult> predicted{};  ///< by tables: the same order
+  /// JSON, member `other_targets` of results.json.
+  std::vector<std::string> other_targets{};
   /// Severity by finding of the last evaluation of each campaign.
   std::vector<std::map<std::string, std::string>> findings;
   /// Of the last evaluation of each campaign: findings of tables and certificates that ask for

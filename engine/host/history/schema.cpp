@@ -76,6 +76,7 @@ CREATE VIEW point AS
 constexpr const char* covariance_table = R"sql(
 CREATE TABLE covariance (
   evaluation BIGINT NOT NULL, first_item BIGINT NOT NULL, items BIGINT NOT NULL, upper_triangle BLOB NOT NULL,
+  other_targets TEXT NOT NULL,
   PRIMARY KEY (evaluation, first_item));
 )sql";
 

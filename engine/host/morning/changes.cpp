@@ -40,7 +40,9 @@ void fit_again(FollowedSeries& s, Fits& fits) {
 
 /// Whether the instrument changed in this gap, and this quantity would show it.
 bool shows_instrument(const FollowedSeries& s, std::size_t gap) {
-  return !s.series.points[gap + 1].common.empty() &&
+  const auto& parts = s.series.points[gap + 1].common;
+  return std::any_of(parts.begin(), parts.end(),
+                     [](const kernel::Common& c) { return !is_targets(c.source); }) &&
          std::any_of(s.series.declared.begin(), s.series.declared.end(),
                      [&](const kernel::Declared& d) {
                        return d.after == gap && d.kind == kernel::Declared::Kind::instrument;

@@ -110,6 +110,8 @@ class Describing {
                       .points = {},
                       .model = name_of(s.trend.model)};
     out.ended = s.ended;
+    if (s.over)
+      out.compared_over = {si(s.over->from, Quantity::length), si(s.over->to, Quantity::length)};
     for (const FollowedSeries::Apart& a : s.apart) {
       out.points.push_back(point(a.result, q));
       out.points.back().joined = false;

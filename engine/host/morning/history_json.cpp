@@ -47,6 +47,14 @@ class HistoryWriter {
     json_.member("quantity", s.quantity);
     json_.member("unit", unit_of(s.unit).symbol);
     if (s.ended) json_.member("ended", true);
+    if (s.compared_over) {
+      json_.key("compared_over");
+      json_.begin_object();
+      json_.member("from", printed(s.compared_over->from, Quantity::length));
+      json_.member("to", printed(s.compared_over->to, Quantity::length));
+      json_.member("unit", unit_of(Quantity::length).symbol);
+      json_.end_object();
+    }
     list("points", s.points, [&](const HistoryPoint& p) { put(p); });
     if (!s.model.empty()) {
       json_.member("model", s.model);

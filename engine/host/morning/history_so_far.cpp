@@ -116,26 +116,22 @@ history::StoredMachine campaigns_up_to(const history::StoredMachine& all,
         to.back().campaign = at->second;
       }
   };
+  out.other_targets = all.other_targets;
   take(all.results, out.results);
   take(all.predicted, out.predicted);
   return out;
-}
-
-kernel::Point kernel_point(const history::StoredResult& r) {
-  kernel::Point p{0.0, r.value, *r.u_repeat, {}};
-  for (const history::CommonPart& part : r.common) p.common.push_back({part.source, part.u});
-  return p;
 }
 
 /// Of the campaign's own points in one series.
 Expected<void> add_steps(const AssessedMachine& m, const FollowedSeries& s,
                          const std::string& campaign, std::size_t series, HistorySoFar& to) {
   const Quantity q = quantity_of_unit(s.unit);
+  const std::vector<kernel::Point> points = compared_points(s);
   for (std::size_t k = 1; k < s.results.size(); ++k) {
     const history::StoredResult &before = m.stored.results[s.results[k - 1]],
                                 &now = m.stored.results[s.results[k]];
     if (m.stored.campaigns[now.campaign].id != campaign) continue;
-    const auto step = kernel::difference(kernel_point(before), kernel_point(now));
+    const auto step = kernel::difference(points[k - 1], points[k]);
     if (!step) return fail(step.error());
     const history::StoredCampaign& other = m.stored.campaigns[before.campaign];
     HistoryStep out{s.axis, s.quantity, series, campaign, other.id, other.day};

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "host/morning/conditions.h"
 #include "host/morning/days.h"
 #include "host/storage/json_values.h"
 
@@ -18,48 +19,8 @@ using history::StoredResult;
 using storage::Json;
 namespace kernel = nonio::history;
 
-constexpr double same_place = 0.01;  // of the span
-
-bool near(double a, double b, double span) { return std::fabs(a - b) <= same_place * span; }
-
-double number_at(const Json& o, const char* key) {
-  const auto it = o.find(key);
-  return it != o.end() && it->is_number() ? it->get<double>() : 0.0;
-}
-
-/// Why two numbers cannot be points of one series; empty: they can. A table that is switched on or
-/// off is a step that is known, and no other quantity.
-std::string difference(const Json& a, const Json& b) {
-  const double span = number_at(a, "to") - number_at(a, "from");
-  if (a.contains("from") != b.contains("from") ||
-      !near(number_at(a, "from"), number_at(b, "from"), span) ||
-      !near(number_at(a, "to"), number_at(b, "to"), span))
-    return "span";
-  for (const auto& [key, why] :
-       {std::pair("at", "place"), std::pair("across", "across"), std::pair("model", "model"),
-        std::pair("period", "period"), std::pair("radius", "radius"), std::pair("feed", "feed")}) {
-    const Json one = a.value(key, Json()), other = b.value(key, Json());
-    const bool same = one.is_number() && other.is_number()
-                          ? near(one.get<double>(), other.get<double>(), one.get<double>())
-                          : one == other;
-    if (!same) return why;
-  }
-  return {};
-}
-
-Json parsed(const std::string& conditions) {
-  Json json = Json::parse(conditions, nullptr, false);
-  return json.is_object() ? json : Json::object();
-}
-
-std::string compensation(const Json& conditions) {
-  const auto it = conditions.find("compensation");
-  return it != conditions.end() && it->is_string() ? it->get<std::string>() : "";
-}
-
-bool stepped_by_table(const std::string& before, const std::string& after) {
-  return !before.empty() && !after.empty() && before != after;
-}
+/// Campaigns that have at least this share of the longer span in common are compared over it.
+constexpr double least_in_common = 0.5;
 
 /// Sources of a point that are an instrument under one certificate.
 std::string instrument_in(const StoredResult& r) {
@@ -183,7 +144,9 @@ class Happenings {
 /// Points of one quantity, group by group of what can be joined.
 class Joining {
  public:
-  Joining(const StoredMachine& m, std::vector<std::size_t> results) : m_(m) {
+  Joining(const StoredMachine& m, const std::vector<std::optional<StoredTargets>>& targets,
+          std::vector<std::size_t> results)
+      : m_(m), targets_(targets) {
     std::sort(results.begin(), results.end(),
               [&](std::size_t a, std::size_t b) { return before(m_, a, b); });
     for (const std::size_t i : results) put(i);
@@ -198,7 +161,8 @@ class Joining {
         const bool earlier = last_day(groups_[h]) < first_day(groups_[g]);
         if (earlier && m_.results[groups_[h].results.front()].unit == s.unit)
           for (const std::size_t i : groups_[h].results)
-            s.apart.push_back({i, difference(groups_[g].conditions, groups_[h].conditions)});
+            s.apart.push_back({i, difference(groups_[g].conditions, groups_[h].conditions,
+                                             have_in_common(groups_[g], groups_[h]))});
         if (first_day(groups_[h]) > last_day(groups_[g])) s.ended = true;
       }
       for (FollowedSeries::Apart& a : s.apart)
@@ -213,7 +177,37 @@ class Joining {
   struct Group {
     Json conditions;
     std::vector<std::size_t> results;
+    /// What all have in common, and the longest span; none: targets of some are not known.
+    std::optional<kernel::Stretch> common{};
+    double longest = 0.0;
   };
+
+  const StoredTargets* targets(std::size_t result) const {
+    const StoredResult& r = m_.results[result];
+    return r.targets && targets_[*r.targets] ? &*targets_[*r.targets] : nullptr;
+  }
+
+  Group group_of(std::size_t result, Json conditions) const {
+    Group out{std::move(conditions), {result}};
+    if (const StoredTargets* own = targets(result))
+      out.common = own->span, out.longest = own->span.length();
+    return out;
+  }
+
+  static bool have_in_common(const Group& a, const Group& b) {
+    return a.common && b.common &&
+           kernel::common_stretch(*a.common, *b.common).length() >=
+               least_in_common * std::max(a.longest, b.longest);
+  }
+
+  static void join(Group& to, const Group& other) {
+    to.results.insert(to.results.end(), other.results.begin(), other.results.end());
+    if (to.common && other.common)
+      to.common = kernel::common_stretch(*to.common, *other.common);
+    else
+      to.common.reset();
+    to.longest = std::max(to.longest, other.longest);
+  }
 
   void put(std::size_t i) {
     const StoredResult& r = m_.results[i];
@@ -225,17 +219,18 @@ class Joining {
       const StoredResult& first = m_.results[g.results.front()];
       if (first.unit == r.unit && first.conditions == r.conditions) {
         g.results.push_back(i);
+        if (targets(i) == nullptr) g.common.reset();
         return;
       }
     }
-    Json conditions = parsed(r.conditions);
+    Group alone = group_of(i, parsed(r.conditions));
     for (Group& g : groups_)
       if (m_.results[g.results.front()].unit == r.unit &&
-          difference(g.conditions, conditions).empty()) {
-        g.results.push_back(i);
+          difference(g.conditions, alone.conditions, have_in_common(g, alone)).empty()) {
+        join(g, alone);
         return;
       }
-    groups_.push_back({std::move(conditions), {i}});
+    groups_.push_back(std::move(alone));
   }
 
   const std::string& first_day(const Group& g) const {
@@ -257,11 +252,15 @@ class Joining {
       const history::StoredCampaign& c = m_.campaigns[r.campaign];
       kernel::Point p{static_cast<double>(*day_number(c.day)) / days_a_year, r.value, *r.u_repeat};
       for (const history::CommonPart& part : r.common) p.common.push_back({part.source, part.u});
-      s.series.points.push_back(std::move(p));
+      s.stated.push_back(std::move(p));
+      if (const StoredTargets* own = targets(i))
+        s.targets.push_back(targets_of(*own, s.quantity, r.place));
       s.night = std::max(s.night, c.night);
       s.evaluations.push_back(static_cast<std::uint64_t>(c.evaluation));
-      s.stated_u.push_back(*r.u_repeat);
     }
+    if (s.targets.size() < s.stated.size()) s.targets.clear();
+    Compared points = compared(s.stated, s.targets, s.quantity);
+    s.series.points = std::move(points.points), s.over = points.over;
     pool(s.series.points);
     s.seeds = seeds_of(m_, results);
     s.series.seed = s.seeds.back();
@@ -270,6 +269,7 @@ class Joining {
   }
 
   const StoredMachine& m_;
+  const std::vector<std::optional<StoredTargets>>& targets_;
   std::vector<Group> groups_;
 };
 
@@ -293,8 +293,9 @@ std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> by_quant
 std::vector<FollowedSeries> followed_series(const StoredMachine& machine,
                                             const std::vector<config::Event>& events) {
   std::vector<FollowedSeries> out;
+  const auto targets = read_targets(machine.other_targets);
   for (auto& [key, results] : by_quantity(machine, true))
-    for (FollowedSeries& s : Joining(machine, std::move(results)).take(events))
+    for (FollowedSeries& s : Joining(machine, targets, std::move(results)).take(events))
       out.push_back(std::move(s));
   return out;
 }
@@ -335,13 +336,19 @@ std::vector<std::size_t> deciding(const StoredMachine& m, const std::vector<std:
 kernel::Series first_points(const FollowedSeries& s, std::size_t count) {
   kernel::Series known = s.series;
   if (count >= known.points.size()) return known;
-  known.points.resize(count);
+  known.points.clear();
   std::erase_if(known.declared, [&](const kernel::Declared& d) { return d.after + 1 >= count; });
   if (count == 0) return known;
-  for (std::size_t i = 0; i < count; ++i) known.points[i].u = s.stated_u[i];
+  const std::vector<kernel::Point> first(s.stated.begin(),
+                                         s.stated.begin() + static_cast<std::ptrdiff_t>(count));
+  known.points = compared(first, s.targets, s.quantity).points;
   pool(known.points);
   known.seed = s.seeds[count - 1];
   return known;
+}
+
+std::vector<kernel::Point> compared_points(const FollowedSeries& s) {
+  return compared(s.stated, s.targets, s.quantity).points;
 }
 
 std::vector<ShownSeries> shown_series(const StoredMachine& machine) {
@@ -360,31 +367,6 @@ std::vector<ShownSeries> shown_series(const StoredMachine& machine) {
     }
   }
   return out;
-}
-
-MachineEvents::MachineEvents(const std::vector<history::MachineState>& all,
-                             const history::StoredLogs& logs) {
-  std::map<std::string, const std::string*> named;  // machine by name or serial; none: of several
-  for (const history::MachineState& m : all)
-    for (const std::string& serial : m.serials) {
-      const auto [at, is_new] = named.try_emplace(serial, &m.machine.name);
-      if (!is_new) at->second = nullptr;
-    }
-  for (const history::MachineState& m : all) named[m.machine.name] = &m.machine.name;
-  for (const config::Event& e : logs.events) {
-    const auto alias = logs.aliases.find(e.machine);
-    const auto machine = named.find(alias == logs.aliases.end() ? e.machine : alias->second);
-    if (machine == named.end() || machine->second == nullptr)
-      of_none_.push_back(e);
-    else
-      by_machine_[*machine->second].push_back(e);
-  }
-}
-
-const std::vector<config::Event>& MachineEvents::of(const std::string& machine) const {
-  static const std::vector<config::Event> none;
-  const auto found = by_machine_.find(machine);
-  return found == by_machine_.end() ? none : found->second;
 }
 
 }  // namespace nonio::host::morning

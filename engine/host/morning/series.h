@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/history/reader.h"
+#include "host/morning/targets.h"
 #include "nonio/history/series.h"
 #include "nonio/history/trend.h"
 
@@ -20,7 +21,10 @@ struct FollowedSeries {
   std::string axis, quantity, unit;
   std::vector<std::size_t> results;          ///< of the points: indices into StoredMachine::results
   std::vector<std::uint64_t> evaluations{};  ///< of the points
-  std::vector<double> stated_u{};            ///< of the points, before they were pooled
+  std::vector<nonio::history::Point> stated{};  ///< the points as their campaigns have them
+  std::vector<PointTargets> targets{};          ///< of the points, where all are known
+  /// The stretch of the axis over which the points are compared; none: as they are.
+  std::optional<nonio::history::Stretch> over{};
   std::vector<std::uint64_t> seeds{};        ///< of the series up to each of its points
   /// Numbers of the same quantity before this series began, which cannot be joined.
   struct Apart {
@@ -57,6 +61,9 @@ std::vector<FollowedSeries> followed_series(const history::StoredMachine& machin
 
 /// The series as it was when it had only its first `count` points: no later one moves it.
 nonio::history::Series first_points(const FollowedSeries& series, std::size_t count);
+
+/// The points as they are compared, each with its own u.
+std::vector<nonio::history::Point> compared_points(const FollowedSeries& series);
 
 std::vector<ShownSeries> shown_series(const history::StoredMachine& machine);
 

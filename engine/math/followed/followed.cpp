@@ -8,6 +8,7 @@
 #include "common/constants.h"
 #include "dense.h"
 #include "run_components.h"
+#include "target_fit.h"
 
 namespace nonio::math {
 namespace {
@@ -17,81 +18,24 @@ constexpr double largest_gap = full_turn / 3.0;  // of targets that cover a turn
 constexpr double most_inflated = 2.0;
 constexpr std::size_t fewest_for_curve = 5, fewest_for_sinusoid = 10;
 
-/// A function of the targets' mean deviations: weight of each reading.
-using ReadingWeights = std::vector<double>;
-
 /// What is being made for one test.
 struct Following {
   const AxisTest& test;
   RunComponents components;
   FollowedAxis out{};
-  std::vector<ReadingWeights> weights{};  ///< of each quantity; empty of ln_s
+  std::vector<TargetWeights> weights{};  ///< of each quantity; none of ln_s
+  /// What the means are a sum of beside a line or polynomial: periods of sinusoids that are followed.
+  std::vector<double> periods{};
 };
 
-/// Of a sum over targets of t_i m_i: each direction that reached the target counts alike.
-ReadingWeights of_means(const AxisTest& test, const Eigen::VectorXd& t) {
-  ReadingWeights out(test.readings().size(), 0.0);
-  for (std::size_t i = 0; i < test.targets.size(); ++i) {
-    const double directions =
-        (test.plus(i).empty() ? 0.0 : 1.0) + (test.minus(i).empty() ? 0.0 : 1.0);
-    for (const bool minus : {false, true}) {
-      const auto part = minus ? test.minus(i) : test.plus(i);
-      const std::size_t first = first_reading(test, i, minus);
-      for (std::size_t k = 0; k < part.size(); ++k)
-        out[first + k] = t(at(i)) / directions / static_cast<double>(part.size());
-    }
-  }
-  return out;
-}
-
-ReadingWeights of_reversal(const AxisTest& test) {
-  ReadingWeights out(test.readings().size(), 0.0);
-  double both = 0.0;
-  for (std::size_t i = 0; i < test.targets.size(); ++i)
-    if (!test.plus(i).empty() && !test.minus(i).empty()) both += 1.0;
-  for (std::size_t i = 0; i < test.targets.size(); ++i) {
-    const auto plus = test.plus(i), minus = test.minus(i);
-    if (plus.empty() || minus.empty()) continue;
-    for (std::size_t k = 0; k < plus.size(); ++k)
-      out[first_reading(test, i, false) + k] = 1.0 / both / static_cast<double>(plus.size());
-    for (std::size_t k = 0; k < minus.size(); ++k)
-      out[first_reading(test, i, true) + k] = -1.0 / both / static_cast<double>(minus.size());
-  }
-  return out;
-}
-
-void add_followed(Following& work, std::string name, Quantity quantity, ReadingWeights weights) {
-  Followed f{std::move(name), 0.0, quantity};
-  const auto readings = work.test.readings();
-  for (std::size_t k = 0; k < readings.size(); ++k) f.value += weights[k] * readings[k].deviation;
+void add_followed(Following& work, std::string name, Quantity quantity, TargetWeights weights) {
+  Followed f{std::move(name), value_of(work.test, weights), quantity};
   work.out.quantities.push_back(std::move(f));
   work.weights.push_back(std::move(weights));
 }
 
 Quantity deviation_along(const AxisTest& test) {
   return test.rotary ? Quantity::angular_deviation : Quantity::deviation;
-}
-
-/// Columns 1, z, P2(z), P3(z) at the targets.
-Eigen::MatrixXd legendre_columns(const AxisTest& test, int columns) {
-  Eigen::MatrixXd X(at(test.targets.size()), columns);
-  const double middle = (test.targets.front() + test.targets.back()) / 2.0;
-  for (Eigen::Index i = 0; i < X.rows(); ++i) {
-    const double z = 2.0 * (test.targets[static_cast<std::size_t>(i)] - middle) / test.length();
-    const double of_degree[] = {1.0, z, (3.0 * z * z - 1.0) / 2.0,
-                                (5.0 * z * z * z - 3.0 * z) / 2.0};
-    for (int c = 0; c < columns; ++c) X(i, c) = of_degree[c];
-  }
-  return X;
-}
-
-/// Rows: coefficient of each column, which are independent, in a least-squares fit to the targets, by
-/// target. No larger than X: there may be many targets.
-Eigen::MatrixXd fit_rows(const Eigen::MatrixXd& X) {
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(X);
-  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(X.rows(), X.cols());
-  const auto R = qr.matrixR().topRows(X.cols()).triangularView<Eigen::Upper>();
-  return qr.colsPermutation() * Eigen::MatrixXd(R.solve(Q.transpose()));
 }
 
 void add_scale(Following& work) {
@@ -114,12 +58,7 @@ void add_sinusoid(Following& work, const std::string& name, double period,
   const AxisTest& test = work.test;
   const auto targets = static_cast<double>(test.targets.size());
   if (test.targets.size() < fewest_for_sinusoid || test.length() < period / 2.0) return;
-  Eigen::MatrixXd X(beside.rows(), beside.cols() + 2);
-  X.leftCols(beside.cols()) = beside;
-  for (Eigen::Index i = 0; i < X.rows(); ++i) {
-    const double phase = full_turn * test.targets[static_cast<std::size_t>(i)] / period;
-    X(i, beside.cols()) = std::cos(phase), X(i, beside.cols() + 1) = std::sin(phase);
-  }
+  const Eigen::MatrixXd X = with_sinusoid(beside, test, period);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(X);
   if (qr.rank() < X.cols()) return;
   const Eigen::MatrixXd rows = fit_rows(X).bottomRows(2);
@@ -127,6 +66,7 @@ void add_sinusoid(Following& work, const std::string& name, double period,
     if (rows.row(c).squaredNorm() > most_inflated * 2.0 / targets) return;
   add_followed(work, name + "_cos", deviation_along(test), of_means(test, rows.row(0)));
   add_followed(work, name + "_sin", deviation_along(test), of_means(test, rows.row(1)));
+  work.periods.push_back(period);
 }
 
 bool covers_a_turn(const AxisTest& test) {
@@ -155,13 +95,21 @@ void add_shapes(Following& work, const Axis* axis, Across across) {
 
 void put_uncertainties(Following& work) {
   const std::size_t n = work.weights.size();
-  auto& C = work.out.covariance;
-  C.assign(n * n, 0.0);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i; j < n; ++j)
-      C[i * n + j] = C[j * n + i] =
-          covariance_of(work.test, work.components, work.weights[i], work.weights[j]);
+  const auto& C = work.out.covariance = covariance_of(work.test, work.components, work.weights);
   for (std::size_t i = 0; i < n; ++i) work.out.quantities[i].u = std::sqrt(C[i * n + i]);
+}
+
+/// For a comparison with campaigns that have other targets. Of a rotary axis, whose angles are its
+/// own, the values are compared as they are.
+void put_other_targets(Following& work) {
+  OtherTargets to;
+  for (const Followed& f : work.out.quantities) to.of_readings.push_back(f.u * f.u);
+  for (std::size_t i = 0; i < work.weights.size(); ++i)
+    to.share.push_back(share_of_targets(work.test, work.weights[i],
+                                        work.out.quantities[i].name == "B_mean"));
+  to.mean = fit_means(work.test, work.components, work.periods);
+  if (work.test.bidirectional()) to.reversal = fit_reversal(work.test, work.components);
+  work.out.other_targets = std::move(to);
 }
 
 /// The scale also depends on what the manifest states.
@@ -226,6 +174,7 @@ FollowedAxis followed_quantities(const AxisTest& test, const Campaign& campaign,
   add_shapes(work, campaign.machine.axis(axis), across);
   if (test.bidirectional()) add_followed(work, "B_mean", deviation_along(test), of_reversal(test));
   put_uncertainties(work);
+  put_other_targets(work);
   if (across == Across::no) of_the_scale(work, campaign, axis, material);
   add_scatter(work);
   return std::move(work.out);

@@ -132,14 +132,58 @@ struct PassSums {
   std::vector<double> offset, slope;
 };
 
-PassSums pass_sums(const AxisTest& test, const PassModel& m, std::span<const double> J) {
+std::size_t place_of(const PassModel& m, std::size_t reading) {
+  return 2 * m.target[reading] + (m.passes[m.pass[reading]].minus ? 1 : 0);
+}
+
+PassSums pass_sums(const AxisTest& test, const PassModel& m, const TargetWeights& J) {
   PassSums out{std::vector<double>(m.passes.size(), 0.0),
                std::vector<double>(m.passes.size(), 0.0)};
-  for (std::size_t k = 0; k < J.size(); ++k) {
-    out.offset[m.pass[k]] += J[k];
-    out.slope[m.pass[k]] += J[k] * (test.targets[m.target[k]] - m.middle);
+  for (std::size_t k = 0; k < m.pass.size(); ++k) {
+    const double w = J[place_of(m, k)];
+    out.offset[m.pass[k]] += w;
+    out.slope[m.pass[k]] += w * (test.targets[m.target[k]] - m.middle);
   }
   return out;
+}
+
+/// Of single readings, where neighbours are independent.
+double covariance_of_singles(const AxisTest& test, const RunComponents& c, const TargetWeights& a,
+                             const TargetWeights& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < test.targets.size(); ++i)
+    sum += c.reading[0] * static_cast<double>(test.plus(i).size()) * a[2 * i] * b[2 * i] +
+           c.reading[1] * static_cast<double>(test.minus(i).size()) * a[2 * i + 1] * b[2 * i + 1];
+  return sum;
+}
+
+/// r^|k - l| between the readings of a pass.
+double covariance_of_neighbours(const RunComponents& c, const TargetWeights& a,
+                                const TargetWeights& b) {
+  const PassModel& m = c.passes;
+  double sum = 0.0;
+  std::vector<double> tail_a(m.passes.size(), 0.0), tail_b = tail_a;  // of a pass so far
+  for (std::size_t k = 0; k < m.pass.size(); ++k) {
+    const double wa = a[place_of(m, k)], wb = b[place_of(m, k)];
+    double &ta = tail_a[m.pass[k]], &tb = tail_b[m.pass[k]];
+    sum += c.reading[m.passes[m.pass[k]].minus ? 1 : 0] *
+           (wa * wb + c.neighbours * (wa * tb + wb * ta));
+    ta = wa + c.neighbours * ta, tb = wb + c.neighbours * tb;
+  }
+  return sum;
+}
+
+double covariance_of_runs(const PassSums& a, const PassSums& b, const RunComponents& c) {
+  const auto runs = [](const std::vector<double>& x, const std::vector<double>& y,
+                       const RunPart& shared, const RunPart& own) {
+    double total = 0.0;
+    for (std::size_t p = 0; p + 1 < x.size(); p += 2)
+      total += shared.variance * (x[p] + x[p + 1]) * (y[p] + y[p + 1]) +
+               own.variance * (x[p] - x[p + 1]) * (y[p] - y[p + 1]);
+    return total;
+  };
+  return runs(a.offset, b.offset, c.shared_offset, c.own_offset) +
+         runs(a.slope, b.slope, c.shared_slope, c.own_slope);
 }
 
 }  // namespace
@@ -165,28 +209,28 @@ RunComponents run_components(const AxisTest& test) {
   return out;
 }
 
-double covariance_of(const AxisTest& test, const RunComponents& c, std::span<const double> a,
-                     std::span<const double> b) {
-  const PassModel& m = c.passes;
+double value_of(const AxisTest& test, const TargetWeights& weights) {
   double sum = 0.0;
-  std::vector<double> tail_a(m.passes.size(), 0.0), tail_b = tail_a;  // of a pass so far
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    double &ta = tail_a[m.pass[k]], &tb = tail_b[m.pass[k]];
-    sum += c.reading[m.passes[m.pass[k]].minus ? 1 : 0] *
-           (a[k] * b[k] + c.neighbours * (a[k] * tb + b[k] * ta));
-    ta = a[k] + c.neighbours * ta, tb = b[k] + c.neighbours * tb;
+  for (std::size_t i = 0; i < test.targets.size(); ++i) {
+    for (const AxisTest::Reading& r : test.plus(i)) sum += weights[2 * i] * r.deviation;
+    for (const AxisTest::Reading& r : test.minus(i)) sum += weights[2 * i + 1] * r.deviation;
   }
-  const PassSums of_a = pass_sums(test, m, a), of_b = pass_sums(test, m, b);
-  const auto runs = [&](const std::vector<double>& x, const std::vector<double>& y,
-                        const RunPart& shared, const RunPart& own) {
-    double total = 0.0;
-    for (std::size_t p = 0; p + 1 < x.size(); p += 2)
-      total += shared.variance * (x[p] + x[p + 1]) * (y[p] + y[p + 1]) +
-               own.variance * (x[p] - x[p + 1]) * (y[p] - y[p + 1]);
-    return total;
-  };
-  return sum + runs(of_a.offset, of_b.offset, c.shared_offset, c.own_offset) +
-         runs(of_a.slope, of_b.slope, c.shared_slope, c.own_slope);
+  return sum;
+}
+
+std::vector<double> covariance_of(const AxisTest& test, const RunComponents& c,
+                                  const std::vector<TargetWeights>& weights) {
+  const std::size_t n = weights.size();
+  std::vector<PassSums> sums;
+  for (const TargetWeights& w : weights) sums.push_back(pass_sums(test, c.passes, w));
+  std::vector<double> out(n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i; j < n; ++j)
+      out[i * n + j] = out[j * n + i] =
+          (c.neighbours == 0.0 ? covariance_of_singles(test, c, weights[i], weights[j])
+                               : covariance_of_neighbours(c, weights[i], weights[j])) +
+          covariance_of_runs(sums[i], sums[j], c);
+  return out;
 }
 
 PooledScatter pooled_scatter(const AxisTest& test, const RunComponents& c) {

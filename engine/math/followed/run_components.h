@@ -29,9 +29,15 @@ struct RunComponents {
 
 RunComponents run_components(const AxisTest&);
 
-/// Covariance of two linear functions of the readings with these weights.
-double covariance_of(const AxisTest&, const RunComponents&, std::span<const double> a,
-                     std::span<const double> b);
+/// A linear function of the readings: weight of each reading at target i in direction +, at 2 i, and
+/// in direction -, at 2 i + 1. All of a target and direction count alike.
+using TargetWeights = std::vector<double>;
+
+double value_of(const AxisTest&, const TargetWeights&);
+
+/// Covariances of linear functions of the readings, row by row.
+std::vector<double> covariance_of(const AxisTest&, const RunComponents&,
+                                  const std::vector<TargetWeights>&);
 
 /// Root mean square of the scatter at a target, and the standard uncertainty of its logarithm: the
 /// mean square is the sum of those of the residuals, of the runs' offsets and of their slopes, which

@@ -59,6 +59,12 @@ struct HistorySeries {
   std::optional<double> smallest_change{}, limit{};
   std::optional<HistoryForecast> forecast{};
   bool ended = false;  ///< later campaigns measure it otherwise, in a series of their own
+  /// Stretch of the axis over which its model compares campaigns that have other targets; the points
+  /// are values of their own targets. None: as they are.
+  struct Over {
+    double from = 0.0, to = 0.0;
+  };
+  std::optional<Over> compared_over{};
 };
 
 struct MachineEvent {

@@ -52,12 +52,37 @@ struct Followed {
   double of_instrument = 0.0, of_expansion = 0.0;
 };
 
+/// A fit to values at targets, for a comparison with campaigns that have other targets: a polynomial
+/// in z, P0 .. Pd, and the sinusoids that are followed.
+struct TargetFit {
+  /// Variance of the values about the fit beyond what the readings make of it: what a machine has
+  /// between its targets. Below 0 by chance; m^2 or rad^2.
+  double beyond = 0.0;
+  double dof = 0.0;  ///< degrees of freedom of `beyond`
+  /// Of P0 .. Pd. None of a rotary axis, whose quantities do not refer to its ends.
+  std::vector<double> coefficients{};
+  /// Between them, row by row: what the readings make of them, and what independent values with
+  /// variance 1 at the targets make of them.
+  std::vector<double> covariance{}, share{};
+};
+
+/// What a comparison with campaigns that have other targets needs. The quantities are functions of
+/// values at the targets, so another choice of targets makes other values of the same machine, with
+/// the variance `share` times `beyond` of the fit.
+struct OtherTargets {
+  /// Of each quantity but ln_s: variance that the readings alone make, and sum of t_i^2 over the
+  /// targets (of B_mean with `reversal`, of the others with `mean`).
+  std::vector<double> of_readings{}, share{};
+  TargetFit mean{}, reversal{};
+};
+
 struct FollowedAxis {
   std::vector<Followed> quantities;
   /// Of `u`, between quantities i and j at i * n + j; SI.
   std::vector<double> covariance;
   /// Keys of the manifest that nobody stated: `u` of scale lacks what they would give.
   std::vector<std::string> not_stated;
+  OtherTargets other_targets{};
 };
 
 enum class Across : bool { no, yes };  ///< deviations across the axis: a straightness
