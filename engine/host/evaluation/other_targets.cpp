@@ -48,9 +48,19 @@ void put_fit(JsonWriter& json, const char* name, const ComparedTargets::Fit& fit
   json.member("beyond", printed_square(fit.beyond, q));
   json.member("dof", fit.dof);
   if (const std::size_t n = fit.coefficients.size(); n > 0) {
-    put_list(json, "coefficients", n, [&](std::size_t i) { return printed(fit.coefficients[i], q); });
-    put_triangle(json, "upper", n, [&](std::size_t i) { return printed_square(fit.covariance[i], q); });
-    put_triangle(json, "share", n, [&](std::size_t i) { return printed(fit.share[i], Quantity::number); });
+    put_list(json, "coefficients", n,
+             [&](std::size_t i) { return printed(fit.coefficients[i], q); });
+    put_triangle(json, "upper", n,
+                 [&](std::size_t i) { return printed_square(fit.covariance[i], q); });
+    put_triangle(json, "share", n,
+                 [&](std::size_t i) { return printed(fit.share[i], Quantity::number); });
+  }
+  if (const std::size_t n = fit.sinusoids.size() / 3; n > 0) {
+    const auto& s = fit.sinusoids;
+    put_list(json, "sinusoids", n, [&](std::size_t i) { return printed(s[3 * i], q); });
+    put_list(json, "variances", n, [&](std::size_t i) { return printed_square(s[3 * i + 1], q); });
+    put_list(json, "shares", n,
+             [&](std::size_t i) { return printed(s[3 * i + 2], Quantity::number); });
   }
   json.end_object();
 }
@@ -60,7 +70,10 @@ void put_fit(JsonWriter& json, const char* name, const ComparedTargets::Fit& fit
 ComparedTargets compared_targets(const nonio::math::AxisTest& test,
                                  const nonio::math::OtherTargets& fits) {
   const auto fit = [](const nonio::math::TargetFit& f) {
-    return ComparedTargets::Fit{f.beyond, f.dof, f.coefficients, f.covariance, f.share};
+    ComparedTargets::Fit out{f.beyond, f.dof, f.coefficients, f.covariance, f.share};
+    for (const auto& s : f.sinusoids)
+      out.sinusoids.insert(out.sinusoids.end(), {s.value, s.variance, s.share});
+    return out;
   };
   ComparedTargets out{.from = test.targets.front(),
                       .to = test.targets.back(),

@@ -105,10 +105,10 @@ void read_results(Database& database, std::size_t campaign, std::int64_t evaluat
            "SELECT item, source, u FROM common_part WHERE evaluation = ? ORDER BY item, part",
            {evaluation}))
     common[row[0]].push_back({std::move(row[1]), real_of(row[2])});
-  const auto targets =
-      database.rows("SELECT first_item, items, other_targets FROM covariance WHERE evaluation = ? "
-                    "AND other_targets <> '' ORDER BY first_item",
-                    {evaluation});
+  const auto targets = database.rows(
+      "SELECT first_item, items, other_targets FROM covariance WHERE evaluation = ? "
+      "AND other_targets <> '' ORDER BY first_item",
+      {evaluation});
   const auto put_targets = [&, first = to.other_targets.size()](std::size_t item, StoredResult& r) {
     for (std::size_t i = 0; i < targets.size(); ++i) {
       const auto begin = whole_of<std::size_t>(targets[i][0]);

@@ -80,9 +80,9 @@ void insert(Database& database, std::int64_t evaluation, const Known& known, con
     insert_result(database, evaluation, number(i), e.results[i]);
   for (const CovarianceRow& c : e.covariance) {
     const std::string upper = bytes_of(c.upper);
-    database.put("INSERT INTO covariance VALUES (?, ?, ?, ?, ?)",
-                 {evaluation, number(c.first), number(c.count), Database::Blob{upper},
-                  c.other_targets});
+    database.put(
+        "INSERT INTO covariance VALUES (?, ?, ?, ?, ?)",
+        {evaluation, number(c.first), number(c.count), Database::Blob{upper}, c.other_targets});
   }
   for (std::size_t i = 0; i < e.without_value.size(); ++i) {
     const LimitRow& l = e.without_value[i];

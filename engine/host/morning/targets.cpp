@@ -40,6 +40,11 @@ StoredFit fit_in(const dom::object& o, const char* name, const kernel::Stretch& 
   out.curve.share = whole(numbers(fit, "share"), n);
   if (out.curve.covariance.size() != n * n || out.curve.share.size() != n * n)
     out.curve = {span, {}, {}, {}};
+  const auto values = numbers(fit, "sinusoids"), variances = numbers(fit, "variances"),
+             shares = numbers(fit, "shares");
+  if (variances.size() == values.size() && shares.size() == values.size())
+    for (std::size_t i = 0; i < values.size(); ++i)
+      out.sinusoids.push_back({values[i], variances[i], shares[i]});
   return out;
 }
 
@@ -64,6 +69,16 @@ std::optional<std::size_t> degree_of(const std::string& kind) {
   if (kind == "scale") return 1;
   if (kind == "curve_2") return 2;
   if (kind == "curve_3") return 3;
+  return std::nullopt;
+}
+
+/// Which of the sinusoids beside the curve: a turn comes first, then what a drive makes.
+std::optional<std::size_t> sinusoid_of(const std::string& kind, std::size_t count) {
+  if (count < 2) return std::nullopt;
+  for (const auto& [name, at] :
+       {std::pair("turn_cos", std::size_t{0}), std::pair("turn_sin", std::size_t{1}),
+        std::pair("cyclic_cos", count - 2), std::pair("cyclic_sin", count - 1)})
+    if (kind == name) return at;
   return std::nullopt;
 }
 
@@ -124,6 +139,9 @@ Compared compared(std::vector<kernel::Point> points, const std::vector<PointTarg
       p.u = std::sqrt(factor * factor * c.variance + of[i].beside);
       share = factor * factor * c.share;
       out.over = over;
+    } else if (const auto at = sinusoid_of(kind, of[i].fit.sinusoids.size())) {
+      const kernel::CoefficientOver& c = of[i].fit.sinusoids[*at];
+      p.value = c.value, p.u = std::sqrt(c.variance + of[i].beside), share = c.share;
     }
     if (beyond * share > 0.0)
       p.common.push_back({targets_source + of[i].digest, std::sqrt(beyond * share)});

@@ -15,8 +15,10 @@ namespace nonio::host::morning {
 
 /// A fit to values at the targets of a campaign; units of the store.
 struct StoredFit {
-  double beyond = 0.0, dof = 0.0;  ///< variance about the fit beyond the readings
+  double beyond = 0.0, dof = 0.0;       ///< variance about the fit beyond the readings
   nonio::history::FittedCurve curve{};  ///< no coefficients: its quantities do not refer to ends
+  /// Of cos and sin of each sinusoid beside it.
+  std::vector<nonio::history::CoefficientOver> sinusoids{};
 };
 
 /// What the store has of one measurement (results.json, `other_targets`).

@@ -105,8 +105,8 @@ void put_other_targets(Following& work) {
   OtherTargets to;
   for (const Followed& f : work.out.quantities) to.of_readings.push_back(f.u * f.u);
   for (std::size_t i = 0; i < work.weights.size(); ++i)
-    to.share.push_back(share_of_targets(work.test, work.weights[i],
-                                        work.out.quantities[i].name == "B_mean"));
+    to.share.push_back(
+        share_of_targets(work.test, work.weights[i], work.out.quantities[i].name == "B_mean"));
   to.mean = fit_means(work.test, work.components, work.periods);
   if (work.test.bidirectional()) to.reversal = fit_reversal(work.test, work.components);
   work.out.other_targets = std::move(to);

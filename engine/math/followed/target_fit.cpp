@@ -44,14 +44,14 @@ double variance_at(const AxisTest& test, const RunComponents& c, std::size_t i, 
   return reversal ? sum : sum * share(test, i) * share(test, i);
 }
 
-/// Of a fit by targets: its columns are those of a polynomial, then sinusoids. `kept`: of the
-/// coefficients. Of B_i, targets that were reached from one direction have no part in it.
-TargetFit fit_columns(const AxisTest& test, const RunComponents& c, const MatrixXd& X, Index kept,
-                      bool reversal) {
+/// Of a fit by targets: its columns are `polynomial` ones, then sinusoids. Of B_i, targets that were reached from one direction have no part in it.
+TargetFit fit_columns(const AxisTest& test, const RunComponents& c, const MatrixXd& X,
+                      Index polynomial, bool reversal) {
   std::vector<std::size_t> seen;
   for (std::size_t i = 0; i < test.targets.size(); ++i)
     if (!reversal || has_both(test, i)) seen.push_back(i);
   const auto n = at(seen.size());
+  const Index kept = test.rotary ? 0 : polynomial;  // its angles are its own
   if (n < X.cols()) return {};
   MatrixXd own(n, X.cols());
   VectorXd y(n);
@@ -77,15 +77,21 @@ TargetFit fit_columns(const AxisTest& test, const RunComponents& c, const Matrix
              (1.0 - own.row(k).dot(rows.col(k)));
   if (out.dof > 0.0) out.beyond = (rest.squaredNorm() - noise) / out.dof;
   const VectorXd b = rows * y;
+  const auto weights_of = [&](Index j) {
+    VectorXd t = VectorXd::Zero(at(test.targets.size()));
+    for (Index k = 0; k < n; ++k) t(at(seen[static_cast<std::size_t>(k)])) = rows(j, k);
+    return spread_over(test, t, reversal);
+  };
   std::vector<TargetWeights> weights;
   for (Index j = 0; j < kept; ++j) {
     out.coefficients.push_back(b(j));
-    VectorXd t = VectorXd::Zero(at(test.targets.size()));
-    for (Index k = 0; k < n; ++k) t(at(seen[static_cast<std::size_t>(k)])) = rows(j, k);
-    weights.push_back(spread_over(test, t, reversal));
+    weights.push_back(weights_of(j));
     for (Index i = 0; i < kept; ++i) out.share.push_back(rows.row(i).dot(rows.row(j)));
   }
   out.covariance = covariance_of(test, c, weights);
+  for (Index j = polynomial; j < own.cols(); ++j)
+    out.sinusoids.push_back(
+        {b(j), covariance_of(test, c, {weights_of(j)}).front(), rows.row(j).squaredNorm()});
   return out;
 }
 
@@ -157,13 +163,12 @@ TargetFit fit_means(const AxisTest& test, const RunComponents& c,
   const int polynomial = static_cast<int>(degree) + 1;
   MatrixXd X = legendre_columns(test, polynomial);
   for (const double period : periods) X = with_sinusoid(X, test, period);
-  return fit_columns(test, c, X, test.rotary ? 0 : polynomial, false);
+  return fit_columns(test, c, X, polynomial, false);
 }
 
 TargetFit fit_reversal(const AxisTest& test, const RunComponents& c) {
-  const int columns =
-      test.rotary ? 1 : (test.targets.size() < fewest_for_cubic_reversal ? 2 : 4);
-  return fit_columns(test, c, legendre_columns(test, columns), test.rotary ? 0 : columns, true);
+  const int columns = test.rotary ? 1 : (test.targets.size() < fewest_for_cubic_reversal ? 2 : 4);
+  return fit_columns(test, c, legendre_columns(test, columns), columns, true);
 }
 
 }  // namespace nonio::math

@@ -64,6 +64,11 @@ struct TargetFit {
   /// Between them, row by row: what the readings make of them, and what independent values with
   /// variance 1 at the targets make of them.
   std::vector<double> covariance{}, share{};
+  /// Of cos and sin of each sinusoid, with these two variances.
+  struct Sinusoid {
+    double value = 0.0, variance = 0.0, share = 0.0;
+  };
+  std::vector<Sinusoid> sinusoids{};
 };
 
 /// What a comparison with campaigns that have other targets needs. The quantities are functions of
