@@ -97,8 +97,16 @@ class SeriesChart {
     const std::string unit(unit_of(s_.unit).symbol);
     return printable(s_.axis) + (s_.axis.empty() ? "" : "  ") + printable(s_.quantity) +
            (unit.empty() ? "" : ", " + unit) + (s_.model.empty() ? "" : ": " + s_.model) +
-           (s_.model.empty() ? "" : "; in brackets and as bars U of comparison") +
+           (s_.model.empty() ? "" : "; in brackets and as bars U of comparison") + compared_over() +
            (s_.ended ? " (ended: measured otherwise since)" : "") + "\n";
+  }
+
+  /// The points are values of their own targets; changes and levels are not.
+  std::string compared_over() const {
+    if (!s_.compared_over) return {};
+    return "; compared over " + number_of(s_.compared_over->from, Quantity::length) + " to " +
+           number_of(s_.compared_over->to, Quantity::length) + " " +
+           std::string(unit_of(Quantity::length).symbol);
   }
 
   std::size_t column(double value) const {

@@ -89,6 +89,13 @@ std::string change_text(const Page& page, const HistorySeries& s, const HistoryC
 
 std::string changes(const Page& page, const HistorySeries& s) {
   std::string out;
+  if (s.compared_over)
+    out += element(
+        "p",
+        html(page.words.get("site.compared_over",
+                            {{"from", short_number(page, s.compared_over->from, Quantity::length)},
+                             {"to", short_number(page, s.compared_over->to, Quantity::length)}})),
+        "class=\"muted\"");
   for (const HistoryChange& c : s.changes)
     out += element("p", with_whole_days(html(change_text(page, s, c))));
   if (s.changes.empty() && s.smallest_change)

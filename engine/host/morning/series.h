@@ -25,7 +25,7 @@ struct FollowedSeries {
   std::vector<PointTargets> targets{};          ///< of the points, where all are known
   /// The stretch of the axis over which the points are compared; none: as they are.
   std::optional<nonio::history::Stretch> over{};
-  std::vector<std::uint64_t> seeds{};        ///< of the series up to each of its points
+  std::vector<std::uint64_t> seeds{};  ///< of the series up to each of its points
   /// Numbers of the same quantity before this series began, which cannot be joined.
   struct Apart {
     std::size_t result = 0;
