@@ -12,9 +12,6 @@
 namespace nonio::controllers {
 namespace {
 
-// docs/constants.md, A28.
-constexpr double largest_share = 0.5;  // of the mean reversal that its U may have
-
 Uncertainties uncertainties(const Campaign& campaign, const Measurement& m, const Observations& o,
                             const math::AxisTest& test) {
   const Observations* own = &o;
@@ -36,7 +33,7 @@ void take_uncertainties(const ControllerInput& input, std::size_t index, AxisJob
   job.U = uncertainties(input.campaign, input.campaign.measurements[index], o, test);
   const double mean = job.curve.mean_reversal();
   if (!job.curve.bidirectional() || job.reversal.kind == Kind::not_constant ||
-      job.reversal.kind == Kind::unknown || !(job.U.B_mean >= largest_share * std::fabs(mean)))
+      job.reversal.kind == Kind::unknown || math::is_reversal_known(mean, job.U.B_mean))
     return;
   // It stays: how large it may be decides who has to know.
   job.held = {
