@@ -60,8 +60,8 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
         .deviation("u_mean", r.u_mean)
         .deviation("max", r.largest)
         .deviation("left", left)
-        .deviation("U", U)
         .number("p", r.kind == Kind::not_constant ? r.p_varies : r.p_mean, Quantity::probability);
+    if (r.kind == Kind::lost_motion && !is_reversal_known(r.mean, U)) finding.deviation("U", U);
     if (r.kind == Kind::over_compensated && active) finding.deviation("active", *active);
     findings.push_back(finding.done());
   }
