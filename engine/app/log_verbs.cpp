@@ -274,9 +274,11 @@ Verb forget_verb(Common& common) {
   auto wish = std::make_shared<ForgetWish>();
   return {
       .name = "forget",
-      .summary = "Record that campaigns were removed from the site on purpose",
+      .summary = "Record that campaigns or files were removed from the site on purpose",
       .arguments = joined({site_argument(wish->site),
-                           required({"CAMPAIGN", &wish->campaigns, "Their ids"}),
+                           required({"CAMPAIGN", &wish->campaigns,
+                                     "Their ids; or paths of other files or folders of the site,\n"
+                                     "such as machines/S-0042.toml or templates"}),
                            required({"--by", &wish->by, "Name of the author of the entry"}),
                            required({"--why", &wish->why, "Reason for the removal"}),
                            {"--date", &wish->date, "Day of the entry, YYYY-MM-DD; default: today"}},
