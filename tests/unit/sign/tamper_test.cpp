@@ -28,8 +28,8 @@ struct Scene {
   std::string plain, stamped;
 
   Scene() {
-    verifier.trust = pem(root);
-    verifier.signer = "CN=Ada Bianchi,O=Laboratorio di Prova";
+    verifier.signer_roots = verifier.time_stamp_roots = pem(root);
+    verifier.signers = {{"CN=Ada Bianchi,O=Laboratorio di Prova"}};
     verifier.now = now;
     plain = make(open(ada, root), {});
     stamped = make(open(ada, root), server.stamping(pem(root)));
