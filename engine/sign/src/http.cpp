@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "http.h"
 
+#include <netdb.h>
 #include <openssl/err.h>
 #include <openssl/http.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
+#include <memory>
 
 #include "openssl.h"
 
@@ -20,6 +27,51 @@ struct OpensslText {
   ~OpensslText() { OPENSSL_free(text); }
 };
 
+struct AddressesFreed {
+  void operator()(addrinfo* all) const { ::freeaddrinfo(all); }
+};
+
+/// OpenSSL tries a port that refuses until the time is up; one that is closed is known at once.
+Expected<void> check_listens(const char* host, const char* port, int seconds) {
+  addrinfo wanted{};
+  wanted.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (const int trouble = ::getaddrinfo(host, port, &wanted, &found); trouble != 0)
+    return fail(std::string("its name is not known: ") + ::gai_strerror(trouble));
+  const std::unique_ptr<addrinfo, AddressesFreed> all(found);
+  std::string why = "it has no address";
+  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
+    const int s = ::socket(one->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (s < 0) continue;
+    int trouble = ::connect(s, one->ai_addr, one->ai_addrlen) == 0 ? 0 : errno;
+    pollfd done{s, POLLOUT, 0};
+    if (trouble == EINPROGRESS) {
+      socklen_t size = sizeof trouble;
+      if (::poll(&done, 1, seconds * 1000) != 1)
+        trouble = ETIMEDOUT;
+      else if (::getsockopt(s, SOL_SOCKET, SO_ERROR, &trouble, &size) != 0)
+        trouble = errno;
+    }
+    ::close(s);
+    if (trouble == 0) return {};
+    why = std::strerror(trouble);
+  }
+  return fail(why);
+}
+
+/// The server, or the proxy of the environment by which OpenSSL reaches it.
+Expected<void> check_listens(const OpensslText& host, const OpensslText& port, int seconds) {
+  const char* proxy = OSSL_HTTP_adapt_proxy(nullptr, nullptr, host.text, 0);
+  if (proxy == nullptr) return check_listens(host.text, port.text, seconds);
+  OpensslText proxy_host, proxy_port;
+  if (OSSL_HTTP_parse_url(proxy, nullptr, nullptr, &proxy_host.text, &proxy_port.text, nullptr,
+                          nullptr, nullptr, nullptr) != 1) {
+    ERR_clear_error();
+    return {};
+  }
+  return check_listens(proxy_host.text, proxy_port.text, seconds);
+}
+
 }  // namespace
 
 Expected<std::string> ask_server(const std::string& url, const Question& question) {
@@ -32,6 +84,8 @@ Expected<std::string> ask_server(const std::string& url, const Question& questio
     ERR_clear_error();
     return fail(url + " is no address of the form http://host/path");
   }
+  if (auto listens = check_listens(host, port, question.seconds); !listens)
+    return fail(url + " does not answer: " + listens.error().message);
   std::string full_path = path.text;
   if (query.text != nullptr && *query.text != '\0') full_path += std::string("?") + query.text;
   const BioPtr body(
