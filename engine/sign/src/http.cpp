@@ -31,8 +31,9 @@ struct AddressesFreed {
   void operator()(addrinfo* all) const { ::freeaddrinfo(all); }
 };
 
-/// OpenSSL tries a port that refuses until the time is up; one that is closed is known at once.
-Expected<void> check_listens(const char* host, const char* port, int seconds) {
+/// A socket that is connected. OpenSSL by itself tries a port that refuses until the time is up; here
+/// one that is closed is known at once.
+Expected<int> connect_to(const char* host, const char* port, int seconds) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
@@ -52,24 +53,19 @@ Expected<void> check_listens(const char* host, const char* port, int seconds) {
       else if (::getsockopt(s, SOL_SOCKET, SO_ERROR, &trouble, &size) != 0)
         trouble = errno;
     }
+    if (trouble == 0) return s;
     ::close(s);
-    if (trouble == 0) return {};
     why = std::strerror(trouble);
   }
   return fail(why);
 }
 
-/// The server, or the proxy of the environment by which OpenSSL reaches it.
-Expected<void> check_listens(const OpensslText& host, const OpensslText& port, int seconds) {
-  const char* proxy = OSSL_HTTP_adapt_proxy(nullptr, nullptr, host.text, 0);
-  if (proxy == nullptr) return check_listens(host.text, port.text, seconds);
-  OpensslText proxy_host, proxy_port;
-  if (OSSL_HTTP_parse_url(proxy, nullptr, nullptr, &proxy_host.text, &proxy_port.text, nullptr,
-                          nullptr, nullptr, nullptr) != 1) {
-    ERR_clear_error();
-    return {};
-  }
-  return check_listens(proxy_host.text, proxy_port.text, seconds);
+/// Null where OpenSSL connects by itself: by a proxy of the environment.
+Expected<BioPtr> connection_to(const OpensslText& host, const OpensslText& port, int seconds) {
+  if (OSSL_HTTP_adapt_proxy(nullptr, nullptr, host.text, 0) != nullptr) return BioPtr();
+  const auto connected = connect_to(host.text, port.text, seconds);
+  if (!connected) return fail(connected.error());
+  return BioPtr(BIO_new_socket(*connected, BIO_CLOSE));
 }
 
 }  // namespace
@@ -84,8 +80,8 @@ Expected<std::string> ask_server(const std::string& url, const Question& questio
     ERR_clear_error();
     return fail(url + " is no address of the form http://host/path");
   }
-  if (auto listens = check_listens(host, port, question.seconds); !listens)
-    return fail(url + " does not answer: " + listens.error().message);
+  const auto connection = connection_to(host, port, question.seconds);
+  if (!connection) return fail(url + " does not answer: " + connection.error().message);
   std::string full_path = path.text;
   if (query.text != nullptr && *query.text != '\0') full_path += std::string("?") + query.text;
   const BioPtr body(
@@ -93,9 +89,9 @@ Expected<std::string> ask_server(const std::string& url, const Question& questio
           ? nullptr
           : BIO_new_mem_buf(question.body.data(), static_cast<int>(question.body.size())));
   const BioPtr answer(OSSL_HTTP_transfer(nullptr, host.text, port.text, full_path.c_str(), 0,
-                                         nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, 0,
-                                         nullptr, question.query, body.get(), question.reply, 1,
-                                         question.longest, question.seconds, 0));
+                                         nullptr, nullptr, connection->get(), connection->get(),
+                                         nullptr, nullptr, 0, nullptr, question.query, body.get(),
+                                         question.reply, 1, question.longest, question.seconds, 0));
   if (!answer) return fail(url + " does not answer: " + reason());
   std::string bytes;
   std::array<char, 4096> part{};
