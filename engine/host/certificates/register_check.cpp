@@ -10,7 +10,7 @@
 #include "host/evaluation/issue_json.h"
 #include "host/evaluation/record.h"
 #include "host/storage/digest.h"
-#include "nonio/pdf/update.h"
+#include "nonio/sign/verify.h"
 
 namespace nonio::host::certificates {
 namespace fs = std::filesystem;
@@ -91,8 +91,7 @@ RegisterRows register_rows(const fs::path& site) {
 
 std::string issued_by(const RegisterRows& rows, std::string_view bytes) {
   if (rows.issued.empty()) return {};
-  if (bytes.starts_with("%PDF-")) bytes = bytes.substr(0, pdf::ends_of_parts(bytes).front());
-  const auto found = rows.issued.find(storage::sha256(bytes));
+  const auto found = rows.issued.find(storage::sha256(sign::issued_part(bytes)));
   return found == rows.issued.end()
              ? ""
              : "the register " + rows.id + " issued this file as " + found->second;

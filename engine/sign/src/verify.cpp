@@ -298,9 +298,12 @@ Verified verify_pdf(std::string_view bytes, const Verifier& verifier) {
   return PdfCheck(bytes, verifier).run();
 }
 
+std::string_view issued_part(std::string_view file) {
+  return file.starts_with("%PDF-") ? file.substr(0, pdf::ends_of_parts(file).front()) : file;
+}
+
 Expected<Identity> unverified_signer(std::string_view signed_pdf) {
-  const auto place =
-      pdf::signature_at_end(signed_pdf.substr(0, pdf::ends_of_parts(signed_pdf).front()));
+  const auto place = pdf::signature_at_end(issued_part(signed_pdf));
   const auto der = place ? der_in(place->contents) : fail(place.error());
   if (!der) return fail(der.error());
   const auto data = SignedData::parse(*der, SignedData::Content::detached);

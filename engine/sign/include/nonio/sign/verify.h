@@ -72,6 +72,8 @@ Expected<std::size_t> number_of_roots(const std::string& pem);
 Verified verify_pdf(std::string_view bytes, const Verifier& verifier);
 /// Of a PDF that is known to be our own, such as one from the register; nothing is checked.
 Expected<std::vector<pdf::Attachment>> unverified_attachments(std::string_view pdf);
+/// Of a PDF without the updates behind it; other files as they are.
+std::string_view issued_part(std::string_view file);
 Expected<Identity> unverified_signer(std::string_view signed_pdf);
 /// An XML document as `Key::sign` writes one: in its canonical form, with one enveloped signature
 /// over all of it. `certificate` (DER): only that signer will do, and its chain is not looked at
