@@ -5,6 +5,7 @@
 // themselves: each carries, below its signature, the digest of the journal up to its own number.
 #include <map>
 #include <set>
+#include <utility>
 
 #include "host/certificates/register.h"
 #include "host/certificates/register_place.h"
@@ -19,7 +20,9 @@ namespace {
 class Auditor {
  public:
   explicit Auditor(storage::Database& database)
-      : database_(database), entries_(Journal(database).all()) {}
+      : database_(database), entries_(Journal(database).all()) {
+    for (const Journal::Entry& e : entries_) last_[{e.number, e.what}] = &e;
+  }
 
   /// The journal as a chain, and the numbers against it; not the files.
   std::vector<std::string> run_journal() {
@@ -69,10 +72,8 @@ class Auditor {
   }
 
   const Journal::Entry* noted(const char* what, const std::string& number) const {
-    const Journal::Entry* found = nullptr;
-    for (const Journal::Entry& e : entries_)
-      if (e.number == number && e.what == what) found = &e;
-    return found;
+    const auto found = last_.find({number, what});
+    return found == last_.end() ? nullptr : found->second;
   }
 
   void check_numbers() {
@@ -152,6 +153,7 @@ class Auditor {
 
   storage::Database& database_;
   const std::vector<Journal::Entry> entries_;
+  std::map<std::pair<std::string, std::string>, const Journal::Entry*> last_;  ///< by number, what
   Audit audit_;
   bool look_at_files_ = true;
 };
