@@ -31,6 +31,7 @@ Json to_json(const RegisterEntry& e) {
   add("released_account", e.released_account);
   add("withdrawn_by", e.withdrawn_by);
   add("withdrawn_account", e.withdrawn_account);
+  if (!e.signer.empty()) json["signer"] = {{"subject", e.signer}, {"sha256", e.signer_sha256}};
   return json;
 }
 

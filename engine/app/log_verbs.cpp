@@ -189,6 +189,12 @@ int forget(ForgetWish& wish, const Common& common) {
   const char* const verb = "nonio forget";
   if (wish.date.empty()) wish.date = today();
   if (!is_day(wish.date)) return wrong_day(verb, wish.date);
+  for (const std::string& campaign : wish.campaigns)
+    if (!config::is_campaign_id(campaign) && !config::is_site_part(campaign))
+      return complain(verb,
+                      "expected the id of a campaign, or a file or folder of the site "
+                      "(machines/S-0042.toml, templates, events.toml); found \"" +
+                          campaign + "\"");
   for (const std::string& campaign : wish.campaigns) {
     if (const auto added =
             config::add_forgotten(wish.site, {wish.date, campaign, wish.by, wish.why});
@@ -274,9 +280,11 @@ Verb forget_verb(Common& common) {
   auto wish = std::make_shared<ForgetWish>();
   return {
       .name = "forget",
-      .summary = "Record that campaigns were removed from the site on purpose",
+      .summary = "Record that campaigns or files were removed from the site on purpose",
       .arguments = joined({site_argument(wish->site),
-                           required({"CAMPAIGN", &wish->campaigns, "Their ids"}),
+                           required({"CAMPAIGN", &wish->campaigns,
+                                     "Their ids; or paths of other files or folders of the site,\n"
+                                     "such as machines/S-0042.toml or templates"}),
                            required({"--by", &wish->by, "Name of the author of the entry"}),
                            required({"--why", &wish->why, "Reason for the removal"}),
                            {"--date", &wish->date, "Day of the entry, YYYY-MM-DD; default: today"}},

@@ -124,7 +124,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
                   << " --by NAME --as authoriser\n";
       return exit_done;
     case State::failed:
-      return complain(release_name, done.why + " (nothing was issued; the draft still waits)",
+      return complain(release_name, done.why + " (nothing was issued by this command)",
                       exit_failed);
     case State::issued:
       break;

@@ -15,8 +15,8 @@ namespace {
 constexpr const char* restamp_name = "nonio restamp";
 
 struct RestampWish {
-  std::vector<std::string> files, answers;
-  std::string site, trust, revoked, signer, time_stamp, out;
+  std::vector<std::string> files, answers, signers;
+  std::string site, signer_roots, time_stamp_roots, trust, revoked, time_stamp, out;
   bool no_time_stamp = false, no_fetch = false;
 };
 
@@ -39,7 +39,8 @@ void print(const std::string& file, const host::certificates::Restamped& done,
 
 int restamp(const RestampWish& wanted, const Common& common) {
   host::certificates::RestampOptions options;
-  options.whom = {wanted.site, wanted.trust, wanted.revoked, wanted.signer};
+  options.whom = {wanted.site,  wanted.signer_roots, wanted.time_stamp_roots,
+                  wanted.trust, wanted.revoked,      wanted.signers};
   options.time_stamp = wanted.time_stamp;
   options.with_time_stamp = !wanted.no_time_stamp;
   options.answers = {wanted.answers.begin(), wanted.answers.end()};
@@ -51,9 +52,10 @@ int restamp(const RestampWish& wanted, const Common& common) {
     for (const Error& e : how.error()) complain(restamp_name, text_of(e));
     return exit_usage;
   }
+  const auto rows = host::certificates::register_rows(wanted.site);
   int status = exit_done;
   for (const std::string& file : wanted.files) {
-    const auto done = host::certificates::restamp(file, *how, wanted.out);
+    const auto done = host::certificates::restamp(file, *how, rows, wanted.out);
     if (done)
       print(file, *done, common);
     else
@@ -77,13 +79,17 @@ Verb restamp_verb(Common& common) {
                                     "Site whose site.toml, [signing], names trusted roots, "
                                     "expected signer, time server and\n"
                                     "revocation lists"}),
+           takes(Takes::file, {"--signer-roots", &wanted->signer_roots,
+                               "PEM file with the trusted root certificates of signers"}),
+           takes(Takes::file, {"--time-stamp-roots", &wanted->time_stamp_roots,
+                               "PEM file with the trusted root certificates of time servers"}),
            takes(Takes::file,
-                 {"--trust", &wanted->trust, "PEM file with the trusted root certificates"}),
+                 {"--trust", &wanted->trust, "PEM file with one root certificate for both"}),
            takes(Takes::file, {"--revoked", &wanted->revoked, "PEM file with revocation lists"}),
            takes(Takes::file,
                  {"--ocsp", &wanted->answers, "File with an OCSP response (DER); may be repeated"}),
-           {"--signer", &wanted->signer,
-            "Expected signer: subject of the certificate, or its SHA-256"},
+           {"--signer", &wanted->signers,
+            "Expected signer: subject of the certificate, or its SHA-256; may be repeated"},
            {"--time-stamp", &wanted->time_stamp, "Address of the time-stamp server, http://..."},
            {"--no-time-stamp", &wanted->no_time_stamp,
             "Add only revocation data (PAdES B-LT), for a later time stamp"},

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "host/certificates/trust.h"
 #include "host/certificates/verify.h"
 #include "host/process/apart.h"
 #include "host/storage/nearest.h"
@@ -20,8 +21,8 @@ using host::certificates::Verdict;
 namespace {
 
 struct VerifyWish {
-  std::vector<std::string> files;
-  std::string site, trust, revoked, signer;
+  std::vector<std::string> files, signers;
+  std::string site, signer_roots, time_stamp_roots, trust, revoked;
 };
 
 const char* to_text(sign::Check::State state) {
@@ -52,12 +53,13 @@ Json to_json(const std::string& file, const sign::Verified& v) {
 
 /// "time stamp, revocation": of the checks that were not made, each once.
 std::string names_of(const std::vector<std::string>& checks) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> names{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> names{
       {{".time", "time stamp"},
        {".revocation", "revocation"},
        {"register.state", "register"},
        {"content.printed", "printed pages"},
-       {"content.templates", "words other than the installed ones"}}};
+       {"content.templates", "templates"},
+       {"content.words", "words"}}};
   std::vector<std::string> out;
   for (const std::string& id : checks) {
     std::string name = id;
@@ -70,9 +72,10 @@ std::string names_of(const std::vector<std::string>& checks) {
 
 /// The gravest of all files'.
 int exit_of(const std::vector<Verdict>& verdicts) {
-  constexpr std::array<std::pair<Verdict, int>, 7> statuses{{{Verdict::altered, exit_failed},
+  constexpr std::array<std::pair<Verdict, int>, 8> statuses{{{Verdict::altered, exit_failed},
                                                              {Verdict::untrusted, 4},
                                                              {Verdict::not_in_force, 5},
+                                                             {Verdict::other_words, 8},
                                                              {Verdict::no_certificate, 6},
                                                              {Verdict::no_file, 7},
                                                              {Verdict::incomplete, 3},
@@ -96,11 +99,14 @@ void print(std::ostream& out, const std::string& file, const sign::Verified& v, 
 
 int verify(const VerifyWish& wanted, const Common& common) {
   const auto verifier =
-      host::certificates::verifier_of({wanted.site, wanted.trust, wanted.revoked, wanted.signer});
+      host::certificates::verifier_of({wanted.site, wanted.signer_roots, wanted.time_stamp_roots,
+                                       wanted.trust, wanted.revoked, wanted.signers});
   if (!verifier) {
     for (const Error& e : verifier.error()) complain("nonio verify", text_of(e));
     return exit_usage;
   }
+  // Before it: what is confined opens no connection to a server.
+  const auto rows = host::certificates::register_rows(wanted.site);
   host::process::step_aside();  // a stranger's file is read confined, as the plugins' code is run
   std::unique_ptr<host::reading::Workplace> place;
   std::ostringstream early;  // loading plugins may begin this process anew: said when that is over
@@ -115,7 +121,7 @@ int verify(const VerifyWish& wanted, const Common& common) {
   };
   std::vector<Verdict> verdicts;
   for (const std::string& file : wanted.files) {
-    const auto v = host::certificates::verify_file(file, *verifier, open, wanted.site);
+    const auto v = host::certificates::verify_file(file, *verifier, open, rows);
     if (!v) return complain("nonio verify", v.error().message);
     verdicts.push_back(host::certificates::verdict_of(*v));
     std::ostream& out = place ? std::cout : early;
@@ -143,24 +149,29 @@ Verb verify_verb(Common& common) {
                                     "Site whose site.toml, [signing], names trusted roots and the "
                                     "expected signer, and\n"
                                     "whose register lists the numbers in force"}),
+           takes(Takes::file, {"--signer-roots", &wanted->signer_roots,
+                               "PEM file with the trusted root certificates of signers (no others "
+                               "are trusted)"}),
+           takes(Takes::file, {"--time-stamp-roots", &wanted->time_stamp_roots,
+                               "PEM file with the trusted root certificates of time servers"}),
            takes(Takes::file,
                  {"--trust", &wanted->trust,
-                  "PEM file with the trusted root certificates (no others are trusted)"}),
+                  "PEM file with one root certificate, trusted for signers and time servers"}),
            takes(Takes::file, {"--revoked", &wanted->revoked, "PEM file with revocation lists"}),
-           {"--signer", &wanted->signer,
-            "Expected signer: subject of the certificate, or its SHA-256"},
+           {"--signer", &wanted->signers,
+            "Expected signer: subject of the certificate, or its SHA-256; may be repeated"},
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "Prints the verdict, then one line per check. Without --trust and --signer (or --site) "
-          "a\n"
+          "Prints the verdict, then one line per check. Without roots and --signer (or --site) a\n"
           "signature proves nothing: the verdict is that you do not trust the signer. No network "
           "is needed.\n\n"
           "Exit status: 0 valid; 3 valid, but not every check was made; 4 signer not trusted by "
           "you; 5 not\n"
-          "in force; 1 altered or broken; 6 not a certificate; 7 no such file; 2 usage or "
-          "configuration. Of\n"
-          "several files the gravest: 1, 4, 5, 6, 7, 3, 0.\n\n"
+          "in force; 8 other words than installed; 1 altered or broken; 6 not a certificate; 7 no "
+          "such\n"
+          "file; 2 usage, configuration, or a register that cannot be read. Of several files the\n"
+          "gravest: 1, 4, 5, 8, 6, 7, 3, 0.\n\n"
           "Example: nonio verify --site site out/c1/certificate.pdf",
       .run = [wanted, &common] { return verify(*wanted, common); }};
 }

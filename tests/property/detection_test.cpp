@@ -93,7 +93,8 @@ INSTANTIATE_TEST_SUITE_P(
             {"drift.parallel", "reversal.lost-motion"},
             {"reversal.not-constant"},
             {0.5 * um, 0, 0.2 * um},
-            [](double, int d, std::uint32_t run) { return 4 * um * run - (d > 0 ? 5 * um : 0); }},
+            // U of the drift is below half of it: else no value is advised.
+            [](double, int d, std::uint32_t run) { return 4 * um * run - (d > 0 ? 9 * um : 0); }},
         Planted{"lost_motion_two_runs",
                 {"reversal.lost-motion"},
                 {"reversal.not-constant"},

@@ -44,6 +44,11 @@ Expected<std::optional<Known>> known_of(const RunOptions& options,
           return fail(sound.error());
         auto numbers = certificates::Register::entries(options.site, numbering, patience);
         if (!numbers) return fail(numbers.error());
+        if (!numbers->empty()) {
+          auto opened = certificates::Register::open(options.site, numbering, patience);
+          if (!opened) return fail(opened.error());
+          if (auto sound = opened->check_journal(); !sound) return fail(sound.error());
+        }
         signs.beat();
         auto drafts = certificates::Register::drafts(options.site, numbering, patience);
         if (!drafts) return fail(drafts.error());

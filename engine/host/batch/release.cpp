@@ -10,6 +10,7 @@
 #include "host/batch/twins.h"
 #include "host/certificates/certificate_list.h"
 #include "host/certificates/journal.h"
+#include "host/certificates/person_name.h"
 #include "host/certificates/register_place.h"
 #include "host/config/site_files.h"
 #include "host/evaluation/record.h"
@@ -56,9 +57,8 @@ bool is_one_line(const std::string& text) {
 
 /// What is wrong with names and reasons; empty if nothing.
 std::string mistake_in(const ReleaseRequest& request) {
-  constexpr std::size_t longest = 100;
-  if (!says_something(request.by) || request.by.size() > longest || !is_one_line(request.by))
-    return "--by wants the name of a person, one line of up to 100 characters";
+  if (const std::string mistake = certificates::mistake_in_name(request.by); !mistake.empty())
+    return "--by: " + mistake;
   for (const auto& [finding, reason] : request.reasons)
     if (!says_something(reason) || !is_one_line(reason))
       return "the reason for " + finding +
@@ -103,7 +103,8 @@ class Releaser {
     const certificates::WaitingDraft& draft = *out_.draft;
     auto reasons = reasons_for(draft, request_);
     if (!reasons) return refuse(reasons.error().message);
-    const certificates::Approval approval{request_.by, role_, {}, std::move(*reasons)};
+    const certificates::Approval approval{request_.by, role_, certificates::utc_now(),
+                                          std::move(*reasons)};
     for (const evaluation::KnownFinding& f : draft.findings) {
       const auto has = [&](const certificates::Approval& a) {
         return a.reasons.contains(certificates::finding_key(f));
@@ -169,16 +170,15 @@ class Releaser {
     if (!*there) return fail(none);
     auto opened = certificates::Register::open(options_.site, numbering_);
     if (!opened) return fail(opened.error());
+    if (auto sound = opened->check_journal(); !sound) return fail(sound.error());
     auto draft = opened->draft(id_);
     if (!draft) return fail(draft.error());
     auto last = opened->last_number(id_);
     if (!last) return fail(last.error());
     if (*last) last_number_ = (*last)->number;
-    if (!*draft)
-      return fail(*last ? "nothing of campaign " + id_ + " waits for a release; " +
-                              (*last)->number + " of " + (*last)->date + " is its last certificate"
-                        : none);
+    if (!*draft) return fail(*last ? none_but(*opened, **last) : none);
     out_.draft = std::move(*draft);
+    seen_ = *out_.draft;
     std::error_code error;
     const fs::path folder = fs::canonical(request_.campaign, error)
                                 .lexically_relative(fs::canonical(options_.site, error));
@@ -191,7 +191,7 @@ class Releaser {
         return fail(
             "two_persons = true in site.toml: the author has to approve it first "
             "(nonio release CAMPAIGN --by NAME --as author)");
-      if (plain_name(by_author->by) == plain_name(request_.by))
+      if (certificates::likeness_of(by_author->by) == certificates::likeness_of(request_.by))
         return fail("two_persons = true in site.toml: " + by_author->by +
                     " is the author; expected another person as authoriser");
       // A name is typed by whoever sits there: two persons are two accounts.
@@ -200,6 +200,14 @@ class Releaser {
                     by_author->account + "; the authoriser needs an account of their own");
     }
     return {};
+  }
+
+  std::string none_but(certificates::Register& opened,
+                       const certificates::RegisterEntry& last) const {
+    const auto first = opened.approval_of(last.number).value_or(std::nullopt);
+    return "nothing of campaign " + id_ + " waits for a release; " + last.number + " of " +
+           last.date + " is its last certificate" +
+           (first ? ", approved by " + first->by + " at " + first->at : "");
   }
 
   /// And holds the draft there against the one that was entered.
@@ -221,7 +229,7 @@ class Releaser {
   Released approve(const certificates::Approval& approval) {
     auto opened = certificates::Register::open(options_.site, numbering_);
     if (!opened) return refuse(opened.error().message);
-    if (auto done = opened->approve(id_, approval); !done) return refuse(done.error().message);
+    if (auto done = opened->approve(seen_, approval); !done) return fail_with(done.error().message);
     out_.state = Released::State::approved;
     return std::move(out_);
   }
@@ -232,7 +240,7 @@ class Releaser {
     out_.notes = (*place)->notes;
     if (!(*place)->signer) return refuse("site.toml says nothing of a key; expected [signing]");
     if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
-    const certificates::Releasing releasing{*out_.draft, approval, twins_};
+    const certificates::Releasing releasing{seen_, approval, twins_};
     ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
     // What the store does not know yet comes in with the next night.
     if (auto bases = morning::history_bases(options_.out, {id_}); bases)
@@ -256,6 +264,14 @@ class Releaser {
       return fail_with(campaigns.front().errors().empty()
                            ? "nothing was issued"
                            : campaigns.front().errors().front().message);
+    // It may be somebody else's approval with which it was issued.
+    const auto first = opened->approval_of((*last)->number);
+    if (!first) return fail_with(first.error().message);
+    if (!*first || (*first)->by != approval.by || (*first)->at != approval.at ||
+        (*first)->reasons != approval.reasons)
+      return fail_with(campaigns.front().errors().empty()
+                           ? (*last)->number + " was issued first by another person"
+                           : campaigns.front().errors().front().message);
     out_.entry = std::move(**last);
     out_.state = Released::State::issued;
     if (const auto files = opened->files(out_.entry.number))
@@ -278,7 +294,8 @@ class Releaser {
   NightState night_;
   std::optional<OutputLock> lock_;
   std::string id_, role_, last_number_;
-  reading::Twins twins_;  ///< what the night knew of other campaigns
+  certificates::WaitingDraft seen_;  ///< the draft as the register had it when it was read
+  reading::Twins twins_;             ///< what the night knew of other campaigns
   Released out_;
 };
 

@@ -144,6 +144,8 @@ void SiteParts::look(const std::string& path) {
   const std::string digest = storage::sha256(*now);
   if (is_known && known->second.sha256 == digest) {
     known->second.last_seen.clear();
+    const auto copy = storage::read_file(out_ / copies_folder / path);
+    if (!copy || *copy != *now) renewed_[path] = std::move(*now);
     return;
   }
   if (is_known) {

@@ -279,7 +279,7 @@ NONIO_ON_THE_WIRE(history::NamedMachine, a, b, c)
 NONIO_ON_THE_WIRE(morning::HistoryBasis, a, b, c, d, e, f, g, h)
 NONIO_ON_THE_WIRE(evaluation::KnownFinding, a, b, c, d, e)
 NONIO_ON_THE_WIRE(certificates::Approval, a, b, c, d, e)
-NONIO_ON_THE_WIRE(certificates::RegisterEntry, a, b, c, d, e, f, g, h, i, j, k, l)
+NONIO_ON_THE_WIRE(certificates::RegisterEntry, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 NONIO_ON_THE_WIRE(certificates::WaitingDraft, a, b, c, d, e, f, g, h, i)
 
 NONIO_ON_THE_WIRE(Option, a, b, c, d, e, f, g)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "host/certificates/person_name.h"
 #include "host/certificates/register_place.h"
 #include "host/config/site_files.h"
 #include "host/storage/files.h"
@@ -31,8 +32,8 @@ Expected<std::vector<RegisterEntry>> certificates_of(const fs::path& site,
 Expected<void> withdraw(const fs::path& site, const config::Numbering& numbering,
                         const std::string& number, const std::string& why, const std::string& by) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
-  if (std::any_of(by.begin(), by.end(), control))
-    return fail("the name has a control character; expected one line of text");
+  if (!by.empty())
+    if (const std::string mistake = mistake_in_name(by); !mistake.empty()) return fail(mistake);
   if (!says_something(why)) return fail("the reason says nothing; expected why it is withdrawn");
   if (std::any_of(why.begin(), why.end(), control))
     return fail("the reason has a control character; expected one line of text");
@@ -51,7 +52,7 @@ Expected<Audit> audit(const fs::path& site, const config::Numbering& numbering) 
   if (!there) return fail(there.error());
   if (!*there)
     return fail("there is no register " + place->name + ": nothing was issued or drafted yet");
-  auto opened = Register::open(site, numbering);
+  auto opened = Register::open_to_audit(site, numbering);
   if (!opened) return fail(opened.error());
   return opened->audit();
 }

@@ -16,6 +16,7 @@
 #include "host/evaluation/issue_json.h"
 #include "host/evaluation/record.h"
 #include "host/evaluation/results_json.h"
+#include "host/process/apart.h"
 #include "host/process/child.h"
 #include "host/process/guarded.h"
 #include "host/process/shared_status.h"
@@ -24,6 +25,7 @@
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
 #include "host/storage/json_values.h"
+#include "host/storage/nearest.h"
 #include "host/storage/scratch_folder.h"
 
 namespace nonio::host::certificates {
@@ -79,7 +81,7 @@ void put_shared(const storage::Json& analyses, Stated& stated) {
 }
 
 Stated stated_in(std::string_view results) {
-  const storage::Json json = storage::Json::parse(results, nullptr, false);
+  const storage::Json json = storage::parse_once(results);
   Stated stated;
   if (!json.is_object()) return stated;
   if (json.contains("nonio") && json["nonio"].is_string())
@@ -99,7 +101,7 @@ sign::Check answered(const char* id, const Expected<std::string>& answer) {
 }
 
 struct Content {
-  sign::Check values, attachments, templates, printed;
+  sign::Check values, attachments, templates, words, printed;
 };
 
 /// The content of a signed PDF in a process of its own: plugins read what is attached.
@@ -129,6 +131,7 @@ class Again {
     }
     Content content;
     content.templates = take_templates();
+    content.words = same_words();
     const std::string why = why_not_drawn(content.templates);
     const auto quiet = [](const std::string&) {};
     reading::ReadCampaign read = reading::read_campaign(folder_, context_, quiet);
@@ -172,17 +175,24 @@ class Again {
     if (!own) return {id, State::fails, own.error().message};
     if (stated_.certificate && stated_.certificate->templates_sha256 != own->sha256)
       return {id, State::fails, "the attached ones are not those that results.json names"};
+    strange_ = std::move(own->strange);
     missing_ = own->missing;
     if (!missing_.empty()) return not_checked(id, missing_ + " is not installed as it was then");
     context_.templates = std::move(own->templates);
     context_.templates_sha256 = own->sha256;
     context_.templates_json = carried->bytes;
-    if (own->strange.empty())
-      return {id, State::holds, "the attached ones are those that are installed"};
-    std::string names;
-    for (const std::string& name : own->strange) names += (names.empty() ? "" : ", ") + name;
-    return not_checked(
-        id, "the words and the layout are those attached, not those installed: " + names);
+    return {id, State::holds, "the attached ones are those that results.json names"};
+  }
+
+  /// Words say whether a value conforms: with others than the installed ones, a file of the same
+  /// signer and the same readings may state the opposite.
+  sign::Check same_words() const {
+    if (!strange_) return not_checked(words_check, "needs the templates of this version");
+    if (strange_->empty())
+      return {words_check, State::holds, "the words and the layout are those installed"};
+    return {words_check, State::fails,
+            "the words and the layout are those attached, not those installed: " +
+                storage::listed(*strange_)};
   }
 
   /// Why the file cannot be made again as it was; empty if it can.
@@ -228,7 +238,7 @@ class Again {
 
   /// With the digest that it has.
   bool is_listed(const pdf::Attachment& a) const {
-    const storage::Json json = storage::Json::parse(results_, nullptr, false);
+    const storage::Json json = storage::parse_once(results_);
     if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;
     return std::any_of(
         json["outputs"].begin(), json["outputs"].end(), [&](const storage::Json& file) {
@@ -298,11 +308,12 @@ class Again {
   reading::Context context_;
   const std::string& results_;
   Stated stated_;
-  std::string missing_;  ///< a font, so that nothing can be drawn
+  std::optional<std::vector<std::string>> strange_;  ///< attached templates; none: not looked at
+  std::string missing_;                              ///< a font, so that nothing can be drawn
 };
 
 constexpr std::array check_ids = {"content.values", "content.attachments", "content.templates",
-                                  "content.printed"};
+                                  words_check, "content.printed"};
 
 /// A line of a process that ends for the one that waits for it.
 std::string line_of(const sign::Check& check) {
@@ -336,6 +347,7 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
   if (scratch.path().empty()) return fail("no folder for temporary files");
   if (!words.valid()) return fail("no memory");
   if (auto unpacked = unpack(v, scratch.path()); !unpacked) return fail(unpacked.error());
+  process::flush_output();
   const pid_t child = ::fork();
   if (child == 0) {
     process::init_child();
@@ -343,9 +355,10 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
     const auto content = process::guarded(
         "the evaluation", [&] { return Again(v, pdf, scratch.path(), context).run(); });
     words.set(content ? line_of(content->values) + line_of(content->attachments) +
-                            line_of(content->templates) + line_of(content->printed)
+                            line_of(content->templates) + line_of(content->words) +
+                            line_of(content->printed)
                       : line_of({check_ids[0], State::fails, content.error().message}) +
-                            "?not looked at\n?not looked at\n?not drawn again\n");
+                            "?not looked at\n?not looked at\n?not looked at\n?not drawn again\n");
     ::_exit(0);
   }
   const process::ChildEnd end = child < 0
@@ -366,7 +379,7 @@ std::vector<sign::Check> check_content(const sign::Verified& v, std::string_view
   auto answer = recompute_apart(v, pdf, context);
   if (!answer)
     return {{check_ids[0], State::fails, answer.error().message},
-            not_checked(check_ids[3], "the readings are not evaluated")};
+            not_checked(check_ids.back(), "the readings are not evaluated")};
   std::vector<sign::Check> checks;
   for (const char* name : check_ids) checks.push_back(check_of(name, *answer));
   return checks;

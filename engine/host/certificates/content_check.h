@@ -11,11 +11,14 @@ namespace nonio::host::certificates {
 
 /// What is attached to a signed PDF evaluated again by the installed plugins: `content.values`,
 /// whether the readings give the attached results; `content.attachments`, whether all that is
-/// attached belongs there; `content.templates`, whether its words are those that are installed;
+/// attached belongs there; `content.templates`, whether its words are those that results.json names;
+/// `content.words`, whether these are the installed ones;
 /// `content.printed`, whether the readings give this very file, object by object, when it is put
 /// together again as the night did.
 std::vector<sign::Check> check_content(const sign::Verified& verified, std::string_view pdf,
                                        const reading::Context& context);
+
+inline constexpr const char* words_check = "content.words";
 
 /// Whether an attachment is a DCC.
 bool is_document(const pdf::Attachment& attachment);

@@ -276,6 +276,10 @@ Expected<evaluation::Certificate> Numbers::find_or_draw(const evaluation::Evalua
   const reading::Inputs data = data_of(evaluated, context_);
   auto found = opened->find(campaign, data);
   if (!found) return fail(found.error());
+  if (*found && releasing_ != nullptr) {
+    const auto first = opened->note_second((*found)->issue.number, campaign, releasing_->by);
+    return fail(first ? *first : first.error().message);
+  }
   if (*found) return std::move(**found);
   if (auto same = check_release(made_from(evaluated, context_)); !same) return fail(same.error());
   const auto before = opened->last_number(campaign);
@@ -380,8 +384,10 @@ Expected<void> Numbers::issue_new(evaluation::Evaluated& evaluated) const {
   evaluated.certificate->released = released_json(findings);
   auto opened = open();
   if (!opened) return fail(opened.error());
-  auto issued =
-      opened->issue(*evaluated.certificate, evaluated.campaign.id, data_of(evaluated, context_));
+  std::optional<Approved> approved;
+  if (releasing_ != nullptr) approved.emplace(releasing_->draft, releasing_->by);
+  auto issued = opened->issue(*evaluated.certificate, evaluated.campaign.id,
+                              data_of(evaluated, context_), approved ? &*approved : nullptr);
   if (!issued) return fail(issued.error());
   evaluated.certificate = std::move(*issued);
   take_issued(evaluated);

@@ -14,6 +14,9 @@ namespace nonio::host::certificates {
 
 namespace {
 
+constexpr const char* no_results =
+    "the attached results.json is none, or has a key twice in one object";
+
 /// Printed numbers have 12 digits; another processor may give another last one.
 bool same(double a, double b) {
   return std::fabs(a - b) <= 1e-9 + 1e-9 * std::max(std::fabs(a), std::fabs(b));
@@ -94,9 +97,9 @@ bool is_results(const storage::Json& json) {
 }  // namespace
 
 Expected<std::string> same_values(std::string_view attached_text, std::string_view again_text) {
-  const storage::Json attached = storage::Json::parse(attached_text, nullptr, false);
+  const storage::Json attached = storage::parse_once(attached_text);
   const storage::Json again = storage::Json::parse(again_text, nullptr, false);
-  if (!is_results(attached) || !is_results(again)) return fail("the attached results.json is none");
+  if (!is_results(attached) || !is_results(again)) return fail(no_results);
   Comparison comparison;
   for (const storage::Json& a : attached["analyses"]) {
     const storage::Json* same_one = find(again, name_of(a));
@@ -120,6 +123,32 @@ Expected<std::string> same_values(std::string_view attached_text, std::string_vi
 
 namespace {
 
+/// The text of a JSON document without what may differ on another processor: numbers, and digests
+/// of files that have such numbers. Programs that read it by other rules get the same as ours.
+std::string shape_of(std::string_view json) {
+  constexpr std::string_view number = "+-.0123456789eE";
+  constexpr std::size_t digest = 64;
+  std::string shape;
+  for (std::size_t i = 0; i < json.size();) {
+    if (json[i] == '"') {
+      std::size_t end = i + 1;
+      while (end < json.size() && json[end] != '"') end += json[end] == '\\' ? 2 : 1;
+      const std::string_view text = json.substr(i + 1, end - i - 1);
+      shape += text.size() == digest && text.find_first_not_of("0123456789abcdef") == text.npos
+                   ? "\"#"
+                   : "\"" + std::string(text);
+      shape += '"';
+      i = end + 1;
+    } else if (json[i] == '-' || (json[i] >= '0' && json[i] <= '9')) {
+      shape += '#';
+      i = std::min(json.find_first_not_of(number, i), json.size());
+    } else {
+      shape += json[i++];
+    }
+  }
+  return shape;
+}
+
 /// Files that are not attached may have another last digit on another processor, and so another
 /// digest.
 void forget_digests(storage::Json& results, const std::vector<std::string>& attached) {
@@ -134,14 +163,18 @@ void forget_digests(storage::Json& results, const std::vector<std::string>& atta
 
 Expected<void> same_results(std::string_view attached_text, std::string_view again_text,
                             const std::vector<std::string>& files) {
-  storage::Json attached = storage::Json::parse(attached_text, nullptr, false);
+  storage::Json attached = storage::parse_once(attached_text);
   storage::Json again = storage::Json::parse(again_text, nullptr, false);
-  if (!is_results(attached) || !is_results(again)) return fail("the attached results.json is none");
+  if (!is_results(attached) || !is_results(again)) return fail(no_results);
   forget_digests(attached, files);
   forget_digests(again, files);
   Comparison comparison;
   comparison.compare(attached, again, evaluation::results_name);
   if (!comparison.difference.empty()) return fail(comparison.difference);
+  if (shape_of(attached_text) != shape_of(again_text))
+    return fail(std::string(evaluation::results_name) +
+                " has the same values, but not the text that a run writes: its order or its white "
+                "space differs");
   return {};
 }
 
@@ -200,8 +233,8 @@ sign::Check check_dcc(const pdf::Attachment& dcc, const pdf::Attachment* results
     check.says += "; by itself, without results to compare";
     return check;
   }
-  const storage::Json json = storage::Json::parse(results->bytes, nullptr, false);
-  std::string wrong = is_results(json) ? "" : "the attached results.json is none";
+  const storage::Json json = storage::parse_once(results->bytes);
+  std::string wrong = is_results(json) ? "" : no_results;
   for (const sign::DccValue& v : *values)
     if (wrong.empty()) wrong = contradiction(v, json);
   if (wrong.empty()) {

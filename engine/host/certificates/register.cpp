@@ -14,6 +14,7 @@
 #include "host/evaluation/issue_json.h"
 #include "host/storage/digest.h"
 #include "host/storage/files.h"
+#include "nonio/sign/verify.h"
 
 namespace nonio::host::certificates {
 namespace fs = std::filesystem;
@@ -51,8 +52,11 @@ Expected<fs::path> register_path(const fs::path& site, const config::Numbering& 
   return path;
 }
 
-Register::Register(std::unique_ptr<storage::Database> database, std::string pattern)
-    : database_(std::move(database)), pattern_(std::move(pattern)) {}
+Register::Register(std::unique_ptr<storage::Database> database, const RegisterPlace& place,
+                   std::string pattern)
+    : database_(std::move(database)),
+      place_(std::make_unique<RegisterPlace>(place)),
+      pattern_(std::move(pattern)) {}
 Register::Register(Register&&) noexcept = default;
 Register& Register::operator=(Register&&) noexcept = default;
 Register::~Register() = default;
@@ -63,7 +67,19 @@ Expected<Register> Register::open(const fs::path& site, const config::Numbering&
   if (!place) return fail(place.error());
   auto database = open_register(*place, storage::Database::Use::create, patience);
   if (!database) return fail(database.error());
-  return Register(std::make_unique<storage::Database>(std::move(*database)), numbering.pattern);
+  return Register(std::make_unique<storage::Database>(std::move(*database)), *place,
+                  numbering.pattern);
+}
+
+Expected<Register> Register::open_to_audit(const fs::path& site,
+                                           const config::Numbering& numbering) {
+  const auto place = register_place(site, numbering);
+  if (!place) return fail(place.error());
+  auto database = open_register(*place, storage::Database::Use::create,
+                                storage::Database::usual_patience, true);
+  if (!database) return fail(database.error());
+  return Register(std::make_unique<storage::Database>(std::move(*database)), *place,
+                  numbering.pattern);
 }
 
 Expected<Register> Register::open_to_read(const fs::path& site,
@@ -74,19 +90,36 @@ Expected<Register> Register::open_to_read(const fs::path& site,
   auto database =
       open_register(*place, storage::Database::Use::write, storage::Database::usual_patience);
   if (!database) return fail(database.error());
-  return Register(std::make_unique<storage::Database>(std::move(*database)), numbering.pattern);
+  return Register(std::make_unique<storage::Database>(std::move(*database)), *place,
+                  numbering.pattern);
+}
+
+Expected<void> Register::end(storage::Database::Transaction& transaction) {
+  if (auto ended = transaction.end(); !ended) return ended;
+  return note_state(*database_, *place_);
 }
 
 std::string Register::id() {
   return is_of_this_version(*database_) ? database_->first("SELECT id FROM site") : "";
 }
 
-std::string Register::number_of(const std::string& file_sha256) {
-  if (!is_of_this_version(*database_)) return {};
-  return database_->first(
-      "SELECT number FROM journal WHERE what = 'issued' AND says LIKE '%\"sha256\":\"' || "
-      "CAST(? AS TEXT) || '\"%'",
-      {file_sha256});
+Expected<std::map<std::string, std::string>> Register::issued_digests() {
+  std::map<std::string, std::string> numbers;
+  if (is_of_this_version(*database_)) {
+    for (const storage::Database::Row& row :
+         database_->rows("SELECT number, says FROM journal WHERE what = 'issued'")) {
+      const storage::Json says = storage::Json::parse(row[1], nullptr, false);
+      if (!says.is_object() || !says.contains("files")) continue;
+      for (const storage::Json& file : says["files"]) numbers[file.value("sha256", "")] = row[0];
+    }
+  } else {  // read as an older one has left it
+    for (const storage::Database::Row& row :
+         database_->rows("SELECT c.number, f.bytes FROM files f JOIN certificates c ON c.id = "
+                         "f.certificate"))
+      numbers[storage::sha256(row[1])] = row[0];
+  }
+  if (auto well = database_->take_error(); !well) return fail(well.error());
+  return numbers;
 }
 
 namespace {
@@ -156,6 +189,10 @@ Expected<void> Register::note_persons(std::vector<RegisterEntry>& entries) {
     const storage::Json says = storage::Json::parse(noted.says, nullptr, false);
     RegisterEntry& e = *found->second;
     (issued ? e.released_account : e.withdrawn_account) = text(says, "account");
+    if (issued && says.is_object() && says.contains("signer")) {
+      e.signer = text(says["signer"], "subject");
+      e.signer_sha256 = text(says["signer"], "sha256");
+    }
     if (withdrawn) e.withdrawn_by = text(says, "by");
     if (const storage::Json& released =
             says.is_object() && says.contains("released") ? says["released"] : says;
@@ -365,13 +402,31 @@ Expected<evaluation::Certificate> Register::draw(const std::string& campaign,
     drawn.issue.changes = differences(inputs_of(integer(old.front()[0])), data);
     note_replaced(integer(old.front()[0]), drawn.issue);
   }
-  if (auto ended = transaction.end(); !ended) return fail(ended.error());
+  if (auto ended = end(transaction); !ended) return fail(ended.error());
   return drawn;
 }
 
+namespace {
+
+/// Whose certificate signed them: keys are replaced, and what they signed stays valid.
+storage::Json signer_json(const std::vector<evaluation::IssuedFile>& files) {
+  for (const evaluation::IssuedFile& f : files) {
+    if (!f.bytes.starts_with("%PDF-")) continue;
+    if (const auto signer = sign::unverified_signer(f.bytes))
+      return {{"subject", signer->subject},
+              {"sha256", signer->sha256},
+              {"valid_from", sign::text_of(signer->not_before)},
+              {"valid_until", sign::text_of(signer->not_after)}};
+  }
+  return storage::Json::object();
+}
+
+}  // namespace
+
 Expected<evaluation::Certificate> Register::issue(const evaluation::Certificate& certificate,
                                                   const std::string& campaign,
-                                                  const reading::Inputs& data) {
+                                                  const reading::Inputs& data,
+                                                  const Approved* approved) {
   storage::Database& db = *database_;
   const Issue& issue = certificate.issue;
   storage::Database::Transaction transaction(db);
@@ -381,6 +436,14 @@ Expected<evaluation::Certificate> Register::issue(const evaluation::Certificate&
     return fail(db.failed() ? transaction.end().error().message
                             : "the register does not know the number " + issue.number);
   const std::int64_t id = integer(found.front()[0]);
+  if (approved != nullptr && found.front()[1] == "issued") {
+    add_second(issue.number, campaign, approved->by);
+    if (auto ended = end(transaction); !ended) return fail(ended.error());
+    const auto first = first_of(issue.number);
+    return fail(first ? *first : first.error().message);
+  }
+  if (approved != nullptr)
+    if (auto same = check_seen(approved->draft, approved->by); !same) return fail(same.error());
   if (found.front()[1] == "issued" && inputs_of(id) == data) {
     auto first = load(id);
     if (!first) return first;
@@ -405,9 +468,11 @@ Expected<evaluation::Certificate> Register::issue(const evaluation::Certificate&
   storage::Json says = issued_json(db, id);
   storage::Json released = storage::Json::parse(certificate.released, nullptr, false);
   if (released.is_object()) says["released"] = std::move(released);
+  if (storage::Json signer = signer_json(certificate.files); !signer.empty())
+    says["signer"] = std::move(signer);
   Journal(db).add("issued", issue.number, says);
   db.rows("DELETE FROM drafts WHERE campaign = ?", {campaign});
-  if (auto ended = transaction.end(); !ended) return fail(ended.error());
+  if (auto ended = end(transaction); !ended) return fail(ended.error());
   evaluation::Certificate done = certificate;
   done.issued = true;
   return done;
@@ -440,7 +505,7 @@ Expected<void> Register::withdraw(const std::string& number, const std::string& 
   storage::Json says = {{"reason", why}};
   if (!by.empty()) says["by"] = by;
   Journal(db).add("withdrawn", number, says);
-  return transaction.end();
+  return end(transaction);
 }
 
 Expected<std::vector<evaluation::IssuedFile>> Register::files(const std::string& number) {

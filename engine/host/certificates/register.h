@@ -11,12 +11,11 @@
 
 #include "host/evaluation/evaluate.h"
 #include "host/evaluation/record.h"
-
-namespace nonio::host::storage {
-class Database;
-}
+#include "host/storage/database.h"
 
 namespace nonio::host::certificates {
+
+struct RegisterPlace;
 
 /// One number of a register.
 struct RegisterEntry {
@@ -30,6 +29,8 @@ struct RegisterEntry {
   std::string released_by{}, withdrawn_by{};
   /// Under which accounts of the operating system, "user@host"; empty before version 2026-12.
   std::string released_account{}, withdrawn_account{};
+  /// Of the certificate with which it was signed; empty before version 2026-12.
+  std::string signer{}, signer_sha256{};
   bool in_force() const { return state == "issued"; }
 };
 
@@ -50,6 +51,12 @@ struct WaitingDraft {
   reading::Inputs made_from;     ///< its data, and plugins, templates, version
   std::vector<evaluation::KnownFinding> findings;
   std::optional<Approval> author{};  ///< who has approved it, where two persons are wanted
+};
+
+/// What a person approves, as he has read it.
+struct Approved {
+  const WaitingDraft& draft;
+  const Approval& by;
 };
 
 /// "X: reversal.not-constant": how a finding is called where a reason for it is given.
@@ -73,6 +80,9 @@ class Register {
   /// Made if it is not there. Whoever finds it locked waits up to `patience` seconds.
   static Expected<Register> open(const std::filesystem::path& site,
                                  const config::Numbering& numbering, double patience = 60.0);
+  /// The same, whatever was done to it.
+  static Expected<Register> open_to_audit(const std::filesystem::path& site,
+                                          const config::Numbering& numbering);
   /// Nothing is written, not even where an older version has made it.
   static Expected<Register> open_to_read(const std::filesystem::path& site,
                                          const config::Numbering& numbering);
@@ -92,8 +102,8 @@ class Register {
   Expected<void> note_persons(std::vector<RegisterEntry>& entries);
   /// No two registers have the same; a copy has that of the one it was copied from.
   std::string id();
-  /// Under which number a file with this SHA-256 was issued; empty: none.
-  std::string number_of(const std::string& file_sha256);
+  /// The number of every file that was issued, by its SHA-256.
+  Expected<std::map<std::string, std::string>> issued_digests();
   /// The number that a campaign was issued last, in force or not.
   Expected<std::optional<RegisterEntry>> last_number(const std::string& campaign);
   /// What a campaign was issued last, if that is in force and was made from these data.
@@ -104,9 +114,11 @@ class Register {
   Expected<evaluation::Certificate> draw(const std::string& campaign, const reading::Inputs& data,
                                          const std::string& today);
   /// Issues what was drawn and signed. Gives what holds from now on: if somebody else was faster
-  /// with the same data, what he has issued. The campaign's draft is gone with it.
+  /// with the same data, what he has issued; where both are persons' approvals, an error that names
+  /// the first one. The campaign's draft is gone with it.
   Expected<evaluation::Certificate> issue(const evaluation::Certificate& certificate,
-                                          const std::string& campaign, const reading::Inputs& data);
+                                          const std::string& campaign, const reading::Inputs& data,
+                                          const Approved* approved = nullptr);
   /// Why the number that was drawn for a campaign is not issued; nothing if there is none.
   Expected<void> note_failure(const std::string& campaign, const std::string& why);
   /// From now on it is not in force: the next night makes a draft for the campaign anew. `by` may
@@ -121,13 +133,30 @@ class Register {
   Expected<void> enter_draft(const WaitingDraft& draft);
   Expected<void> drop_draft(const std::string& campaign);
   Expected<std::optional<WaitingDraft>> draft(const std::string& campaign);
-  /// The author's word.
-  Expected<void> approve(const std::string& campaign, const Approval& approval);
+  /// The author's word on the draft that he has seen; an error if the draft, or what an author says
+  /// of it, has changed since.
+  Expected<void> approve(const WaitingDraft& seen, const Approval& approval);
+  /// For whoever approves what another person has approved already: enters the second approval into
+  /// the journal, so that its reasons are kept, and says who was first.
+  Expected<std::string> note_second(const std::string& number, const std::string& campaign,
+                                    const Approval& second);
+  /// Whose approval a number was issued with; none by the rules.
+  Expected<std::optional<Approval>> approval_of(const std::string& number);
 
   Expected<Audit> audit();
+  /// The part of it that costs little: an error if the journal is not a chain, or does not fit the
+  /// numbers. Nothing is issued from such a register.
+  Expected<void> check_journal();
 
  private:
-  Register(std::unique_ptr<storage::Database> database, std::string pattern);
+  Register(std::unique_ptr<storage::Database> database, const RegisterPlace& place,
+           std::string pattern);
+  /// Ends it, and notes beside the register how far its journal goes.
+  Expected<void> end(storage::Database::Transaction& transaction);
+  /// Compare and set: the draft that waits is the one that was read.
+  Expected<void> check_seen(const WaitingDraft& seen, const Approval& by);
+  void add_second(const std::string& number, const std::string& campaign, const Approval& by);
+  Expected<std::string> first_of(const std::string& number);
   Expected<std::string> next_number(const std::string& year);
   Expected<std::optional<evaluation::Certificate>> last(const std::string& campaign,
                                                         const reading::Inputs& data);
@@ -138,6 +167,7 @@ class Register {
   Expected<void> note_replaced(std::int64_t id, Issue& issue);
 
   std::unique_ptr<storage::Database> database_;
+  std::unique_ptr<RegisterPlace> place_;
   std::string pattern_;
 };
 

@@ -10,6 +10,7 @@
 #include "host/evaluation/issue_json.h"
 #include "host/evaluation/record.h"
 #include "host/storage/digest.h"
+#include "nonio/sign/verify.h"
 
 namespace nonio::host::certificates {
 namespace fs = std::filesystem;
@@ -39,15 +40,10 @@ StatedNumber stated_in_dcc(std::string_view xml) {
 StatedNumber stated_in_pdf(const sign::Verified& v) {
   const pdf::Attachment* results = find_attachment(v, evaluation::results_name);
   if (results == nullptr) return {};
-  const storage::Json json = storage::Json::parse(results->bytes, nullptr, false);
+  const storage::Json json = storage::parse_once(results->bytes);
   if (!json.is_object() || !json.contains("certificate")) return {};
   const Issue issue = evaluation::certificate_of(json["certificate"]).issue;
   return {issue.number, issue.register_id, true};
-}
-
-bool is_issued_file(std::string_view bytes, const std::vector<evaluation::IssuedFile>& files) {
-  return std::any_of(files.begin(), files.end(),
-                     [&](const evaluation::IssuedFile& f) { return bytes == f.bytes; });
 }
 
 std::string words_of(const RegisterEntry& e) {
@@ -61,8 +57,49 @@ std::string words_of(const RegisterEntry& e) {
 
 }  // namespace
 
-std::optional<sign::Check> check_register(const sign::Verified& verified, std::string_view bytes,
-                                          const fs::path& site) {
+std::string no_verdict(const RegisterRows& rows, const std::string& what) {
+  return "no verdict on " + what + ", because the register cannot be read: " + rows.no_answer;
+}
+
+RegisterRows register_rows(const fs::path& site) {
+  RegisterRows rows;
+  if (site.empty()) return rows;
+  rows.asked = true;
+  const auto read = [&]() -> Expected<void> {
+    const auto numbering = numbering_of(site);
+    if (!numbering) return fail(numbering.error());
+    const auto place = register_place(site, *numbering);
+    if (!place) return fail(place.error());
+    const auto there = has_register(*place, storage::Database::usual_patience);
+    if (!there) return fail(there.error());
+    rows.exists = *there;
+    if (!rows.exists) return {};
+    auto opened = Register::open_to_read(site, *numbering);
+    if (!opened) return fail(opened.error());
+    auto entries = opened->all();
+    if (!entries) return fail(entries.error());
+    auto issued = opened->issued_digests();
+    if (!issued) return fail(issued.error());
+    rows.entries = std::move(*entries);
+    rows.issued = std::move(*issued);
+    rows.id = opened->id();
+    return {};
+  };
+  if (const auto done = read(); !done) rows.no_answer = done.error().message;
+  return rows;
+}
+
+std::string issued_by(const RegisterRows& rows, std::string_view bytes) {
+  if (rows.issued.empty()) return {};
+  const auto found = rows.issued.find(storage::sha256(sign::issued_part(bytes)));
+  return found == rows.issued.end()
+             ? ""
+             : "the register " + rows.id + " issued this file as " + found->second;
+}
+
+Expected<std::optional<sign::Check>> check_register(const sign::Verified& verified,
+                                                    std::string_view bytes,
+                                                    const RegisterRows& rows) {
   StatedNumber stated = bytes.starts_with("%PDF-") ? stated_in_pdf(verified) : stated_in_dcc(bytes);
   if (stated.number.empty()) return std::nullopt;
   sign::Check check{"register.state", State::fails, {}};
@@ -71,44 +108,33 @@ std::optional<sign::Check> check_register(const sign::Verified& verified, std::s
     check.says = std::move(words);
     return check;
   };
-  if (site.empty()) {
+  if (!rows.asked) {
     check.essential = false;
     return says(State::not_checked,
                 "whether " + stated.number +
                     " was withdrawn or replaced: only the register of its site knows (--site)");
   }
-  const auto numbering = numbering_of(site);
-  if (!numbering) return says(State::fails, numbering.error().message);
-  const auto place = register_place(site, *numbering);
-  if (!place) return says(State::fails, place.error().message);
-  const auto there = has_register(*place, storage::Database::usual_patience);
-  if (!there) return says(State::fails, there.error().message);
-  if (!*there) {
+  if (!rows.no_answer.empty()) return fail(no_verdict(rows, stated.number));
+  if (!rows.exists) {
     check.essential = stated.by_register;
     return says(State::not_checked, "the site has no register that knows " + stated.number);
   }
-  auto opened = Register::open_to_read(site, *numbering);
-  if (!opened) return says(State::fails, opened.error().message);
-  const auto all = opened->all();
-  if (!all) return says(State::fails, all.error().message);
-  if (const std::string own = opened->number_of(storage::sha256(bytes)); !own.empty())
-    stated.number = own;
-  const std::string id = opened->id();
-  if (!stated.register_id.empty() && !id.empty() && stated.register_id != id)
+  const auto issued = rows.issued.find(storage::sha256(bytes));
+  if (issued != rows.issued.end()) stated.number = issued->second;
+  if (!stated.register_id.empty() && !rows.id.empty() && stated.register_id != rows.id)
     return says(State::fails, stated.number + " was issued by the register " + stated.register_id +
-                                  "; that of this site is " + id);
-  const auto entry = std::find_if(
-      all->begin(), all->end(), [&](const RegisterEntry& e) { return e.number == stated.number; });
-  if (entry == all->end()) {
+                                  "; that of this site is " + rows.id);
+  const auto entry =
+      std::find_if(rows.entries.begin(), rows.entries.end(),
+                   [&](const RegisterEntry& e) { return e.number == stated.number; });
+  if (entry == rows.entries.end()) {
     if (stated.by_register)
       return says(State::fails, "the register of this site never issued " + stated.number +
                                     ": was the site copied, or the register replaced?");
     check.essential = false;
     return says(State::not_checked, stated.number + " is no number of this site's register");
   }
-  const auto files = opened->files(stated.number);
-  if (!files) return says(State::fails, files.error().message);
-  if (!is_issued_file(bytes, *files))
+  if (issued == rows.issued.end())
     return says(State::fails, "the register of this site has issued another certificate as " +
                                   stated.number + ": was the site copied?");
   return says(entry->in_force() ? State::holds : State::fails, words_of(*entry));

@@ -124,21 +124,82 @@ Expected<void> Register::drop_draft(const std::string& campaign) {
   return transaction.end();
 }
 
-Expected<void> Register::approve(const std::string& campaign, const Approval& approval) {
-  storage::Database::Transaction transaction(*database_);
-  auto waiting = draft(campaign);
+Expected<void> Register::check_seen(const WaitingDraft& seen, const Approval& by) {
+  const auto waiting = draft(seen.campaign);
   if (!waiting) return fail(waiting.error());
-  if (!*waiting) return fail("there is no draft of " + campaign);
+  if (!*waiting)
+    return fail("the draft of " + seen.campaign +
+                " no longer waits: it was issued, or made anew, since it was read");
+  if (!same_work(**waiting, seen))
+    return fail("the draft of " + seen.campaign +
+                " has changed since it was read: read the new one, and approve that");
+  const auto& now = (*waiting)->author;
+  if (now.has_value() == seen.author.has_value() &&
+      (!now || (now->by == seen.author->by && now->at == seen.author->at)))
+    return {};
+  if (!now) return fail("the author's approval of " + seen.campaign + " no longer exists");
+  add_second("", seen.campaign, by);
+  return fail(now->by + " approved the draft of " + seen.campaign + " first, at " + now->at +
+              "; this approval has no effect. The register keeps its reasons");
+}
+
+void Register::add_second(const std::string& number, const std::string& campaign,
+                          const Approval& by) {
+  storage::Json says = draft_json(by);
+  if (by.at.empty()) says["at"] = utc_now();
+  says["campaign"] = campaign;
+  Journal(*database_).add("second", number, says);
+}
+
+Expected<void> Register::approve(const WaitingDraft& seen, const Approval& approval) {
+  storage::Database::Transaction transaction(*database_);
+  if (auto same = check_seen(seen, approval); !same) {
+    // What is kept of the second approval stays.
+    if (auto ended = end(transaction); !ended) return ended;
+    return same;
+  }
+  auto waiting = draft(seen.campaign);
+  if (!waiting) return fail(waiting.error());
   WaitingDraft& now = **waiting;
   now.author = approval;
   now.author->at = utc_now();
   now.author->account = own_account();
   put_draft(*database_, now);
   storage::Json says = draft_json(*now.author);
-  says["campaign"] = campaign;
+  says["campaign"] = now.campaign;
   says["draft_sha256"] = now.sha256;
   Journal(*database_).add("approved", "", says);
-  return transaction.end();
+  return end(transaction);
+}
+
+Expected<std::optional<Approval>> Register::approval_of(const std::string& number) {
+  const auto issued = Journal(*database_).last_of("issued", number);
+  if (auto well = database_->take_error(); !well) return fail(well.error());
+  const storage::Json says =
+      issued ? storage::Json::parse(issued->says, nullptr, false) : storage::Json();
+  if (!says.is_object() || !says.contains("released") || !says["released"].contains("released"))
+    return std::nullopt;
+  const storage::Json& one = says["released"]["released"];
+  return Approval{one.value("by", ""), one.value("role", ""), one.value("at", ""),
+                  one.value("reasons", std::map<std::string, std::string>{}),
+                  says.value("account", "")};
+}
+
+Expected<std::string> Register::first_of(const std::string& number) {
+  const auto first = approval_of(number);
+  if (!first) return fail(first.error());
+  return number + " was issued first" +
+         (*first ? ", approved by " + (*first)->by + " at " + (*first)->at
+                 : std::string(" by the rules of the laboratory")) +
+         "; this approval has no effect. The register keeps its reasons";
+}
+
+Expected<std::string> Register::note_second(const std::string& number, const std::string& campaign,
+                                            const Approval& second) {
+  storage::Database::Transaction transaction(*database_);
+  add_second(number, campaign, second);
+  if (auto ended = end(transaction); !ended) return fail(ended.error());
+  return first_of(number);
 }
 
 }  // namespace nonio::host::certificates

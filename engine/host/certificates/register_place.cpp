@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/certificates/register_place.h"
 
+#include "host/certificates/journal.h"
 #include "host/certificates/register.h"
 #include "host/certificates/register_tables.h"
 #include "host/storage/files.h"
@@ -38,23 +39,41 @@ Expected<void> check_durable(Database& database) {
   return {};
 }
 
-/// Empty: the site has none yet.
-Expected<std::string> identity_in(const RegisterPlace& place) {
-  const auto there = storage::is_there(place.file);
+struct Identity {
+  std::string id;          ///< empty: the site has none yet
+  std::int64_t place = 0;  ///< of the last entry of the journal that the site has seen; 0: none
+  std::string sha256{};    ///< of that entry
+};
+
+constexpr std::string_view entry_key = "entry ";
+
+/// "UUID", and on a second line "entry 17 SHA-256".
+Expected<Identity> identity_in(const RegisterPlace& place) {
+  const auto there = storage::is_there(place.identity);
   if (!there) return fail(there.error());
-  if (!*there) return std::string();
-  auto text = storage::read_small_file(place.file);
+  if (!*there) return Identity{};
+  const auto text = storage::read_small_file(place.identity);
   if (!text) return fail(text.error());
-  while (text->ends_with('\n')) text->pop_back();
-  if (text->empty())
-    return fail(place.file.string() + " is empty; expected the identity of the site's register");
-  return text;
+  Identity identity{text->substr(0, text->find('\n'))};
+  if (identity.id.empty())
+    return fail(place.identity.string() +
+                " is empty; expected the identity of the site's register");
+  const std::size_t second = text->find('\n');
+  const std::string_view rest =
+      second == std::string::npos ? std::string_view() : std::string_view(*text).substr(second + 1);
+  if (!rest.starts_with(entry_key)) return identity;
+  const std::size_t blank = rest.find(' ', entry_key.size());
+  identity.place = integer(std::string(rest.substr(entry_key.size())));
+  if (blank != rest.npos) identity.sha256 = rest.substr(blank + 1, rest.find('\n') - blank - 1);
+  return identity;
 }
 
 Error is_gone(const RegisterPlace& place, const std::string& identity) {
-  return Error{"the register " + identity + " of this site (" + place.file.string() +
+  return Error{"the register " + identity + " of this site (" + place.identity.string() +
                ") is not in " + place.name +
-               ": restore it from the backup; a new one would give numbers a second time"};
+               ": restore it from the backup; a new one would give numbers a second time. If it is "
+               "lost for good, use another [certificate] numbering, and keep that file outside the "
+               "site"};
 }
 
 /// A register is not moved from a file to a server or back: a new one would begin with 1.
@@ -68,37 +87,47 @@ Expected<void> check_is_first(const RegisterPlace& place) {
               "numbering, and keep that file outside the site");
 }
 
-/// One process at a time, wherever it is.
-Expected<void> note_identity(Database& database, const RegisterPlace& place,
-                             const std::string& identity) {
-  Database::Transaction transaction(database);
-  if (database.failed()) return database.take_error();
-  if (const auto known = identity_in(place); !known || known->empty()) {
-    if (!known) return fail(known.error());
-    const auto done =
-        storage::publish(place.file.parent_path(), {{identity_name, identity + "\n"}});
-    if (!done) return done;
-  }
-  return transaction.end();
+/// In a transaction: one process at a time, wherever it is.
+Expected<void> write_identity(const RegisterPlace& place, const Identity& identity) {
+  std::string text = identity.id + "\n";
+  if (identity.place > 0)
+    text += std::string(entry_key) + std::to_string(identity.place) + " " + identity.sha256 + "\n";
+  return storage::publish(place.identity.parent_path(),
+                          {{place.identity.filename().string(), std::move(text)}});
+}
+
+/// A journal only grows.
+Expected<void> check_state(Database& database, const RegisterPlace& place, const Identity& known) {
+  if (known.place == 0) return {};
+  const std::string sha256 =
+      database.first("SELECT sha256 FROM journal WHERE place = ?", {known.place});
+  if (auto well = database.take_error(); !well) return well;
+  if (sha256 == known.sha256) return {};
+  return fail(place.name + (sha256.empty() ? " ends before" : " has another") + " entry " +
+              std::to_string(known.place) + " of its journal than this site has seen (" +
+              place.identity.string() +
+              "): an older state was restored, or a standby without the last entries took over. "
+              "Numbers would be given a second time; restore the newest state of the register");
 }
 
 /// Two sites, or a site and its copy for trials, never draw from one register unseen.
 Expected<void> check_identity(Database& database, const RegisterPlace& place, bool may_write) {
-  const std::string identity = database.first("SELECT id FROM site");
+  const std::string id = database.first("SELECT id FROM site");
   const bool is_new = database.first("SELECT count(*) FROM certificates") == "0";
   if (auto well = database.take_error(); !well) return well;
   const auto known = identity_in(place);
   if (!known) return fail(known.error());
-  if (*known == identity) return {};
-  if (!known->empty()) return fail(is_gone(place, *known));
-  if (is_new) return may_write ? note_identity(database, place, identity) : Expected<void>();
-  return fail(place.name + " holds the register " + identity +
+  if (known->id == id) return check_state(database, place, *known);
+  if (!known->id.empty()) return fail(is_gone(place, known->id));
+  if (is_new || !place.server) return may_write ? note_state(database, place) : Expected<void>();
+  return fail(place.name + " holds the register " + id +
               " of another site: give each site a schema of its own ([database] register in "
               "site.toml). If it is this site's, write its identity into " +
-              place.file.string());
+              place.identity.string());
 }
 
-Expected<Database> open_on_server(const RegisterPlace& place, bool create, double patience) {
+Expected<Database> open_on_server(const RegisterPlace& place, bool create, double patience,
+                                  bool as_it_is) {
   auto database = Database::open(*place.server, patience);
   if (!database) return database;
   if (auto durable = check_durable(*database); !durable)
@@ -106,52 +135,89 @@ Expected<Database> open_on_server(const RegisterPlace& place, bool create, doubl
   const bool there = has_tables(*database);
   if (auto well = database->take_error(); !well) return fail(well.error());
   if (!there) {
-    if (const auto known = identity_in(place); !known || !known->empty())
-      return fail(known ? is_gone(place, *known) : known.error());
+    if (const auto known = identity_in(place); !known || !known->id.empty())
+      return fail(known ? is_gone(place, known->id) : known.error());
     if (const auto first = check_is_first(place); create && !first) return fail(first.error());
   }
   if (create)
     if (auto made = make_server_tables(*database, place.server->schema); !made)
       return fail(place.name + ": " + made.error().message);
+  if (as_it_is) return database;
   if (auto ours = check_identity(*database, place, create); !ours) return fail(ours.error());
   return database;
 }
 
-Expected<Database> open_file(const RegisterPlace& place, Database::Use use, double patience) {
-  std::error_code error;
-  if (use == Database::Use::create) {
+Expected<Database> open_file(const RegisterPlace& place, Database::Use use, double patience,
+                             bool as_it_is) {
+  const bool create = use == Database::Use::create;
+  const auto known = identity_in(place);
+  if (!known) return fail(known.error());
+  if (create) {
     const auto there = storage::is_there(place.file);
     if (!there) return fail(there.error());
+    if (!*there && !known->id.empty()) return fail(is_gone(place, known->id));
     if (const auto first = check_is_first(place); !*there && !first) return fail(first.error());
+    std::error_code error;
     fs::create_directories(place.file.parent_path(), error);
   }
   auto database = Database::open(place.file, use, patience);
-  if (!database || use != Database::Use::create) return database;
-  if (auto made = make_tables(*database); !made)
-    return fail(place.name + ": " + made.error().message);
+  if (!database) return database;
+  if (!known->id.empty() && database->first("SELECT count(*) FROM sqlite_schema") == "0")
+    return fail(is_gone(place, known->id));
+  if (auto well = database->take_error(); !well) return fail(well.error());
+  if (create)
+    if (auto made = make_tables(*database); !made)
+      return fail(place.name + ": " + made.error().message);
+  if (is_of_this_version(*database) && !as_it_is)
+    if (auto ours = check_identity(*database, place, create); !ours) return fail(ours.error());
+  if (auto well = database->take_error(); !well) return fail(well.error());
   return database;
 }
 
 }  // namespace
+
+Expected<void> note_state(Database& database, const RegisterPlace& place) {
+  Database::Transaction transaction(database);
+  Identity now{database.first("SELECT id FROM site")};
+  if (const auto last = Journal(database).last()) {
+    now.place = last->place;
+    now.sha256 = last->sha256;
+  }
+  if (auto well = database.take_error(); !well) return well;
+  const auto known = identity_in(place);
+  if (!known) return fail(known.error());
+  if (known->id.empty() || known->place < now.place)
+    if (auto written = write_identity(place, now); !written) return written;
+  return transaction.end();
+}
 
 Expected<RegisterPlace> register_place(const fs::path& site, const config::Numbering& numbering) {
   const auto path = register_path(site, numbering);
   if (!path) return fail(path.error());
   const auto identity = storage::path_inside(site, identity_name);
   if (!identity) return fail(identity.error());
-  if (!numbering.server) return RegisterPlace{*path, {}, path->string(), *identity};
+  if (!numbering.server) {
+    fs::path own = *path;
+    own += ".identity";
+    return RegisterPlace{*path, {}, path->string(), std::move(own), *identity};
+  }
   const auto& [url, password_file, schema, unused] = *numbering.server;
   return RegisterPlace{
       *identity,
       storage::Server{url, schema,
                       password_file.empty() ? fs::path() : fs::absolute(site / password_file)},
-      "schema " + schema + " of " + url, *path};
+      "schema " + schema + " of " + url, *identity, *path};
 }
 
 Expected<bool> has_register(const RegisterPlace& place, double patience) {
   if (!place.server) {
     const auto there = storage::is_there(place.file);
-    return there ? there : fail(what_of(place) + place.name + ": " + there.error().message);
+    if (!there) return fail(what_of(place) + place.name + ": " + there.error().message);
+    if (*there) return true;
+    const auto known = identity_in(place);
+    if (!known) return fail(known.error());
+    if (!known->id.empty()) return fail(is_gone(place, known->id));
+    return false;
   }
   auto database = Database::open(*place.server, patience);
   if (!database) return fail(what_of(place) + database.error().message);
@@ -160,13 +226,19 @@ Expected<bool> has_register(const RegisterPlace& place, double patience) {
   if (there) return true;
   const auto known = identity_in(place);
   if (!known) return fail(known.error());
-  if (!known->empty()) return fail(is_gone(place, *known));
+  if (!known->id.empty()) return fail(is_gone(place, known->id));
   return false;
 }
 
-Expected<Database> open_register(const RegisterPlace& place, Database::Use use, double patience) {
-  auto database = place.server ? open_on_server(place, use == Database::Use::create, patience)
-                               : open_file(place, use, patience);
+Expected<void> check_seen_state(Database& database, const RegisterPlace& place) {
+  return check_identity(database, place, false);
+}
+
+Expected<Database> open_register(const RegisterPlace& place, Database::Use use, double patience,
+                                 bool as_it_is) {
+  auto database = place.server
+                      ? open_on_server(place, use == Database::Use::create, patience, as_it_is)
+                      : open_file(place, use, patience, as_it_is);
   if (!database) return fail(what_of(place) + database.error().message);
   return database;
 }

@@ -96,8 +96,13 @@ void carry_over(storage::Database& database) {
 
 std::int64_t integer(const std::string& text) { return std::strtoll(text.c_str(), nullptr, 10); }
 
+/// By rows of the catalogue, not by to_regclass: that may answer from what this connection has
+/// remembered, so that tables which another process has just made are missed.
 bool has_tables(storage::Database& database) {
-  return database.first("SELECT count(to_regclass('register_version'))") == "1";
+  return database.first(
+             "SELECT count(*) FROM pg_catalog.pg_class c JOIN pg_catalog.pg_namespace n ON n.oid = "
+             "c.relnamespace WHERE c.relname = 'register_version' AND n.nspname = "
+             "trim('\"' FROM current_setting('search_path'))") == "1";
 }
 
 bool is_of_this_version(storage::Database& database) {

@@ -37,7 +37,7 @@ config::Checked<sign::Prolonging> prolonging_of(const RestampOptions& options) {
     return as_errors(Error{
         "no time-stamp server: expected --time-stamp URL, time_stamp in [signing] of site.toml "
         "(--site), or --no-time-stamp for the revocation data alone"});
-  how.stamping.trust = how.verifier.trust;
+  how.stamping.trust = how.verifier.time_stamp_roots;
   for (const fs::path& path : options.answers) {
     auto answer = storage::read_file(path);
     if (!answer) return as_errors(answer.error());
@@ -46,8 +46,8 @@ config::Checked<sign::Prolonging> prolonging_of(const RestampOptions& options) {
   return how;
 }
 
-Expected<Restamped> restamp(const fs::path& file, const sign::Prolonging& how,
-                            const fs::path& out) {
+Expected<Restamped> restamp(const fs::path& file, const sign::Prolonging& with,
+                            const RegisterRows& rows, const fs::path& out) {
   const fs::path folder = !out.empty()             ? out
                           : file.has_parent_path() ? file.parent_path()
                                                    : fs::path(".");
@@ -63,7 +63,14 @@ Expected<Restamped> restamp(const fs::path& file, const sign::Prolonging& how,
     return fail(
         "is a DCC by itself: long-term validation of XAdES (B-LT, B-LTA) is not made; restamp the "
         "PDF that carries the DCC");
+  sign::Prolonging how = with;
+  how.verifier.issued_by = issued_by(rows, *bytes);
   auto done = sign::prolong(*bytes, how);
+  if (!done && how.verifier.issued_by.empty() && !rows.no_answer.empty())
+    return fail(done.error().message +
+                " (the register, which may know an earlier signer, cannot "
+                "be read: " +
+                rows.no_answer + ")");
   if (!done) return fail(done.error());
   const std::string name = file.filename().string();
   if (auto written = storage::publish(folder, {{name, std::move(done->bytes)}}); !written)

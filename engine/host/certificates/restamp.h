@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/certificates/trust.h"
 #include "host/certificates/verify.h"
 #include "nonio/sign/prolong.h"
 
@@ -29,8 +30,8 @@ struct Restamped {
 
 /// Writes the file with its revocation data and a time stamp into `out`, or over itself where that
 /// is empty: whole or not at all. Not into a night's output, which the next night would write again
-/// as it was issued.
+/// as it was issued. What the register has issued is accepted with the signer of that time.
 Expected<Restamped> restamp(const std::filesystem::path& file, const sign::Prolonging& how,
-                            const std::filesystem::path& out);
+                            const RegisterRows& rows, const std::filesystem::path& out);
 
 }  // namespace nonio::host::certificates

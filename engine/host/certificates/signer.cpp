@@ -4,7 +4,6 @@
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +17,7 @@
 #include <ctime>
 #include <functional>
 #include <iostream>
+#include <memory>
 #include <utility>
 
 #include "host/config/secret_files.h"
@@ -44,23 +44,10 @@ std::string in_site(const fs::path& site, const std::string& path) {
   return path.empty() ? path : (site / path).string();
 }
 
-/// Whoever can read the key can sign in the laboratory's name.
-Expected<void> check_key_file(const fs::path& key) {
-  constexpr mode_t others = S_IRWXG | S_IRWXO;
-  struct stat info {};
-  if (::stat(key.c_str(), &info) != 0 || (info.st_mode & others) == 0) return {};
-  std::array<char, 8> mode{};
-  std::snprintf(mode.data(), mode.size(), "%04o", info.st_mode & 07777U);
-  return fail("other users can get at the signing key " + key.string() + " (mode " + mode.data() +
-              "); expected a file for the user alone who signs: chmod 600 " + key.string() +
-              (info.st_uid == ::geteuid()
-                   ? ""
-                   : ", and chown " + std::to_string(::geteuid()) + " " + key.string()));
-}
-
 Expected<sign::Key> open_key(const config::Signing& s, const fs::path& site) {
   if (!s.pkcs12.empty())
-    if (auto well = check_key_file(site / s.pkcs12); !well) return fail(well.error());
+    if (auto well = config::check_secret(site / s.pkcs12, "the signing key"); !well)
+      return fail(well.error());
   auto password = password_of(s, site);
   if (!password) return fail(password.error());
   auto key =
@@ -74,12 +61,14 @@ Expected<sign::Key> open_key(const config::Signing& s, const fs::path& site) {
 Expected<sign::TimeStamping> stamping_of(const config::Signing& s, const fs::path& site) {
   sign::TimeStamping stamping;
   if (s.time_stamp.empty()) return stamping;
-  auto roots = storage::read_file(in_site(site, s.trust));
+  auto roots = storage::read_file(in_site(site, s.trust.empty() ? s.time_stamp_roots : s.trust));
   if (!roots) return fail(roots.error());
   stamping.url = s.time_stamp;
   stamping.required = s.time_stamp_required;
   stamping.seconds = s.time_stamp_seconds;
   stamping.trust = std::move(*roots);
+  // Certificates wait for each other: a server that is away costs its time limit once, not each time.
+  stamping.away = std::make_shared<std::string>();
   return stamping;
 }
 

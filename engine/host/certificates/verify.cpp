@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <fstream>
 #include <optional>
 
@@ -51,7 +50,9 @@ sign::Verified refused(std::string_view check, const std::string& why) {
 std::optional<std::string> why_no_certificate(std::string_view bytes) {
   const auto has = [&](std::string_view text) { return bytes.find(text) != bytes.npos; };
   if (bytes.starts_with("%PDF-")) {
-    if (!has("/ByteRange")) return "is a PDF without a signature";
+    if (!has("/ByteRange"))
+      return "is a PDF without a signature: as it is printed, joined or converted by another "
+             "program; ask for the file as it was issued";
     if (!has("ETSI.CAdES.detached") || !has(evaluation::results_name))
       return "is a PDF that another program signed";
     return std::nullopt;
@@ -62,30 +63,15 @@ std::optional<std::string> why_no_certificate(std::string_view bytes) {
   return std::nullopt;
 }
 
-Expected<std::string> text_at(const fs::path& path) {
-  if (path.empty()) return std::string();
-  return storage::read_file(path);
+Expected<void> add_register_state(sign::Verified& v, std::string_view bytes,
+                                  const RegisterRows& rows) {
+  auto state = check_register(v, bytes, rows);
+  if (!state) return fail(state.error());
+  if (*state) v.checks.push_back(std::move(**state));
+  return {};
 }
 
 }  // namespace
-
-config::Checked<sign::Verifier> verifier_of(const VerifyOptions& options) {
-  VerifyOptions o = options;
-  if (!o.site.empty()) {
-    std::string digest;
-    const auto site = config::read_site(o.site, digest);
-    if (!site) return tl::unexpected(site.error());
-    if (const auto& s = site->signing) {
-      if (o.trust.empty() && !s->trust.empty()) o.trust = o.site / s->trust;
-      if (o.revocation.empty() && !s->revocation.empty()) o.revocation = o.site / s->revocation;
-      if (o.signer.empty()) o.signer = s->signer;
-    }
-  }
-  auto trust = text_at(o.trust), revocation = text_at(o.revocation);
-  for (const auto* text : {&trust, &revocation})
-    if (!*text) return tl::unexpected(std::vector<Error>{text->error()});
-  return sign::Verifier{std::move(*trust), std::move(*revocation), o.signer, std::time(nullptr)};
-}
 
 Expected<std::unique_ptr<reading::Workplace>> open_to_verify(
     const std::vector<fs::path>& plugin_folders, std::vector<fs::path> template_folders,
@@ -112,6 +98,10 @@ Expected<std::string> read_bounded(const fs::path& path) {
   };
   std::error_code error;
   if (fs::is_directory(path, error)) return fail(path.string() + " is a folder, expected a file");
+  // A pipe may never send anything.
+  if (const auto kind = fs::status(path, error).type();
+      kind != fs::file_type::regular && kind != fs::file_type::not_found)
+    return fail(path.string() + " is not a regular file");
   if (const auto size = fs::file_size(path, error); !error && size > sign::max_bytes)
     return refuse(" (" + std::to_string(size) + " bytes)");
   std::ifstream file(path, std::ios::binary);
@@ -128,19 +118,25 @@ Expected<std::string> read_bounded(const fs::path& path) {
   return bytes;
 }
 
-Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier& verifier,
-                                     const OpenContext& open, const fs::path& site) {
+Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier& whom,
+                                     const OpenContext& open, const RegisterRows& rows) {
   const auto bytes = read_bounded(path);
   if (!bytes) return refused(file_check, bytes.error().message);
   if (const auto why = why_no_certificate(*bytes)) return refused(certificate_check, *why);
-  if (bytes->starts_with("<?xml")) {
-    sign::Verified v = sign::verify_xml(*bytes, verifier);
+  sign::Verifier verifier = whom;
+  verifier.issued_by = issued_by(rows, *bytes);
+  const bool is_xml = bytes->starts_with("<?xml");
+  sign::Verified v =
+      is_xml ? sign::verify_xml(*bytes, verifier) : sign::verify_pdf(*bytes, verifier);
+  // The register may know an earlier signer.
+  if (verdict_of(v) == Verdict::untrusted && !rows.no_answer.empty())
+    return fail(no_verdict(rows, path.string()));
+  if (is_xml) {
     if (!v.holds()) return v;
     v.checks.push_back(check_dcc({path.filename().string(), *bytes, {}, {}, {}}, nullptr));
-    if (auto state = check_register(v, *bytes, site)) v.checks.push_back(std::move(*state));
+    if (auto added = add_register_state(v, *bytes, rows); !added) return fail(added.error());
     return v;
   }
-  sign::Verified v = sign::verify_pdf(*bytes, verifier);
   // What nobody signed is not given to plugins.
   if (!v.holds()) {
     for (const char* check : {"content.values", "content.printed"})
@@ -151,7 +147,7 @@ Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier&
   }
   // What was added later is looked at by `verify_pdf`; the rest is about what was issued.
   const std::string_view issued = std::string_view(*bytes).substr(0, v.issued);
-  if (auto state = check_register(v, issued, site)) v.checks.push_back(std::move(*state));
+  if (auto added = add_register_state(v, issued, rows); !added) return fail(added.error());
   check_documents(v, verifier);
   const auto context = open();
   if (!context) return fail(context.error());
@@ -169,13 +165,15 @@ Verdict verdict_of(const sign::Verified& v) {
     return id.starts_with("certificate.") || id.starts_with("signer.");
   };
   const auto of_register = [](std::string_view id) { return id == "register.state"; };
+  const auto of_words = [](std::string_view id) { return id == words_check; };
   if (any([](std::string_view id) { return id == file_check; })) return Verdict::no_file;
   if (any([](std::string_view id) { return id == certificate_check; }))
     return Verdict::no_certificate;
-  if (any([&](std::string_view id) { return !of_signer(id) && !of_register(id); }))
+  if (any([&](std::string_view id) { return !of_signer(id) && !of_register(id) && !of_words(id); }))
     return Verdict::altered;
   if (any(of_signer)) return Verdict::untrusted;
   if (any(of_register)) return Verdict::not_in_force;
+  if (any(of_words)) return Verdict::other_words;
   if (!v.holds()) {  // an essential check was not made: whom to trust was not stated, or no register
     const bool no_register = std::any_of(v.checks.begin(), v.checks.end(), [&](const auto& c) {
       return of_register(c.id) && c.state == State::not_checked && c.essential;
@@ -186,8 +184,8 @@ Verdict verdict_of(const sign::Verified& v) {
 }
 
 std::string id_of(Verdict verdict) {
-  constexpr std::array ids{"valid",   "incomplete",     "untrusted", "not-in-force",
-                           "altered", "no-certificate", "no-file"};
+  constexpr std::array ids{"valid",       "incomplete", "untrusted",      "not-in-force",
+                           "other-words", "altered",    "no-certificate", "no-file"};
   return ids[static_cast<std::size_t>(verdict)];
 }
 
@@ -196,6 +194,7 @@ std::string text_of(Verdict verdict) {
                              "VALID, but not every check was made",
                              "SIGNER NOT TRUSTED BY YOU",
                              "NOT IN FORCE",
+                             "OTHER WORDS THAN INSTALLED",
                              "ALTERED OR BROKEN",
                              "NOT A CERTIFICATE",
                              "NO SUCH FILE"};

@@ -7,20 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "host/certificates/register_check.h"
 #include "host/reading/campaign_reader.h"
 #include "nonio/sign/verify.h"
 
 namespace nonio::host::certificates {
-
-/// What `nonio verify` is told; paths may be empty.
-struct VerifyOptions {
-  std::filesystem::path site;  ///< whose [signing] says whom to trust and expect
-  std::filesystem::path trust, revocation;
-  std::string signer;
-};
-
-/// Trust, revocation lists and expected signer; what is given by itself goes before the site's.
-config::Checked<sign::Verifier> verifier_of(const VerifyOptions& options);
 
 /// Plugins and templates, with those of `site` if it is not empty. Of its site.toml nothing, and
 /// nothing of the folder that one happens to stand in.
@@ -38,11 +29,12 @@ using OpenContext = std::function<Expected<const reading::Context*>()>;
 
 /// A certificate (PDF) or a DCC (XML): its signature first, then, where that holds, its content:
 /// every attached DCC, and the attached readings evaluated again by the plugins that `open` gives,
-/// up to the printed pages. The register of `site` (may be empty) is asked whether a number is in
-/// force. Whatever the file holds, there is an answer; an error is one of `open`.
+/// up to the printed pages. `rows` of the register say whether a number is in force, and whose key
+/// signed it. Whatever the file holds, there is an answer; an error is one of `open`, or the
+/// register is needed and could not be read.
 Expected<sign::Verified> verify_file(const std::filesystem::path& path,
                                      const sign::Verifier& verifier, const OpenContext& open,
-                                     const std::filesystem::path& site);
+                                     const RegisterRows& rows);
 
 /// What all checks of a file amount to; each has an exit status of `nonio verify`.
 enum class Verdict {
@@ -50,6 +42,7 @@ enum class Verdict {
   incomplete,    ///< every check that was made passed; some could not be made (`not_made`)
   untrusted,     ///< intact, but the signer is not one whom the user trusts and expects
   not_in_force,  ///< intact and trusted, but the register of the site does not list it as in force
+  other_words,   ///< intact, trusted, in force, but its words or layout are not the installed ones
   altered,       ///< changed after signing, or damaged
   no_certificate,  ///< has no signature, or is not a certificate of Nonio
   no_file          ///< does not exist, or cannot be read

@@ -84,12 +84,21 @@ struct DueRule {
   int months = 0;
 };
 
+/// One whom `verify` expects, and from which day to which: keys are replaced.
+struct SignerRule {
+  std::string who;          ///< subject of the certificate, or its SHA-256
+  std::string from, until;  ///< YYYY-MM-DD, both included; may be empty
+};
+
 /// `[signing]` of site.toml: where the key is, where its password comes from, time stamps, and whom
 /// `verify` expects and trusts. Paths are relative to the site.
 struct Signing {
   std::string pkcs12, pkcs11, module, certificates;
   std::string password_file, password_env, password_credential;  ///< exactly one
-  std::string trust, revocation, signer;
+  /// `trust`: one root for signers and for time servers; else each has its own file.
+  std::string trust, signer_roots, time_stamp_roots, revocation;
+  std::string signer;  ///< the only one, at any time; else `signers`
+  std::vector<SignerRule> signers{};
   std::string time_stamp;           ///< address of the server; empty: none
   bool time_stamp_required = true;  ///< no answer: no certificate
   int time_stamp_seconds = 10;

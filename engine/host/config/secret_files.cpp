@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/config/secret_files.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
 #include <cstdlib>
 
 #include "host/storage/files.h"
@@ -24,6 +29,19 @@ std::vector<fs::path> secret_files(const SiteFile& file, const fs::path& site) {
   return files;
 }
 
+Expected<void> check_secret(const fs::path& path, const std::string& what) {
+  constexpr mode_t others = S_IRWXG | S_IRWXO;
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0 || (info.st_mode & others) == 0) return {};
+  std::array<char, 8> mode{};
+  std::snprintf(mode.data(), mode.size(), "%04o", info.st_mode & 07777U);
+  return fail("other users can get at " + what + " " + path.string() + " (mode " + mode.data() +
+              "); expected a file for the user alone who runs this: chmod 600 " + path.string() +
+              (info.st_uid == ::geteuid()
+                   ? ""
+                   : ", and chown " + std::to_string(::geteuid()) + " " + path.string()));
+}
+
 Expected<std::string> read_password(const PasswordSource& source, const fs::path& site) {
   const std::string in = " in [" + source.section + "] of site.toml";
   if (!source.env.empty()) {
@@ -40,6 +58,8 @@ Expected<std::string> read_password(const PasswordSource& source, const fs::path
                   "; LoadCredential= in the unit)");
     path = fs::path(folder) / source.credential;
   }
+  if (!source.file.empty())
+    if (auto alone = check_secret(path, source.what); !alone) return fail(alone.error());
   auto text = storage::read_file(path);
   if (!text) return fail(source.what + ": " + text.error().message);
   while (text->ends_with('\n') || text->ends_with('\r')) text->pop_back();

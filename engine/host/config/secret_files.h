@@ -14,6 +14,9 @@ namespace nonio::host::config {
 std::vector<std::filesystem::path> secret_files(const SiteFile& file,
                                                 const std::filesystem::path& site);
 
+/// Whoever can read a key or a password can use it. `what`: "the signing key".
+Expected<void> check_secret(const std::filesystem::path& path, const std::string& what);
+
 /// From where a password comes: exactly one of these.
 struct PasswordSource {
   const std::string &file, &env, &credential;

@@ -242,13 +242,8 @@ Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
 
 Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file) {
   return parse_log<Forgotten>(text, file, forgotten_file(), "forgotten", [](TableReader& reader) {
-    const std::string what = reader.text("campaign");
-    if (!what.empty() && !is_campaign_id(what) && !is_site_part(what))
-      reader.error("campaign",
-                   "expected the id of a campaign, or a file of the site (machines/S-0042.toml, "
-                   "templates, events.toml); found \"" +
-                       what + "\"");
-    return Forgotten{reader.date("date"), what, reader.text("by"), reason_of(reader)};
+    return Forgotten{reader.date("date"), reader.text("campaign"), reader.text("by"),
+                     reason_of(reader)};
   });
 }
 

@@ -28,8 +28,13 @@ void check_signing(TableReader& reader, const Signing& s) {
   if (passwords != 1)
     reader.error("password_file",
                  "expected one of password_file, password_env, password_credential (of systemd)");
-  if (!s.time_stamp.empty() && s.trust.empty())
-    reader.error("trust", "is missing: a PEM file with the root of the time-stamp server");
+  if (!s.trust.empty() && !(s.signer_roots.empty() && s.time_stamp_roots.empty()))
+    reader.error("trust", "excludes signer_roots and time_stamp_roots");
+  if (!s.time_stamp.empty() && s.trust.empty() && s.time_stamp_roots.empty())
+    reader.error("time_stamp_roots",
+                 "is missing: a PEM file with the root of the time-stamp server");
+  if (!s.signer.empty() && !s.signers.empty())
+    reader.error("signer", "excludes [[signing.signers]]");
 }
 
 Signing read_signing(TableReader& reader) {
@@ -43,7 +48,16 @@ Signing read_signing(TableReader& reader) {
   s.password_credential = reader.text("password_credential");
   s.trust = reader.text("trust");
   s.revocation = reader.text("revocation");
+  s.signer_roots = reader.text("signer_roots");
+  s.time_stamp_roots = reader.text("time_stamp_roots");
   s.signer = reader.text("signer");
+  for (TableReader& one : reader.tables("signers")) {
+    s.signers.push_back({one.text("who"), one.date("from"), one.date("until")});
+    const SignerRule& rule = s.signers.back();
+    if (!rule.from.empty() && !rule.until.empty() && rule.until < rule.from)
+      one.error("until", "is before from");
+    one.finish();
+  }
   s.time_stamp = reader.text("time_stamp");
   s.time_stamp_required = reader.text("time_stamp_missing") != "sign";
   s.time_stamp_seconds = reader.integer("time_stamp_seconds").value_or(s.time_stamp_seconds);

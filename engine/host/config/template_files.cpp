@@ -140,14 +140,14 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
     }
     const bool known = ours.is_object() && ours.contains("files") && ours["files"].contains(name) &&
                        ours["files"][name] == item.value();
-    if (!known) out.strange.push_back(name);
+    if (!known && travels(name)) out.strange.push_back(name);
     all += line_of(name, sum.empty() ? storage::sha256(bytes) : sum);
     if (auto kept = keep(out.templates, name, std::move(bytes), name); !kept)
       return fail(kept.error());
   }
   if (ours.is_object() && ours.contains("files"))
     for (const auto& [name, file] : ours["files"].items())
-      if (!json["files"].contains(name)) out.strange.push_back(name);
+      if (!json["files"].contains(name) && travels(name)) out.strange.push_back(name);
   gather_words(out.templates);
   out.sha256 = storage::sha256(all);
   return out;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/history/schema.h"
 
+#include <algorithm>
 #include <charconv>
 #include <string>
 #include <string_view>
@@ -126,7 +127,12 @@ std::optional<std::int64_t> version_of(Database& database) {
   const std::string text = database.first("SELECT value FROM store WHERE name = 'schema'");
   std::int64_t version = 0;
   std::from_chars(text.data(), text.data() + text.size(), version);
-  return version;
+  if (database.kind() != Database::Kind::sqlite) return version;
+  // A newer program may have another table for it; what marks the file is read by all.
+  const std::string mark = database.first("PRAGMA user_version");
+  std::int64_t marked = 0;
+  std::from_chars(mark.data(), mark.data() + mark.size(), marked);
+  return std::max(version, marked);
 }
 
 void make_tables(Database& database) {

@@ -30,11 +30,6 @@ std::vector<std::filesystem::path>& hidden() {
   return files;
 }
 
-void flush_output() {
-  std::cout.flush();
-  std::fflush(stdout);
-}
-
 constexpr unsigned load_seconds = 10;
 
 /// Of the program; empty: not known.
@@ -69,6 +64,11 @@ int end_of(pid_t child, const std::vector<pid_t>& children_before) {
 }
 
 }  // namespace
+
+void flush_output() {
+  std::cout.flush();
+  std::fflush(stdout);
+}
 
 void keep_plugins_apart(std::filesystem::path own_plugins) {
   if (where_run == Place::anywhere) where_run = Place::wanted_apart;

@@ -9,6 +9,9 @@ namespace nonio::host::process {
 /// Goes on in a child if `keep_plugins_apart` was asked for; the first time only.
 void step_aside();
 
+/// Whatever a child inherits unwritten, it may write too.
+void flush_output();
+
 /// Whether this is such a child, or one of its own.
 bool is_apart();
 

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/format.h"
@@ -13,6 +16,25 @@ namespace nonio::host::storage {
 
 /// Keys stay in the order in which they are written.
 using Json = nlohmann::ordered_json;
+
+/// Discarded where it is no JSON, and where an object has a key twice: one program reads the first,
+/// another one the last.
+inline Json parse_once(std::string_view text) {
+  std::vector<std::set<std::string>> open;
+  bool twice = false;
+  Json json = Json::parse(
+      text,
+      [&](int, Json::parse_event_t event, Json& value) {
+        if (event == Json::parse_event_t::object_start) open.emplace_back();
+        if (event == Json::parse_event_t::object_end) open.pop_back();
+        if (event == Json::parse_event_t::key &&
+            !open.back().insert(value.get<std::string>()).second)
+          twice = true;
+        return true;
+      },
+      false);
+  return twice ? Json(Json::value_t::discarded) : json;
+}
 
 /// Indented by one, so that a diff of two nights reads well. Text that is not UTF-8 (a file name, a
 /// plugin's message) gets replacement characters instead of stopping the night.

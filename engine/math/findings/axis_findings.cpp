@@ -19,6 +19,12 @@ bool matters(const AxisTest& test, double size) {
   return !(size < share * whole);
 }
 
+bool is_reversal_known(double mean, double U) {
+  // docs/constants.md, A28.
+  constexpr double largest_share = 0.5;
+  return U < largest_share * std::fabs(mean);
+}
+
 namespace {
 
 // Going too far has no cause of its own: clearances and friction make it, or a backlash value that is
@@ -38,20 +44,24 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
   const bool attention = !std::isnan(r.largest) && matters(test, r.largest);
   // One value for the whole axis that leaves more somewhere than there is now is no advice to give.
   const bool constant = r.kind == Kind::lost_motion || r.kind == Kind::over_compensated;
+  const double U = std::max(drift_share(test).B_mean, U_mean);
   const char* id = constant && !(r.largest_left < r.largest) ? "reversal.one-value-worse"
-                   : r.kind == Kind::lost_motion             ? "reversal.lost-motion"
-                   : r.kind == Kind::over_compensated        ? positive_reversal(active)
-                   : r.kind == Kind::not_constant            ? "reversal.not-constant"
-                                                             : nullptr;
+                   : r.kind == Kind::lost_motion && is_reversal_known(r.mean, U)
+                       ? "reversal.lost-motion"
+                   : r.kind == Kind::lost_motion      ? "reversal.not-identifiable"
+                   : r.kind == Kind::over_compensated ? positive_reversal(active)
+                   : r.kind == Kind::not_constant     ? "reversal.not-constant"
+                                                      : nullptr;
   if (id != nullptr) {
     // A value corrects nothing better than it is known.
-    const double left = std::max({r.largest_left, drift_share(test).B_mean, U_mean});
+    const double left = std::max(r.largest_left, U);
     FindingBuilder finding(id, attention, test.rotary);
     finding.deviation("mean", r.mean)
         .deviation("u_mean", r.u_mean)
         .deviation("max", r.largest)
         .deviation("left", left)
         .number("p", r.kind == Kind::not_constant ? r.p_varies : r.p_mean, Quantity::probability);
+    if (r.kind == Kind::lost_motion && !is_reversal_known(r.mean, U)) finding.deviation("U", U);
     if (r.kind == Kind::over_compensated && active) finding.deviation("active", *active);
     findings.push_back(finding.done());
   }

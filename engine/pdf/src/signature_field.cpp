@@ -46,7 +46,10 @@ Expected<PdfSignature> signature_at_end(std::string_view bytes) {
   const std::size_t from = bytes.size() - std::min(bytes.size(), farthest);
   const std::size_t found = bytes.substr(from).rfind(range);
   if (found == std::string_view::npos || from + found < time_size)
-    return fail("has no signature of Nonio");
+    return fail(
+        "has no signature where Nonio writes one: it was changed, or saved again by another "
+        "program, "
+        "which breaks the signature; ask for the file as it was issued");
   std::size_t at = from + found + range.size();
   std::array<std::size_t, 3> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i, at += digits + 1) {

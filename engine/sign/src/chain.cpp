@@ -30,28 +30,47 @@ Expected<std::vector<RevocationPtr>> lists_of(const std::string& pem) {
 
 }  // namespace
 
-Expected<Trusted> trusted(const std::string& roots_pem, const std::string& lists_pem) {
+Expected<Trusted> trusted(const Verifier& verifier) {
   Trusted out;
   ERR_clear_error();
-  if (!roots_pem.empty()) {
-    auto roots = certificates_of(roots_pem);
-    if (!roots) return fail("the trust file " + roots.error().message);
-    out.roots = std::move(*roots);
-  }
-  if (!lists_pem.empty()) {
-    auto lists = lists_of(lists_pem);
+  const auto take = [](const std::string& pem, const char* whose,
+                       std::vector<CertificatePtr>& to) -> Expected<void> {
+    if (pem.empty()) return {};
+    auto roots = certificates_of(pem);
+    if (!roots)
+      return fail("the file with the roots of " + std::string(whose) + " " + roots.error().message);
+    to = std::move(*roots);
+    return {};
+  };
+  if (auto done = take(verifier.signer_roots, "signers", out.signer_roots); !done)
+    return fail(done.error());
+  if (auto done = take(verifier.time_stamp_roots, "time servers", out.time_roots); !done)
+    return fail(done.error());
+  if (verifier.revocation) {
+    auto lists = lists_of(*verifier.revocation);
     if (!lists) return fail("the revocation file " + lists.error().message);
     out.lists = std::move(*lists);
   }
   return out;
 }
 
+Expected<void> check_verifier(const Verifier& verifier) {
+  if (auto known = trusted(verifier); !known) return fail(known.error());
+  return {};
+}
+
+Expected<std::size_t> number_of_roots(const std::string& pem) {
+  const auto roots = certificates_of(pem);
+  if (!roots) return fail(roots.error());
+  return roots->size();
+}
+
 Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
                                                const std::vector<CertificatePtr>& all,
-                                               const Trusted& known, Time at) {
+                                               const std::vector<CertificatePtr>& roots, Time at) {
   ERR_clear_error();
   const StorePtr store(X509_STORE_new());
-  for (const CertificatePtr& root : known.roots) X509_STORE_add_cert(store.get(), root.get());
+  for (const CertificatePtr& root : roots) X509_STORE_add_cert(store.get(), root.get());
   const Borrowed others(sk_X509_new_null());
   for (const CertificatePtr& c : all) sk_X509_push(others.get(), c.get());
   const StoreContextPtr context(X509_STORE_CTX_new());
@@ -76,7 +95,8 @@ Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
   return out;
 }
 
-Expected<void> check_issued(const std::vector<CertificatePtr>& certificates, const Trusted& known) {
+Expected<void> check_issued(const std::vector<CertificatePtr>& certificates,
+                            const std::vector<CertificatePtr>& roots) {
   const auto issued = [](const CertificatePtr& one, const CertificatePtr& by) {
     return X509_check_issued(by.get(), one.get()) == X509_V_OK &&
            X509_get0_pubkey(by.get()) != nullptr &&
@@ -85,7 +105,7 @@ Expected<void> check_issued(const std::vector<CertificatePtr>& certificates, con
   for (const CertificatePtr& one : certificates) {
     const auto by = [&](const CertificatePtr& c) { return issued(one, c); };
     const bool fits = std::any_of(certificates.begin(), certificates.end(), by) ||
-                      std::any_of(known.roots.begin(), known.roots.end(), by);
+                      std::any_of(roots.begin(), roots.end(), by);
     ERR_clear_error();
     if (!fits)
       return fail("the certificate of " + quoted(subject_of(one.get())) +

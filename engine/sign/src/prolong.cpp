@@ -108,7 +108,7 @@ class Prolongation {
   }
 
   Expected<void> read_known() {
-    auto known = trusted(how_.verifier.trust, how_.verifier.revocation);
+    auto known = trusted(how_.verifier);
     if (!known) return fail(known.error());
     known_ = std::move(*known);
     for (const std::string& der : how_.answers) {
@@ -148,7 +148,7 @@ class Prolongation {
       at = stamp->time;
       used_.push_back({std::move(stamp->chain), {at, now, Revocation::Of::time_server, until(0)}});
     }
-    auto chain = chain_of(data->certificate(), data->certificates(), known_, at);
+    auto chain = chain_of(data->certificate(), data->certificates(), known_.signer_roots, at);
     if (!chain) return fail(chain.error());
     used_.push_back({std::move(*chain), {at, now, Revocation::Of::signer}});
     for (std::size_t i = 0; i < stamps->size(); ++i)

@@ -168,6 +168,22 @@ Expected<void> SignedData::find_certificate(std::string_view identifier) {
   return malformed("the signer's certificate is missing");
 }
 
+Expected<void> SignedData::check_attributes() const {
+  std::array<int, 3> wanted{NID_pkcs9_contentType, NID_pkcs9_messageDigest,
+                            NID_id_smime_aa_signingCertificateV2};
+  for (int i = 0; i < CMS_signed_get_attr_count(signer_); ++i) {
+    X509_ATTRIBUTE* one = CMS_signed_get_attr(signer_, i);
+    const int kind = OBJ_obj2nid(X509_ATTRIBUTE_get0_object(one));
+    const auto found = std::find(wanted.begin(), wanted.end(), kind);
+    if (kind == NID_undef || found == wanted.end() || X509_ATTRIBUTE_count(one) != 1)
+      return malformed(
+          "expected the signed attributes content type, digest and certificate, once each and no "
+          "others");
+    *found = NID_undef;
+  }
+  return {};
+}
+
 Expected<void> SignedData::check_signature(std::string_view before, std::string_view behind) const {
   ERR_clear_error();
   const auto* type = static_cast<const ASN1_OBJECT*>(

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "nonio/sign/verify.h"
 #include "openssl.h"
 #include "revocation.h"
 
@@ -10,11 +11,11 @@ namespace nonio::sign {
 
 /// Whom the verifier trusts, and what he knows to be revoked.
 struct Trusted {
-  std::vector<CertificatePtr> roots;
+  std::vector<CertificatePtr> signer_roots, time_roots;
   std::vector<RevocationPtr> lists;
   std::vector<Statement> kept{};  ///< what travels in the file
 };
-Expected<Trusted> trusted(const std::string& roots_pem, const std::string& lists_pem);
+Expected<Trusted> trusted(const Verifier& verifier);
 
 /// A CMS SignedData of one signer (RFC 5652): the signature of a PDF, or a time-stamp token.
 class SignedData {
@@ -25,6 +26,8 @@ class SignedData {
   /// not signed has one value that is accepted.
   static Expected<SignedData> parse(std::string_view der, Content content);
 
+  /// The signed attributes of a detached signature are those that Nonio signs, once each.
+  Expected<void> check_attributes() const;
   /// The digest of the content and the signature over it hold.
   Expected<void> check_signature(std::string_view before, std::string_view behind) const;
   /// The signed attributes name the signer's certificate (ESS signing-certificate, RFC 5035).
@@ -61,10 +64,10 @@ class SignedData {
 /// From this certificate to a root by way of the others, all valid at that time; itself first.
 Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
                                                const std::vector<CertificatePtr>& others,
-                                               const Trusted& trusted, Time at);
+                                               const std::vector<CertificatePtr>& roots, Time at);
 /// None of them is damaged or has nothing to do with the others.
 Expected<void> check_issued(const std::vector<CertificatePtr>& certificates,
-                            const Trusted& trusted);
+                            const std::vector<CertificatePtr>& roots);
 
 /// Each of them is in the chain, and none twice: nobody signs which ones are put in.
 Expected<void> check_only(const std::vector<CertificatePtr>& certificates,

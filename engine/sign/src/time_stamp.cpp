@@ -80,6 +80,8 @@ std::string nonce_of(const TS_TST_INFO* info) {
 
 Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::string_view imprint,
                                          Time now) {
+  if (stamping.away && !stamping.away->empty())
+    return fail(*stamping.away + " (asked once in this run)");
   const auto request = request_for(imprint);
   if (!request) return fail(request.error());
   const auto answer = ask_server(stamping.url, {.query = "application/timestamp-query",
@@ -87,10 +89,13 @@ Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::stri
                                                 .body = request->der,
                                                 .longest = 60000,
                                                 .seconds = stamping.seconds});
-  if (!answer) return fail(answer.error());
+  if (!answer) {
+    if (stamping.away) *stamping.away = answer.error().message;
+    return fail(answer.error());
+  }
   auto token = token_of(*answer);
   if (!token) return fail(stamping.url + ": " + token.error().message);
-  const auto roots = trusted(stamping.trust, {});
+  const auto roots = trusted({.time_stamp_roots = stamping.trust});
   if (!roots) return fail(roots.error());
   const auto stamp = check_time_stamp(*token, imprint, *roots, now);
   if (!stamp) return fail(stamping.url + ": the time stamp " + stamp.error().message);
@@ -124,11 +129,12 @@ Expected<Stamp> check_time_stamp(std::string_view token, std::string_view stampe
     return fail("was made by " + quoted(stamp.by) + ", whose certificate is not for time stamps");
   // At the time of the stamp: that the server's certificate has run out since does not make it
   // less true that it was given.
-  auto chain = chain_of(data->certificate(), data->certificates(), known, stamp.time);
+  auto chain = chain_of(data->certificate(), data->certificates(), known.time_roots, stamp.time);
   if (!chain)
     return fail("was made by " + quoted(stamp.by) +
                 ", who is not trusted: " + chain.error().message);
-  if (auto sound = check_issued(data->certificates(), known); !sound) return fail(sound.error());
+  if (auto sound = check_issued(data->certificates(), known.time_roots); !sound)
+    return fail(sound.error());
   bool looked = false;
   const auto revocation = check_revocation(
       *chain, known, {stamp.time, now, Revocation::Of::time_server, until}, looked);

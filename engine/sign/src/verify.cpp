@@ -30,22 +30,45 @@ void Report::skip(const char* id, const std::string& why, bool essential) {
   out_.checks.push_back({id, State::not_checked, why, essential});
 }
 
+namespace {
+
+/// By its subject, or by its SHA-256 in any usual notation.
+bool is_of(std::string who, const std::string& subject, const std::string& fingerprint) {
+  if (who == subject) return true;
+  std::erase(who, ':');
+  std::transform(who.begin(), who.end(), who.begin(), [](char c) {
+    return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return who == fingerprint;
+}
+
+std::string words_of(const ExpectedSigner& one) {
+  return one.who + (one.from == 0 ? "" : " from " + text_of(one.from)) +
+         (one.before ? " before " + text_of(*one.before) : "");
+}
+
+}  // namespace
+
 void Report::check_signer(X509* certificate, const Verifier& verifier) {
   const std::string subject = subject_of(certificate), shown = quoted(subject);
   const std::string fingerprint = hex(sha256(der_of(certificate)));
   out_.subject = subject;
-  if (verifier.signer.empty())
+  if (!verifier.issued_by.empty())
+    return add("signer.expected", {},
+               "signed by " + shown + ", certificate " + fingerprint + "; " + verifier.issued_by);
+  if (verifier.signers.empty())
     return skip("signer.expected", "signed by " + shown + ", certificate " + fingerprint +
                                        "; the expected signer was not stated");
-  std::string wanted = verifier.signer;
-  const bool by_subject = wanted == subject;
-  std::erase(wanted, ':');
-  std::transform(wanted.begin(), wanted.end(), wanted.begin(), [](char c) {
-    return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  if (by_subject || wanted == fingerprint) return add("signer.expected", {}, "signed by " + shown);
+  std::string wanted;
+  for (const ExpectedSigner& one : verifier.signers) {
+    if (is_of(one.who, subject, fingerprint) && out_.at >= one.from &&
+        (!one.before || out_.at < *one.before))
+      return add("signer.expected", {}, "signed by " + shown);
+    wanted += (wanted.empty() ? "" : " or ") + words_of(one);
+  }
   add("signer.expected",
-      fail("signed by " + shown + ", certificate " + fingerprint + "; expected " + verifier.signer),
+      fail("signed by " + shown + ", certificate " + fingerprint + ", at " + text_of(out_.at) +
+           "; expected " + wanted),
       {});
 }
 
@@ -79,12 +102,12 @@ std::vector<CertificatePtr> Report::check_chain(X509* certificate,
                                                 const Trusted& known, const Verifier& verifier) {
   add("certificate.use", check_signer_use(certificate),
       "the certificate is for signatures on documents");
-  if (known.roots.empty()) {
+  if (known.signer_roots.empty()) {
     skip("certificate.chain", "no trusted certificates were given");
     skip("certificate.revocation", "needs the chain", false);
     return {};
   }
-  auto chain = chain_of(certificate, others, known, out_.at);
+  auto chain = chain_of(certificate, others, known.signer_roots, out_.at);
   if (!chain) {
     add("certificate.chain",
         fail("not trusted at " + text_of(out_.at) + ": " + chain.error().message), {});
@@ -174,6 +197,8 @@ class PdfCheck {
     report_.add("signature.padding", to_void(der), "nothing but zeros behind the signature");
     if (!der) return;
     auto data = SignedData::parse(*der, SignedData::Content::detached);
+    if (data)
+      if (auto expected = data->check_attributes(); !expected) data = fail(expected.error());
     report_.add(
         "signature.form", to_void(data),
         data ? *algorithm_of(X509_get0_pubkey(data->certificate()), true) + " over SHA-2" : "");
@@ -183,7 +208,7 @@ class PdfCheck {
     report_.add("signature.certificate", data->check_certificate_named(),
                 "the certificate is the one that was signed with");
     out_.certificate = data->certificate_der();
-    auto known = trusted(verifier_.trust, verifier_.revocation);
+    auto known = trusted(verifier_);
     if (!known) {
       report_.add("certificate.chain", fail(known.error()), {});
       return;
@@ -216,8 +241,8 @@ class PdfCheck {
   bool is_trusted(const SignedData& data, const Trusted& known) const {
     X509* signer = data.certificate();
     const Time last = time_of(X509_get0_notAfter(signer)) - 1;
-    return !known.roots.empty() &&
-           chain_of(signer, data.certificates(), known, std::min(verifier_.now, last));
+    return !known.signer_roots.empty() &&
+           chain_of(signer, data.certificates(), known.signer_roots, std::min(verifier_.now, last));
   }
 
   /// Only in a file that somebody signed who is trusted: anybody may add to it what is signed by
@@ -271,6 +296,23 @@ class PdfCheck {
 
 Verified verify_pdf(std::string_view bytes, const Verifier& verifier) {
   return PdfCheck(bytes, verifier).run();
+}
+
+std::string_view issued_part(std::string_view file) {
+  return file.starts_with("%PDF-") ? file.substr(0, pdf::ends_of_parts(file).front()) : file;
+}
+
+Expected<Identity> unverified_signer(std::string_view signed_pdf) {
+  const auto place = pdf::signature_at_end(issued_part(signed_pdf));
+  const auto der = place ? der_in(place->contents) : fail(place.error());
+  if (!der) return fail(der.error());
+  const auto data = SignedData::parse(*der, SignedData::Content::detached);
+  if (!data) return fail(data.error());
+  X509* certificate = data->certificate();
+  return Identity{subject_of(certificate), hex(sha256(der_of(certificate))),
+                  *algorithm_of(X509_get0_pubkey(certificate), true),
+                  time_of(X509_get0_notBefore(certificate)),
+                  time_of(X509_get0_notAfter(certificate))};
 }
 
 Expected<std::vector<pdf::Attachment>> unverified_attachments(std::string_view pdf) {

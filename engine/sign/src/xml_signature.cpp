@@ -315,7 +315,7 @@ class XmlCheck {
  private:
   void check_people(const XmlSignature& s, X509* certificate,
                     const std::vector<CertificatePtr>& all) {
-    const auto known = trusted(verifier_.trust, verifier_.revocation);
+    const auto known = trusted(verifier_);
     if (!known) return report_.add("certificate.chain", fail(known.error()), {});
     report_.check_stamp("xml.time", s.token, s.value_element(), s.time, *known, verifier_,
                         verifier_.existed);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "nonio/math/along.h"
+#include "nonio/math/axis_findings.h"
 #include "nonio/math/axis_test.h"
 #include "nonio/math/before_after.h"
 #include "nonio/math/distributions.h"
@@ -131,10 +132,10 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
     const double rest = is.mean - share * was.mean;
     return !math::significant(math::t_two_sided(math::test_ratio(rest, u_of(share)), 1e6), level);
   };
-  // Where one value helps and is known, the table takes B_mean away; else it leaves the value as it was.
-  constexpr double largest_share = 0.5;  // docs/constants.md, A28
-  const bool taken = was.kind != Kind::not_constant && was.largest_left < was.largest &&
-                     2.0 * u_before < largest_share * std::fabs(was.mean);
+  // Where one value helps and is known, the table takes B_mean away; else it leaves the value as it was,
+  // unless somebody has entered one that worked.
+  const bool helps = was.kind != Kind::not_constant && was.largest_left < was.largest;
+  const bool taken = helps && (math::is_reversal_known(was.mean, 2.0 * u_before) || fits(0.0));
   const double wanted = taken ? 0.0 : 1.0;
   const char* id = nullptr;
   bool as_predicted = false;

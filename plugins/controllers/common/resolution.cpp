@@ -11,7 +11,7 @@ namespace nonio::controllers {
 namespace {
 
 constexpr double least_step = 1e-6, least_angle = 1.0 / arcsec_per_rad, digits = 3.0,
-                 steepest = 1e-3, impossible = 1e-2;
+                 steepest = 1e-3, impossible = 5e-2;
 
 /// Smallest difference of two readings that differ; 0 if all are equal.
 double resolution_of(std::vector<double> all) {

@@ -12,17 +12,23 @@
 namespace nonio::controllers {
 namespace {
 
-// docs/constants.md, A28.
-constexpr double largest_share = 0.5;  // of the mean reversal that its U may have
+/// Then the model, from which the table is made, has taken it out of the readings.
+bool is_drift_modelled(const Campaign& campaign, const std::string& axis) {
+  return std::any_of(campaign.model.begin(), campaign.model.end(), [&](const std::string& e) {
+    const bool drift = e.find("drift") != e.npos || e.starts_with("warm-up");
+    return drift && e.substr(e.find(':') + 1) == axis;
+  });
+}
 
 Uncertainties uncertainties(const Campaign& campaign, const Measurement& m, const Observations& o,
-                            const math::AxisTest& test) {
+                            const math::AxisTest& test, bool drift_is_in) {
   const Observations* own = &o;
   const auto limits = math::limits_held(campaign, {&own, 1});
-  const auto budget = math::uncertainty_budget(campaign, limits.environment, m.axis, test).budget;
+  auto budget = math::uncertainty_budget(campaign, limits.environment, m.axis, test).budget;
+  if (budget && !drift_is_in) budget->seen = {};
   const auto U = math::iso230_2_uncertainty(budget.value_or(math::Budget{}),
                                             math::approaches_behind_means(test), 2.0);
-  const double seen = math::drift_share(test).B_mean;
+  const double seen = drift_is_in ? math::drift_share(test).B_mean : 0.0;
   return budget ? Uncertainties{std::max(U.B_mean, seen), U.E, U.M} : Uncertainties{seen, 0.0, 0.0};
 }
 
@@ -33,10 +39,12 @@ void take_uncertainties(const ControllerInput& input, std::size_t index, AxisJob
   const bool of_model = input.measured != nullptr && index < input.measured->size();
   const Observations& o = of_model ? (*input.measured)[index] : input.observations[index];
   const math::AxisTest test = math::AxisTest::arrange(o);
-  job.U = uncertainties(input.campaign, input.campaign.measurements[index], o, test);
+  const Measurement& m = input.campaign.measurements[index];
+  job.U = uncertainties(input.campaign, m, o, test,
+                        !of_model || !is_drift_modelled(input.campaign, m.axis));
   const double mean = job.curve.mean_reversal();
   if (!job.curve.bidirectional() || job.reversal.kind == Kind::not_constant ||
-      job.reversal.kind == Kind::unknown || !(job.U.B_mean >= largest_share * std::fabs(mean)))
+      job.reversal.kind == Kind::unknown || math::is_reversal_known(mean, job.U.B_mean))
     return;
   // It stays: how large it may be decides who has to know.
   job.held = {

@@ -154,7 +154,22 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
 // not three numbers; a nominal that does not rise drops its line, which no table is meant to have;
 // trims are floats. The file knows
 // no axis: its name does, or there is one axis only.
+/// The settings of a joint beside its table say how the table is meant.
+Expected<void> check_type(const TableInput& in) {
+  const std::int64_t type = in.options.integer("type");
+  for (const Artifact& f : in.files)
+    for (const std::string_view line : controllers::lines_of(f.bytes)) {
+      const auto w = controllers::words_of(line, " \t\r=");
+      if (w.size() == 2 && w[0] == "COMP_FILE_TYPE" && controllers::whole(w[1]) != type)
+        return fail(f.name + " has COMP_FILE_TYPE = " + std::string(w[1]) + ", option type is " +
+                    std::to_string(type) + ": state type = " + std::string(w[1]) +
+                    " for the tables of this file");
+    }
+  return {};
+}
+
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
+  if (auto fits = check_type(in); !fits) return tl::unexpected<Error>(fits.error());
   const auto axes = controllers::known_axes(in);
   if (!axes) return tl::unexpected<Error>(axes.error());
   const ControlTable t = table_of(in.options);

@@ -26,8 +26,13 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   for (const std::string plane : {"XY", "XZ", "YZ"}) {
     const auto AC = lengths.find(plane + "_DIAG_AC"), BD = lengths.find(plane + "_DIAG_BD"),
                AD = lengths.find(plane + "_SIDE_AD");
-    if (AC != lengths.end() && BD != lengths.end() && AD != lengths.end())
-      factors[plane] = controllers::skew_factor(AC->second, BD->second, AD->second);
+    const std::size_t found = static_cast<std::size_t>(AC != lengths.end()) +
+                              static_cast<std::size_t>(BD != lengths.end()) +
+                              static_cast<std::size_t>(AD != lengths.end());
+    if (found != 0 && found != 3)
+      return fail("plane " + plane + " has " + std::to_string(found) +
+                  " of its lengths DIAG_AC, DIAG_BD and SIDE_AD: the control needs all three");
+    if (found == 3) factors[plane] = controllers::skew_factor(AC->second, BD->second, AD->second);
   }
   if (factors.empty()) return fail("no plane with DIAG_AC, DIAG_BD and SIDE_AD");
   return controllers::skew_tables(factors);

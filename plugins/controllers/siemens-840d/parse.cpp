@@ -71,6 +71,8 @@ Expected<void> put_parameter(Table& table, const std::string& what, const Assign
   } else if (what == "IS_MODULO") {
     table.modulo = *v != 0.0;
   } else if (what == "DIRECTION") {
+    if (*v != -1.0 && *v != 0.0 && *v != 1.0)
+      return fail("DIRECTION is -1, 0 or 1 in the control, found " + a.value);
     table.direction = *v;
   } else if (what == "MULT_BY_TABLE") {
     if (*v != 0.0) return fail("tables multiplied by others are not modelled");

@@ -54,6 +54,10 @@ Expected<void> whole(const Artifact& f) {
   std::int64_t found = 0;
   for (std::size_t at = 0; (at = text.find(element, at)) != std::string_view::npos; ++at) ++found;
   if (found == 0) return {};
+  for (const std::string_view once : {"ARRAY[1..", "NoOfTableElements"})
+    if (const std::size_t first = text.find(once);
+        first != std::string_view::npos && text.find(once, first + 1) != std::string_view::npos)
+      return fail(f.name + ": " + std::string(once) + " occurs twice: one table is expected");
   const auto declared = number_behind(text, "ARRAY[1..");
   const auto said = number_behind(text, "NoOfTableElements");
   if (!declared || *declared != found || (said && *said != found))

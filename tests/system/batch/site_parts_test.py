@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every file of a site besides its campaigns, and earlier.json: lost, emptied, cut, swapped, wrong or renamed, one at a time.
 Each loss is reported, no table that depended on it is written, nothing else changes, and what is restored or removed on
-purpose leaves no trace. NONIO_SITE_MACHINES=60 for a laboratory."""
+purpose leaves no trace. NONIO_SITE_MACHINES=60
+for a laboratory, NONIO_SITE_ALL=1 for every file of the output folder."""
 import json
 import os
 import pathlib
+import random
 import re
 import shutil
 import subprocess
 import unittest
 
-from nightly import NONIO, NightTest, readings, tree
+from nightly import NONIO, NightTest, given_out, readings, tree
 
+# They say which night it was, and of which campaigns something was done.
+NIGHTLY = {"summary.json", "summary.txt", ".nonio/night.json", ".nonio/machines.sqlite",
+           ".nonio/history", ".nonio/site.json", ".nonio/lock", "history.json", "index.html"}
+SEED = int(os.environ.get("NONIO_SEED", "41"))
 MACHINES = int(os.environ.get("NONIO_SITE_MACHINES", "4"))
 RECORD = """format = 1
 asset = "{asset}"
@@ -218,6 +224,45 @@ class SiteParts(NightTest):
                 put(earlier, whole)
                 self.night("2026-11-13", expect=0)
                 self.assertEqual(earlier.read_text(), whole)
+
+    def test_every_file_of_the_output_folder(self):
+        """What is lost there is made again to the byte, or reported by its name while nothing else changes."""
+        (self.site / "c0/x.csv").write_text(readings("other"))
+        self.night("2026-11-11", expect=0)
+        self.night("2026-11-12", expect=0)
+        want = given_out(self.out)
+        names = sorted(n for n in want if not n.startswith("c") or n.startswith(("c0/", "c1/")))
+        print(f"NONIO_SEED={SEED}", flush=True)
+        chosen = names if os.environ.get("NONIO_SITE_ALL") else sorted({"c0/earlier.json", *random.Random(SEED).sample(names, 9)})
+        outcome = {"made again": 0, "reported": 0}
+        for name in chosen:
+            for what in ("missing", "empty", "cut", "swapped"):
+                path = self.out / name
+                bytes_before = path.read_bytes()
+                if what == "missing":
+                    path.unlink()
+                elif what == "swapped":
+                    path.write_bytes((self.out / names[(names.index(name) + 1) % len(names)]).read_bytes())
+                else:
+                    path.write_bytes(b"" if what == "empty" else bytes_before[: len(bytes_before) // 2])
+                with self.subTest(name, what=what):
+                    done = self.night("2026-11-12")
+                    now = given_out(self.out)
+                    others = {n for n in want if now.get(n) != want[n] and not n.endswith("/run.json")}
+                    if done.returncode == 0:
+                        outcome["made again"] += 1
+                    else:
+                        outcome["reported"] += 1
+                        self.assertIn(pathlib.Path(name).name, done.stderr)
+                    changed = others - NIGHTLY
+                    if done.returncode:  # its campaign fails, and the page of its machine says so
+                        changed = {n for n in changed if not n.startswith((name.split("/")[0] + "/", "machines/")) and n != name}
+                    self.assertFalse(changed, done.stderr)
+                path.parent.mkdir(exist_ok=True)
+                path.write_bytes(bytes_before)
+                self.night("2026-11-12")
+        print(outcome, flush=True)
+        self.assertTrue(all(outcome.values()), outcome)
 
     def rows(self):
         done = subprocess.run([NONIO, "query", self.out, "Mk m0", "--quantity", "B_mean", "--superseded", "--json"], capture_output=True, text=True)

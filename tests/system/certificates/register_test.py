@@ -49,6 +49,10 @@ class Register(NumberedTest):
         self.assertEqual((code, state), (5, "fails"))
         self.assertIn("withdrawn: wrong stamp", says)
         (self.site / "certificates.sqlite").rename(self.root / "away")
+        done, answers = self.verify(self.pdf("c1"))
+        self.assertEqual((done.returncode, answers), (2, []))
+        self.assertIn("restore it from the backup", done.stderr)
+        (self.site / "certificates.sqlite.identity").unlink()
         code, state, says = self.register_says(self.pdf("c1"))
         self.assertEqual((code, state), (5, "not checked"))
 
@@ -81,8 +85,37 @@ class Register(NumberedTest):
         self.site = original
         self.assertIn("never issued " + number(4), self.register_says(self.pdf("c2", out=out))[2])
         (self.site / "certificates.sqlite").unlink()
+        (self.site / "certificates.sqlite.identity").unlink()
         self.night(out=self.root / "fresh")
         self.assertIn("was issued by the register", self.register_says(here)[2])
+
+    def test_an_older_state_draws_no_number(self):
+        """Register and output folder from one backup: the site has seen more."""
+        self.signed_campaign("c1")
+        self.night()
+        register = self.site / "certificates.sqlite"
+        shutil.copy(register, self.root / "backup")
+        shutil.copytree(self.out, self.root / "out of the backup")
+        self.signed_campaign("c2")
+        self.night()
+        shutil.copy(self.root / "backup", register)
+        shutil.rmtree(self.out)
+        shutil.copytree(self.root / "out of the backup", self.out)
+        self.assertIn("older state", self.night(expect=2).stderr)
+        with sqlite3.connect(register) as database:
+            self.assertEqual(database.execute("SELECT count(*) FROM certificates").fetchall(), [(1,)])
+        database.close()
+        done = run(NONIO, "certificates", self.site, "--audit", check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("older state", done.stdout)
+
+    def test_nothing_is_issued_from_a_journal_that_was_changed(self):
+        self.signed_campaign("c1")
+        self.night()
+        self.change_register("UPDATE journal SET says = replace(says, 'c1', 'c9') WHERE what = 'drawn'")
+        self.signed_campaign("c2")
+        self.assertIn("is not what was written", self.night(expect=2).stderr)
+        self.assertEqual(len(self.entries()), 1)
 
     def test_only_what_needs_a_number_waits_for_a_locked_register(self):
         self.site_with(extra="[certificate]\nregister_seconds = 2\n")
@@ -191,6 +224,7 @@ class Register(NumberedTest):
         self.night()
         before = self.issued_files()
         self.change_register("DROP TABLE journal", "DROP TABLE site", "DROP TABLE drafts", "PRAGMA user_version = 1")
+        (self.site / "certificates.sqlite.identity").unlink()
         self.assertEqual(self.register_says(self.pdf("c1"))[1], "holds")
         self.night("--force")
         self.assertEqual(self.issued_files(), before)

@@ -42,6 +42,35 @@ class Releases(NumberedTest):
         register.close()
         return [(what, n, json.loads(says)) for what, n, says in entries]
 
+    def test_of_persons_at_once_one_approves_and_the_others_learn_who(self):
+        self.by_hand()
+        self.signed_campaign("c1")
+        self.night()
+        people = ["A. Bianchi", "Bruno Verdi", "Ada Neri", "B"]
+        racing = [subprocess.Popen([NONIO, "release", self.site / "c1", "--by", p, "--reason", f"{KNOWN}=reason of {p}"], env=self.environment,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for p in people]
+        ended = {p: (*r.communicate(timeout=300), r.returncode) for p, r in zip(people, racing)}
+        first = [p for p, (_, _, status) in ended.items() if status == 0]
+        self.assertEqual(len(first), 1, ended)
+        self.assertEqual([e["released_by"] for e in self.entries()], first)
+        for person, (said, why, status) in ended.items():
+            if person != first[0]:
+                self.assertIn(status, (1, 2))
+                self.assertNotIn("issued for", said)
+                self.assertIn(f"approved by {first[0]} at ", why)
+
+    def test_names_are_what_they_look_like(self):
+        self.by_hand(more="two_persons = true\n")
+        self.signed_campaign("c1")
+        self.night()
+        for name in ("Ada\u202e", "A\u200bda", "Ad\u0430", "\uff21da", "Ada\u00a0Neri", "e\u0301va", "\u0410da", ""):
+            self.release_verb("--by", name, expect=2)
+        for name in ("Ren\u00e9e O'Hara-M\u00fcller", "\u0410\u0434\u0430 Neri", "\u5c71\u7530 \u592a\u90ce"):
+            self.release_verb("--by", name, expect=0)
+        self.release_verb("--by", "Ada Neri", expect=0)
+        for name in ("Ada Neri", "ada neri.", "AdaNeri"):
+            self.assertEqual(self.release_verb("--by", name, "--as", "authoriser").returncode, 2)
+
     def test_a_night_makes_a_draft_and_a_person_releases_it(self):
         self.by_hand()
         self.signed_campaign("c1")

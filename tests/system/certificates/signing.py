@@ -75,6 +75,7 @@ class Keys:
         run("openssl", "pkcs12", "-export", "-inkey", folder / "ada.key", "-in", folder / "ada.pem", "-certfile", self.ca,
             "-out", self.p12, "-passout", f"pass:{PASSWORD}")
         (folder / "password").write_text(PASSWORD + "\n")
+        (folder / "password").chmod(0o600)
 
     def new(self, name, subject, kind):
         algorithm = (["-algorithm", "EC", "-pkeyopt", "ec_paramgen_curve:P-256"] if kind == "P-256"

@@ -115,7 +115,7 @@ class Tables(BenchTest):
         self.assertLess(found["predictions"][0]["after"]["B_um"], 0.01)
 
     def test_every_format_is_read_back(self):
-        """What the night writes, apply predicts the same of."""
+        """What the run writes, apply predicts of it."""
         below = [-x for x in TARGETS[::-1]]
         for control, options, file in (
                 ("siemens-840d", "", "siemens-840d-X-EEC.ini,siemens-840d-X-backlash.ini"),
@@ -144,7 +144,9 @@ class Tables(BenchTest):
             self.assertEqual(found["control"], control)
             E = found["predictions"][0]
             self.assertLess(E["after"]["M_um"], 0.35 * E["before"]["M_um"], control + options)
-            self.assertAlmostEqual(E["after"]["E_um"], written["E"], places=6, msg=control + options)
+            # What is promised is what the files do, but not less than U of the reversal that they take away.
+            self.assertLess(E["after"]["E_um"], written["E"] + 1e-6, control + options)
+            self.assertLess(written["E"], E["after"]["E_um"] + 0.05, control + options)
 
 
 class Probe(BenchTest):

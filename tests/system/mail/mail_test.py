@@ -126,6 +126,7 @@ class Mail(unittest.TestCase):
         cls.certificate = made_certificate(cls.folder, "localhost")
         cls.other = made_certificate(cls.folder, "other.test")
         (cls.folder / "password").write_text(PASSWORD + "\n")
+        (cls.folder / "password").chmod(0o600)
 
     @classmethod
     def tearDownClass(cls):

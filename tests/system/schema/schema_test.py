@@ -33,7 +33,7 @@ ONLY_PROGRAM = [
     (r"measurement\.8\.centre(\.[XY])?", "the axes of a circle's centre are those of its plane"),
     (r"measurement\.3\.(square|square_turned)|square(\.0(\.id)?)?", "a line on a square that there is"),
     (r"model\.formula\.0\.(axis|expression|parameters.*)", "a formula that is none on this machine"),
-    (r"signing(\.(pkcs12|pkcs11|password_\w+|trust))?", "which keys stand together"),
+    (r"signing(\.(pkcs12|pkcs11|password_\w+|trust|time_stamp_roots|signer|signers(\.0\.(from|until))?))?", "which keys stand together; the last day not before the first"),
     (r"mail\.(to|smtp|sendmail|user|password_\w+)(\.\d+)?", "which keys stand together; addresses"),
     (r"certificate\.numbering", "a pattern of numbers"),
     (r"certificate\.register|database\.(register|schema)", "one register, apart from the history"),

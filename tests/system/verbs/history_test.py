@@ -101,7 +101,7 @@ class HistoryVerbs(VerbTest):
         self.assertIn("d has vanished", self.night(expect=1).stderr)
         (self.site / "site.toml").write_text("[limits]\nvanished = 1\n")
         self.night()
-        (self.site / "site.toml").unlink()
+        (self.site / "site.toml").write_text("# all limits are removed\n")
         self.nonio("forget", self.site, "d", "--by", "B", "--why", "sold")
         self.assertNotIn("vanished", self.night().stderr)
 

@@ -96,6 +96,11 @@ def cases():
     own = lambda: rows(next(number))
     turn = lambda r: [x if x[0] != 3 else x[:3] + [y[3]] for x, y in zip(r, [
         z for k in range(0, len(r), 11) for z in r[k:k + 11][::-1]])]
+    def moved(r):
+        """One pass, of which each row has the reading of the next target."""
+        one = sorted((x for x in r if x[0] == 2 and x[1] == "+"), key=lambda x: x[2])
+        value = {a[2]: b[3] for a, b in zip(one, one[1:] + one[-1:])}
+        return [x[:3] + [value[x[2]]] if x[0] == 2 and x[1] == "+" else x for x in r]
     bump = lambda r: [x[:3] + [x[3] + 12 * math.exp(-((x[2] - 300) / 120) ** 2)] for x in r]
     drift = lambda text: text.replace("drift_um = 0.6", "drift_um = 190")
     tomorrow = (datetime.date.today() + datetime.timedelta(days=700)).isoformat()
@@ -110,6 +115,7 @@ def cases():
         "deviation-beyond-pitch": (sub(("screw_pitch_mm = 10.0", "screw_pitch_mm = 1.0")),
                                    {"x.csv": csv([x[:3] + [x[3] + (520 if 450 < x[2] < 550 else 0)] for x in own()])}),
         "scatter-too-large": read(lambda r: [x[:3] + [x[3] + 350 * (x[0] - 3)] for x in r]),
+        "rows-shifted": read(lambda r: moved([x[:3] + [x[3] + 9 * math.sin(x[2] / 120)] for x in r])),
         "readings-all-equal": read(lambda r: scaled(1, 0)(r, None)),
         "deviation-below-uncertainty": (sub(("U_fixed_um = 0.1", "U_fixed_um = 100")), {}),
         "deviation-too-small": (sub(("U_fixed_um = 0.1\nU_per_m_um = 0.5", "U_fixed_um = 0.001\nU_per_m_um = 0.0")),

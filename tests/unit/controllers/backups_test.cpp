@@ -3,6 +3,7 @@
 // What comes back from a control: cut anywhere, with the line ends of Windows, with comments. It is
 // read as the whole table, or not at all.
 #include <cmath>
+#include <cstring>
 
 #include "workshop.h"
 
@@ -95,7 +96,58 @@ std::string with_windows_ends(const std::string& text) {
   return out;
 }
 
+/// The line with the last digit of its last number changed; empty if it has no number.
+std::string changed(std::string line) {
+  const std::size_t at = line.find_last_of("0123456789");
+  if (at == std::string::npos) return {};
+  line[at] = line[at] == '9' ? '1' : static_cast<char>(line[at] + 1);
+  return line;
+}
+
+/// Without a number that the control takes: notes, names of files and sections. A second line of
+/// CONFIG.CMA is another set of tables, of which one is active.
+bool is_note(const std::string& line, const std::string& file) {
+  const std::size_t at = line.find_first_not_of(" \t");
+  if (at == std::string::npos || file.ends_with("CONFIG.CMA")) return true;
+  for (const char* begin : {"#", ";", "//", "%_N_", "["})
+    if (line.compare(at, std::strlen(begin), begin) == 0) return true;
+  return false;
+}
+
 }  // namespace
+
+// One law for all: what stands twice, once with another number, is an error or has an effect. A
+// parser that ignores it shows another table than the control has.
+TEST(Backup, ASecondLineWithAnotherNumberIsNamedOrHasAnEffect) {
+  for (const Kind& k : kinds()) {
+    const Controller output = plugin(k.path);
+    const auto r = machine(k.below).write(output, with_axes(k));
+    ASSERT_TRUE(r) << k.name;
+    const auto whole = read_back(output, r->artifacts, with_axes(k), {{.name = "X"}});
+    ASSERT_TRUE(whole) << k.name;
+    int named = 0, seen = 0;
+    for (std::size_t f = 0; f < r->artifacts.size(); ++f) {
+      if (r->artifacts.size() > 1 && r->artifacts[f].name.ends_with(".txt"))
+        continue;  // words for people
+      const std::string& bytes = r->artifacts[f].bytes;
+      for (std::size_t from = 0, end = 0; (end = bytes.find('\n', from)) != std::string::npos;
+           from = end + 1) {
+        const std::string line = bytes.substr(from, end - from), other = changed(line);
+        if (other.empty() || is_note(line, r->artifacts[f].name)) continue;
+        auto files = r->artifacts;
+        files[f].bytes.insert(end + 1, other + "\n");
+        const auto read = read_back(output, files, with_axes(k), {{.name = "X"}});
+        if (!read)
+          ++named;
+        else if (!same(*read, *whole, true))
+          ++seen;
+        else
+          ADD_FAILURE() << k.name << ", " << files[f].name << ": ignored: " << other;
+      }
+    }
+    EXPECT_GT(named + seen, 2) << k.name;
+  }
+}
 
 TEST(Backup, CutAtEveryByteItIsTheWholeTableOrNone) {
   for (const Kind& k : kinds()) {

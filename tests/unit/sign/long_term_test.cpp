@@ -29,10 +29,10 @@ class LongTerm : public testing::Test {
   }
   sign::Verifier verifier(sign::Time at, const std::string& lists = "") const {
     sign::Verifier v;
-    v.trust = pem(root);
-    v.signer = "CN=Ada Bianchi,O=Laboratorio di Prova";
+    v.signer_roots = v.time_stamp_roots = pem(root);
+    v.signers = {{"CN=Ada Bianchi,O=Laboratorio di Prova"}};
     v.now = at;
-    v.revocation = lists;
+    if (!lists.empty()) v.revocation = lists;
     return v;
   }
   std::string list(sign::Time made, const Holder* revoked = nullptr, sign::Time when = 0,
@@ -263,10 +263,10 @@ TEST_F(LongTerm, OnlyOfWhatHolds) {
   forged[forged.find("E = 4.5")] = 'F';
   EXPECT_FALSE(prolong(forged, now + 2 * day, list(now + day), time));
   sign::Prolonging stranger = how(now + 2 * day, list(now + day));
-  stranger.verifier.signer = "CN=Somebody Else";
+  stranger.verifier.signers = {{"CN=Somebody Else"}};
   EXPECT_FALSE(sign::prolong(issued(), stranger));
   stranger = how(now + 2 * day, list(now + day));
-  stranger.verifier.trust = "";
+  stranger.verifier.signer_roots = "";
   EXPECT_FALSE(sign::prolong(issued(), stranger));
 }
 

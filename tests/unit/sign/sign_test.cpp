@@ -18,8 +18,8 @@ const Holder& root() {
 
 sign::Verifier trusting(const std::string& signer = "CN=Ada Bianchi,O=Laboratorio di Prova") {
   sign::Verifier v;
-  v.trust = pem(root());
-  v.signer = signer;
+  v.signer_roots = v.time_stamp_roots = pem(root());
+  if (!signer.empty()) v.signers = {{signer}};
   v.now = now;
   return v;
 }
@@ -86,7 +86,7 @@ TEST(Sign, WithoutAnExpectedSignerOrTrustedRootsTheSignatureDoesNotHold) {
   EXPECT_EQ(state_of(verified, "signer.expected"), Check::State::not_checked);
   EXPECT_FALSE(verified.holds());
   verifier = trusting();
-  verifier.trust = "";
+  verifier.signer_roots = "";
   verified = sign::verify_pdf(bytes, verifier);
   EXPECT_EQ(state_of(verified, "certificate.chain"), Check::State::not_checked);
   EXPECT_FALSE(verified.holds());

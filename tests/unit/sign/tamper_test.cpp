@@ -28,8 +28,8 @@ struct Scene {
   std::string plain, stamped;
 
   Scene() {
-    verifier.trust = pem(root);
-    verifier.signer = "CN=Ada Bianchi,O=Laboratorio di Prova";
+    verifier.signer_roots = verifier.time_stamp_roots = pem(root);
+    verifier.signers = {{"CN=Ada Bianchi,O=Laboratorio di Prova"}};
     verifier.now = now;
     plain = make(open(ada, root), {});
     stamped = make(open(ada, root), server.stamping(pem(root)));
@@ -252,6 +252,27 @@ TEST(Tamper, ASignerNamedByTheKeyAlone) {
     EXPECT_EQ(s.fails(with(s.plain, s.plain.substr(gap + 1, end - gap - 2), digits)),
               "signature.form");
   }
+}
+
+/// The signer's own key may sign what says another time than the document; readers of PDF show it.
+TEST(Tamper, ASignedAttributeMoreIsRefused) {
+  const Scene& s = scene();
+  const std::size_t gap = s.plain.find("/Contents <30") + 10, end = s.plain.find('>', gap) + 1;
+  const std::string content = s.plain.substr(0, gap) + s.plain.substr(end);
+  const unsigned flags = CMS_BINARY | CMS_DETACHED | CMS_NOSMIMECAP | CMS_CADES;
+  BIO* in = BIO_new_mem_buf(content.data(), static_cast<int>(content.size()));
+  CMS_ContentInfo* cms = CMS_sign(nullptr, nullptr, nullptr, nullptr, flags | CMS_PARTIAL);
+  CMS_add1_signer(cms, s.ada.certificate.get(), s.ada.key.get(), EVP_sha256(), flags);
+  EXPECT_EQ(CMS_final(cms, in, nullptr, flags), 1);  // with a time of signing
+  std::string digits = hex_of(der(cms, &i2d_CMS_ContentInfo));
+  CMS_ContentInfo_free(cms);
+  BIO_free(in);
+  ASSERT_LE(digits.size(), end - gap - 2);
+  digits.resize(end - gap - 2, '0');
+  const std::string forged = with(s.plain, s.plain.substr(gap + 1, end - gap - 2), digits);
+  EXPECT_EQ(s.fails(forged), "signature.form");
+  for (const Check& c : sign::verify_pdf(forged, s.verifier).checks)
+    if (c.id == "signature.form") EXPECT_NE(c.says.find("signed attributes"), std::string::npos);
 }
 
 TEST(Tamper, AnExpiredCertificate) {

@@ -78,7 +78,10 @@ constexpr Key forgotten_keys[] = {
      .holds = text,
      .help = "Id of a campaign, or another file or folder of the site (machines/S-0042.toml, "
              "events.toml), that was removed on purpose.",
-     .required = true},
+     .required = true,
+     .wanted = "expected the id of a campaign, or a path below the site (machines/S-0042.toml); "
+               "found \"{}\"",
+     .text = {.not_letters = "\\\n\t", .not_first = ". -/", .longest = 200}},
     written_by,
     {.name = "why", .holds = text, .help = "Reason for the removal.", .required = true},
 };

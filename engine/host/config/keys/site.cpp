@@ -209,6 +209,14 @@ constexpr Key results_keys[] = {
 };
 
 constexpr Choice fail_or_sign[] = {{"fail"}, {"sign"}};
+constexpr Key signer_keys[] = {
+    {.name = "who",
+     .holds = text,
+     .help = "Subject of the certificate, or its SHA-256.",
+     .required = true},
+    {.name = "from", .holds = date, .help = "First day of its signatures."},
+    {.name = "until", .holds = date, .help = "Last day of its signatures."},
+};
 constexpr Key signing_keys[] = {
     {.name = "pkcs12",
      .holds = text,
@@ -227,13 +235,25 @@ constexpr Key signing_keys[] = {
      .help = "Credential of systemd with the password."},
     {.name = "trust",
      .holds = text,
-     .help = "PEM file with roots, for time stamps and for `nonio verify`."},
+     .help = "PEM file with one root, for signers and for time servers; alternative to "
+             "signer_roots and time_stamp_roots."},
+    {.name = "signer_roots",
+     .holds = text,
+     .help = "PEM file with the roots of signers, for `nonio verify`."},
+    {.name = "time_stamp_roots",
+     .holds = text,
+     .help = "PEM file with the roots of time servers; they make no signer."},
     {.name = "revocation",
      .holds = text,
      .help = "PEM file with revocation lists, for `nonio verify`."},
     {.name = "signer",
      .holds = text,
-     .help = "Signer that `nonio verify` expects: subject, or SHA-256 of the certificate."},
+     .help = "Signer that `nonio verify` expects: subject, or SHA-256 of the certificate; "
+             "alternative to signers."},
+    {.name = "signers",
+     .holds = tables,
+     .help = "Signers that `nonio verify` expects, each with the days on which it signed.",
+     .keys = signer_keys},
     {.name = "time_stamp",
      .holds = text,
      .help = "Address of a time-stamp server, http://...",

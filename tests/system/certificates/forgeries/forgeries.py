@@ -37,6 +37,7 @@ class Keys:
         self.folder = folder
         folder.mkdir()
         (folder / "password").write_text("correct horse\n")
+        (folder / "password").chmod(0o600)
         for root in ("root", "strange-root"):
             openssl("req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "3650", "-keyout",
                     self.key(root), "-out", self.pem(root), "-subj", "/O=Sample Authority/CN=Sample Root",

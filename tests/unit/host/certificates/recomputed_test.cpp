@@ -34,6 +34,23 @@ TEST(Recomputed, AnyDifferenceIsSaid) {
   EXPECT_NE(why(R"({"analyses": []})", R"({"analyses": []})"), "");
 }
 
+/// Ours reads the last one, others the first: nobody may see two values in one document.
+TEST(Recomputed, AKeyTwiceIsNoResult) {
+  const std::string once = results("11.96");
+  const std::string twice = results(R"(1.0, "value": 11.96)");
+  EXPECT_NE(why(twice, once).find("twice"), std::string::npos);
+  EXPECT_NE(why(R"({"analyses": [], )" + once.substr(1), once).find("twice"), std::string::npos);
+  EXPECT_FALSE(certificates::same_results(twice, once, {}));
+}
+
+TEST(Recomputed, ResultsAreComparedAsText) {
+  const std::string made = results("11.96");
+  EXPECT_TRUE(certificates::same_results(made, made, {}));
+  EXPECT_TRUE(certificates::same_results(results("11.960000000001"), made, {}));
+  EXPECT_FALSE(certificates::same_results(made + "\n", made, {}));
+  EXPECT_FALSE(certificates::same_results(results(" 11.96"), made, {}));
+}
+
 TEST(Recomputed, WhatIsNoResultsIsSaid) {
   for (const char* text : {"", "{", "[]", "1", R"({"analyses": 1})", R"({"analyses": [1]})",
                            R"({"analyses": [{"plugin": 1}]})"})

@@ -52,6 +52,8 @@ struct TimeStamping {
   bool required = true;  ///< no answer: no signature; else one without time stamp
   int seconds = 10;      ///< to wait for an answer
   std::string trust{};   ///< PEM of the roots that its certificate must lead to
+  /// Where it is remembered that the server did not answer: then it is not asked again. May be null.
+  std::shared_ptr<std::string> away{};
 };
 
 struct Signed {

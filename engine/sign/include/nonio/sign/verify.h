@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,11 +24,22 @@ struct Check {
   bool essential = true;
 };
 
+/// Who may have signed, and when.
+struct ExpectedSigner {
+  std::string who;               ///< the subject of the certificate, or its SHA-256
+  Time from = 0;                 ///< 0: from the beginning of the certificate's validity
+  std::optional<Time> before{};  ///< none: to its end
+};
+
 struct Verifier {
-  std::string trust{};       ///< PEM: the roots that certificates must lead to
-  std::string revocation{};  ///< PEM: revocation lists; may be empty
-  /// Who should have signed: the subject of the certificate, or its SHA-256.
-  std::string signer{};
+  /// PEM: the roots that the certificates of signers must lead to, and those of time servers. They
+  /// are apart: who may state a time may not sign certificates.
+  std::string signer_roots{}, time_stamp_roots{};
+  std::optional<std::string> revocation{};  ///< PEM: revocation lists
+  std::vector<ExpectedSigner> signers{};
+  /// Where this very file is known to have been issued: who vouches for that. Then its signer need
+  /// not be among `signers`.
+  std::string issued_by{};
   Time now = 0;
   /// Of what is inside a file with time stamps of its own: `Verified::existed` of that file.
   Time existed = 0;
@@ -48,11 +60,21 @@ struct Verified {
   bool holds() const;  ///< every check, and no essential one was left out
 };
 
+/// An error if the roots or the revocation lists are none: a file of 0 bytes, such as a download
+/// that failed, is no list of nobody.
+Expected<void> check_verifier(const Verifier& verifier);
+
+/// The certificates in a PEM file of roots.
+Expected<std::size_t> number_of_roots(const std::string& pem);
+
 /// The signature comes first, found by its place at the end of the file. Only where it holds and is
 /// of the expected signer is the rest read: what a stranger sends costs no more than its digest.
 Verified verify_pdf(std::string_view bytes, const Verifier& verifier);
 /// Of a PDF that is known to be our own, such as one from the register; nothing is checked.
 Expected<std::vector<pdf::Attachment>> unverified_attachments(std::string_view pdf);
+/// Of a PDF without the updates behind it; other files as they are.
+std::string_view issued_part(std::string_view file);
+Expected<Identity> unverified_signer(std::string_view signed_pdf);
 /// An XML document as `Key::sign` writes one: in its canonical form, with one enveloped signature
 /// over all of it. `certificate` (DER): only that signer will do, and its chain is not looked at
 /// again.

@@ -36,6 +36,10 @@ void plan_findings(const AxisTest&, const Observations&, const Axis* axis, std::
 /// Whether a deviation of this size is worth acting on: from a fifth of A on (of E without A).
 bool matters(const AxisTest&, double size);
 
+/// Whether a backlash value made from this mean reversal, with U of it, corrects more than it may
+/// spoil: U is less than half of it.
+bool is_reversal_known(double mean, double U);
+
 /// Whether the scatter of the two directions differs (see repeatability.asymmetric).
 bool scatter_is_asymmetric(const AxisTest&);
 
