@@ -189,12 +189,6 @@ int forget(ForgetWish& wish, const Common& common) {
   const char* const verb = "nonio forget";
   if (wish.date.empty()) wish.date = today();
   if (!is_day(wish.date)) return wrong_day(verb, wish.date);
-  for (const std::string& campaign : wish.campaigns)
-    if (!config::is_campaign_id(campaign) && !config::is_site_part(campaign))
-      return complain(verb,
-                      "expected the id of a campaign, or a file or folder of the site "
-                      "(machines/S-0042.toml, templates, events.toml); found \"" +
-                          campaign + "\"");
   for (const std::string& campaign : wish.campaigns) {
     if (const auto added =
             config::add_forgotten(wish.site, {wish.date, campaign, wish.by, wish.why});

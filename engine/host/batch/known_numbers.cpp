@@ -30,7 +30,7 @@ Expected<void> check_register_place(const RunOptions& options, const reading::Co
 }  // namespace
 
 Expected<std::optional<Known>> known_of(const RunOptions& options,
-                                        const reading::Context& context) {
+                                        const reading::Context& context, Look look) {
   const config::Numbering& numbering = context.site.numbering;
   const double patience = std::min(5.0, numbering.patience);
   auto known = read_apart<
@@ -44,10 +44,10 @@ Expected<std::optional<Known>> known_of(const RunOptions& options,
           return fail(sound.error());
         auto numbers = certificates::Register::entries(options.site, numbering, patience);
         if (!numbers) return fail(numbers.error());
-        if (!numbers->empty()) {
+        if (!numbers->empty() && look == Look::first) {
           auto opened = certificates::Register::open(options.site, numbering, patience);
           if (!opened) return fail(opened.error());
-          if (auto sound = opened->check_journal(); !sound) return fail(sound.error());
+          if (auto sound = opened->check_journal(false); !sound) return fail(sound.error());
         }
         signs.beat();
         auto drafts = certificates::Register::drafts(options.site, numbering, patience);

@@ -17,7 +17,10 @@ struct Known {
 };
 
 /// An error if the register cannot be read, or lies where it would be lost.
-Expected<std::optional<Known>> known_of(const RunOptions& options, const reading::Context& context);
+/// `first`: before anything is issued; then a journal that is no chain is an error too.
+enum class Look { first, again };
+Expected<std::optional<Known>> known_of(const RunOptions& options, const reading::Context& context,
+                                        Look look = Look::first);
 
 /// Order of the last number.
 std::uint64_t issued_so_far(const std::vector<certificates::RegisterEntry>& numbers);

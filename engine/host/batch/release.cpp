@@ -170,7 +170,7 @@ class Releaser {
     if (!*there) return fail(none);
     auto opened = certificates::Register::open(options_.site, numbering_);
     if (!opened) return fail(opened.error());
-    if (auto sound = opened->check_journal(); !sound) return fail(sound.error());
+    if (auto sound = opened->check_journal(true); !sound) return fail(sound.error());
     auto draft = opened->draft(id_);
     if (!draft) return fail(draft.error());
     auto last = opened->last_number(id_);

@@ -73,7 +73,7 @@ Expected<std::string> look_at_site(const RunOptions& options) {
 /// read: a summary without what was issued would pass for one of a night that issued nothing.
 Expected<void> note_certificates(Night& night, const RunOptions& options,
                                  const reading::Context& context, NightState& state) {
-  auto known = known_of(options, context);
+  auto known = known_of(options, context, Look::again);
   if (!known) return fail(known.error());
   if (!*known) {  // the next night lists it
     night.notes.push_back("the register of certificates is locked: what was issued is not listed");

@@ -145,8 +145,8 @@ class Register {
 
   Expected<Audit> audit();
   /// The part of it that costs little: an error if the journal is not a chain, or does not fit the
-  /// numbers. Nothing is issued from such a register.
-  Expected<void> check_journal();
+  /// numbers where these are looked at too. Nothing is issued from such a register.
+  Expected<void> check_journal(bool numbers);
 
  private:
   Register(std::unique_ptr<storage::Database> database, const RegisterPlace& place,

@@ -285,6 +285,12 @@ Checked<void> add_withdrawal(const fs::path& site, const Withdrawal& w) {
 }
 
 Checked<void> add_forgotten(const fs::path& site, const Forgotten& f) {
+  if (!is_campaign_id(f.campaign) && !is_site_part(f.campaign))
+    return tl::unexpected(one(Error{
+        "expected the id of a campaign, or a file or folder of the site (machines/S-0042.toml, "
+        "templates, events.toml); found \"" +
+            f.campaign + "\"",
+        forgotten_name}));
   Entry entry("forgotten");
   entry.date("date", f.date).text("campaign", f.campaign).text("by", f.by).text("why", f.why);
   return append(site, forgotten_name, entry.all(), counts(parse_forgotten, forgotten_name));

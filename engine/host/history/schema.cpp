@@ -132,7 +132,7 @@ std::optional<std::int64_t> version_of(Database& database) {
   const std::string mark = database.first("PRAGMA user_version");
   std::int64_t marked = 0;
   std::from_chars(mark.data(), mark.data() + mark.size(), marked);
-  return std::max(version, marked);
+  return marked > schema_version ? marked : version;
 }
 
 void make_tables(Database& database) {

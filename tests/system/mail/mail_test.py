@@ -232,6 +232,7 @@ class Mail(unittest.TestCase):
 
     def test_a_wrong_password_is_said_and_not_shown(self):
         (self.folder / "wrong").write_text("other\n")
+        (self.folder / "wrong").chmod(0o600)
         server = self.server(certificate=self.certificate)
         status, said, _ = self.send(self.trusted(server) + self.login("password_file = \"wrong\""))
         self.assertEqual((status, server.letters), (1, []))
