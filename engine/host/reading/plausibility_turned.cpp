@@ -291,8 +291,10 @@ void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out)
     const Curve others = by_direction[own.direction].without(own);
     Scatter scatter;
     scatter.take(others.scatter());
-    for (const auto& [direction, curve] : by_direction)
-      if (direction != own.direction) scatter.take(curve.scatter());
+    // The other direction only where these passes do not show it: its own pass of this run may be wrong too.
+    if (scatter.freedom < static_cast<double>(fewest_compared))
+      for (const auto& [direction, curve] : by_direction)
+        if (direction != own.direction) scatter.take(curve.scatter());
     const Turned how = turned(one, others, scatter, step, false);
     if (how == Turned::not_at_all) continue;
     if (count[own.direction] == 2 && count.size() == 2 &&

@@ -103,7 +103,7 @@ def cases():
         return [x[:3] + [value[x[2]]] if x[0] == 2 and x[1] == "+" else x for x in r]
     bump = lambda r: [x[:3] + [x[3] + 12 * math.exp(-((x[2] - 300) / 120) ** 2)] for x in r]
     drift = lambda text: text.replace("drift_um = 0.6", "drift_um = 190")
-    tomorrow = (datetime.date.today() + datetime.timedelta(days=700)).isoformat()
+    tomorrow = (datetime.date.today() + datetime.timedelta(days=60)).isoformat()
     shared, twice = csv(own()), csv(own())
     joint = lambda r: [x if x[2] < 500 else x[:3] + [x[3] + 12 - 8 * (x[1] == "-")] for x in r]
     one, other = own(), own()
@@ -115,7 +115,6 @@ def cases():
         "deviation-beyond-pitch": (sub(("screw_pitch_mm = 10.0", "screw_pitch_mm = 1.0")),
                                    {"x.csv": csv([x[:3] + [x[3] + (520 if 450 < x[2] < 550 else 0)] for x in own()])}),
         "scatter-too-large": read(lambda r: [x[:3] + [x[3] + 350 * (x[0] - 3)] for x in r]),
-        "rows-shifted": read(lambda r: moved([x[:3] + [x[3] + 9 * math.sin(x[2] / 120)] for x in r])),
         "readings-all-equal": read(lambda r: scaled(1, 0)(r, None)),
         "deviation-below-uncertainty": (sub(("U_fixed_um = 0.1", "U_fixed_um = 100")), {}),
         "deviation-too-small": (sub(("U_fixed_um = 0.1\nU_per_m_um = 0.5", "U_fixed_um = 0.001\nU_per_m_um = 0.0")),
@@ -174,6 +173,8 @@ def cases():
                         SECOND.format("C", "ball-centres", "c.csv").split("feed")[0], {"c.csv": ball(2, 1 / 25.4)}),
         "axis-direction": (lambda text: sub(("[instrument]", C_AXIS + "[instrument]"))(text) +
                            SECOND.format("C", "ball-centres", "c.csv").split("feed")[0], {"c.csv": ball(0)}),
+        # Last: each case has the readings of its place.
+        "rows-shifted": read(lambda r: moved([x[:3] + [x[3] + 9 * math.sin(x[2] / 150) + 5 * math.cos(x[2] / 47)] for x in r])),
     }
 
 

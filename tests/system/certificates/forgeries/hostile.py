@@ -17,7 +17,7 @@ import zlib
 
 import long_term
 from forgeries import LEAF, Keys, issue, whom
-from pdf_file import Pdf, openssl
+from pdf_file import Pdf, sign_cms
 
 NONIO = os.environ.get("NONIO_MEASURED", os.environ["NONIO"])  # another build of it, to be compared
 TIMES, MEGABYTES = 5.0, 200
@@ -46,8 +46,7 @@ def signed_by_a_stranger(body, keys):
     unsigned = signed_form(body, b"0" * 20000)
     gap = unsigned.rindex(b"/Contents <") + len(b"/Contents ")
     end = gap + 20002
-    cms = openssl("cms", "-sign", "-binary", "-cades", "-nosmimecap", "-md", "sha256", "-signer", keys.pem("namesake"), "-inkey",
-                  keys.key("namesake"), "-outform", "DER", data=unsigned[:gap] + unsigned[end:]).hex().encode()
+    cms = sign_cms(keys.key("namesake"), keys.pem("namesake"), data=unsigned[:gap] + unsigned[end:]).hex().encode()
     return unsigned[:gap + 1] + cms.ljust(20000, b"0") + unsigned[end - 1:]
 
 

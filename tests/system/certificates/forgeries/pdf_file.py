@@ -11,6 +11,41 @@ def openssl(*args, data=None):
     return subprocess.run(["openssl", *map(str, args)], input=data, capture_output=True, check=True, timeout=60).stdout
 
 
+def der(tag, content):
+    size = len(content)
+    length = bytes([size]) if size < 128 else (lambda n: bytes([128 + len(n)]) + n)(size.to_bytes((size.bit_length() + 7) // 8, "big"))
+    return bytes([tag]) + length + content
+
+
+def inner(element):
+    return element[2 if element[1] < 128 else 2 + element[1] - 128:]
+
+
+def elements(content):
+    found = []
+    while content:
+        rest = inner(content)
+        size = content[1] if content[1] < 128 else int.from_bytes(content[2:len(content) - len(rest)], "big")
+        found.append(content[:len(content) - len(rest) + size])
+        content = rest[size:]
+    return found
+
+
+def sign_cms(key, certificate, *more, data):
+    """As Nonio signs: the signed attributes of openssl without the time, signed anew."""
+    cms = openssl("cms", "-sign", "-binary", "-cades", "-nosmimecap", "-md", "sha256", "-signer", certificate, "-inkey", key, *more,
+                  "-outform", "DER", data=data)
+    kind, content = elements(inner(cms))
+    *before, infos = elements(inner(inner(content)))
+    info = elements(inner(inner(infos)))
+    signing_time = bytes.fromhex("06092a864886f70d010905")
+    attributes = b"".join(a for a in elements(inner(info[3])) if not inner(a).startswith(signing_time))
+    info[3] = der(0xA0, attributes)
+    info[5] = der(0x04, openssl("dgst", "-sha256", "-sign", key, data=der(0x31, attributes)))
+    signed = der(0x30, b"".join(before) + der(0x31, der(0x30, b"".join(info))))
+    return der(0x30, kind + der(0xA0, signed))
+
+
 class Pdf:
     """Objects by number, each as it stands in the file, from its number to the line after endobj."""
 
@@ -144,7 +179,6 @@ class Pdf:
         if not key:
             return data
         more = ["-certfile", chain] if chain else []
-        cms = openssl("cms", "-sign", "-binary", "-cades", "-nosmimecap", "-md", "sha256", "-signer", certificate, "-inkey", key,
-                      *more, "-outform", "DER", data=data[:gap] + data[end:]).hex().encode()
+        cms = sign_cms(key, certificate, *more, data=data[:gap] + data[end:]).hex().encode()
         assert len(cms) <= end - gap - 2
         return data[:gap + 1] + cms.ljust(end - gap - 2, b"0") + data[end - 1:]
