@@ -171,7 +171,7 @@ TEST(HistoryStore, OfAnotherVersionIsMadeAgainOrRefused) {
   const std::string newer = rows_of(out.root());
   done = history::update(out.root(), false, {}, told(), nothing);
   ASSERT_FALSE(done);
-  EXPECT_NE(done.error().message.find("is of version 99, this program writes 5"),
+  EXPECT_NE(done.error().message.find("is of version 99, this program writes 6"),
             std::string::npos);
   EXPECT_FALSE(history::query(out.root(), {}));
   EXPECT_EQ(rows_of(out.root()), newer);
