@@ -159,10 +159,12 @@ void SiteParts::look(const std::string& path) {
 
 /// An entry of a later day than the last that saw the file: an older one was for an earlier loss.
 void SiteParts::leave_out_removed(const std::vector<config::Forgotten>& forgotten) {
-  for (auto& [path, part] : parts_) {
-    if (part.why.empty()) continue;
+  for (const auto& one : parts_) {
+    const std::string& path = one.first;
+    if (one.second.why.empty()) continue;
     const bool removed = std::any_of(forgotten.begin(), forgotten.end(), [&](const auto& f) {
-      return f.date >= part.last_seen && (f.campaign == path || path.starts_with(f.campaign + "/"));
+      return f.date >= one.second.last_seen &&
+             (f.campaign == path || path.starts_with(f.campaign + "/"));
     });
     if (removed) removed_.push_back(path);
   }

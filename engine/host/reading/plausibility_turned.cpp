@@ -247,7 +247,7 @@ Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& sc
     };
     sign = sign && in_u(left_u, left_v, ratio, static_cast<double>(n - shapes.size()));
     const auto odd_u = odd(left_u), odd_v = odd(left_v);
-    order = order && in_u(odd_u, odd_v, ratio_of_odd, static_cast<double>(n / 2 - 1));
+    order = order && in_u(odd_u, odd_v, ratio_of_odd, static_cast<double>(odd_u.size() - 1));
     even_in_reversal = even_in_reversal && square_sum(left_u) - square_sum(odd_u) >
                                                square_sum(left_v) - square_sum(odd_v);
   }
