@@ -29,8 +29,8 @@ Expected<void> check_register_place(const RunOptions& options, const reading::Co
 
 }  // namespace
 
-Expected<std::optional<Known>> known_of(const RunOptions& options,
-                                        const reading::Context& context, Look look) {
+Expected<std::optional<Known>> known_of(const RunOptions& options, const reading::Context& context,
+                                        Look look) {
   const config::Numbering& numbering = context.site.numbering;
   const double patience = std::min(5.0, numbering.patience);
   auto known = read_apart<
