@@ -103,6 +103,8 @@ class Number(MachineTest):
         self.tables("fanuc")
         self.assertIn("N3620A3P", self.file("fanuc-Z.prm"))
         (self.site / "machines" / "S-1.toml").unlink()
+        self.assertIn("machines/S-1.toml is missing", self.nonio("run", self.site, "--out", self.out, expect=1).stderr)
+        self.nonio("forget", self.site, "machines/S-1.toml", "--by", "B", "--why", "entered by mistake")
         self.assertEqual(self.findings("fanuc"), ["table.axis-number"])
         self.record(["Z"])
         self.tables("fanuc")
