@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "nonio/sdk/format.h"
 #include "workshop.h"
 
 namespace linuxcnc_test {
