@@ -385,7 +385,7 @@ Expected<void> Numbers::issue_new(evaluation::Evaluated& evaluated) const {
   auto opened = open();
   if (!opened) return fail(opened.error());
   std::optional<Approved> approved;
-  if (releasing_ != nullptr) approved = Approved{releasing_->draft, releasing_->by};
+  if (releasing_ != nullptr) approved.emplace(Approved{releasing_->draft, releasing_->by});
   auto issued = opened->issue(*evaluated.certificate, evaluated.campaign.id,
                               data_of(evaluated, context_), approved ? &*approved : nullptr);
   if (!issued) return fail(issued.error());
