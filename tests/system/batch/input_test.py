@@ -107,7 +107,7 @@ class Input(NightTest):
             "date = 2026-11-03", 'customer = "a\\nb"'))
         self.run_nonio(expect=1)
         for name, line, words in (("output", 17, 'nearest: "json"'), ("reader", 16, "measurement.X.reader"),
-                                  ("file", 15, "measurement.X.file"), ("axes", 17, "no axis Q"),
+                                  ("file", 15, "measurement.X.file"), ("axes", 19, "no axis Q"),
                                   ("customer", 4, "campaign.customer"), ("newline", 4, "a line break")):
             file, found, message = self.place(name)
             self.assertEqual((file, found), ("campaign.toml", line), name + ": " + message)
