@@ -4,13 +4,13 @@
 
     bench/history_offsets.py PROGRAM FOLDER [--machines 40] [--seed 1] [--offsets 0 0.05 0.2 0.5] [--quiet]
 
-Invented machines (tests/support/laboratory) of 6 to 10 visits and three axes each, of which two in three have one step that nobody
-declared: reversal, scale, a bent stretch of the screw, scatter or the error of the pitch, of 3 to 12 standard uncertainties. Their curves are
+Invented machines (tests/support/laboratory) of 6 to 10 visits and three axes each, of which two in three have one undeclared
+step: reversal, scale, a bent stretch of the screw, scatter or the error of the pitch, of 3 to 12 standard uncertainties. Their curves are
 no polynomials: slow waves, a wave of an Abbe error, a kink, an error of the pitch. Each target of each visit is moved by a random part of a
 step of at most the offset; 0: evenly spaced targets, always the same. --quiet: without steps. FOLDER must be empty or not there.
 
 Prints for each offset: planted steps of which a quantity is named; quantities with a step of 3 standard uncertainties or more that are
-named; changes told of which nothing is true, out of the series in the history.
+named; reported changes that did not happen, out of the series in the history.
 """
 import argparse
 import json

@@ -264,7 +264,7 @@ class Releaser {
       return fail_with(campaigns.front().errors().empty()
                            ? "nothing was issued"
                            : campaigns.front().errors().front().message);
-    // It may be somebody else's approval with which it was issued.
+    // Another person may have approved it first.
     const auto first = opened->approval_of((*last)->number);
     if (!first) return fail_with(first.error().message);
     if (!*first || (*first)->by != approval.by || (*first)->at != approval.at ||

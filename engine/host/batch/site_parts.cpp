@@ -66,7 +66,7 @@ Expected<SiteParts> SiteParts::compare(const fs::path& site, const fs::path& out
   parts.site_ = site, parts.out_ = out / state_folder;
   if (auto read = parts.read_inventory(); !read) return fail(read.error());
   if (auto looked = parts.look_at_all(); !looked) return fail(looked.error());
-  // One that is wrong removes nothing, and is told where it is read.
+  // A log with an error removes nothing; the run reports the error where it reads the log.
   if (const auto logs = config::read_site_logs(site)) parts.leave_out_removed(logs->forgotten);
   parts.note_lost();
   return parts;
@@ -83,8 +83,12 @@ Expected<void> SiteParts::read_inventory() {
     if (json.at("schema") != inventory_schema) throw std::runtime_error("another schema");
     date_ = json.at("date").get<std::string>();
     night_ = json.at("night").get<std::uint64_t>();
-    for (const auto& [path, part] : json.at("files").items())
+    for (const auto& [path, part] : json.at("files").items()) {
+      // Files are read, written and removed by these names.
+      if (!config::is_site_part(path) || fs::path(path).lexically_normal() != path)
+        throw std::runtime_error("no path below the site");
       parts_[path] = {part.at("sha256").get<std::string>(), part.value("last_seen", date_), {}};
+    }
   } catch (const std::exception& e) {
     parts_.clear();
     damaged_ = (out_ / inventory_name).string() + " is damaged";

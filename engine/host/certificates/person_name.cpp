@@ -102,7 +102,7 @@ std::string mistake_at(Code c, bool after_letter) {
   if (!storage::is_shown(c)) return "an invisible character";
   if (in(c, blanks)) return "a blank that is not the usual one";
   if (in(c, forms))
-    return "a character that stands for another one (full width, ligature, formula)";
+    return "a compatibility character (full width, ligature, formula)";
   if (after_letter && in(c, marks))
     return "an accent apart from its letter; expected the letter with its accent as one character";
   return {};

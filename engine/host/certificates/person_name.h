@@ -6,7 +6,7 @@
 namespace nonio::host::certificates {
 
 /// What is wrong with the name of a person who approves; empty if nothing. A name is one line that
-/// looks like what it is: nothing invisible, no characters that another one stands for (NFKC), no
+/// looks like what it is: nothing invisible, no compatibility characters (NFKC), no
 /// word with letters of two alphabets.
 std::string mistake_in_name(const std::string& name);
 

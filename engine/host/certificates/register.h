@@ -151,7 +151,7 @@ class Register {
  private:
   Register(std::unique_ptr<storage::Database> database, const RegisterPlace& place,
            std::string pattern);
-  /// Ends it, and notes beside the register how far its journal goes.
+  /// Ends it, and writes the last journal entry to the identity file.
   Expected<void> end(storage::Database::Transaction& transaction);
   /// Compare and set: the draft that waits is the one that was read.
   Expected<void> check_seen(const WaitingDraft& seen, const Approval& by);

@@ -30,7 +30,7 @@ RegisterRows register_rows(const std::filesystem::path& site);
 /// "no verdict on FILE, because the register cannot be read: ..."
 std::string no_verdict(const RegisterRows& rows, const std::string& what);
 
-/// Who vouches that these bytes were issued, for `sign::Verifier::issued_by`; empty: nobody. The
+/// The register that issued these bytes, for `sign::Verifier::issued_by`; empty: none of them. The
 /// bytes of a PDF may end with updates.
 std::string issued_by(const RegisterRows& rows, std::string_view bytes);
 

@@ -203,7 +203,7 @@ Machine machine_of(const RecordFile& r) {
   return out;
 }
 
-/// Wrong, and nobody knows what was meant.
+/// Not readable, and the machine is not known.
 bool may_be_of_any(const RecordFile& r) { return !r.record && r.maker.empty() && r.serial.empty(); }
 
 }  // namespace

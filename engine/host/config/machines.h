@@ -38,8 +38,8 @@ struct MachineRecord {
 Checked<MachineRecord> parse_machine(std::string_view text, const std::string& file,
                                      const std::string& asset);
 
-/// One file of the folder. One that is wrong fails the campaigns of its machine; if nobody knows
-/// whose it is, all campaigns that name no asset and for whose machine no other record exists.
+/// One file of the folder. One that is wrong fails the campaigns of its machine; if that is
+/// not known, all campaigns that name no asset and for whose machine no other record exists.
 struct RecordFile {
   std::string asset;   ///< the name of the file
   std::string bytes;   ///< empty where it cannot be read

@@ -102,7 +102,7 @@ void put_other_targets(JsonWriter& json, const ComparedTargets& t,
   json.member("targets", hexadecimal(t.digest));
   json.member("from", printed(t.from, position));
   json.member("to", printed(t.to, position));
-  put_list(json, "beside", quantities.size(), [&](std::size_t i) {
+  put_list(json, "other_variance", quantities.size(), [&](std::size_t i) {
     const double readings = i < t.of_readings.size() ? t.of_readings[i] : variances[i];
     return printed_square(std::max(0.0, variances[i] - readings), quantities[i]);
   });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/history/schema.h"
 
-#include <algorithm>
 #include <charconv>
 #include <string>
 #include <string_view>

@@ -93,7 +93,7 @@ class Assessment::State {
     const Assessed& m = machines_[i];
     const auto lines = lines_.find(m.state.machine.name);
     ByteWriter w;
-    // With the days on which it stands the page says which dates have passed.
+    // The page is written again when the date of a forecast has passed.
     w(m.kept.stood, m.kept.standing.until, templates,
       lines == lines_.end() ? std::string() : bytes_of(lines->second),
       bytes_of(site.machines[i].proposal));

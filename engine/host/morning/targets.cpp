@@ -51,7 +51,7 @@ StoredFit fit_in(const dom::object& o, const char* name, const kernel::Stretch& 
 StoredTargets targets_in(const dom::object& o) {
   StoredTargets out{.digest = std::string(std::string_view(o["targets"])),
                     .span = {o["from"], o["to"]},
-                    .beside = numbers(o, "beside"),
+                    .other_variance = numbers(o, "other_variance"),
                     .share = numbers(o, "share")};
   out.mean = fit_in(o, "mean", out.span), out.reversal = fit_in(o, "reversal", out.span);
   return out;
@@ -110,7 +110,7 @@ std::vector<std::optional<StoredTargets>> read_targets(const std::vector<std::st
 }
 
 PointTargets targets_of(const StoredTargets& t, const std::string& quantity, std::size_t place) {
-  return {t.digest, t.span, place < t.beside.size() ? t.beside[place] : 0.0,
+  return {t.digest, t.span, place < t.other_variance.size() ? t.other_variance[place] : 0.0,
           place < t.share.size() ? t.share[place] : 0.0,
           name_in(quantity) == "B_mean" ? t.reversal : t.mean};
 }
@@ -136,12 +136,12 @@ Compared compared(std::vector<kernel::Point> points, const std::vector<PointTarg
     if (degree && *degree < of[i].fit.curve.coefficients.size()) {
       const kernel::CoefficientOver c = kernel::coefficient_over(of[i].fit.curve, over, *degree);
       p.value = factor * c.value;
-      p.u = std::sqrt(factor * factor * c.variance + of[i].beside);
+      p.u = std::sqrt(factor * factor * c.variance + of[i].other_variance);
       share = factor * factor * c.share;
       out.over = over;
     } else if (const auto at = sinusoid_of(kind, of[i].fit.sinusoids.size())) {
       const kernel::CoefficientOver& c = of[i].fit.sinusoids[*at];
-      p.value = c.value, p.u = std::sqrt(c.variance + of[i].beside), share = c.share;
+      p.value = c.value, p.u = std::sqrt(c.variance + of[i].other_variance), share = c.share;
     }
     if (beyond * share > 0.0)
       p.common.push_back({targets_source + of[i].digest, std::sqrt(beyond * share)});

@@ -25,7 +25,7 @@ struct StoredFit {
 struct StoredTargets {
   std::string digest;  ///< the same: the same targets
   nonio::history::Stretch span{};
-  std::vector<double> beside, share;  ///< of each quantity
+  std::vector<double> other_variance, share;  ///< of each quantity
   StoredFit mean{}, reversal{};
 };
 
@@ -36,7 +36,7 @@ std::vector<std::optional<StoredTargets>> read_targets(const std::vector<std::st
 struct PointTargets {
   std::string digest;
   nonio::history::Stretch span{};
-  double beside = 0.0;  ///< variance that does not come from the readings
+  double other_variance = 0.0;  ///< variance that does not come from the readings
   double share = 0.0;
   StoredFit fit{};
 };

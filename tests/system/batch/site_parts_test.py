@@ -102,7 +102,7 @@ class SiteParts(NightTest):
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_a_wrong_record_changes_no_value(self):
-        """In the first run too, where nobody knows whose it was."""
+        """In the first run too, where no earlier copy shows its machine."""
         name = "machines/S-0.toml"
         for fresh in (False, True):
             for what, change in BROKEN.items():
@@ -197,7 +197,8 @@ class SiteParts(NightTest):
 
     def test_the_inventory_itself(self):
         inventory = self.out / ".nonio/site.json"
-        for content in (None, "", "{", '{"schema": "nonio-site/1"}'):
+        for content in (None, "", "{", '{"schema": "nonio-site/1"}',
+                        '{"schema": "nonio-site/1", "date": "2026-11-10", "night": 1, "files": {"machines/../../../x": {"sha256": ""}}}'):
             with self.subTest(content):
                 put(inventory, content)
                 (self.site / "events.toml").unlink()

@@ -94,7 +94,7 @@ class Trust(NumberedTest):
         entries = self.entries()
         self.assertEqual([e["signer"]["subject"] for e in entries], [SIGNER, "CN=Bruno Verdi,O=Laboratorio di Prova"])
         self.assertEqual(entries[0]["signer"]["sha256"], re.sub("[^0-9a-f]", "", ada.split("=")[1].lower()))
-        # It is the register that vouches: the same old key signs nothing new.
+        # Only what the register contains is valid: the same old key signs nothing new.
         done = run(NONIO, "restamp", "--site", self.site, "--no-time-stamp", "--no-fetch", "--revoked", self.key.revocation_list(),
                    "--out", self.root / "kept", old[0], check=False)
         self.assertEqual(done.returncode, 0, done.stderr)

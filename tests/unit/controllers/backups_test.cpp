@@ -116,7 +116,7 @@ bool is_note(const std::string& line, const std::string& file) {
 
 }  // namespace
 
-// One law for all: what stands twice, once with another number, is an error or has an effect. A
+// One law for all: a line that is repeated with another number is an error or has an effect. A
 // parser that ignores it shows another table than the control has.
 TEST(Backup, ASecondLineWithAnotherNumberIsNamedOrHasAnEffect) {
   for (const Kind& k : kinds()) {

@@ -37,7 +37,7 @@ struct Verifier {
   std::string signer_roots{}, time_stamp_roots{};
   std::optional<std::string> revocation{};  ///< PEM: revocation lists
   std::vector<ExpectedSigner> signers{};
-  /// Where this very file is known to have been issued: who vouches for that. Then its signer need
+  /// The register that contains this very file as issued; empty: none. Then its signer need
   /// not be among `signers`.
   std::string issued_by{};
   Time now = 0;
@@ -61,7 +61,7 @@ struct Verified {
 };
 
 /// An error if the roots or the revocation lists are none: a file of 0 bytes, such as a download
-/// that failed, is no list of nobody.
+/// that failed, is not an empty list.
 Expected<void> check_verifier(const Verifier& verifier);
 
 /// The certificates in a PEM file of roots.
