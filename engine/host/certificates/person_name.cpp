@@ -101,8 +101,7 @@ bool is_letter_or_digit(Code c) {
 std::string mistake_at(Code c, bool after_letter) {
   if (!storage::is_shown(c)) return "an invisible character";
   if (in(c, blanks)) return "a blank that is not the usual one";
-  if (in(c, forms))
-    return "a compatibility character (full width, ligature, formula)";
+  if (in(c, forms)) return "a compatibility character (full width, ligature, formula)";
   if (after_letter && in(c, marks))
     return "an accent apart from its letter; expected the letter with its accent as one character";
   return {};
