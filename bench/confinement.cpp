@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "host/batch/run.h"
+#include "batch/run.h"
 
 namespace {
 
@@ -29,16 +29,16 @@ double seconds(const timeval& t) {
 }
 
 /// One first night in a process of its own.
-Cost night(nonio::host::batch::RunOptions options, bool confine) {
+Cost night(nonio::batch::RunOptions options, bool confine) {
   fs::remove_all(options.out);
   options.confine = confine;
   const auto begin = std::chrono::steady_clock::now();
   const pid_t pid = ::fork();
   if (pid == 0) {
-    const nonio::host::batch::RunEvents silent{[](const auto&) {}, [](auto, auto) {},
-                                               [](const auto&) {}, [] {}};
-    const auto done = nonio::host::batch::run_site(options, silent);
-    std::_Exit(done.end == nonio::host::batch::Night::End::complete ? 0 : 1);
+    const nonio::batch::RunEvents silent{[](const auto&) {}, [](auto, auto) {}, [](const auto&) {},
+                                         [] {}};
+    const auto done = nonio::batch::run_site(options, silent);
+    std::_Exit(done.end == nonio::batch::Night::End::complete ? 0 : 1);
   }
   int status = 0;
   rusage usage{};
@@ -60,7 +60,7 @@ double median(std::vector<double> all) {
 
 int main(int argc, char** argv) {
   if (argc < 4) return std::fputs("bench_confinement SITE PLUGINS TEMPLATES [ROUNDS]\n", stderr), 2;
-  nonio::host::batch::RunOptions options;
+  nonio::batch::RunOptions options;
   options.site = argv[1];
   options.own_plugins = argv[2];
   options.plugin_folders = {options.own_plugins};

@@ -25,8 +25,8 @@
 #include <string>
 #include <utility>
 
+#include "campaign/loader/plugins.h"
 #include "hidden/generator.h"
-#include "host/loader/plugins.h"
 #include "nonio/math/distributions.h"
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
@@ -540,7 +540,7 @@ int main(int argc, char** argv) {
                  "[--digit SIZE]\n");
     return 2;
   }
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load({a->plugins.lexically_normal()});
   if (plugins.effects().empty()) {
     std::fprintf(stderr, "bench_hidden: no effect in %s\n", a->plugins.c_str());

@@ -13,8 +13,8 @@
 #include <optional>
 #include <string>
 
+#include "campaign/loader/plugins.h"
 #include "hidden/space.h"
-#include "host/loader/plugins.h"
 #include "nonio/model/explain.h"
 #include "tally.h"
 
@@ -146,7 +146,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::error_code error;
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load(
       {(fs::read_symlink("/proc/self/exe", error).parent_path() / NONIO_PLUGINS_FROM_PROGRAM)
            .lexically_normal()});

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "host/batch/morning_update.h"
-#include "host/config/template_files.h"
-#include "host/history/place.h"
-#include "host/history/store.h"
+#include "batch/close/morning_update.h"
+#include "campaign/config/template_files.h"
+#include "laboratory/store/place.h"
+#include "laboratory/store/store.h"
 
 namespace {
 
-namespace history = nonio::host::history;
+namespace history = nonio::store;
 
 int complain(const nonio::Error& error) {
   std::fprintf(stderr, "%s\n", error.message.c_str());
@@ -50,8 +50,8 @@ class Clock {
 
 int update(const std::string& what, const char* out, const std::vector<std::string>& campaigns) {
   const Clock clock;
-  const auto done = what == "rebuild" ? history::rebuild(out, {}, [] {})
-                                      : history::update(out, false, campaigns, {}, [] {});
+  const auto done = what == "rebuild" ? store::rebuild(out, {}, [] {})
+                                      : store::update(out, false, campaigns, {}, [] {});
   const std::string took = clock.text();
   if (!done) return complain(done.error());
   std::printf("%s: %llu evaluations in %s%s, %zu left out\n", what.c_str(),
@@ -62,16 +62,16 @@ int update(const std::string& what, const char* out, const std::vector<std::stri
 
 /// As the end of a night makes it.
 int morning(const char* out, const char* templates) {
-  nonio::host::reading::Context context;
-  auto read = nonio::host::config::read_templates({templates}, context.templates_sha256);
+  nonio::readers::Context context;
+  auto read = nonio::config::read_templates({templates}, context.templates_sha256);
   if (!read) return complain(read.error());
   context.templates = std::move(*read);
-  nonio::host::batch::RunOptions options;
+  nonio::batch::RunOptions options;
   options.out = out;
-  nonio::host::morning::Tonight tonight;
+  nonio::assessment::Tonight tonight;
   tonight.night = 2, tonight.date = "2026-03-20", tonight.campaigns = 100'000;
   const Clock clock;
-  const auto made = nonio::host::batch::make_morning(options, context, tonight);
+  const auto made = nonio::batch::make_morning(options, context, tonight);
   const std::string took = clock.text();
   if (!made) return complain(made.error());
   std::printf("morning: %s, %zu characters of lines\n", took.c_str(), made->json.size());
@@ -84,8 +84,7 @@ int main(int argc, char** argv) {
   if (argc < 3) return 2;
   const std::string what = argv[1];
   if (what == "server")
-    return argc == 4 &&
-                   history::note_place(argv[2], nonio::host::storage::Server{argv[3], "bench", {}})
+    return argc == 4 && store::note_place(argv[2], nonio::storage::Server{argv[3], "bench", {}})
                ? 0
                : 2;
   if (what == "morning") return argc == 4 ? morning(argv[2], argv[3]) : 2;

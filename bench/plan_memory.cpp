@@ -13,13 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "host/batch/earlier_results.h"
-#include "host/batch/night_plan.h"
-#include "host/batch/survey.h"
-#include "host/storage/digest.h"
+#include "batch/state/night_plan.h"
+#include "batch/survey/earlier_results.h"
+#include "batch/survey/survey.h"
+#include "platform/storage/digest.h"
 
 using namespace nonio;
-using namespace nonio::host;
+using namespace nonio;
 using batch::CampaignState, batch::KeptText;
 
 namespace {

@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 # In a folder of their own: no program but nonio and its plugins is to link with them, and they keep no ABI between versions.
 install(TARGETS nonio_sdk EXPORT nonio ARCHIVE DESTINATION ${NONIO_LIBRARY_SUBDIR} COMPONENT dev)
 install(TARGETS nonio_math EXPORT nonio LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_COMPONENT dev)
-install(TARGETS nonio_history nonio_model nonio_pdf nonio_sign nonio_host nonio_reports LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_SKIP)
+install(TARGETS nonio_statistics nonio_model nonio_pdf nonio_sign nonio_engine nonio_reports LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR} NAMELINK_SKIP)
 get_property(late GLOBAL PROPERTY NONIO_LATE_LIBRARIES)
 install(TARGETS ${late} LIBRARY DESTINATION ${NONIO_LIBRARY_SUBDIR})
 set(public sdk)

@@ -6,17 +6,15 @@
 namespace nonio::app {
 
 tl::expected<OpenCampaign, int> open_campaign(const char* verb, const std::string& folder,
-                                              const Common& common,
-                                              host::reading::TemplatesFor what) {
+                                              const Common& common, reading::TemplatesFor what) {
   OpenCampaign open{folder, nullptr, {}};
-  auto place = host::reading::open_workplace(open.folder, common.plugin_folders(),
-                                             common.template_folders(), NONIO_VERSION, what);
+  auto place = reading::open_workplace(open.folder, common.plugin_folders(),
+                                       common.template_folders(), NONIO_VERSION, what);
   if (!place) return tl::unexpected(complain(verb, text_of(place.error())));
   open.place = std::move(*place);
   if (!common.quiet)
     for (const std::string& note : open.place->notes) complain(verb, note);
-  open.read =
-      host::reading::read_campaign(open.folder, open.place->context, [](const std::string&) {});
+  open.read = reading::read_campaign(open.folder, open.place->context, [](const std::string&) {});
   for (const Error& e : open.read.errors) complain(verb, text_of(e));
   if (!common.quiet)
     for (const Remark& note : open.read.notes)
@@ -29,8 +27,8 @@ tl::expected<OpenCampaign, int> open_campaign(const char* verb, const std::strin
   return tl::unexpected(exit_failed);
 }
 
-host::modelling::ModelWords words_for(const OpenCampaign& open, const Common& common) {
-  const host::reading::Context& context = open.place->context;
+modelling::ModelWords words_for(const OpenCampaign& open, const Common& common) {
+  const reading::Context& context = open.place->context;
   return {context.templates, common.json ? "en" : context.site.language};
 }
 

@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "campaign/modelling/campaign_model.h"
+#include "campaign/modelling/model_words.h"
 #include "common.h"
-#include "host/modelling/campaign_model.h"
-#include "host/modelling/model_words.h"
 
 namespace nonio::app {
 
 /// The campaign that a verb is about.
 struct OpenCampaign {
   std::filesystem::path folder;
-  std::unique_ptr<host::reading::Workplace> place;
-  host::reading::ReadCampaign read;
+  std::unique_ptr<reading::Workplace> place;
+  reading::ReadCampaign read;
   const Campaign& campaign() const { return read.manifest->campaign; }
 };
 
@@ -25,10 +25,10 @@ struct OpenCampaign {
 /// single measurements stay in `read.errors` and leave the others.
 tl::expected<OpenCampaign, int> open_campaign(
     const char* verb, const std::string& folder, const Common& common,
-    host::reading::TemplatesFor what = host::reading::TemplatesFor::documents);
+    reading::TemplatesFor what = reading::TemplatesFor::documents);
 
 /// Sentences in the language of the site, or English for JSON.
-host::modelling::ModelWords words_for(const OpenCampaign& open, const Common& common);
+modelling::ModelWords words_for(const OpenCampaign& open, const Common& common);
 
 /// "CAMPAIGN", --templates and the common options.
 std::vector<Argument> campaign_arguments(std::string& folder, Common& common);

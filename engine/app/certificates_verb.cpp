@@ -4,12 +4,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/certificates/certificate_list.h"
+#include "certificates/certificate_list.h"
 #include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
-using host::certificates::RegisterEntry;
+using certificates::RegisterEntry;
 
 namespace {
 
@@ -58,11 +58,10 @@ int refuse(const Error& error) {
   return exit_usage;
 }
 
-int audit(const CertificateWish& wanted, const host::config::Numbering& numbering,
-          const Common& common) {
-  const auto found = host::certificates::audit(wanted.site, numbering);
+int audit(const CertificateWish& wanted, const config::Numbering& numbering, const Common& common) {
+  const auto found = certificates::audit(wanted.site, numbering);
   if (!found) return refuse(found.error());
-  const host::certificates::Audit& a = *found;
+  const certificates::Audit& a = *found;
   if (common.json) {
     std::cout
         << Json{{"schema", "nonio-audit/1"}, {"sound", a.wrong.empty()},       {"register", a.id},
@@ -86,18 +85,18 @@ int audit(const CertificateWish& wanted, const host::config::Numbering& numberin
 int certificates(const CertificateWish& wanted, const Common& common) {
   if (wanted.withdraw.empty() != wanted.why.empty())
     return refuse(Error{"--withdraw NUMBER and --why TEXT go together"});
-  const auto numbering = host::certificates::numbering_of(wanted.site);
+  const auto numbering = certificates::numbering_of(wanted.site);
   if (!numbering) return refuse(numbering.error());
   if (wanted.audit) return audit(wanted, *numbering, common);
   if (!wanted.withdraw.empty()) {
-    const auto done = host::certificates::withdraw(wanted.site, *numbering, wanted.withdraw,
-                                                   wanted.why, wanted.by);
+    const auto done =
+        certificates::withdraw(wanted.site, *numbering, wanted.withdraw, wanted.why, wanted.by);
     if (!done) return refuse(done.error());
   }
-  const auto entries = host::certificates::certificates_of(wanted.site, *numbering);
+  const auto entries = certificates::certificates_of(wanted.site, *numbering);
   if (!entries) return refuse(entries.error());
   if (!wanted.out.empty())
-    if (auto written = host::certificates::export_certificates(wanted.site, *numbering, wanted.out);
+    if (auto written = certificates::export_certificates(wanted.site, *numbering, wanted.out);
         !written)
       return refuse(written.error());
   if (common.json) {

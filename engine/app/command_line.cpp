@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "colour.h"
-#include "host/storage/nearest.h"
+#include "platform/storage/nearest.h"
 
 namespace nonio::app {
 
@@ -37,10 +37,10 @@ CLI::Validator member_of(const std::vector<std::string>& choices) {
   return {[choices](const std::string& found) {
             if (std::find(choices.begin(), choices.end(), found) != choices.end())
               return std::string();
-            return "expected one of " + host::storage::listed(choices) + "; found \"" + found +
-                   "\"" + host::storage::suggestion(found, choices);
+            return "expected one of " + storage::listed(choices) + "; found \"" + found + "\"" +
+                   storage::suggestion(found, choices);
           },
-          "{" + host::storage::listed(choices) + "}"};
+          "{" + storage::listed(choices) + "}"};
 }
 
 void check(CLI::Option& option, const Argument& a) {
@@ -96,9 +96,9 @@ Found find(const Verb& top, const std::vector<std::string>& words) {
     const Verb* next = find(verbs, word);
     if (next == nullptr) {
       const auto names = names_of(verbs);
-      const std::string nearest = host::storage::suggestion(word, names);
+      const std::string nearest = storage::suggestion(word, names);
       found.wrong = found.path + ": there is no verb \"" + word + "\"" +
-                    (nearest.empty() ? "; there are " + host::storage::listed(names) : nearest);
+                    (nearest.empty() ? "; there are " + storage::listed(names) : nearest);
       break;
     }
     found.verb = next;
@@ -122,7 +122,7 @@ std::string unknown_option(const Verb& verb, std::vector<std::string> own,
     if (!is_option(words[i])) continue;
     const std::string name = words[i].substr(0, words[i].find('='));
     if (std::find(own.begin(), own.end(), name) == own.end())
-      return "there is no option " + name + host::storage::suggestion(name, own);
+      return "there is no option " + name + storage::suggestion(name, own);
     for (const Argument& a : verb.arguments)
       if (a.name == name && name == words[i] && a.needs_value()) ++i;
   }
@@ -139,7 +139,7 @@ std::string complaint_about(const Found& found, const std::vector<std::string>& 
   if (const std::string wrong = unknown_option(*found.verb, own, rest); !wrong.empty())
     return found.path + ": " + wrong;
   if (!at_top && rest.empty() && !found.verb->verbs.empty())
-    return found.path + ": expected a verb: " + host::storage::listed(names_of(found.verb->verbs));
+    return found.path + ": expected a verb: " + storage::listed(names_of(found.verb->verbs));
   return {};
 }
 

@@ -11,19 +11,19 @@ namespace {
 
 int compare(const std::string& folder, const Common& common) {
   const char* const verb = "nonio compare";
-  auto opened = open_campaign(verb, folder, common, host::reading::TemplatesFor::terminal);
+  auto opened = open_campaign(verb, folder, common, reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
-  auto parts = host::modelling::part_models(open.read, open.campaign().model);
+  auto parts = modelling::part_models(open.read, open.campaign().model);
   if (!parts) return complain(verb, text_of(parts.error()));
-  const host::modelling::ModelWords words = words_for(open, common);
+  const modelling::ModelWords words = words_for(open, common);
   std::vector<std::string> warnings;
-  for (const std::string& effect : host::modelling::unmeasured(open.campaign().model, *parts))
+  for (const std::string& effect : modelling::unmeasured(open.campaign().model, *parts))
     warnings.push_back(words.unmeasured(effect));
   std::vector<Error> errors = open.read.errors;
-  std::vector<host::modelling::Compared> all;
-  for (host::modelling::PartModel& part : *parts) {
-    auto comparison = host::modelling::compare_part(part);
+  std::vector<modelling::Compared> all;
+  for (modelling::PartModel& part : *parts) {
+    auto comparison = modelling::compare_part(part);
     if (comparison) {
       all.push_back({std::move(part), std::move(*comparison)});
     } else {
@@ -32,12 +32,12 @@ int compare(const std::string& folder, const Common& common) {
     }
   }
   if (parts->empty())
-    complain(verb, text_of(errors.emplace_back(host::modelling::nothing_to_compare(open.read))));
+    complain(verb, text_of(errors.emplace_back(modelling::nothing_to_compare(open.read))));
   for (const std::string& warning : warnings) complain(verb, warning);
   if (common.json)
-    std::cout << host::modelling::compare_json(all, open.campaign(), words, warnings, errors);
+    std::cout << modelling::compare_json(all, open.campaign(), words, warnings, errors);
   else
-    for (const host::modelling::Compared& one : all)
+    for (const modelling::Compared& one : all)
       print_comparison(std::cout, one, open.campaign(), words);
   return errors.empty() ? exit_done : exit_failed;
 }

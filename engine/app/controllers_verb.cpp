@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/loader/plugins.h"
+#include "campaign/loader/plugins.h"
 #include "nonio/sdk/format.h"
 #include "verbs.h"
 
@@ -111,7 +111,7 @@ void print_control(const Controller& o, bool facts) {
 }
 
 int list_controls(const std::vector<std::string>& names, const Common& common) {
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   std::vector<const Controller*> all;
   for (const Controller& o : plugins.controllers()) all.push_back(&o);

@@ -24,8 +24,8 @@ class Explain {
       : options_(options), common_(common) {}
 
   int run() {
-    auto opened = open_campaign("nonio explain", options_.folder, common_,
-                                host::reading::TemplatesFor::terminal);
+    auto opened =
+        open_campaign("nonio explain", options_.folder, common_, reading::TemplatesFor::terminal);
     if (!opened) return opened.error();
     open_ = std::move(*opened);
     words_.emplace(words_for(open_, common_));
@@ -53,18 +53,18 @@ class Explain {
     all_.clear();
     errors_ = open_.read.errors;
     failed_ = !errors_.empty();
-    auto parts = host::modelling::part_models(open_.read, open_.campaign().model);
+    auto parts = modelling::part_models(open_.read, open_.campaign().model);
     if (!parts) {
       tell(text_of(parts.error()));
       return exit_usage;
     }
     warnings_.clear();
-    for (const std::string& effect : host::modelling::unmeasured(open_.campaign().model, *parts))
+    for (const std::string& effect : modelling::unmeasured(open_.campaign().model, *parts))
       warnings_.push_back(words_->unmeasured(effect));
     if (parts->empty())
-      tell(text_of(errors_.emplace_back(host::modelling::nothing_to_compare(open_.read))));
-    for (host::modelling::PartModel& part : *parts) {
-      auto explanation = host::modelling::explain_part(part, options_.seed);
+      tell(text_of(errors_.emplace_back(modelling::nothing_to_compare(open_.read))));
+    for (modelling::PartModel& part : *parts) {
+      auto explanation = modelling::explain_part(part, options_.seed);
       if (explanation) {
         all_.push_back({std::move(part), std::move(*explanation)});
         continue;
@@ -77,10 +77,10 @@ class Explain {
   }
 
   /// What belongs into the model beyond doubt; empty: nothing more.
-  std::string next() const { return host::modelling::next_effect(host::modelling::told_of(all_)); }
+  std::string next() const { return modelling::next_effect(modelling::told_of(all_)); }
 
   bool add(const std::string& effect) {
-    const auto change = host::modelling::change_model(open_.folder, open_.read, effect, true);
+    const auto change = modelling::change_model(open_.folder, open_.read, effect, true);
     if (!change) {
       tell(text_of(change.error()));
       failed_ = true;
@@ -96,14 +96,14 @@ class Explain {
 
   void show() {
     for (const std::string& warning : warnings_) tell(warning);
-    for (host::modelling::Explained& e : all_)
+    for (modelling::Explained& e : all_)
       if (options_.what_if) e.what_if = model::foresee(e.part.part, e.explanation);
     if (common_.json) {
-      std::cout << host::modelling::explain_json(all_, open_.campaign(), *words_, options_.seed,
-                                                 steps_, warnings_, errors_);
+      std::cout << modelling::explain_json(all_, open_.campaign(), *words_, options_.seed, steps_,
+                                           warnings_, errors_);
       return;
     }
-    for (const host::modelling::Explained& e : all_) {
+    for (const modelling::Explained& e : all_) {
       print_explanation(std::cout, e, open_.campaign(), *words_);
       if (e.what_if) print_foresight(std::cout, e, words_->terminal());
     }
@@ -112,9 +112,9 @@ class Explain {
   const ExplainOptions& options_;
   const Common& common_;
   OpenCampaign open_;
-  std::optional<host::modelling::ModelWords> words_;
-  std::vector<host::modelling::Explained> all_;
-  std::vector<host::modelling::ModelStep> steps_;
+  std::optional<modelling::ModelWords> words_;
+  std::vector<modelling::Explained> all_;
+  std::vector<modelling::ModelStep> steps_;
   std::vector<std::string> warnings_;
   std::vector<Error> errors_;
   bool failed_ = false;

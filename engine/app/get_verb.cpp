@@ -5,19 +5,19 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/batch/output_lock.h"
-#include "host/config/manifest.h"
-#include "host/evaluation/results_files.h"
-#include "host/storage/digest.h"
-#include "host/storage/files.h"
-#include "host/storage/pack.h"
+#include "batch/state/output_lock.h"
+#include "campaign/config/manifest.h"
+#include "campaign/evaluation/results_files.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+#include "platform/storage/pack.h"
 #include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-namespace storage = host::storage;
-namespace evaluation = host::evaluation;
+namespace storage = storage;
+namespace evaluation = evaluation;
 
 namespace {
 
@@ -38,11 +38,11 @@ std::string place_of(const fs::path& folder) {
 Expected<std::vector<std::string>> ids_of(const GetWish& wish) {
   std::vector<std::string> ids = wish.ids;
   for (const std::string& id : ids)
-    if (!host::config::is_campaign_id(id)) return fail("\"" + id + "\" is no id of a campaign");
+    if (!config::is_campaign_id(id)) return fail("\"" + id + "\" is no id of a campaign");
   const auto take = [&](const fs::path& folder) {
     const bool wanted = wish.list || !wish.to.empty() || storage::in_pack(folder);
     const std::string id = folder.filename().string();
-    if (wanted && host::config::is_campaign_id(id) &&
+    if (wanted && config::is_campaign_id(id) &&
         storage::is_there(folder / evaluation::record_name).value_or(true))
       ids.push_back(id);
   };
@@ -145,9 +145,9 @@ int get(const GetWish& wish, const Common& common) {
     return complain(get_name, "--list writes nothing; expected no --to with it");
   const auto ids = ids_of(wish);
   if (!ids) return complain(get_name, ids.error().message);
-  std::optional<host::batch::OutputLock> lock;
+  std::optional<batch::OutputLock> lock;
   if (!wish.list && wish.to.empty()) {  // the folders count from then on
-    auto taken = host::batch::OutputLock::take(wish.out);
+    auto taken = batch::OutputLock::take(wish.out);
     if (!taken) return complain(get_name, taken.error().message);
     lock.emplace(std::move(*taken));
   }

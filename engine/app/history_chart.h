@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "host/morning/assess.h"
+#include "laboratory/assessment/assess.h"
 
 namespace nonio::app {
 

@@ -3,12 +3,12 @@
 #include <iostream>
 #include <memory>
 
+#include "campaign/config/template_files.h"
 #include "history_chart.h"
-#include "host/config/template_files.h"
-#include "host/history/place.h"
-#include "host/history/query.h"
-#include "host/history/store.h"
-#include "host/morning/assess.h"
+#include "laboratory/assessment/assess.h"
+#include "laboratory/store/place.h"
+#include "laboratory/store/query.h"
+#include "laboratory/store/store.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -33,27 +33,26 @@ void keep(const HistoryWish& wish, const std::string& machine, reports::SiteHist
 }
 
 int history(const HistoryWish& wish, const Common& common) {
-  const auto tonight = host::morning::tonight_in(wish.out);
+  const auto tonight = assessment::tonight_in(wish.out);
   if (!tonight) return complain(history_name, tonight.error().message);
   std::string machine;
   if (!wish.machine.empty()) {
-    auto known = host::history::machine_named(wish.out, wish.machine);
+    auto known = store::machine_named(wish.out, wish.machine);
     if (!known) return complain(history_name, known.error().message);
     machine = std::move(*known);
   }
-  if (const auto known = host::history::known_night(wish.out);
+  if (const auto known = store::known_night(wish.out);
       !known || *known != std::optional(tonight->night))
-    std::cerr << history_name << ": " << host::history::store_in(wish.out)
-              << " does not know night " << tonight->night
-              << " yet: what follows is older; the next `nonio run` enters it\n";
-  auto site = host::morning::assess(wish.out, *tonight, [] {});
+    std::cerr << history_name << ": " << store::store_in(wish.out) << " does not know night "
+              << tonight->night << " yet: what follows is older; the next `nonio run` enters it\n";
+  auto site = assessment::assess(wish.out, *tonight, [] {});
   if (!site) return complain(history_name, site.error().message);
   keep(wish, machine, *site);
   if (common.json) {
     std::string digest;
-    const auto templates = host::config::read_templates(common.template_folders(), digest);
+    const auto templates = config::read_templates(common.template_folders(), digest);
     if (!templates) return complain(history_name, templates.error().message);
-    std::cout << host::morning::history_json(*site, *tonight, *templates);
+    std::cout << assessment::history_json(*site, *tonight, *templates);
     return exit_done;
   }
   if (machine.empty()) {

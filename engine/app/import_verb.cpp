@@ -5,9 +5,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/history/identity.h"
-#include "host/storage/files.h"
-#include "host/tools/import.h"
+#include "campaign/importing/import.h"
+#include "laboratory/store/identity.h"
+#include "platform/storage/files.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -22,29 +22,28 @@ struct ImportArguments {
 };
 
 /// A file if it ends in .toml, else the pattern itself.
-host::config::Checked<host::tools::ImportRule> rule_of(const ImportArguments& arguments) {
-  if (!arguments.rule.ends_with(".toml"))
-    return host::tools::import_rule_of_pattern(arguments.rule);
-  const auto text = host::storage::read_file(arguments.rule);
+config::Checked<importing::ImportRule> rule_of(const ImportArguments& arguments) {
+  if (!arguments.rule.ends_with(".toml")) return importing::import_rule_of_pattern(arguments.rule);
+  const auto text = storage::read_file(arguments.rule);
   if (!text) return tl::unexpected(std::vector<Error>{text.error()});
-  return host::tools::parse_import_rule(*text, arguments.rule);
+  return importing::parse_import_rule(*text, arguments.rule);
 }
 
-std::string machine_name(const host::tools::ImportedCampaign& c) {
-  return host::history::machine_of({c.asset, c.maker, {}, c.serial});
+std::string machine_name(const importing::ImportedCampaign& c) {
+  return store::machine_of({c.asset, c.maker, {}, c.serial});
 }
 
-Json json_of(const std::vector<host::tools::ImportReport::Passed>& list) {
+Json json_of(const std::vector<importing::ImportReport::Passed>& list) {
   Json out = Json::array();
   for (const auto& p : list) out.push_back({{"file", p.file}, {"why", p.why}});
   return out;
 }
 
-void print_json(const host::tools::ImportReport& report, bool dry_run) {
+void print_json(const importing::ImportReport& report, bool dry_run) {
   Json campaigns = Json::array();
-  for (const host::tools::ImportedCampaign& c : report.campaigns) {
+  for (const importing::ImportedCampaign& c : report.campaigns) {
     Json files = Json::array();
-    for (const host::tools::ImportedFile& f : c.files)
+    for (const importing::ImportedFile& f : c.files)
       files.push_back({{"file", f.file},
                        {"measurement", f.measurement},
                        {"axis", f.axis},
@@ -71,7 +70,7 @@ void print_json(const host::tools::ImportReport& report, bool dry_run) {
             << "\n";
 }
 
-void print(const char* title, const std::vector<host::tools::ImportReport::Passed>& list) {
+void print(const char* title, const std::vector<importing::ImportReport::Passed>& list) {
   constexpr std::size_t most = 20;
   if (!list.empty()) std::cout << title << "\n";
   for (std::size_t i = 0; i < std::min(list.size(), most); ++i)
@@ -80,8 +79,8 @@ void print(const char* title, const std::vector<host::tools::ImportReport::Passe
     std::cout << "  and " << list.size() - most << " more (--json lists them all)\n";
 }
 
-void print(const host::tools::ImportReport& report) {
-  for (const host::tools::ImportedCampaign& c : report.campaigns) {
+void print(const importing::ImportReport& report) {
+  for (const importing::ImportedCampaign& c : report.campaigns) {
     if (c.there) {
       std::cout << c.id << ": imported before, nothing to do\n";
       continue;
@@ -95,7 +94,7 @@ void print(const host::tools::ImportReport& report) {
     if (machine_name(c).empty())
       std::cout << "  belongs to no machine, so it has no history: state --asset, or --maker and "
                    "--serial\n";
-    for (const host::tools::ImportedFile& f : c.files) {
+    for (const importing::ImportedFile& f : c.files) {
       if (!f.same_as.empty()) {  // said once, and nothing more of this file
         std::cout << "  " << f.file << ": " << f.lacks.front() << "\n";
         continue;
@@ -125,10 +124,10 @@ int import_files(const ImportArguments& arguments, const Common& common) {
   }
   if (!arguments.reader.empty()) rule->reader = arguments.reader;
   if (!arguments.campaign.empty()) rule->campaign = arguments.campaign;
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  const auto report = host::tools::import_folder(
+  const auto report = importing::import_folder(
       {arguments.folder, fs::absolute(arguments.out), *rule, arguments.asset, arguments.maker,
        arguments.serial, arguments.partial, arguments.dry_run},
       plugins);
@@ -138,7 +137,7 @@ int import_files(const ImportArguments& arguments, const Common& common) {
   else if (!common.quiet)
     print(*report);
   bool whole = !report->campaigns.empty();
-  for (const host::tools::ImportedCampaign& c : report->campaigns) whole = whole && c.whole();
+  for (const importing::ImportedCampaign& c : report->campaigns) whole = whole && c.whole();
   if (report->campaigns.empty()) complain(verb, "no file follows the pattern " + rule->pattern);
   return whole ? exit_done : exit_failed;
 }

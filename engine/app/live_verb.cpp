@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "host/live/server.h"
+#include "live/server.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -19,7 +19,7 @@ struct LiveOptions {
 };
 
 int live(const LiveOptions& options, const Common& common) {
-  host::live::LiveWish wish;
+  live::LiveWish wish;
   std::error_code error;
   wish.folder = std::filesystem::canonical(options.folder, error);
   if (error) return complain(live_name, options.folder + ": " + error.message());
@@ -36,7 +36,7 @@ int live(const LiveOptions& options, const Common& common) {
   wish.port = static_cast<std::uint16_t>(options.port);
   wish.edit = options.edit;
   wish.quiet = common.quiet;
-  if (const auto served = host::live::serve(wish); !served)
+  if (const auto served = live::serve(wish); !served)
     return complain(live_name, text_of(served.error()));
   return exit_done;
 }

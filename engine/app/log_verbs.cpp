@@ -4,14 +4,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/config/site_logs.h"
-#include "host/history/query.h"
+#include "campaign/config/site_logs.h"
+#include "laboratory/store/query.h"
 #include "printable.h"
 #include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
-namespace config = host::config;
+namespace config = config;
 
 namespace {
 
@@ -83,10 +83,10 @@ int event(EventWish& wish, const Common& common) {
   if (e.date.empty()) e.date = today();
   if (!is_day(e.date)) return wrong_day(verb, e.date);
   if (!wish.out.empty()) {
-    host::history::Query known;
+    store::Query known;
     known.machine = e.machine;
     known.axis = e.axis;
-    if (const auto found = host::history::query(wish.out, known); !found)
+    if (const auto found = store::query(wish.out, known); !found)
       return complain(verb, found.error().message);
   }
   if (const auto added = config::add_event(wish.site, e); !added)

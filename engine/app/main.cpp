@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "host/process/keep_apart.h"
+#include "platform/process/keep_apart.h"
 #include "verbs.h"
 
 namespace {
@@ -18,7 +18,7 @@ nonio::app::Verb apart(nonio::app::Verb verb) {
   for (nonio::app::Verb& part : verb.verbs) part = apart(std::move(part));
   if (verb.run)
     verb.run = [run = std::move(verb.run)] {
-      nonio::host::process::keep_plugins_apart(nonio::app::Common::own_plugins());
+      nonio::process::keep_plugins_apart(nonio::app::Common::own_plugins());
       return run();
     };
   return verb;

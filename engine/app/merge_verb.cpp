@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "axis_argument.h"
-#include "host/storage/files.h"
-#include "host/tools/plan.h"
+#include "campaign/planning/plan.h"
+#include "platform/storage/files.h"
 #include "table_common.h"
 #include "verbs.h"
 
@@ -37,9 +37,8 @@ Expected<std::string> merged_axis(const MergeWish& w, const Campaign& campaign) 
                                : "expected --axis, one of " + list);
 }
 
-int tell_merged(const host::tables::MergedTables& merged, const Loaded& present,
-                const std::string& axis, const MergeWish& w, const OpenCampaign& open,
-                const Common& common) {
+int tell_merged(const tables::MergedTables& merged, const Loaded& present, const std::string& axis,
+                const MergeWish& w, const OpenCampaign& open, const Common& common) {
   std::vector<std::string> written;
   if (!w.out.empty())
     for (const Artifact& f : merged.files)
@@ -73,13 +72,13 @@ int merge(const MergeWish& w, const Common& common) {
   const auto present =
       load(open.place->plugins, w.backup, control, open.campaign(), *settings, options);
   if (!present) return complain(merge_name, text_of(present.error()));
-  const auto merged = host::tables::merge_tables(
-      open.read, *present->control, *options(present->control->info), present->files, *axis);
+  const auto merged = tables::merge_tables(open.read, *present->control,
+                                           *options(present->control->info), present->files, *axis);
   if (!merged) return complain(merge_name, text_of(merged.error()), exit_failed);
   tell_findings(merge_name, open, merged->findings);
   if (merged->files.empty()) return complain(merge_name, "nothing was written", exit_failed);
   if (!w.out.empty())
-    if (auto done = host::storage::publish(std::filesystem::absolute(w.out), merged->files); !done)
+    if (auto done = storage::publish(std::filesystem::absolute(w.out), merged->files); !done)
       return complain(merge_name, text_of(done.error()), exit_failed);
   return tell_merged(*merged, *present, *axis, w, open, common);
 }

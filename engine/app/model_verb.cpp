@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "campaign_verb.h"
-#include "host/storage/nearest.h"
+#include "platform/storage/nearest.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -20,19 +20,19 @@ struct ModelOptions {
 const char* const model_name = "nonio model";
 
 int show_model(const ModelOptions& options, const Common& common) {
-  auto opened = open_campaign("nonio model show", options.folder, common,
-                              host::reading::TemplatesFor::terminal);
+  auto opened =
+      open_campaign("nonio model show", options.folder, common, reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
-  auto parts = host::modelling::part_models(open.read, open.campaign().model);
+  auto parts = modelling::part_models(open.read, open.campaign().model);
   if (!parts) return complain(model_name, text_of(parts.error()));
-  const auto history = host::modelling::read_history(open.folder);
+  const auto history = modelling::read_history(open.folder);
   if (!history) return complain(model_name, text_of(history.error()), exit_failed);
-  const host::modelling::ModelWords words = words_for(open, common);
-  std::vector<host::modelling::Compared> all;
+  const modelling::ModelWords words = words_for(open, common);
+  std::vector<modelling::Compared> all;
   std::vector<Error> errors = open.read.errors;
-  for (host::modelling::PartModel& part : *parts) {
-    auto comparison = host::modelling::compare_part(part);
+  for (modelling::PartModel& part : *parts) {
+    auto comparison = modelling::compare_part(part);
     if (comparison) {
       all.push_back({std::move(part), std::move(*comparison)});
     } else {
@@ -41,9 +41,9 @@ int show_model(const ModelOptions& options, const Common& common) {
     }
   }
   if (common.json) {
-    std::cout << host::modelling::compare_json(all, open.campaign(), words, {}, errors);
+    std::cout << modelling::compare_json(all, open.campaign(), words, {}, errors);
   } else {
-    for (const host::modelling::Compared& one : all) print_model(std::cout, one, words);
+    for (const modelling::Compared& one : all) print_model(std::cout, one, words);
     print_history(std::cout, *history, words.terminal());
   }
   return errors.empty() ? exit_done : exit_failed;
@@ -55,25 +55,25 @@ std::string refusal(const OpenCampaign& open, const std::string& effect, bool ad
   const bool there = std::find(model.begin(), model.end(), effect) != model.end();
   if (add && there) return "\"" + effect + "\" is in the model already";
   if (!add && !there)
-    return "\"" + effect + "\" is not in the model" + host::storage::suggestion(effect, model) +
-           (model.empty() ? "; it is empty" : "; there are " + host::storage::listed(model));
+    return "\"" + effect + "\" is not in the model" + storage::suggestion(effect, model) +
+           (model.empty() ? "; it is empty" : "; there are " + storage::listed(model));
   if (!add) return {};
-  const auto mistakes = host::modelling::model_mistakes({effect}, open.read);
+  const auto mistakes = modelling::model_mistakes({effect}, open.read);
   return mistakes.empty() ? std::string() : mistakes.front();
 }
 
 int change(const ModelOptions& options, const Common& common, bool add) {
   auto opened = open_campaign(add ? "nonio model add" : "nonio model drop", options.folder, common,
-                              host::reading::TemplatesFor::terminal);
+                              reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   if (const std::string why = refusal(open, options.effect, add); !why.empty())
     return complain(model_name, why + "; nothing was changed");
-  const auto changed = host::modelling::change_model(open.folder, open.read, options.effect, add);
+  const auto changed = modelling::change_model(open.folder, open.read, options.effect, add);
   if (!changed) return complain(model_name, text_of(changed.error()), exit_failed);
-  const host::modelling::ModelWords words = words_for(open, common);
+  const modelling::ModelWords words = words_for(open, common);
   if (common.json)
-    std::cout << host::modelling::change_json(*changed, open.campaign(), words);
+    std::cout << modelling::change_json(*changed, open.campaign(), words);
   else
     print_change(std::cout, *changed, words);
   return open.read.errors.empty() ? exit_done : exit_failed;
@@ -110,16 +110,15 @@ std::vector<std::uint32_t> lines_in(const std::string& text) {
 }
 
 int change_campaign(const char* verb, const ModelOptions& options, const Common& common,
-                    const host::modelling::CampaignEdit& edit) {
-  auto opened = open_campaign(verb, options.folder, common, host::reading::TemplatesFor::terminal);
+                    const modelling::CampaignEdit& edit) {
+  auto opened = open_campaign(verb, options.folder, common, reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
-  const auto changed = host::modelling::change_campaign(open.folder, open.read, edit);
+  const auto changed = modelling::change_campaign(open.folder, open.read, edit);
   if (!changed)
     return complain(model_name, text_of(changed.error()) + "; nothing was changed", exit_failed);
   if (common.json)
-    std::cout << host::modelling::change_json(changed->front(), open.campaign(),
-                                              words_for(open, common));
+    std::cout << modelling::change_json(changed->front(), open.campaign(), words_for(open, common));
   else
     print_step(std::cout, changed->front().step, words_for(open, common).terminal());
   return open.read.errors.empty() ? exit_done : exit_failed;

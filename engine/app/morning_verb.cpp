@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 
-#include "host/config/site_files.h"
-#include "host/config/site_logs.h"
-#include "host/config/template_files.h"
-#include "host/morning/assess.h"
-#include "host/morning/curves.h"
+#include "campaign/config/site_files.h"
+#include "campaign/config/site_logs.h"
+#include "campaign/config/template_files.h"
+#include "laboratory/assessment/assess.h"
+#include "laboratory/assessment/curves.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -32,14 +32,14 @@ void keep_lines(const MorningWish& wish, reports::SiteHistory& site) {
 
 /// One of the pages of the morning as it would be now, on stdout.
 int print_page(const MorningWish& wish, const Templates& templates, const std::string& language,
-               host::morning::Assessment& assessment) {
+               assessment::Assessment& assessment) {
   const reports::SiteHistory& site = assessment.site();
   const std::string below = std::string(reports::machines_folder) + "/";
   for (std::size_t i = 0; i < site.machines.size(); ++i) {
     if (wish.page != below + site.machines[i].file) continue;
     auto machine = assessment.whole(i);
     if (!machine) return complain(morning_name, machine.error().message);
-    machine->curves = host::morning::curves_of(wish.out, *machine);
+    machine->curves = assessment::curves_of(wish.out, *machine);
     const auto page = reports::machine_page_of(site, *machine, templates, language);
     if (!page) return complain(morning_name, page.error().message);
     std::cout << page->bytes;
@@ -61,24 +61,23 @@ int say_morning(const MorningWish& wish, const Common& common) {
   if (!wish.since.empty() && !is_day(wish.since))
     return complain(morning_name,
                     "--since: expected a day as YYYY-MM-DD, found \"" + wish.since + "\"");
-  const auto tonight = host::morning::tonight_in(wish.out);
+  const auto tonight = assessment::tonight_in(wish.out);
   if (!tonight) return complain(morning_name, tonight.error().message);
-  std::optional<host::config::SiteLogs> entered;
+  std::optional<config::SiteLogs> entered;
   auto folders = common.template_folders();
   if (!wish.site.empty()) {
-    auto logs = host::config::read_site_logs(wish.site);
+    auto logs = config::read_site_logs(wish.site);
     if (!logs) return complain(morning_name, text_of(logs.error().front()));
     entered = std::move(*logs);
-    auto with_site = host::config::with_site_templates(folders, wish.site);
+    auto with_site = config::with_site_templates(folders, wish.site);
     if (!with_site) return complain(morning_name, text_of(with_site.error()));
     folders = std::move(*with_site);
   }
   std::string digest;
-  const auto templates = host::config::read_templates(folders, digest);
+  const auto templates = config::read_templates(folders, digest);
   if (!templates) return complain(morning_name, templates.error().message);
-  auto assessment = host::morning::Assessment::of(
-      wish.out, *tonight, [] {}, host::morning::Assessment::Kept::used,
-      entered ? &*entered : nullptr);
+  auto assessment = assessment::Assessment::of(
+      wish.out, *tonight, [] {}, assessment::Assessment::Kept::used, entered ? &*entered : nullptr);
   if (!assessment) return complain(morning_name, assessment.error().message);
   std::string language = wish.language.empty() ? tonight->language : wish.language;
   if (!templates->tables.contains("words/" + language + "/site")) {
@@ -95,7 +94,7 @@ int say_morning(const MorningWish& wish, const Common& common) {
   if (common.json) {
     std::cout << "{\n \"schema\": \"nonio-morning/1\",\n \"night\": " << tonight->night
               << ",\n \"date\": \"" << tonight->date
-              << "\",\n \"lines\": " << host::morning::lines_json(site, *templates) << "\n}\n";
+              << "\",\n \"lines\": " << assessment::lines_json(site, *templates) << "\n}\n";
     return asks ? exit_failed : exit_done;
   }
   if (site.lines.empty()) site.hidden = all;

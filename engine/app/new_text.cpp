@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "host/tools/schema.h"
+#include "campaign/schema/schema.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/splitmix64.h"
 
@@ -40,8 +40,8 @@ std::string text_line(const std::string& key, const std::string& text, const std
 
 /// A key as a comment with an example, and what it means in the words of the table of keys.
 std::string offered(const std::string& table, const std::string& key, const std::string& example) {
-  std::string help = host::tools::campaign_key_help(table + "." + key);
-  if (help.empty()) help = host::tools::site_key_help(table + "." + key);
+  std::string help = schema::campaign_key_help(table + "." + key);
+  if (help.empty()) help = schema::site_key_help(table + "." + key);
   return "# " + key + " = " + example + "  # " + help + "\n";
 }
 
@@ -123,7 +123,7 @@ std::string instrument_text(const NewCampaign& c) {
   text += offered("instrument", "issuer", "\"LAT 000\"") +
           offered("instrument", "valid_until", "2027-01-12") +
           offered("instrument", "sphere_um", "0.5") + offered("instrument", "probe_um", "1.0");
-  text += "\n# " + host::tools::campaign_key_help("sensor") + "\n# [[sensor]]\n" +
+  text += "\n# " + schema::campaign_key_help("sensor") + "\n# [[sensor]]\n" +
           offered("sensor", "measures", "\"material\"") + offered("sensor", "serial", "\"T-001\"") +
           offered("sensor", "calibrated", "2026-01-12") +
           offered("sensor", "certificate", "\"SO-2026-0009\"");

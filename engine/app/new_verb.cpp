@@ -11,12 +11,12 @@
 #include <set>
 
 #include "axis_argument.h"
-#include "host/evaluation/evaluate.h"
-#include "host/reading/campaign_reader.h"
-#include "host/storage/files.h"
-#include "host/storage/nearest.h"
-#include "host/storage/scratch_folder.h"
+#include "campaign/evaluation/evaluate.h"
+#include "campaign/reading/campaign_reader.h"
 #include "new_text.h"
+#include "platform/storage/files.h"
+#include "platform/storage/nearest.h"
+#include "platform/storage/scratch_folder.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -74,24 +74,23 @@ class Questions {
 std::optional<fs::path> site_above(const fs::path& folder) {
   std::error_code error;
   for (fs::path up = folder.parent_path(); !up.empty(); up = up.parent_path()) {
-    if (fs::exists(up / host::config::site_name, error)) return up;
+    if (fs::exists(up / config::site_name, error)) return up;
     if (up == up.parent_path()) break;
   }
   for (const auto& entry : fs::directory_iterator(folder.parent_path(), error))
-    if (fs::exists(entry.path() / host::config::manifest_name, error)) return folder.parent_path();
+    if (fs::exists(entry.path() / config::manifest_name, error)) return folder.parent_path();
   return std::nullopt;
 }
 
 /// The folder of the site's campaign that has the id; empty if none has.
 fs::path holder_of(const std::string& id, const fs::path& site) {
   std::error_code error;
-  if (!fs::exists(site / host::config::site_name, error)) return {};  // it may be anybody's home
+  if (!fs::exists(site / config::site_name, error)) return {};  // it may be anybody's home
   fs::recursive_directory_iterator it(site, fs::directory_options::skip_permission_denied, error);
   for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
     if (it->path().filename().string().starts_with('.')) it.disable_recursion_pending();
-    if (it->path().filename() != host::config::manifest_name) continue;
-    if (const auto text = host::storage::read_file(it->path());
-        text && host::config::extract_id(*text) == id)
+    if (it->path().filename() != config::manifest_name) continue;
+    if (const auto text = storage::read_file(it->path()); text && config::extract_id(*text) == id)
       return it->path().parent_path();
   }
   return {};
@@ -153,11 +152,11 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   if (it == axes.end())
     it = axes.insert(axes.end(), {.axis = axis_named(name), .file = {}, .bytes = {}});
   if (!it->file.empty()) return fail("--file: axis " + name + " has two files");
-  auto bytes = host::storage::read_file(path);
+  auto bytes = storage::read_file(path);
   if (!bytes) return fail(bytes.error());
   if (bytes->empty()) return fail("--file: " + path.string() + " is empty");
   it->file = path.filename().string();
-  if (!host::storage::is_artifact_name(it->file) || it->file == host::config::manifest_name)
+  if (!storage::is_artifact_name(it->file) || it->file == config::manifest_name)
     return fail("--file: expected a plain file name, found \"" + it->file + "\"");
   it->bytes = std::move(*bytes);
   return {};
@@ -166,14 +165,14 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
 /// From the folder's name, if the command line does not say it.
 Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questions& ask) {
   std::string id = wish.id, near = valid_id(folder.filename().string());
-  if (!host::config::is_campaign_id(near)) near = "campaign-" + near;
+  if (!config::is_campaign_id(near)) near = "campaign-" + near;
   if (auto done = ask.text("Id of the campaign (a-z 0-9 . _ -)", id, near); !done)
     return fail(done.error());
-  if (!host::config::is_campaign_id(id)) {
+  if (!config::is_campaign_id(id)) {
     const std::string nearest = valid_id(id);
     return fail(
         "id: expected a-z 0-9 . _ - and no more than 100, not starting with . or -; found \"" + id +
-        "\"" + (host::config::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
+        "\"" + (config::is_campaign_id(nearest) ? " (nearest: \"" + nearest + "\")" : ""));
   }
   if (const auto site = site_above(folder))
     if (const fs::path other = holder_of(id, *site); !other.empty())
@@ -253,26 +252,25 @@ std::vector<Artifact> files_of(const NewCampaign& c) {
   std::vector<Artifact> files;
   for (const NewAxis& a : c.axes)
     files.push_back({a.file, a.example() ? example_readings(a.axis, c.id) : a.bytes});
-  files.push_back({host::config::manifest_name, campaign_text(c)});  // last: it shows the rest
+  files.push_back({config::manifest_name, campaign_text(c)});  // last: it shows the rest
   return files;
 }
 
 /// What is wrong with the files, evaluated as a night would do it, with the site's own settings.
 std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::string& id,
                             const std::optional<fs::path>& site, const Common& common) {
-  const host::storage::ScratchFolder trial("new");
+  const storage::ScratchFolder trial("new");
   if (trial.path().empty()) return {Error{"cannot make a folder for a trial"}};
   const fs::path folder = trial.path() / "campaign";
   if (site)
-    if (const auto text = host::storage::read_file(*site / host::config::site_name))
-      if (auto done = host::storage::publish(trial.path(), {{host::config::site_name, *text}});
-          !done)
+    if (const auto text = storage::read_file(*site / config::site_name))
+      if (auto done = storage::publish(trial.path(), {{config::site_name, *text}}); !done)
         return {done.error()};
-  if (auto done = host::storage::publish(folder, files); !done) return {done.error()};
-  auto place = host::reading::open_workplace(folder, common.plugin_folders(),
-                                             common.template_folders(), NONIO_VERSION);
+  if (auto done = storage::publish(folder, files); !done) return {done.error()};
+  auto place = reading::open_workplace(folder, common.plugin_folders(), common.template_folders(),
+                                       NONIO_VERSION);
   if (!place) return {place.error()};
-  return host::evaluation::evaluate(folder, id, (*place)->context, [](const std::string&) {})
+  return evaluation::evaluate(folder, id, (*place)->context, [](const std::string&) {})
       .results.errors;
 }
 
@@ -288,7 +286,7 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
               bool example, const Common& common) {
   std::vector<std::string> written;
   for (const NewFiles& one : all) {
-    if (auto done = host::storage::publish(one.folder, one.files); !done)
+    if (auto done = storage::publish(one.folder, one.files); !done)
       return complain(new_name, text_of(done.error()), exit_failed);
     for (const Artifact& file : one.files) written.push_back((one.folder / file.name).string());
   }
@@ -336,7 +334,7 @@ int new_site(const NewWish& wish, const fs::path& folder, const Common& common) 
       return complain(new_name, done.error().message, ask.status());
     if (auto done = one_line(question, *to); !done) return complain(new_name, done.error().message);
   }
-  std::vector<NewFiles> all{{folder, {{host::config::site_name, site_text(site)}}}};
+  std::vector<NewFiles> all{{folder, {{config::site_name, site_text(site)}}}};
   if (wish.empty) return write_new(all, wish, "site", false, common);
   Questions silent(false);
   bool example = false;
@@ -358,16 +356,16 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
 /// SITE/machines/<asset>.toml.
 int new_machine(const NewWish& wish, const fs::path& path, const Common& common) {
   NewMachine machine{path.stem().string(), wish.maker, wish.machine, wish.serial, wish.control, {}};
-  if (path.extension() != ".toml" || path.parent_path().filename() != host::config::machines_folder)
+  if (path.extension() != ".toml" || path.parent_path().filename() != config::machines_folder)
     return complain(new_name, "expected SITE/machines/<asset>.toml, found " + wish.folder);
   const auto axes = axes_of(wish.axes.empty() ? std::vector<std::string>{"X=0:500"} : wish.axes);
   if (!axes) return complain(new_name, axes.error().message);
   for (const NewAxis& a : *axes) machine.axes.push_back(a.axis);
   const std::string text = machine_text(machine);
   const std::string file = path.filename().string();
-  if (const auto read = host::config::parse_machine(text, file, machine.asset); !read)
+  if (const auto read = config::parse_machine(text, file, machine.asset); !read)
     return complain(new_name, text_of(read.error().front()) + "; nothing was written");
-  if (!host::storage::is_artifact_name(file))
+  if (!storage::is_artifact_name(file))
     return complain(new_name, "expected a plain name, found " + file);
   std::vector<NewFiles> all{{path.parent_path(), {{file, text}}}};
   return write_new(all, wish, "machine", false, common);
@@ -380,7 +378,7 @@ int make_new(NewWish wish, const Common& common) {
     return complain(new_name, "expected a folder after \"" + wish.what + "\"");
   if (!wish.folder.empty() && !named)
     return complain(new_name, "expected site, campaign or machine, found \"" + wish.what + "\"" +
-                                  host::storage::suggestion(wish.what, kinds));
+                                  storage::suggestion(wish.what, kinds));
   if (wish.folder.empty()) wish.folder = std::exchange(wish.what, {});
   fs::path folder = fs::absolute(wish.folder).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();

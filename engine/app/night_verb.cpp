@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "host/batch/night_plan.h"
-#include "host/batch/night_state.h"
-#include "host/batch/output_lock.h"
-#include "host/batch/packed_shard.h"
-#include "host/storage/files.h"
+#include "batch/shards/packed_shard.h"
+#include "batch/state/night_plan.h"
+#include "batch/state/night_state.h"
+#include "batch/state/output_lock.h"
+#include "platform/storage/files.h"
 #include "progress.h"
 #include "run_common.h"
 #include "verbs.h"
@@ -17,7 +17,7 @@
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-namespace batch = host::batch;
+namespace batch = batch;
 
 namespace {
 
@@ -135,7 +135,7 @@ int unlock_night(const NightWish& wish, const Common& common) {
   const char* const verb = "nonio night unlock";
   std::optional<std::string> alive;
   if (!wish.alive.empty()) {
-    auto text = host::storage::read_file(wish.alive);
+    auto text = storage::read_file(wish.alive);
     if (!text) return complain(verb, text.error().message);
     alive = std::move(*text);
   }

@@ -13,10 +13,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "campaign/evaluation/record.h"
 #include "colour.h"
-#include "host/evaluation/record.h"
-#include "host/storage/files.h"
-#include "host/storage/pack.h"
+#include "platform/storage/files.h"
+#include "platform/storage/pack.h"
 #include "results_folder.h"
 #include "verbs.h"
 
@@ -31,7 +31,7 @@ struct OpenWish {
 };
 
 Expected<Json> json_file(const fs::path& path) {
-  const auto text = host::storage::read_file(path);
+  const auto text = storage::read_file(path);
   if (!text) return fail(text.error());
   Json json = Json::parse(*text, nullptr, false);
   if (json.is_discarded() || !json.is_object())
@@ -42,7 +42,7 @@ Expected<Json> json_file(const fs::path& path) {
 /// The report in the language that was asked for; else a page; else the results
 /// themselves.
 Expected<fs::path> document_of(const fs::path& results) {
-  const auto json = json_file(results / host::evaluation::results_name);
+  const auto json = json_file(results / evaluation::results_name);
   if (!json) return fail(json.error());
   std::vector<std::string> files;
   for (const Json& o : json->value("outputs", Json::array()))
@@ -53,7 +53,7 @@ Expected<fs::path> document_of(const fs::path& results) {
   for (const char* ending : {".pdf", ".html"})
     for (const std::string& file : files)
       if (file.ends_with(ending)) return results / file;
-  return results / host::evaluation::results_name;
+  return results / evaluation::results_name;
 }
 
 /// The first campaign that asks for attention or has failed; with none, the summary.
@@ -68,8 +68,7 @@ Expected<fs::path> document_of_night(const fs::path& out, const Common& common) 
       if (!common.quiet) std::cerr << status_word(list, STDERR_FILENO) << " " << id << "\n";
       if (first.empty()) first = id;
     }
-  return first.empty() ? out / "summary.txt"
-                       : document_of(host::storage::results_folder(out, first));
+  return first.empty() ? out / "summary.txt" : document_of(storage::results_folder(out, first));
 }
 
 Expected<fs::path> document(const OpenWish& wish, const Common& common) {
@@ -82,7 +81,7 @@ Expected<fs::path> document(const OpenWish& wish, const Common& common) {
     case Holds::night:
       return document_of_night(folder, common);
     case Holds::campaign: {
-      const fs::path results = host::storage::results_folder(wish.out, id_of_campaign(folder));
+      const fs::path results = storage::results_folder(wish.out, id_of_campaign(folder));
       if (what_holds(results) == Holds::results) return document_of(results);
       return fail("there are no results of " + folder.string() + " in " + wish.out +
                   "; expected --out OUT, the folder that `nonio run` wrote them to");
@@ -130,7 +129,7 @@ int open(const OpenWish& wish, const Common& common) {
   if (!found) return complain(verb, text_of(found.error()));
   std::error_code error;
   const fs::path path = fs::absolute(*found).lexically_normal();
-  if (const auto packed = host::storage::in_pack(path))
+  if (const auto packed = storage::in_pack(path))
     return complain(verb,
                     path.filename().string() + " is in the pack " + packed->pack.string() +
                         "; `nonio get " + path.parent_path().filename().string() +

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "axis_argument.h"
-#include "host/tools/plan_rotary.h"
+#include "campaign/planning/plan_rotary.h"
 #include "nonio/sdk/format.h"
 #include "verbs.h"
 
@@ -22,7 +22,7 @@ struct RotaryWish {
   std::uint64_t seed = 1;
 };
 
-using host::tools::RotaryRow;
+using planning::RotaryRow;
 
 constexpr double um_of_m = 1e6;
 
@@ -106,12 +106,11 @@ int plan_rotary(const RotaryWish& wish, const Common& common) {
   own.radius = *radius;
   own.arc = wish.arc * std::numbers::pi / 180.0;
   own.sigma = wish.probe_u / um_of_m;
-  const auto rows = host::tools::rotary_rows(own, static_cast<std::size_t>(wish.trials), wish.seed);
+  const auto rows = planning::rotary_rows(own, static_cast<std::size_t>(wish.trials), wish.seed);
   if (!rows) return complain(verb, rows.error().message);
   Fewest fewest;
   if (wish.want_centre > 0.0 || wish.want_direction > 0.0)
-    fewest =
-        host::tools::fewest_balls(own, wish.want_centre / um_of_m, wish.want_direction / um_of_m);
+    fewest = planning::fewest_balls(own, wish.want_centre / um_of_m, wish.want_direction / um_of_m);
   const double two_points = 2.0 * wish.probe_u / std::numbers::sqrt2;
   if (common.json)
     print_json(wish, *rows, two_points, fewest);

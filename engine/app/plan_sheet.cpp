@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <iostream>
 
+#include "campaign/config/template_files.h"
+#include "campaign/planning/plan.h"
 #include "campaign_verb.h"
-#include "host/config/template_files.h"
-#include "host/storage/files.h"
-#include "host/tools/plan.h"
+#include "platform/storage/files.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -33,23 +33,22 @@ int write_sheet(const char* verb, const SheetWish& wish, const Machine& machine,
                 const PointTable& rows, std::map<std::string, std::string> options,
                 const Common& common) {
   namespace fs = std::filesystem;
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
   std::string digest;
-  const auto templates = host::config::read_templates(common.template_folders(), digest);
+  const auto templates = config::read_templates(common.template_folders(), digest);
   if (!templates) return complain(verb, text_of(templates.error()));
   options["language"] = wish.language;
   options["stops"] = std::to_string(wish.stops);
-  auto files =
-      host::tools::write_programs(plugins, "plan-sheet", machine, rows, options, *templates);
+  auto files = planning::write_programs(plugins, "plan-sheet", machine, rows, options, *templates);
   if (!files) {
     for (const Error& e : files.error()) complain(verb, text_of(e));
     return exit_usage;
   }
   const fs::path to = fs::absolute(wish.file);
   for (Artifact& a : *files) a.name = to.filename().string();
-  if (auto done = host::storage::publish(to.parent_path(), *files); !done)
+  if (auto done = storage::publish(to.parent_path(), *files); !done)
     return complain(verb, done.error().message, exit_failed);
   if (!common.quiet) std::cerr << wish.file << "\n";
   return exit_done;

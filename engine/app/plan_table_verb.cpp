@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "axis_argument.h"
+#include "campaign/planning/plan.h"
 #include "campaign_verb.h"
-#include "host/storage/files.h"
-#include "host/tools/plan.h"
 #include "nonio/sdk/format.h"
 #include "plan_sheet.h"
+#include "platform/storage/files.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -103,7 +103,7 @@ Expected<std::vector<TableRow>> rows_that_fit(const TableWish& wish, math::Tripl
   }
   const auto found = math::plan_triples(w);
   if (!found) return fail(found.error());
-  if (found->plans.empty()) return fail(host::tools::why_nothing(*found));
+  if (found->plans.empty()) return fail(planning::why_nothing(*found));
   for (const math::TriplePlan& p : found->plans)
     if (p.worst_cover() >= wish.least_cover)
       rows.push_back({{p.a, p.b, p.c}, p, minutes_of(p, wish)});
@@ -129,7 +129,7 @@ int write_row_programs(const char* verb, const std::vector<TableRow>& rows, cons
   if (wish.control.empty()) return complain(verb, "part programs want a control (--control)");
   const auto given = settings_of(wish.settings);
   if (!given) return complain(verb, given.error().message);
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
   const Machine machine = rectangle(w.x, w.y);
@@ -137,8 +137,8 @@ int write_row_programs(const char* verb, const std::vector<TableRow>& rows, cons
     std::map<std::string, std::string> settings{
         {"plan", "1"}, {"over_travel_mm", wish.over_travel}, {"runs", std::to_string(wish.runs)}};
     for (const auto& [name, value] : *given) settings[name] = value;
-    const auto files = host::tools::write_programs(plugins, wish.control, machine,
-                                                   math::triple_table({rows[i].plan}), settings);
+    const auto files = planning::write_programs(plugins, wish.control, machine,
+                                                math::triple_table({rows[i].plan}), settings);
     if (!files) {
       for (const Error& e : files.error()) complain(verb, e.message);
       return exit_usage;
@@ -148,7 +148,7 @@ int write_row_programs(const char* verb, const std::vector<TableRow>& rows, cons
     const fs::path folder = fs::path(wish.out) / (std::string(number.size() < 2 ? "0" : "") +
                                                   number + "-" + std::to_string(t.a) + "-" +
                                                   std::to_string(t.b) + "-" + std::to_string(t.c));
-    if (auto done = host::storage::publish(fs::absolute(folder), *files); !done)
+    if (auto done = storage::publish(fs::absolute(folder), *files); !done)
       return complain(verb, done.error().message, exit_failed);
     if (!common.quiet) std::cerr << folder.string() << ": " << files->size() << " files\n";
   }

@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "axis_argument.h"
+#include "campaign/planning/plan.h"
 #include "campaign_verb.h"
-#include "host/storage/files.h"
-#include "host/tools/plan.h"
 #include "nonio/sdk/format.h"
 #include "plan_sheet.h"
+#include "platform/storage/files.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -91,9 +91,9 @@ void print_plan(std::size_t number, const math::TriplePlan& p, const math::Tripl
         fixed_text(100.0 * p.cover_x, 2), fixed_text(100.0 * p.cover_y, 2),
         fixed_text(p.gain_EYX(), 2), fixed_text(p.gain_EXY(), 2)})
     std::cout << padded_left(cell, 10);
-  std::cout << "\n       why: " << host::tools::why_listed(p)
-            << "\n       gives up: " << host::tools::gives_up(p, best) << "\n";
-  if (const std::string warning = host::tools::aspect_warning(p); !warning.empty())
+  std::cout << "\n       why: " << planning::why_listed(p)
+            << "\n       gives up: " << planning::gives_up(p, best) << "\n";
+  if (const std::string warning = planning::aspect_warning(p); !warning.empty())
     std::cout << "       warning: " << warning << "\n";
 }
 
@@ -123,15 +123,15 @@ int write_programs(const char* verb, const Common& common, const Programs& p,
   const auto given = settings_of(p.settings);
   if (!given) return complain(verb, given.error().message);
   for (const auto& [name, value] : *given) settings[name] = value;
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  const auto files = host::tools::write_programs(plugins, p.control, machine, rows, settings);
+  const auto files = planning::write_programs(plugins, p.control, machine, rows, settings);
   if (!files) {
     for (const Error& e : files.error()) complain(verb, e.message);
     return exit_usage;
   }
-  if (auto done = host::storage::publish(fs::absolute(p.out), *files); !done)
+  if (auto done = storage::publish(fs::absolute(p.out), *files); !done)
     return complain(verb, done.error().message, exit_failed);
   for (const Artifact& a : *files) {
     const std::string path = (fs::path(p.out) / a.name).string();
@@ -147,11 +147,11 @@ int plan_triples(Plan plan, const Common& common) {
   const auto found = math::plan_triples(plan.wish);
   if (!found) return complain(verb, found.error().message);
   if (common.json)
-    std::cout << host::tools::triples_json(plan.wish, *found);
+    std::cout << planning::triples_json(plan.wish, *found);
   else if (!found->plans.empty())
     print_plans(plan, *found);
   if (found->plans.empty()) {
-    return complain(verb, host::tools::why_nothing(*found), exit_failed);
+    return complain(verb, planning::why_nothing(*found), exit_failed);
   }
   const PointTable rows = math::triple_table(found->plans);
   const Machine machine = rectangle(plan.wish.x, plan.wish.y);

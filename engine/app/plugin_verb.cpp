@@ -4,8 +4,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/plugin_check/plugin_check.h"
-#include "host/plugin_check/plugin_new.h"
+#include "plugin_check/plugin_check.h"
+#include "plugin_check/plugin_new.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct CheckOptions {
-  host::plugin_check::PluginCheckRequest request;
+  plugin_check::PluginCheckRequest request;
   std::string subject;
   std::vector<std::string> cases;
 };
@@ -26,16 +26,16 @@ class CheckReport {
   CheckReport(const CheckOptions& options, const Common& common)
       : options_(options), common_(common) {}
 
-  void operator()(const host::plugin_check::PluginCheck& c) {
+  void operator()(const plugin_check::PluginCheck& c) {
     ++counts_[static_cast<std::size_t>(c.state)];
-    const bool bad = c.state == host::plugin_check::PluginCheck::State::failed ||
-                     c.state == host::plugin_check::PluginCheck::State::crashed;
+    const bool bad = c.state == plugin_check::PluginCheck::State::failed ||
+                     c.state == plugin_check::PluginCheck::State::crashed;
     if (bad) again_ = repeat(c);
     if (common_.json) {
       Json one = {{"file", c.file},
                   {"plugin", c.plugin},
                   {"check", c.name},
-                  {"state", host::plugin_check::to_text(c.state)},
+                  {"state", plugin_check::to_text(c.state)},
                   {"says", c.says}};
       if (bad) one["again"] = again_;
       checks_.push_back(std::move(one));
@@ -46,8 +46,7 @@ class CheckReport {
       std::cout << (head_ = head) << "\n";
     std::string name = c.name;
     name.resize(std::max<std::size_t>(name.size(), 13), ' ');
-    std::cout << "  " << host::plugin_check::to_text(c.state) << "  " << name << c.says
-              << std::endl;
+    std::cout << "  " << plugin_check::to_text(c.state) << "  " << name << c.says << std::endl;
     if (bad) std::cout << "           again: " << again_ << "\n";
   }
 
@@ -76,7 +75,7 @@ class CheckReport {
   }
 
  private:
-  std::string repeat(const host::plugin_check::PluginCheck& c) const {
+  std::string repeat(const plugin_check::PluginCheck& c) const {
     std::string words = "nonio plugin check " + c.file + " --only " + c.name + " --seed " +
                         std::to_string(c.seed) + " --seeds 1";
     if (fs::is_directory(options_.subject) &&
@@ -94,14 +93,14 @@ class CheckReport {
 };
 
 int check_plugin(CheckOptions& options, const Common& common) {
-  host::plugin_check::PluginCheckRequest& request = options.request;
+  plugin_check::PluginCheckRequest& request = options.request;
   request.subject = options.subject;
   request.own_plugins = Common::own_plugins();
   request.template_folders = common.template_folders();
   request.version = NONIO_VERSION;
   request.cases.assign(options.cases.begin(), options.cases.end());
   CheckReport report(options, common);
-  const auto done = host::plugin_check::check_plugins(request, std::ref(report));
+  const auto done = plugin_check::check_plugins(request, std::ref(report));
   return done ? report.end() : complain("nonio plugin check", done.error().message);
 }
 
@@ -113,7 +112,7 @@ int make_plugin(const SkeletonOptions& options, const Common& common) {
   const fs::path folder = options.out.empty() ? options.name : options.out;
   const fs::path skeletons = common.template_folders().front().parent_path() / "plugin";
   const auto files =
-      host::plugin_check::new_plugin(skeletons, options.kind, options.name, fs::absolute(folder));
+      plugin_check::new_plugin(skeletons, options.kind, options.name, fs::absolute(folder));
   if (!files) return complain("nonio plugin new", files.error().message);
   if (common.json)
     std::cout << Json{{"folder", fs::absolute(folder).string()}, {"files", *files}}.dump(1) << "\n";
@@ -127,7 +126,7 @@ int make_plugin(const SkeletonOptions& options, const Common& common) {
 
 std::string all_checks() {
   std::string words = "Checks:\n";
-  for (auto [name, law] : host::plugin_check::plugin_check_names()) {
+  for (auto [name, law] : plugin_check::plugin_check_names()) {
     name.resize(std::max<std::size_t>(name.size(), 13), ' ');
     words += "  " + name + law + "\n";
   }

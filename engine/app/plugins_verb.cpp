@@ -3,7 +3,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "host/loader/plugins.h"
+#include "campaign/loader/plugins.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -25,7 +25,7 @@ struct Listed {
   const Info* info;
 };
 
-std::vector<Listed> all_of(const host::loader::Plugins& plugins) {
+std::vector<Listed> all_of(const loader::Plugins& plugins) {
   std::vector<Listed> all;
   for (const auto& p : plugins.readers()) all.push_back({"reader", &p.info});
   for (const auto& p : plugins.effects()) all.push_back({"effect", &p.info});
@@ -35,9 +35,9 @@ std::vector<Listed> all_of(const host::loader::Plugins& plugins) {
   return all;
 }
 
-void print_plugins_json(const host::loader::Plugins& plugins) {
+void print_plugins_json(const loader::Plugins& plugins) {
   Json files = Json::array(), all = Json::array();
-  for (const host::loader::PluginFile& f : plugins.files()) {
+  for (const loader::PluginFile& f : plugins.files()) {
     Json file = {{"path", f.path.string()}, {"plugins", f.brought}};
     if (!f.refused.empty()) file["refused"] = f.refused;
     files.push_back(std::move(file));
@@ -59,7 +59,7 @@ void print_plugins_json(const host::loader::Plugins& plugins) {
             << "\n";
 }
 
-void print_plugins(const host::loader::Plugins& plugins, bool with_options) {
+void print_plugins(const loader::Plugins& plugins, bool with_options) {
   for (const Listed& p : all_of(plugins)) {
     std::cout << p.kind << " " << p.info->name << " " << p.info->version
               << (p.info->opt_in ? " (on request)" : "") << "\n    " << p.info->summary << "\n";
@@ -70,13 +70,13 @@ void print_plugins(const host::loader::Plugins& plugins, bool with_options) {
                   << "\n        " << o.help << "\n";
   }
   std::cout << "\nfiles (ABI " << NONIO_ABI_TAG << ")\n";
-  for (const host::loader::PluginFile& f : plugins.files())
+  for (const loader::PluginFile& f : plugins.files())
     std::cout << "  " << f.path.string() << (f.refused.empty() ? "" : "\n    refused: " + f.refused)
               << "\n";
 }
 
 int list_plugins(const Common& common) {
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   if (common.json)
     print_plugins_json(plugins);
@@ -84,7 +84,7 @@ int list_plugins(const Common& common) {
     print_plugins(plugins, !common.quiet);
   for (const std::string& conflict : plugins.conflicts()) complain("nonio plugins", conflict);
   if (!plugins.conflicts().empty()) return exit_usage;
-  const auto refused = [](const host::loader::PluginFile& f) { return !f.refused.empty(); };
+  const auto refused = [](const loader::PluginFile& f) { return !f.refused.empty(); };
   return std::any_of(plugins.files().begin(), plugins.files().end(), refused) ? exit_failed
                                                                               : exit_done;
 }

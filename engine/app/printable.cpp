@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "host/storage/characters.h"
+#include "platform/storage/characters.h"
 
 namespace nonio::app {
-using host::storage::Character;
+using storage::Character;
 
 namespace {
 
@@ -23,11 +23,11 @@ std::string escaped(const char* format, std::uint32_t code) {
 std::string printable(std::string_view text) {
   std::string out;
   while (!text.empty()) {
-    const Character c = host::storage::first_of(text);
+    const Character c = storage::first_of(text);
     const std::size_t size = c.size == 0 ? 1 : c.size;
     if (c.size == 0)
       out += escaped("\\x%02x", static_cast<unsigned char>(text.front()));
-    else if (host::storage::is_shown(c.code))
+    else if (storage::is_shown(c.code))
       out += text.substr(0, size);
     else
       out += escaped(c.code < 0x100 ? "\\x%02x" : "\\u%04x", c.code);

@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "campaign/config/manifest.h"
+#include "campaign/planning/plan.h"
+#include "campaign/tables/table_check.h"
 #include "campaign_verb.h"
-#include "host/config/manifest.h"
-#include "host/storage/files.h"
-#include "host/tables/table_check.h"
-#include "host/tools/plan.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/files.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -30,7 +30,7 @@ struct ProbeWish {
 
 /// The writer of part programs for a control of this name: heidenhain-tnc has that of heidenhain,
 /// a control without one of its own plain G-code.
-std::string writer_for(const std::string& control, const host::loader::Plugins& plugins) {
+std::string writer_for(const std::string& control, const loader::Plugins& plugins) {
   const std::string family = control.substr(0, control.find('-'));
   for (const Output& o : plugins.outputs())
     if (!family.empty() && o.info.name == "program-" + family) return family;
@@ -48,7 +48,7 @@ bool runs_no_gcode(const std::string& control) {
 Settings said_of_axes(const OpenCampaign& open) {
   for (const Controller& o : open.place->plugins.controllers())
     if (o.info.name == open.campaign().machine.control)
-      if (auto settled = host::config::settle_table_options(
+      if (auto settled = config::settle_table_options(
               o.info, open.place->context.site.options, *open.read.manifest,
               open.read.machine ? &*open.read.machine : nullptr))
         return std::move(*settled);
@@ -56,8 +56,7 @@ Settings said_of_axes(const OpenCampaign& open) {
 }
 
 /// That the probe stays within the travel, as the manifest has it, and option axes.
-Expected<void> within_travel(const host::tables::SignProbe& p, const Axis* axis,
-                             const Settings& said) {
+Expected<void> within_travel(const tables::SignProbe& p, const Axis* axis, const Settings& said) {
   const double unit = p.rotary ? deg_per_rad : 1e3;
   const char* const suffix = p.rotary ? "_deg" : "_mm";
   double low = -HUGE_VAL, high = HUGE_VAL;
@@ -81,9 +80,9 @@ Expected<void> within_travel(const host::tables::SignProbe& p, const Axis* axis,
 }
 
 /// The part program of a probe, by the writer of all part programs.
-Expected<Artifact> program_of(const host::tables::SignProbe& p, const Machine& machine,
+Expected<Artifact> program_of(const tables::SignProbe& p, const Machine& machine,
                               const ProbeWish& w, const std::map<std::string, std::string>& given,
-                              const host::loader::Plugins& plugins) {
+                              const loader::Plugins& plugins) {
   const Quantity at = position_of(p.rotary);
   PointTable stops;
   stops.columns = {{"start", at, {p.start}}, {"from", at, {p.from}}, {"to", at, {p.to}}};
@@ -101,7 +100,7 @@ Expected<Artifact> program_of(const host::tables::SignProbe& p, const Machine& m
   // A zero offset that stands in the control would send the axis elsewhere.
   const std::string control = w.control.empty() ? writer_for(machine.control, plugins) : w.control;
   if (control == "gcode" && !machine.control.empty()) settings.emplace("work_offset", "G53");
-  auto files = host::tools::write_programs(plugins, control, with_axis, stops, settings);
+  auto files = planning::write_programs(plugins, control, with_axis, stops, settings);
   if (!files) return fail(files.error().front());
   Artifact& program = files->front();
   std::string ending = std::filesystem::path(program.name).extension().string();
@@ -111,7 +110,7 @@ Expected<Artifact> program_of(const host::tables::SignProbe& p, const Machine& m
   return std::move(program);
 }
 
-Json probe_json(const host::tables::SignProbe& p, const std::string& file) {
+Json probe_json(const tables::SignProbe& p, const std::string& file) {
   const Quantity q = deviation_of(p.rotary);
   const auto name = [](const char* key, Quantity of) {
     return key + std::string(unit_of(of).suffix);
@@ -131,7 +130,7 @@ Json probe_json(const host::tables::SignProbe& p, const std::string& file) {
   return json;
 }
 
-void print_probe(const host::tables::SignProbe& p, const std::string& file) {
+void print_probe(const tables::SignProbe& p, const std::string& file) {
   const Quantity q = deviation_of(p.rotary), at = position_of(p.rotary);
   std::cout << "axis " << p.axis << ", measurement " << p.measurement << "\n  move to "
             << with_unit(p.from, at) << " coming from " << with_unit(p.start, at)
@@ -167,7 +166,7 @@ int probe(const ProbeWish& w, const Common& common) {
         (!w.axis.empty() && m.axis != w.axis))
       continue;
     measured = true;
-    const auto p = host::tables::sign_probe(m, open.read.observations[i]);
+    const auto p = tables::sign_probe(m, open.read.observations[i]);
     if (!p) {
       good = false;
       complain(verb, p.error().message);
@@ -192,7 +191,7 @@ int probe(const ProbeWish& w, const Common& common) {
     if (!common.json) print_probe(*p, file);
   }
   if (!files.empty())
-    if (auto done = host::storage::publish(std::filesystem::absolute(w.out), files); !done)
+    if (auto done = storage::publish(std::filesystem::absolute(w.out), files); !done)
       return complain(verb, text_of(done.error()), exit_failed);
   if (common.json)
     std::cout << Json{{"schema", "nonio-sign-probe/1"}, {"campaign", campaign.id}, {"probes", all}}

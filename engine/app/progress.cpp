@@ -34,7 +34,7 @@ std::size_t terminal_width() {
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
 }
 
-std::string message_of(const host::batch::CampaignState& c) {
+std::string message_of(const batch::CampaignState& c) {
   return c.errors().empty() ? c.reason : text_of(c.errors().front());
 }
 
@@ -43,10 +43,10 @@ std::string message_of(const host::batch::CampaignState& c) {
 Progress::Progress(bool quiet, bool json)
     : quiet_(quiet), json_(json), bar_(!quiet && !json && ::isatty(STDERR_FILENO) == 1) {}
 
-host::batch::RunEvents Progress::events() {
+batch::RunEvents Progress::events() {
   return {[this](const std::string& m) { note(m); },
           [this](std::size_t n, std::size_t k) { planned(n, k); },
-          [this](const host::batch::CampaignState& c) { finished(c); },
+          [this](const batch::CampaignState& c) { finished(c); },
           [this] {
             if (bar_) draw();
           },
@@ -72,9 +72,9 @@ void Progress::planned(std::size_t campaigns, std::size_t to_do) {
               << " to do\n";
 }
 
-void Progress::finished(const host::batch::CampaignState& c) {
+void Progress::finished(const batch::CampaignState& c) {
   to_do_ = std::max(to_do_, ++done_);  // a report is done again when its history is another one
-  const bool failed = c.status == host::evaluation::Status::failed;
+  const bool failed = c.status == evaluation::Status::failed;
   if (failed) ++failed_;
   if (json_) {
     Json event = {{"event", "campaign"}, {"id", c.id},    {"status", to_text(c.status)},
@@ -116,10 +116,10 @@ void Progress::clear() {
   if (bar_ && drawn_once_) std::cerr << "\r\033[K";
 }
 
-void Progress::still_failed(const host::batch::Night& night) {
-  for (const host::batch::CampaignState& c : night.campaigns)
-    if (c.status == host::evaluation::Status::failed &&
-        c.action == host::batch::CampaignState::Action::unchanged)
+void Progress::still_failed(const batch::Night& night) {
+  for (const batch::CampaignState& c : night.campaigns)
+    if (c.status == evaluation::Status::failed &&
+        c.action == batch::CampaignState::Action::unchanged)
       std::cerr << status_word(to_text(c.status), STDERR_FILENO) << " " << c.id
                 << " (unchanged): " << message_of(c) << "\n";
 }

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "host/batch/run.h"
+#include "batch/run.h"
 
 namespace nonio::app {
 
@@ -14,16 +14,16 @@ namespace nonio::app {
 class Progress {
  public:
   Progress(bool quiet, bool json);
-  host::batch::RunEvents events();
+  batch::RunEvents events();
   /// Ends the bar's line.
   void end();
   /// Names the campaigns that failed and were not done again.
-  void still_failed(const host::batch::Night& night);
+  void still_failed(const batch::Night& night);
 
  private:
   void note(const std::string& message);
   void planned(std::size_t campaigns, std::size_t to_do);
-  void finished(const host::batch::CampaignState& campaign);
+  void finished(const batch::CampaignState& campaign);
   void draw();
   void clear();
 

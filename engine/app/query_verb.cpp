@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/history/query.h"
+#include "laboratory/store/query.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "printable.h"
@@ -14,9 +14,9 @@
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
-using host::history::NamedMachine;
-using host::history::Point;
-using host::history::Spelling;
+using store::NamedMachine;
+using store::Point;
+using store::Spelling;
 
 namespace {
 
@@ -24,7 +24,7 @@ constexpr const char* query_name = "nonio query";
 
 struct QueryWish {
   std::string out;
-  host::history::Query query;
+  store::Query query;
   bool csv = false;
 };
 
@@ -146,9 +146,9 @@ void print_table(const std::vector<Point>& points) {
 }
 
 int print_machines(const QueryWish& wish, const Common& common) {
-  const auto machines = host::history::machines_in(wish.out);
+  const auto machines = store::machines_in(wish.out);
   if (!machines) return complain(query_name, machines.error().message);
-  const auto spellings = host::history::spellings_in(wish.out);
+  const auto spellings = store::spellings_in(wish.out);
   if (!spellings) return complain(query_name, spellings.error().message);
   if (common.json) {
     Json all = Json::array();
@@ -173,14 +173,14 @@ int print_machines(const QueryWish& wish, const Common& common) {
 }
 
 int query(const QueryWish& wish, const Common& common) {
-  const host::history::Query& q = wish.query;
+  const store::Query& q = wish.query;
   if (q.machine.empty() && q.axis.empty() && q.quantity.empty() && q.source.empty() &&
       q.from.empty() && q.to.empty() && !wish.csv)
     return print_machines(wish, common);
   for (const std::string& day : {q.from, q.to})
     if (!day.empty() && !is_day(day))
       return complain(query_name, "expected a day as YYYY-MM-DD, found \"" + day + "\"");
-  const auto points = host::history::query(wish.out, q);
+  const auto points = store::query(wish.out, q);
   if (!points) return complain(query_name, points.error().message);
   if (common.json) {
     Json all = Json::array();
@@ -202,7 +202,7 @@ int query(const QueryWish& wish, const Common& common) {
 
 Verb query_verb(Common& common) {
   auto wish = std::make_shared<QueryWish>();
-  host::history::Query& q = wish->query;
+  store::Query& q = wish->query;
   return {
       .name = "query",
       .summary = "Results of all campaigns of a machine, from the history of an output folder",

@@ -4,14 +4,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/batch/release.h"
+#include "batch/release/release.h"
 #include "progress.h"
 #include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
-using host::batch::Released;
-using host::certificates::WaitingDraft;
+using batch::Released;
+using certificates::WaitingDraft;
 namespace fs = std::filesystem;
 
 namespace {
@@ -24,9 +24,9 @@ struct ReleaseVerbWish {
   bool list = false;
 };
 
-std::string reason_of(const WaitingDraft& draft, const host::evaluation::KnownFinding& finding) {
+std::string reason_of(const WaitingDraft& draft, const evaluation::KnownFinding& finding) {
   if (!draft.author) return {};
-  const auto given = draft.author->reasons.find(host::certificates::finding_key(finding));
+  const auto given = draft.author->reasons.find(certificates::finding_key(finding));
   return given == draft.author->reasons.end() ? "" : given->second;
 }
 
@@ -35,10 +35,10 @@ Json draft_json(const WaitingDraft& draft) {
                {"folder", draft.folder},
                {"file", (fs::path(draft.out) / draft.campaign / draft.file).string()}};
   if (!draft.replaces.empty()) json["replaces"] = draft.replaces;
-  if (const std::string why = host::batch::why_stale(draft); !why.empty()) json["stale"] = why;
+  if (const std::string why = batch::why_stale(draft); !why.empty()) json["stale"] = why;
   if (draft.author) json["author"] = {{"name", draft.author->by}, {"at", draft.author->at}};
   Json findings = Json::array();
-  for (const host::evaluation::KnownFinding& f : draft.findings) {
+  for (const evaluation::KnownFinding& f : draft.findings) {
     Json one = {{"id", f.id},
                 {"measurement", f.measurement},
                 {"severity", f.attention ? "attention" : "info"},
@@ -56,11 +56,11 @@ void print(std::ostream& out, const WaitingDraft& draft) {
   if (!draft.replaces.empty()) out << "  replaces " << draft.replaces;
   if (draft.author) out << "  approved by " << draft.author->by << " " << draft.author->at;
   out << "\n";
-  if (const std::string why = host::batch::why_stale(draft); !why.empty())
+  if (const std::string why = batch::why_stale(draft); !why.empty())
     out << "  stale: " << why << "\n";
-  for (const host::evaluation::KnownFinding& f : draft.findings) {
-    out << "  " << (f.attention ? "attention  " : "info       ")
-        << host::certificates::finding_key(f) << "  " << f.title;
+  for (const evaluation::KnownFinding& f : draft.findings) {
+    out << "  " << (f.attention ? "attention  " : "info       ") << certificates::finding_key(f)
+        << "  " << f.title;
     if (const std::string reason = reason_of(draft, f); !reason.empty())
       out << "  (" << reason << ")";
     out << "\n";
@@ -72,7 +72,7 @@ std::string dumped(const Json& json) {
 }
 
 int list_drafts(const ReleaseVerbWish& wish, const Common& common) {
-  const auto drafts = host::batch::waiting_drafts(wish.folder);
+  const auto drafts = batch::waiting_drafts(wish.folder);
   if (!drafts) return complain(release_name, text_of(drafts.error()));
   if (common.json) {
     Json all = Json::array();
@@ -144,21 +144,21 @@ int release(const ReleaseVerbWish& wish, const Common& common) {
   if (wish.list) return list_drafts(wish, common);
   if (wish.by.empty())
     return complain(release_name, "--by NAME is missing: who releases it? Or --list");
-  host::batch::ReleaseRequest wanted{wish.folder, wish.by, wish.role, {}, wish.out};
+  batch::ReleaseRequest wanted{wish.folder, wish.by, wish.role, {}, wish.out};
   for (const std::string& given : wish.reasons) {
     const std::size_t equals = given.find('=');
     if (equals == std::string::npos || equals == 0)
       return complain(release_name, "--reason wants FINDING=TEXT, found \"" + given + "\"");
     wanted.reasons[given.substr(0, equals)] = given.substr(equals + 1);
   }
-  host::batch::RunOptions base;
+  batch::RunOptions base;
   base.jobs = 1;
   base.plugin_folders = common.plugin_folders();
   base.own_plugins = Common::own_plugins();
   base.template_folders = common.template_folders();
   base.version = NONIO_VERSION;
   Progress progress(true, false);
-  return tell(host::batch::release(wanted, base, progress.events()), wish, common);
+  return tell(batch::release(wanted, base, progress.events()), wish, common);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/certificates/restamp.h"
+#include "certificates/restamp.h"
 #include "printable.h"
 #include "verbs.h"
 
@@ -20,8 +20,7 @@ struct RestampWish {
   bool no_time_stamp = false, no_fetch = false;
 };
 
-void print(const std::string& file, const host::certificates::Restamped& done,
-           const Common& common) {
+void print(const std::string& file, const certificates::Restamped& done, const Common& common) {
   if (common.json) {
     std::cout << Json{{"schema", "nonio-restamp/1"},
                       {"file", file},
@@ -38,7 +37,7 @@ void print(const std::string& file, const host::certificates::Restamped& done,
 }
 
 int restamp(const RestampWish& wanted, const Common& common) {
-  host::certificates::RestampOptions options;
+  certificates::RestampOptions options;
   options.whom = {wanted.site,  wanted.signer_roots, wanted.time_stamp_roots,
                   wanted.trust, wanted.revoked,      wanted.signers};
   options.time_stamp = wanted.time_stamp;
@@ -47,15 +46,15 @@ int restamp(const RestampWish& wanted, const Common& common) {
   options.fetch = !wanted.no_fetch;
   if (wanted.no_time_stamp && !wanted.time_stamp.empty())
     return complain(restamp_name, "--time-stamp and --no-time-stamp exclude each other");
-  const auto how = host::certificates::prolonging_of(options);
+  const auto how = certificates::prolonging_of(options);
   if (!how) {
     for (const Error& e : how.error()) complain(restamp_name, text_of(e));
     return exit_usage;
   }
-  const auto rows = host::certificates::register_rows(wanted.site);
+  const auto rows = certificates::register_rows(wanted.site);
   int status = exit_done;
   for (const std::string& file : wanted.files) {
-    const auto done = host::certificates::restamp(file, *how, rows, wanted.out);
+    const auto done = certificates::restamp(file, *how, rows, wanted.out);
     if (done)
       print(file, *done, common);
     else

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "results_folder.h"
 
-#include "host/evaluation/evaluate.h"
-#include "host/evaluation/record.h"
-#include "host/storage/files.h"
-#include "host/storage/pack.h"
+#include "campaign/evaluation/evaluate.h"
+#include "campaign/evaluation/record.h"
+#include "platform/storage/files.h"
+#include "platform/storage/pack.h"
 
 namespace nonio::app {
 namespace fs = std::filesystem;
 
 Holds what_holds(const fs::path& folder) {
   std::error_code error;
-  if (fs::exists(folder / host::config::manifest_name, error)) return Holds::campaign;
-  if (host::storage::is_there(folder / host::evaluation::results_name).value_or(false))
-    return Holds::results;
+  if (fs::exists(folder / config::manifest_name, error)) return Holds::campaign;
+  if (storage::is_there(folder / evaluation::results_name).value_or(false)) return Holds::results;
   if (fs::exists(folder / "summary.json", error)) return Holds::night;
   return Holds::nothing;
 }
@@ -25,9 +24,8 @@ fs::path results_at(const fs::path& folder) {
   const fs::path above = path.parent_path();
   for (const fs::path& out : {above, above.parent_path()}) {  // OUT/ID, OUT/ab/ID
     const std::string id = path.filename().string();
-    if (host::storage::own_folder(out, id) != path) continue;
-    if (fs::path place = host::storage::results_folder(out, id); host::storage::in_pack(place))
-      return place;
+    if (storage::own_folder(out, id) != path) continue;
+    if (fs::path place = storage::results_folder(out, id); storage::in_pack(place)) return place;
   }
   return folder;
 }
@@ -42,9 +40,9 @@ std::string holds_nothing(const fs::path& folder) {
 
 std::string id_of_campaign(const fs::path& folder) {
   std::string id;
-  if (const auto text = host::storage::read_file(folder / host::config::manifest_name)) {
-    const auto manifest = host::config::parse_manifest(*text, host::config::manifest_name);
-    id = manifest ? manifest->campaign.id : host::config::extract_id(*text);
+  if (const auto text = storage::read_file(folder / config::manifest_name)) {
+    const auto manifest = config::parse_manifest(*text, config::manifest_name);
+    id = manifest ? manifest->campaign.id : config::extract_id(*text);
   }
   return id.empty() ? fs::absolute(folder).lexically_normal().filename().string() : id;
 }

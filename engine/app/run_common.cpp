@@ -8,22 +8,22 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "host/process/stop.h"
+#include "platform/process/stop.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-void print_summary(const host::batch::Night& night, const fs::path& out, bool json) {
+void print_summary(const batch::Night& night, const fs::path& out, bool json) {
   std::size_t done = 0, unchanged = 0, attention = 0, failed = 0;
-  for (const host::batch::CampaignState& c : night.campaigns) {
-    if (c.status == host::evaluation::Status::failed)
+  for (const batch::CampaignState& c : night.campaigns) {
+    if (c.status == evaluation::Status::failed)
       ++failed;
-    else if (c.action == host::batch::CampaignState::Action::done)
+    else if (c.action == batch::CampaignState::Action::done)
       ++done;
     else
       ++unchanged;
-    if (c.status == host::evaluation::Status::attention) ++attention;
+    if (c.status == evaluation::Status::attention) ++attention;
   }
   // Findings are counted by campaign; what somebody must decide, by line.
   if (json) {
@@ -50,7 +50,7 @@ namespace {
 /// went away, or a limit for the size of files, is no reason to die but an error like others.
 void catch_signals() {
   struct sigaction stop {};
-  stop.sa_handler = [](int) { host::process::request_stop(); };
+  stop.sa_handler = [](int) { process::request_stop(); };
   sigaction(SIGINT, &stop, nullptr);
   sigaction(SIGTERM, &stop, nullptr);
   struct sigaction hang_up {};
@@ -64,7 +64,7 @@ void catch_signals() {
 
 }  // namespace
 
-void prepare_run(host::batch::RunOptions& options, const std::string& site, const std::string& out,
+void prepare_run(batch::RunOptions& options, const std::string& site, const std::string& out,
                  const Common& common) {
   options.site = site;
   options.out = fs::absolute(out);
@@ -79,20 +79,20 @@ void prepare_run(host::batch::RunOptions& options, const std::string& site, cons
                  "(the package's service runs as nonio), or --root to say that it is meant\n";
 }
 
-std::optional<int> exit_of_unfinished(const host::batch::Night& night, const char* verb) {
-  if (night.end == host::batch::Night::End::refused) return complain(verb, night.error);
-  if (night.end == host::batch::Night::End::interrupted)
+std::optional<int> exit_of_unfinished(const batch::Night& night, const char* verb) {
+  if (night.end == batch::Night::End::refused) return complain(verb, night.error);
+  if (night.end == batch::Night::End::interrupted)
     return complain(verb, "interrupted; the same command goes on where it stopped",
                     exit_interrupted);
   if (!night.error.empty()) return complain(verb, night.error, exit_failed);
   return std::nullopt;
 }
 
-Argument jobs_argument(host::batch::RunOptions& options) {
+Argument jobs_argument(batch::RunOptions& options) {
   return within(1, 1024,
                 {"--jobs", &options.jobs, "Campaigns at a time (default: one for each core)"});
 }
-Argument root_argument(host::batch::RunOptions& options) {
+Argument root_argument(batch::RunOptions& options) {
   return {"--root", &options.as_root,
           "Permit root, even with plugins that other users can change; or set NONIO_ALLOW_ROOT"};
 }

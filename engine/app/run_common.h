@@ -3,22 +3,22 @@
 
 #include <string>
 
+#include "batch/run.h"
 #include "common.h"
-#include "host/batch/run.h"
 
 /// What the verbs share that do a night or a part of it.
 namespace nonio::app {
 
 /// Folders, plugins, templates and version as the command line has them; signals are caught, and
 /// root is warned.
-void prepare_run(host::batch::RunOptions& options, const std::string& site, const std::string& out,
+void prepare_run(batch::RunOptions& options, const std::string& site, const std::string& out,
                  const Common& common);
 /// The exit status of a night or a part of it that did not get to its end; none if it did.
-std::optional<int> exit_of_unfinished(const host::batch::Night& night, const char* verb);
+std::optional<int> exit_of_unfinished(const batch::Night& night, const char* verb);
 /// The night's counts and where its summary is.
-void print_summary(const host::batch::Night& night, const std::filesystem::path& out, bool json);
+void print_summary(const batch::Night& night, const std::filesystem::path& out, bool json);
 
-Argument jobs_argument(host::batch::RunOptions& options);
-Argument root_argument(host::batch::RunOptions& options);
+Argument jobs_argument(batch::RunOptions& options);
+Argument root_argument(batch::RunOptions& options);
 
 }  // namespace nonio::app

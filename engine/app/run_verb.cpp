@@ -5,8 +5,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/batch/parts.h"
-#include "host/storage/files.h"
+#include "batch/shards/parts.h"
+#include "platform/storage/files.h"
 #include "progress.h"
 #include "run_common.h"
 #include "verbs.h"
@@ -17,26 +17,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const char* to_text(host::batch::CampaignState::Action action) {
+const char* to_text(batch::CampaignState::Action action) {
   switch (action) {
-    case host::batch::CampaignState::Action::todo:
+    case batch::CampaignState::Action::todo:
       return "to do";
-    case host::batch::CampaignState::Action::done:
+    case batch::CampaignState::Action::done:
       return "done";
-    case host::batch::CampaignState::Action::unchanged:
+    case batch::CampaignState::Action::unchanged:
       break;
   }
   return "unchanged";
 }
 
-void print_night_plan(const host::batch::Night& night, bool json) {
-  for (const host::batch::CampaignState& c : night.campaigns) {
-    const bool collides = c.action == host::batch::CampaignState::Action::todo &&
-                          c.status == host::evaluation::Status::failed;
+void print_night_plan(const batch::Night& night, bool json) {
+  for (const batch::CampaignState& c : night.campaigns) {
+    const bool collides =
+        c.action == batch::CampaignState::Action::todo && c.status == evaluation::Status::failed;
     const std::string reason = collides ? c.errors().front().message : c.reason;
     if (json)
       std::cout << Json{{"id", c.id},
-                        {"folder", host::storage::path_text(c.folder.view())},
+                        {"folder", storage::path_text(c.folder.view())},
                         {"action", collides ? "refused" : to_text(c.action)},
                         {"reason", reason}}
                        .dump(-1, ' ', false, Json::error_handler_t::replace)
@@ -53,12 +53,12 @@ constexpr const char* not_given = "not given";
 struct RunWish {
   std::string site, out, scratch;
   std::string shard = not_given;
-  host::batch::RunOptions options;
+  batch::RunOptions options;
 };
 
 /// "3/64" into the options; what is wrong with it, empty if nothing is.
 std::string take_shard(RunWish& wish) {
-  host::batch::RunOptions& options = wish.options;
+  batch::RunOptions& options = wish.options;
   if (options.force || options.verify_results || options.dry_run || !options.date.empty() ||
       !options.only.empty())
     return "--shard goes with --jobs and --pack alone: whether and when campaigns are done is "
@@ -71,20 +71,20 @@ std::string take_shard(RunWish& wish) {
                             : std::from_chars_result{number.ptr, std::errc::invalid_argument};
   if (of.ec != std::errc() || of.ptr != end || options.shard >= options.shards)
     return "--shard: expected i/S with i = 0 .. S-1, for example 0/4, found \"" + wish.shard + "\"";
-  options.step = host::batch::RunOptions::Step::shard;
+  options.step = batch::RunOptions::Step::shard;
   return {};
 }
 
 /// One shard of a planned night.
-int run_part(const host::batch::RunOptions& options, const Common& common) {
+int run_part(const batch::RunOptions& options, const Common& common) {
   const char* const verb = "nonio run --shard";
   Progress progress(common.quiet, common.json);
-  const host::batch::Night night = host::batch::run_shard(options, progress.events());
+  const batch::Night night = batch::run_shard(options, progress.events());
   progress.end();
   if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
-  const auto left = static_cast<std::size_t>(std::count_if(
-      night.campaigns.begin(), night.campaigns.end(),
-      [](const auto& c) { return c.action == host::batch::CampaignState::Action::todo; }));
+  const auto left = static_cast<std::size_t>(
+      std::count_if(night.campaigns.begin(), night.campaigns.end(),
+                    [](const auto& c) { return c.action == batch::CampaignState::Action::todo; }));
   const std::size_t failed = night.failed(), done = night.campaigns.size() - left - failed;
   if (common.json)
     std::cout << Json{{"event", "end"},         {"night", night.night.number},
@@ -106,7 +106,7 @@ int run_part(const host::batch::RunOptions& options, const Common& common) {
 int run_night(RunWish& wish, const Common& common) {
   const char* const verb = "nonio run";
   if (wish.out.empty()) return complain(verb, "--out is empty; expected a folder");
-  host::batch::RunOptions& options = wish.options;
+  batch::RunOptions& options = wish.options;
   if (!options.date.empty() && !is_day(options.date))
     return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   if (!options.only.empty() && (options.force || !options.date.empty()))
@@ -123,7 +123,7 @@ int run_night(RunWish& wish, const Common& common) {
   }
   prepare_run(options, wish.site, wish.out, common);
   Progress progress(common.quiet, common.json);
-  const host::batch::Night night = host::batch::run_site(options, progress.events());
+  const batch::Night night = batch::run_site(options, progress.events());
   progress.end();
   if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
   // What a night before has already said is said again: a failed campaign is never silent.
@@ -139,7 +139,7 @@ int run_night(RunWish& wish, const Common& common) {
 
 Verb run_verb(Common& common) {
   auto wish = std::make_shared<RunWish>();
-  host::batch::RunOptions& options = wish->options;
+  batch::RunOptions& options = wish->options;
   using Takes = Argument::Takes;
   return {
       .name = "run",

@@ -3,9 +3,9 @@
 #include <iostream>
 #include <memory>
 
-#include "host/loader/plugins.h"
-#include "host/storage/files.h"
-#include "host/tools/schema.h"
+#include "campaign/loader/plugins.h"
+#include "campaign/schema/schema.h"
+#include "platform/storage/files.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -13,11 +13,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Schema = std::string (*)(const host::loader::Plugins&);
+using Schema = std::string (*)(const loader::Plugins&);
 
 int write_schema(const std::string& verb, Schema schema, const std::string& out,
                  const Common& common) {
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   if (!plugins.conflicts().empty()) return complain(verb, plugins.conflicts().front());
   for (const std::string& note : plugins.refusal_notes())
@@ -30,8 +30,7 @@ int write_schema(const std::string& verb, Schema schema, const std::string& out,
   const fs::path path = fs::absolute(out);
   if (!path.has_filename() || fs::is_directory(path))
     return complain(verb, out + " is a folder; expected a file");
-  const auto written =
-      host::storage::publish(path.parent_path(), {{path.filename().string(), text}});
+  const auto written = storage::publish(path.parent_path(), {{path.filename().string(), text}});
   return written ? exit_done : complain(verb, text_of(written.error()), exit_failed);
 }
 
@@ -56,12 +55,12 @@ Verb schema_of(const std::string& file, Schema schema, Common& common) {
 Verb schema_verb(Common& common) {
   return {.name = "schema",
           .summary = "Writes JSON schemas, so that editors complete and check the files of a site",
-          .verbs = {schema_of("campaign", host::tools::campaign_schema, common),
-                    schema_of("site", host::tools::site_schema, common),
-                    schema_of("machine", host::tools::machine_schema, common),
-                    schema_of("events", host::tools::events_schema, common),
-                    schema_of("acknowledged", host::tools::acknowledged_schema, common),
-                    schema_of("forgotten", host::tools::forgotten_schema, common)}};
+          .verbs = {schema_of("campaign", schema::campaign_schema, common),
+                    schema_of("site", schema::site_schema, common),
+                    schema_of("machine", schema::machine_schema, common),
+                    schema_of("events", schema::events_schema, common),
+                    schema_of("acknowledged", schema::acknowledged_schema, common),
+                    schema_of("forgotten", schema::forgotten_schema, common)}};
 }
 
 }  // namespace nonio::app

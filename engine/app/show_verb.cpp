@@ -11,15 +11,15 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "campaign/config/template_files.h"
+#include "campaign/config/terminal_words.h"
+#include "campaign/evaluation/record.h"
+#include "campaign/evaluation/results_json.h"
+#include "campaign/reading/campaign_reader.h"
 #include "colour.h"
-#include "host/config/template_files.h"
-#include "host/config/terminal_words.h"
-#include "host/evaluation/record.h"
-#include "host/evaluation/results_json.h"
-#include "host/reading/campaign_reader.h"
-#include "host/storage/digest.h"
-#include "host/storage/files.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
 #include "results_folder.h"
 #include "verbs.h"
 
@@ -43,31 +43,30 @@ struct Shown {
 /// What the night would write, without a number drawn for a certificate;
 /// nothing is written.
 Expected<Shown> evaluated_now(const fs::path& folder, const Common& common) {
-  auto place = host::reading::open_workplace(folder, common.plugin_folders(),
-                                             common.template_folders(), NONIO_VERSION);
+  auto place = reading::open_workplace(folder, common.plugin_folders(), common.template_folders(),
+                                       NONIO_VERSION);
   if (!place) return fail(place.error());
   if (!common.quiet)
     for (const std::string& note : (*place)->notes) complain("nonio show", note);
-  const host::reading::Context& context = (*place)->context;
-  const host::evaluation::Evaluated evaluated = host::evaluation::evaluate(
-      folder, id_of_campaign(folder), context, [](const std::string&) {});
-  std::vector<host::evaluation::RecordedFile> files;
+  const reading::Context& context = (*place)->context;
+  const evaluation::Evaluated evaluated =
+      evaluation::evaluate(folder, id_of_campaign(folder), context, [](const std::string&) {});
+  std::vector<evaluation::RecordedFile> files;
   for (const Results::Written& w : evaluated.results.outputs)
     for (const Artifact& a : w.result.artifacts)
-      files.push_back({a.name, a.bytes.size(), host::storage::sha256(a.bytes)});
-  std::string text = host::evaluation::results_json(evaluated, context, files);
+      files.push_back({a.name, a.bytes.size(), storage::sha256(a.bytes)});
+  std::string text = evaluation::results_json(evaluated, context, files);
   return Shown{std::move(text), std::move((*place)->context.templates), context.site.language};
 }
 
 Expected<Shown> of_night(const fs::path& folder, const Common& common) {
-  auto text = host::storage::read_file(folder / host::evaluation::results_name);
+  auto text = storage::read_file(folder / evaluation::results_name);
   if (!text) return fail(text.error());
   std::string digest;
-  auto templates = host::config::read_templates(common.template_folders(), digest);
+  auto templates = config::read_templates(common.template_folders(), digest);
   if (!templates) return fail(templates.error());
   Shown shown{std::move(*text), std::move(*templates)};
-  if (const auto record = host::evaluation::read_record(folder);
-      record && !record->language.empty())
+  if (const auto record = evaluation::read_record(folder); record && !record->language.empty())
     shown.language = record->language;
   return shown;
 }
@@ -332,7 +331,7 @@ class Page {
       out_ << "  " << to_width(o.at("file"), 34) << " " << o.value("plugin", "") << "\n";
   }
 
-  host::config::TerminalWords say_;
+  config::TerminalWords say_;
   std::ostream& out_;
   std::size_t width_ = 80;
   std::set<std::string> told_{};
@@ -357,7 +356,7 @@ int show(const ShowWish& wish, const Common& common) {
       Page(*shown, std::cout).print(results);
     return results.at("status") == "failed" ? exit_failed : exit_done;
   } catch (const Json::exception& e) {
-    return complain(verb, (folder / host::evaluation::results_name).string() +
+    return complain(verb, (folder / evaluation::results_name).string() +
                               ": expected results of a campaign (nonio-results/1): " + e.what());
   }
 }

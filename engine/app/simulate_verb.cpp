@@ -2,10 +2,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "host/evaluation/evaluate.h"
-#include "host/loader/plugins.h"
-#include "host/storage/files.h"
-#include "host/tools/simulate.h"
+#include "campaign/evaluation/evaluate.h"
+#include "campaign/loader/plugins.h"
+#include "platform/storage/files.h"
+#include "simulation/simulate.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -22,11 +22,11 @@ std::string not_to_be_written(const fs::path& out, const fs::path& truth) {
   const fs::path below = truth.lexically_relative(out);
   if (!below.empty() && *below.begin() != "..")
     return "the truth would lie in the campaign's folder: " + truth.string();
-  const fs::path manifest = out / host::config::manifest_name;
+  const fs::path manifest = out / config::manifest_name;
   std::error_code error;
   if (!fs::exists(manifest, error)) return {};
-  const auto text = host::storage::read_file(manifest);
-  if (text && text->starts_with(host::tools::simulated_mark)) return {};
+  const auto text = storage::read_file(manifest);
+  if (text && text->starts_with(simulation::simulated_mark)) return {};
   return out.string() + " holds a campaign that was not simulated; it is left as it is";
 }
 
@@ -39,21 +39,20 @@ int simulate(const SimulateWish& w, const Common& common) {
                                          : fs::absolute(w.truth).lexically_normal();
   if (const std::string why = not_to_be_written(out, truth); !why.empty())
     return complain(verb, why);
-  const auto text = host::storage::read_file(w.specification);
+  const auto text = storage::read_file(w.specification);
   if (!text) return complain(verb, text.error().message);
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  const auto made = host::tools::simulate(*text, w.specification, plugins.effects());
+  const auto made = simulation::simulate(*text, w.specification, plugins.effects());
   if (!made) {
     for (const Error& e : made.error())
       complain(verb,
                e.file + (e.line != 0 ? ", line " + std::to_string(e.line) : "") + ": " + e.message);
     return exit_usage;
   }
-  auto written =
-      host::storage::publish(truth.parent_path(), {{truth.filename().string(), made->truth}});
-  if (written) written = host::storage::publish(out, made->campaign);
+  auto written = storage::publish(truth.parent_path(), {{truth.filename().string(), made->truth}});
+  if (written) written = storage::publish(out, made->campaign);
   if (!written) return complain(verb, written.error().message, exit_failed);
   if (common.json)
     std::cout

@@ -5,12 +5,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/batch/night_status.h"
+#include "batch/state/night_status.h"
 #include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
-using host::batch::NightStatus;
+using batch::NightStatus;
 
 namespace {
 
@@ -21,7 +21,7 @@ struct StatusWish {
   double max_age = 36.0;  ///< h; 0: any
 };
 
-std::string night_text(const host::evaluation::NightOf& night) {
+std::string night_text(const evaluation::NightOf& night) {
   return "night " + std::to_string(night.number) + (night.date.empty() ? "" : " of " + night.date);
 }
 
@@ -62,7 +62,7 @@ std::string line_of(const NightStatus& s, const std::string& wrong) {
 }
 
 int status(const StatusWish& wish, const Common& common) {
-  const auto found = host::batch::night_status(wish.out);
+  const auto found = batch::night_status(wish.out);
   if (!found) return complain(status_name, found.error().message);
   const std::string wrong = trouble(*found, wish);
   const int exit = wrong.empty() ? exit_done : exit_failed;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "host/config/table_files.h"
-#include "host/tools/plan.h"
+#include "campaign/config/table_files.h"
+#include "campaign/planning/plan.h"
 #include "nonio/sdk/format.h"
 #include "tables.h"
 
@@ -16,7 +16,7 @@ void put(TableJson& json, const std::string& name, double si, Quantity q) {
   if (std::isfinite(si)) json[name + std::string(unit_of(q).suffix)] = printed(si, q);
 }
 
-static TableJson shape_json(const host::tables::TableShape& s, bool rotary) {
+static TableJson shape_json(const tables::TableShape& s, bool rotary) {
   TableJson json = TableJson::object();
   put(json, "largest", s.largest, deviation_of(rotary));
   put(json, "largest_step", s.step, deviation_of(rotary));
@@ -26,7 +26,7 @@ static TableJson shape_json(const host::tables::TableShape& s, bool rotary) {
   return json;
 }
 
-TableJson difference_json(const host::tables::TableDifference& d) {
+TableJson difference_json(const tables::TableDifference& d) {
   TableJson json = {{"output", d.output}, {"by", d.input}};
   put(json, "largest", d.largest, deviation_of(d.rotary));
   put(json, "at", d.at, position_of(d.rotary));
@@ -36,8 +36,7 @@ TableJson difference_json(const host::tables::TableDifference& d) {
   return json;
 }
 
-static void print_shape(const char* name, const std::optional<host::tables::TableShape>& s,
-                        bool rotary) {
+static void print_shape(const char* name, const std::optional<tables::TableShape>& s, bool rotary) {
   std::cout << "  " << name << ": ";
   if (!s) {
     std::cout << "no table\n";
@@ -51,7 +50,7 @@ static void print_shape(const char* name, const std::optional<host::tables::Tabl
   std::cout << "\n";
 }
 
-void print_difference(const host::tables::TableDifference& d) {
+void print_difference(const tables::TableDifference& d) {
   std::cout << "axis " << d.output;
   if (d.input.size() != 1 || d.input.front() != d.output) {
     std::cout << " by the position of";
@@ -64,28 +63,27 @@ void print_difference(const host::tables::TableDifference& d) {
   print_shape("new    ", d.next, d.rotary);
 }
 
-Expected<Loaded> load(
-    const host::loader::Plugins& plugins, const std::string& files, const std::string& control,
-    const Campaign& campaign, const Texts& settings,
-    const std::function<host::config::Checked<Settings>(const Info&)>& options_of) {
-  auto read = host::config::read_table_files(files);
+Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,
+                      const std::string& control, const Campaign& campaign, const Texts& settings,
+                      const std::function<config::Checked<Settings>(const Info&)>& options_of) {
+  auto read = config::read_table_files(files);
   if (!read) return tl::unexpected<Error>(read.error());
-  const auto found = host::tables::control_of(plugins, control, *read, campaign, settings);
+  const auto found = tables::control_of(plugins, control, *read, campaign, settings);
   if (!found) return tl::unexpected<Error>(found.error());
   const auto options = options_of((*found)->info);
   if (!options) return tl::unexpected<Error>(options.error().front());
-  auto tables = host::tables::tables_in(**found, *read, campaign, *options);
+  auto tables = tables::tables_in(**found, *read, campaign, *options);
   if (!tables) return fail(files + ": " + tables.error().message);
   return Loaded{*found, std::move(*tables), std::move(*read)};
 }
 
-host::config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
-                                                 const Texts& settings) {
-  auto settled = host::config::settle_table_options(
-      info, open.place->context.site.options, *open.read.manifest,
-      open.read.machine ? &*open.read.machine : nullptr);
+config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
+                                           const Texts& settings) {
+  auto settled =
+      config::settle_table_options(info, open.place->context.site.options, *open.read.manifest,
+                                   open.read.machine ? &*open.read.machine : nullptr);
   if (!settled) return settled;
-  const auto told = host::config::options_from(info, settings);
+  const auto told = config::options_from(info, settings);
   if (!told) return told;
   for (const auto& [name, text] : settings) {
     NumberTables axes = settled->tables("axes");

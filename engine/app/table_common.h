@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "campaign/tables/table_check.h"
 #include "campaign_verb.h"
-#include "host/tables/table_check.h"
 
 /// What the verbs about tables share.
 namespace nonio::app {
@@ -18,8 +18,8 @@ using Texts = std::map<std::string, std::string>;
 
 /// Numbers with the unit in their name: "largest_um".
 void put(TableJson& json, const std::string& name, double si, Quantity q);
-TableJson difference_json(const host::tables::TableDifference& d);
-void print_difference(const host::tables::TableDifference& d);
+TableJson difference_json(const tables::TableDifference& d);
+void print_difference(const tables::TableDifference& d);
 
 /// Files, the control that they are of, and what it makes of them.
 struct Loaded {
@@ -28,14 +28,13 @@ struct Loaded {
   std::vector<Artifact> files;
 };
 
-Expected<Loaded> load(
-    const host::loader::Plugins& plugins, const std::string& files, const std::string& control,
-    const Campaign& campaign, const Texts& settings,
-    const std::function<host::config::Checked<Settings>(const Info&)>& options_of);
+Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,
+                      const std::string& control, const Campaign& campaign, const Texts& settings,
+                      const std::function<config::Checked<Settings>(const Info&)>& options_of);
 
 /// Options of a control for a campaign: site, record of the machine, manifest, then `settings`.
-host::config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
-                                                 const Texts& settings);
+config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
+                                           const Texts& settings);
 
 /// What a control's tables of a campaign are: the words of a refusal stand on stderr.
 void tell_findings(const char* verb, const OpenCampaign& open,

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "axis_argument.h"
+#include "campaign/planning/plan.h"
+#include "campaign/tables/table_check.h"
 #include "campaign_verb.h"
-#include "host/storage/files.h"
-#include "host/tables/table_check.h"
-#include "host/tools/plan.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/files.h"
 #include "table_common.h"
 #include "tables.h"
 #include "verbs.h"
@@ -30,7 +30,7 @@ struct TableWish {
   bool was_on = false;
 };
 
-Json forecast_json(const host::tables::TableForecast& f) {
+Json forecast_json(const tables::TableForecast& f) {
   Json json = {{"measurement", f.measurement}, {"axis", f.axis}};
   const Quantity q = deviation_of(f.rotary);
   for (const auto& [when, k] : {std::pair{"before", 0}, {"after", 1}}) {
@@ -42,7 +42,7 @@ Json forecast_json(const host::tables::TableForecast& f) {
   return json;
 }
 
-void print_forecast(const host::tables::TableForecast& f) {
+void print_forecast(const tables::TableForecast& f) {
   const Quantity q = deviation_of(f.rotary);
   std::cout << "axis " << f.axis << ", measurement " << f.measurement << ":";
   for (const auto& [name, v] : {std::pair{"E", f.E}, {"B", f.B}, {"M", f.M}})
@@ -67,8 +67,8 @@ void number_axes(const std::vector<std::string>& names, Settings& options) {
   options.values["axes"] = std::move(axes);
 }
 
-int tell_differences(const std::string& control,
-                     const std::vector<host::tables::TableDifference>& all, const Common& common) {
+int tell_differences(const std::string& control, const std::vector<tables::TableDifference>& all,
+                     const Common& common) {
   if (common.json) {
     Json json = {{"schema", "nonio-diff/1"}, {"control", control}, {"tables", Json::array()}};
     for (const auto& d : all) json["tables"].push_back(difference_json(d));
@@ -91,13 +91,13 @@ int diff_with_campaign(const std::string& backup, const std::string& folder, con
   const auto present =
       load(open.place->plugins, backup, control, open.campaign(), settings, options);
   if (!present) return complain(verb, text_of(present.error()));
-  auto next = host::tables::tables_of_campaign(open.read, *present->control,
-                                               *options(present->control->info));
+  auto next =
+      tables::tables_of_campaign(open.read, *present->control, *options(present->control->info));
   if (!next) return complain(verb, text_of(next.error()), exit_failed);
   tell_findings(verb, open, next->findings);
   if (next->tables.empty()) return complain(verb, "the campaign has no table", exit_failed);
-  auto all = host::tables::differences(present->tables, next->tables);
-  std::erase_if(all, [](const host::tables::TableDifference& d) { return !d.next; });
+  auto all = tables::differences(present->tables, next->tables);
+  std::erase_if(all, [](const tables::TableDifference& d) { return !d.next; });
   return tell_differences(present->control->info.name, all, common);
 }
 
@@ -111,12 +111,12 @@ int diff(const TableWish& w, const Common& common) {
   };
   if (is_folder(w.other)) return diff_with_campaign(w.table, w.other, w, *settings, common);
   if (is_folder(w.table)) return diff_with_campaign(w.other, w.table, w, *settings, common);
-  host::loader::Plugins plugins;
+  loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
   const Campaign campaign = machine_of(w.axes);
   const auto options = [&](const Info& info) {
-    auto settled = host::config::options_from(info, *settings);
+    auto settled = config::options_from(info, *settings);
     if (settled) number_axes(w.axes, *settled);
     return settled;
   };
@@ -124,13 +124,13 @@ int diff(const TableWish& w, const Common& common) {
   if (!was) return complain(verb, text_of(was.error()));
   const auto will = load(plugins, w.other, was->control->info.name, campaign, *settings, options);
   if (!will) return complain(verb, text_of(will.error()));
-  return tell_differences(was->control->info.name,
-                          host::tables::differences(was->tables, will->tables), common);
+  return tell_differences(was->control->info.name, tables::differences(was->tables, will->tables),
+                          common);
 }
 
 struct Applied {
-  std::vector<host::tables::TableDifference> differences;
-  std::vector<host::tables::TableForecast> forecast;
+  std::vector<tables::TableDifference> differences;
+  std::vector<tables::TableForecast> forecast;
   std::vector<Finding> findings;
   std::vector<std::string> files;
 };
@@ -156,7 +156,7 @@ int tell(const Applied& a, const std::string& control, const OpenCampaign& open,
   if (a.forecast.empty())
     return complain("nonio apply", "no measurement of an axis that these tables correct",
                     exit_failed);
-  const auto worse = [](const host::tables::TableForecast& f) { return f.worse(); };
+  const auto worse = [](const tables::TableForecast& f) { return f.worse(); };
   return std::any_of(a.forecast.begin(), a.forecast.end(), worse) ? exit_failed : exit_done;
 }
 
@@ -199,14 +199,14 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
       if (b.axis.empty() ? present.tables.size() > 1 : b.axis != t.output) continue;
       used[i] = true;
       const auto known =
-          t.backlash ? t.backlash : host::tables::stated_backlash(options, t.output, t.rotary);
+          t.backlash ? t.backlash : tables::stated_backlash(options, t.output, t.rotary);
       if (known && std::fabs(*known * per - b.value) > 5e-7)
         return fail("--backlash-was says " + short_text(b.value, 6) + " for axis " + t.output +
                     ", its files or the campaign say " + short_text(*known * per, 6));
-      if (!known) host::tables::state_backlash(options, t.output, t.rotary, b.value / per);
+      if (!known) tables::state_backlash(options, t.output, t.rotary, b.value / per);
     }
     const bool has_parameter = !present.control->table.backlash.empty();
-    if (has_parameter && !t.backlash && !host::tables::stated_backlash(options, t.output, t.rotary))
+    if (has_parameter && !t.backlash && !tables::stated_backlash(options, t.output, t.rotary))
       return fail(w.table + " does not say what was in " + present.control->table.backlash +
                   " of axis " + t.output +
                   " while it was measured: give its file too, or --backlash-was VALUE|none, or "
@@ -254,23 +254,23 @@ int apply(const TableWish& w, const Common& common) {
   Settings settled = *options(table->control->info);
   Applied a;
   if (!w.was_on) {
-    const auto on = host::tables::what_was_on(open.read, *table->control, settled);
+    const auto on = tables::what_was_on(open.read, *table->control, settled);
     if (!on) return complain(verb, text_of(on.error()));
-    a.forecast = host::tables::forecast(open.read, table->tables, settled, *on);
+    a.forecast = tables::forecast(open.read, table->tables, settled, *on);
     return tell(a, table->control->info.name, open, common);
   }
   if (auto agreed = was_on_unless_stated(w, *table, open.campaign()); !agreed)
     return complain(verb, agreed.error().message);
   if (auto stated = settle_backlash(w, *table, settled); !stated)
     return complain(verb, stated.error().message);
-  auto renewed = host::tables::renew(open.read, *table->control, settled, table->tables);
+  auto renewed = tables::renew(open.read, *table->control, settled, table->tables);
   if (!renewed) return complain(verb, text_of(renewed.error()), exit_failed);
-  a = {host::tables::differences(table->tables, renewed->tables),
+  a = {tables::differences(table->tables, renewed->tables),
        std::move(renewed->forecast),
        std::move(renewed->findings),
        {}};
   if (!w.out.empty()) {
-    if (auto done = host::storage::publish(std::filesystem::absolute(w.out), renewed->files); !done)
+    if (auto done = storage::publish(std::filesystem::absolute(w.out), renewed->files); !done)
       return complain(verb, text_of(done.error()), exit_failed);
     for (const Artifact& f : renewed->files)
       a.files.push_back((std::filesystem::path(w.out) / f.name).string());

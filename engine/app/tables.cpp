@@ -6,7 +6,7 @@
 #include <ostream>
 #include <tuple>
 
-#include "host/modelling/after_table.h"
+#include "campaign/modelling/after_table.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::app {
@@ -60,31 +60,30 @@ const char* head_of(const model::Part& part) {
   return "head.balls";
 }
 
-void print_head(std::ostream& out, const host::modelling::PartModel& part,
-                const host::modelling::ModelWords& words) {
-  const host::config::TerminalWords say = words.terminal();
-  const std::string effects = host::storage::listed(part.names());
+void print_head(std::ostream& out, const modelling::PartModel& part,
+                const modelling::ModelWords& words) {
+  const config::TerminalWords say = words.terminal();
+  const std::string effects = storage::listed(part.names());
   out << say(head_of(part.part)) << " " << part.part.name << " ("
-      << host::storage::listed(part.part.measurements) << "): "
+      << storage::listed(part.part.measurements) << "): "
       << say("head.readings", {{"count", std::to_string(part.part.table.size())},
                                {"model", effects.empty() ? say("head.empty") : effects}})
       << "\n";
 }
 
 /// Curves by what they say, everything else by its parameters.
-void print_parameters(std::ostream& out, const model::Fit& fit,
-                      const host::modelling::PartModel& part,
-                      const host::modelling::ModelWords& words) {
+void print_parameters(std::ostream& out, const model::Fit& fit, const modelling::PartModel& part,
+                      const modelling::ModelWords& words) {
   if (fit.parameters.empty()) return;
   out << "  " << words.terminal()("parameters") << "\n";
   std::string told;
   for (const model::Parameter& p : fit.parameters) {
     const auto term = std::find_if(fit.terms.begin(), fit.terms.end(),
                                    [&](const model::Term& t) { return t.name() == p.effect; });
-    const auto curve = term == fit.terms.end()
-                           ? std::nullopt
-                           : host::modelling::curve_of(
-                                 part, fit, static_cast<std::size_t>(term - fit.terms.begin()));
+    const auto curve =
+        term == fit.terms.end()
+            ? std::nullopt
+            : modelling::curve_of(part, fit, static_cast<std::size_t>(term - fit.terms.begin()));
     if (curve && !p.shape) {
       if (told != p.effect)
         out << "    " << padded(p.effect, 20) << " " << words.curve(*curve, part) << "\n";
@@ -105,35 +104,33 @@ void print_parameters(std::ostream& out, const model::Fit& fit,
 }
 
 /// One after the other: each beside those above it.
-void print_places(std::ostream& out, const model::Comparison& c,
-                  const host::modelling::ModelWords& words, Quantity deviation) {
-  const host::config::TerminalWords say = words.terminal();
+void print_places(std::ostream& out, const model::Comparison& c, const modelling::ModelWords& words,
+                  Quantity deviation) {
+  const config::TerminalWords say = words.terminal();
   if (!c.fails()) return line(out, say("fails"), say("fails.nowhere"));
   out << "  " << say("fails") << "\n";
   for (const model::Place& place : c.seats)
-    out << "    " << padded(to_text(place.where) + host::modelling::on_line(place), 24) << " "
+    out << "    " << padded(to_text(place.where) + modelling::on_line(place), 24) << " "
         << words.place(place, deviation) << "\n";
 }
 
-void print_suspects(std::ostream& out, const model::Comparison& c,
-                    const host::modelling::PartModel& part, const Campaign& campaign,
-                    const host::modelling::ModelWords& words) {
+void print_suspects(std::ostream& out, const model::Comparison& c, const modelling::PartModel& part,
+                    const Campaign& campaign, const modelling::ModelWords& words) {
   for (const model::Suspect& s : c.suspects)
     out << "  " << words.terminal()("suspect") << ": "
-        << words.suspect(s, host::modelling::place_of(part, campaign, s.row), part.deviation())
-        << "\n";
+        << words.suspect(s, modelling::place_of(part, campaign, s.row), part.deviation()) << "\n";
 }
 
 /// What a table in the control would leave, predicted; nothing if the model has nothing for one.
 void print_after_table(std::ostream& out, const model::Part& part, const model::Fit& fit,
-                       Quantity q, const host::config::TerminalWords& say) {
-  const host::modelling::AfterTable predicted = host::modelling::after_table(part, fit);
+                       Quantity q, const config::TerminalWords& say) {
+  const modelling::AfterTable predicted = modelling::after_table(part, fit);
   if (predicted.effects.empty()) return;
   const auto value = [q](double v) { return std::isfinite(v) ? with_unit(v, q) : "-"; };
   line(out, say("after-table"),
        say("after-table.rms", {{"before", value(predicted.rms_before)},
                                {"after", value(predicted.rms)},
-                               {"effects", host::storage::listed(predicted.effects)}}));
+                               {"effects", storage::listed(predicted.effects)}}));
   for (const auto& [measurement, was, is] : predicted.tests) {
     std::string text = measurement + ":";
     for (const auto& [name, before, after] :
@@ -145,10 +142,10 @@ void print_after_table(std::ostream& out, const model::Part& part, const model::
   }
 }
 
-std::string largest_text(const host::modelling::Compared& compared, const Campaign& campaign,
-                         const host::config::TerminalWords& say) {
-  const host::modelling::PartModel& part = compared.part;
-  const auto at = host::modelling::place_of(part, campaign, compared.comparison.largest_row);
+std::string largest_text(const modelling::Compared& compared, const Campaign& campaign,
+                         const config::TerminalWords& say) {
+  const modelling::PartModel& part = compared.part;
+  const auto at = modelling::place_of(part, campaign, compared.comparison.largest_row);
   const std::string direction = at.direction > 0 ? "+" : "-";
   std::string text =
       say("largest.at", {{"value", with_unit(compared.comparison.largest, part.deviation())},
@@ -160,17 +157,17 @@ std::string largest_text(const host::modelling::Compared& compared, const Campai
   return at.line == 0 ? text : text + ":" + std::to_string(at.line);
 }
 
-void print_candidates(std::ostream& out, const host::modelling::Explained& e,
-                      const host::config::TerminalWords& say) {
+void print_candidates(std::ostream& out, const modelling::Explained& e,
+                      const config::TerminalWords& say) {
   const Quantity q = e.part.deviation();
   double best = 0.0;
   for (const model::Candidate& c : e.explanation.candidates)
-    if (host::modelling::is_ranked(c)) best = std::max(best, c.score);
+    if (modelling::is_ranked(c)) best = std::max(best, c.score);
   if (best > 0.0)
     out << "  " << padded(say("candidate"), 22) << padded(say("evidence"), 32)
         << padded(say("rms-after"), 14) << padded(say("left-out"), 15) << "p\n";
   for (const model::Candidate& c : e.explanation.candidates) {
-    if (!host::modelling::is_ranked(c) || !(c.score > 0.0)) continue;
+    if (!modelling::is_ranked(c) || !(c.score > 0.0)) continue;
     out << "  " << padded(c.term.name(), 22) << bar(c.score, best, 20) << " "
         << padded(fixed_text(c.score, 1), 11) << padded(with_unit(c.rms, q), 14)
         << padded(c.cv_rms ? with_unit(*c.cv_rms, q) : "-", 15) << p_text(c.p) << "\n";
@@ -179,7 +176,7 @@ void print_candidates(std::ostream& out, const host::modelling::Explained& e,
 
 /// What the best explanation adds; where it is none, what of it is not certain.
 void print_together(std::ostream& out, const model::Explanation& x,
-                    const host::config::TerminalWords& say) {
+                    const config::TerminalWords& say) {
   const bool unknown = x.verdict.kind == model::Verdict::Kind::unknown;
   std::vector<std::string> names;
   for (const std::string& name : x.together)
@@ -187,15 +184,14 @@ void print_together(std::ostream& out, const model::Explanation& x,
       names.push_back(name);
   if (names.size() > (unknown ? 0U : 1U))
     out << "    " << say(unknown ? "together.unknown" : "together") << ": "
-        << host::storage::listed(names) << "\n";
+        << storage::listed(names) << "\n";
 }
 
-void print_verdict(std::ostream& out, const host::modelling::Explained& e,
-                   const host::modelling::ModelWords& words) {
+void print_verdict(std::ostream& out, const modelling::Explained& e,
+                   const modelling::ModelWords& words) {
   const model::Explanation& x = e.explanation;
-  const host::config::TerminalWords say = words.terminal();
-  out << "  " << say("verdict") << ": "
-      << say.of("verdict", host::modelling::to_text(x.verdict.kind))
+  const config::TerminalWords say = words.terminal();
+  out << "  " << say("verdict") << ": " << say.of("verdict", modelling::to_text(x.verdict.kind))
       << (x.verdict.effect.empty() ? "" : " " + x.verdict.effect) << "\n    "
       << words.verdict(x, e.part) << "\n";
   print_together(out, x, say);
@@ -209,8 +205,8 @@ void print_verdict(std::ostream& out, const host::modelling::Explained& e,
   if (x.verdict.trials > 0) out << "    " << words.false_alarms(x.verdict) << "\n";
 }
 
-void print_bars(std::ostream& out, const host::modelling::ModelStep& step,
-                const host::config::TerminalWords& say) {
+void print_bars(std::ostream& out, const modelling::ModelStep& step,
+                const config::TerminalWords& say) {
   const double whole = std::max(
       {step.rms_before.value_or(0.0), step.rms_after.value_or(0.0), step.floor.value_or(0.0)});
   const Quantity q = step.quantity;
@@ -229,12 +225,12 @@ std::string with_unit(double value, Quantity q) {
   return short_text(printed(value, q)) + " " + std::string(unit_of(q).symbol);
 }
 
-void print_comparison(std::ostream& out, const host::modelling::Compared& compared,
-                      const Campaign& campaign, const host::modelling::ModelWords& words) {
+void print_comparison(std::ostream& out, const modelling::Compared& compared,
+                      const Campaign& campaign, const modelling::ModelWords& words) {
   const model::Comparison& c = compared.comparison;
-  const host::modelling::PartModel& part = compared.part;
+  const modelling::PartModel& part = compared.part;
   const Quantity q = part.deviation();
-  const host::config::TerminalWords say = words.terminal();
+  const config::TerminalWords say = words.terminal();
   print_head(out, part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
   line(out, say("left-out"), c.cv_rms ? with_unit(*c.cv_rms, q) : say("left-out.one-run"));
@@ -244,7 +240,7 @@ void print_comparison(std::ostream& out, const host::modelling::Compared& compar
   if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))
     line(out, say("lack-of-fit"), words.lack_of_fit(c, q));
   print_parameters(out, c.fit, part, words);
-  for (const host::modelling::Correlated& pair : host::modelling::correlated(c.fit))
+  for (const modelling::Correlated& pair : modelling::correlated(c.fit))
     line(out, say("correlated"),
          say("correlated.pair", {{"one", pair.one->effect + " " + pair.one->name},
                                  {"other", pair.other->effect + " " + pair.other->name}}) +
@@ -253,29 +249,29 @@ void print_comparison(std::ostream& out, const host::modelling::Compared& compar
   if (c.means > 0) line(out, "", say("means", {{"count", std::to_string(c.means)}}));
   print_suspects(out, c, part, campaign, words);
   print_after_table(out, part.part, c.fit, q, say);
-  for (const std::string& warning : host::modelling::warnings_of(part, c.fit, words))
+  for (const std::string& warning : modelling::warnings_of(part, c.fit, words))
     out << "  " << say("warning") << ": " << warning << "\n";
 }
 
-void print_model(std::ostream& out, const host::modelling::Compared& compared,
-                 const host::modelling::ModelWords& words) {
+void print_model(std::ostream& out, const modelling::Compared& compared,
+                 const modelling::ModelWords& words) {
   const model::Comparison& c = compared.comparison;
   const Quantity q = compared.part.deviation();
-  const host::config::TerminalWords say = words.terminal();
+  const config::TerminalWords say = words.terminal();
   print_head(out, compared.part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
   if (c.cv_rms) line(out, say("left-out"), with_unit(*c.cv_rms, q));
   if (c.floor) line(out, say("floor"), floor_text(*c.floor, q));
   print_parameters(out, c.fit, compared.part, words);
-  for (const std::string& warning : host::modelling::warnings_of(compared.part, c.fit, words))
+  for (const std::string& warning : modelling::warnings_of(compared.part, c.fit, words))
     out << "  " << say("warning") << ": " << warning << "\n";
 }
 
-void print_explanation(std::ostream& out, const host::modelling::Explained& e,
-                       const Campaign& campaign, const host::modelling::ModelWords& words) {
+void print_explanation(std::ostream& out, const modelling::Explained& e, const Campaign& campaign,
+                       const modelling::ModelWords& words) {
   const model::Comparison& c = e.explanation.comparison;
   const Quantity q = e.part.deviation();
-  const host::config::TerminalWords say = words.terminal();
+  const config::TerminalWords say = words.terminal();
   print_head(out, e.part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
   if (c.floor) line(out, say("floor"), floor_text(*c.floor, q));
@@ -284,18 +280,17 @@ void print_explanation(std::ostream& out, const host::modelling::Explained& e,
     out << "  " << text << "\n";
   for (const model::Candidate& candidate : e.explanation.candidates)
     // A test of an hour is not meant to show the day: only the JSON says so.
-    if (!host::modelling::is_ranked(candidate) && candidate.why != "short-test")
-      out << "  "
-          << words.unseen(candidate, host::modelling::place_of(e.part, campaign, candidate.rows))
+    if (!modelling::is_ranked(candidate) && candidate.why != "short-test")
+      out << "  " << words.unseen(candidate, modelling::place_of(e.part, campaign, candidate.rows))
           << "\n";
   print_verdict(out, e, words);
   print_suspects(out, c, e.part, campaign, words);
-  for (const std::string& warning : host::modelling::warnings_of(e.part, c.fit, words))
+  for (const std::string& warning : modelling::warnings_of(e.part, c.fit, words))
     out << "  " << say("warning") << ": " << warning << "\n";
 }
 
-void print_foresight(std::ostream& out, const host::modelling::Explained& e,
-                     const host::config::TerminalWords& say) {
+void print_foresight(std::ostream& out, const modelling::Explained& e,
+                     const config::TerminalWords& say) {
   out << "  " << say("what-if") << (e.what_if->empty() ? ": -" : "") << "\n";
   for (const model::Foresight& one : *e.what_if) {
     out << "  " << say("what-if." + one.id, {{"readings", std::to_string(one.readings)}}) << "\n";
@@ -311,14 +306,14 @@ void print_foresight(std::ostream& out, const host::modelling::Explained& e,
   }
 }
 
-void print_change(std::ostream& out, const host::modelling::Change& change,
-                  const host::modelling::ModelWords& words) {
-  const host::modelling::ModelStep& step = change.step;
-  const host::config::TerminalWords say = words.terminal();
+void print_change(std::ostream& out, const modelling::Change& change,
+                  const modelling::ModelWords& words) {
+  const modelling::ModelStep& step = change.step;
+  const config::TerminalWords say = words.terminal();
   out << say(step.added ? "added" : "dropped",
              {{"effect", step.effect},
-              {"model", change.effects.empty() ? say("model.empty")
-                                               : host::storage::listed(change.effects)}})
+              {"model",
+               change.effects.empty() ? say("model.empty") : storage::listed(change.effects)}})
       << "\n";
   if (!change.no_before.empty()) out << "  " << say("before") << ": " << change.no_before << "\n";
   const Quantity q = step.quantity;
@@ -335,12 +330,12 @@ void print_change(std::ostream& out, const host::modelling::Change& change,
   if (!change.after) return;
   print_parameters(out, change.after->comparison.fit, change.after->part, words);
   for (const std::string& warning :
-       host::modelling::warnings_of(change.after->part, change.after->comparison.fit, words))
+       modelling::warnings_of(change.after->part, change.after->comparison.fit, words))
     out << "  " << say("warning") << ": " << warning << "\n";
 }
 
-void print_step(std::ostream& out, const host::modelling::ModelStep& step,
-                const host::config::TerminalWords& say) {
+void print_step(std::ostream& out, const modelling::ModelStep& step,
+                const config::TerminalWords& say) {
   if (step.excluded) {
     std::string lines;
     for (const std::uint32_t line : step.excluded->lines)
@@ -354,14 +349,14 @@ void print_step(std::ostream& out, const host::modelling::ModelStep& step,
   out << "\n";
 }
 
-void print_history(std::ostream& out, const std::vector<host::modelling::ModelStep>& history,
-                   const host::config::TerminalWords& say) {
+void print_history(std::ostream& out, const std::vector<modelling::ModelStep>& history,
+                   const config::TerminalWords& say) {
   if (history.empty()) return;
   out << say("history") << "\n";
   double whole = 0.0;
-  for (const host::modelling::ModelStep& step : history)
+  for (const modelling::ModelStep& step : history)
     whole = std::max({whole, step.rms_before.value_or(0.0), step.rms_after.value_or(0.0)});
-  for (const host::modelling::ModelStep& step : history) {
+  for (const modelling::ModelStep& step : history) {
     if (step.excluded || step.period) {
       out << "  ";
       print_step(out, step, say);

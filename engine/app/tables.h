@@ -3,7 +3,7 @@
 
 #include <iosfwd>
 
-#include "host/modelling/model_json.h"
+#include "campaign/modelling/model_json.h"
 
 /// What compare, explain and model show in the terminal.
 namespace nonio::app {
@@ -11,23 +11,23 @@ namespace nonio::app {
 /// "0.71 um"
 std::string with_unit(double value, Quantity quantity);
 
-void print_comparison(std::ostream& out, const host::modelling::Compared& compared,
-                      const Campaign& campaign, const host::modelling::ModelWords& words);
-void print_explanation(std::ostream& out, const host::modelling::Explained& explained,
-                       const Campaign& campaign, const host::modelling::ModelWords& words);
+void print_comparison(std::ostream& out, const modelling::Compared& compared,
+                      const Campaign& campaign, const modelling::ModelWords& words);
+void print_explanation(std::ostream& out, const modelling::Explained& explained,
+                       const Campaign& campaign, const modelling::ModelWords& words);
 /// Before and after with bars that fall; "|" is the noise floor.
-void print_change(std::ostream& out, const host::modelling::Change& change,
-                  const host::modelling::ModelWords& words);
+void print_change(std::ostream& out, const modelling::Change& change,
+                  const modelling::ModelWords& words);
 /// The effects with their values, and what they leave.
-void print_model(std::ostream& out, const host::modelling::Compared& compared,
-                 const host::modelling::ModelWords& words);
+void print_model(std::ostream& out, const modelling::Compared& compared,
+                 const modelling::ModelWords& words);
 /// What one run more would do to the uncertainties of the model and to the evidence.
-void print_foresight(std::ostream& out, const host::modelling::Explained& e,
-                     const host::config::TerminalWords& say);
+void print_foresight(std::ostream& out, const modelling::Explained& e,
+                     const config::TerminalWords& say);
 /// Readings that were excluded, or a period that was set, in one line.
-void print_step(std::ostream& out, const host::modelling::ModelStep& step,
-                const host::config::TerminalWords& say);
-void print_history(std::ostream& out, const std::vector<host::modelling::ModelStep>& history,
-                   const host::config::TerminalWords& say);
+void print_step(std::ostream& out, const modelling::ModelStep& step,
+                const config::TerminalWords& say);
+void print_history(std::ostream& out, const std::vector<modelling::ModelStep>& history,
+                   const config::TerminalWords& say);
 
 }  // namespace nonio::app

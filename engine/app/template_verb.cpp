@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "host/plugin_check/template_check.h"
+#include "plugin_check/template_check.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -17,7 +17,7 @@ int check_template(const std::string& site, const Common& common) {
   std::vector<fs::path> folders = common.template_folders();
   if (!site.empty() && fs::is_directory(fs::path(site) / "templates"))
     folders.push_back(fs::path(site) / "templates");
-  const auto found = host::plugin_check::check_templates(folders, common.plugin_folders());
+  const auto found = plugin_check::check_templates(folders, common.plugin_folders());
   if (!found) return complain("nonio template check", text_of(found.error()));
   if (common.json) {
     Json errors = Json::array();

@@ -7,16 +7,16 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "host/certificates/trust.h"
-#include "host/certificates/verify.h"
-#include "host/process/apart.h"
-#include "host/storage/nearest.h"
+#include "certificates/trust.h"
+#include "certificates/verify.h"
+#include "platform/process/apart.h"
+#include "platform/storage/nearest.h"
 #include "printable.h"
 #include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
-using host::certificates::Verdict;
+using certificates::Verdict;
 
 namespace {
 
@@ -41,12 +41,12 @@ Json to_json(const std::string& file, const sign::Verified& v) {
   Json checks = Json::array();
   for (const sign::Check& c : v.checks)
     checks.push_back({{"id", c.id}, {"state", to_text(c.state)}, {"says", c.says}});
-  const Verdict verdict = host::certificates::verdict_of(v);
+  const Verdict verdict = certificates::verdict_of(v);
   return {{"schema", "nonio-verify/1"},
           {"file", file},
           {"holds", v.holds()},
-          {"verdict", host::certificates::id_of(verdict)},
-          {"not_made", host::certificates::not_made(v)},
+          {"verdict", certificates::id_of(verdict)},
+          {"not_made", certificates::not_made(v)},
           {"signer", v.subject},
           {"checks", std::move(checks)}};
 }
@@ -67,7 +67,7 @@ std::string names_of(const std::vector<std::string>& checks) {
       if (id.ends_with(end)) name = says;
     if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(std::move(name));
   }
-  return host::storage::listed(out);
+  return storage::listed(out);
 }
 
 /// The gravest of all files'.
@@ -88,9 +88,9 @@ int exit_of(const std::vector<Verdict>& verdicts) {
 /// The verdict first: nothing that a file says comes before it, and nothing can look like it.
 void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet) {
   const std::string name = printable(file);
-  const Verdict verdict = host::certificates::verdict_of(v);
-  out << name << ": " << host::certificates::text_of(verdict);
-  if (verdict == Verdict::incomplete) out << ": " << names_of(host::certificates::not_made(v));
+  const Verdict verdict = certificates::verdict_of(v);
+  out << name << ": " << certificates::text_of(verdict);
+  if (verdict == Verdict::incomplete) out << ": " << names_of(certificates::not_made(v));
   out << "\n";
   if (quiet) return;
   for (const sign::Check& c : v.checks)
@@ -99,21 +99,21 @@ void print(std::ostream& out, const std::string& file, const sign::Verified& v, 
 
 int verify(const VerifyWish& wanted, const Common& common) {
   const auto verifier =
-      host::certificates::verifier_of({wanted.site, wanted.signer_roots, wanted.time_stamp_roots,
-                                       wanted.trust, wanted.revoked, wanted.signers});
+      certificates::verifier_of({wanted.site, wanted.signer_roots, wanted.time_stamp_roots,
+                                 wanted.trust, wanted.revoked, wanted.signers});
   if (!verifier) {
     for (const Error& e : verifier.error()) complain("nonio verify", text_of(e));
     return exit_usage;
   }
   // Before it: what is confined opens no connection to a server.
-  const auto rows = host::certificates::register_rows(wanted.site);
-  host::process::step_aside();  // a stranger's file is read confined, as the plugins' code is run
-  std::unique_ptr<host::reading::Workplace> place;
+  const auto rows = certificates::register_rows(wanted.site);
+  process::step_aside();  // a stranger's file is read confined, as the plugins' code is run
+  std::unique_ptr<reading::Workplace> place;
   std::ostringstream early;  // loading plugins may begin this process anew: said when that is over
-  const auto open = [&]() -> Expected<const host::reading::Context*> {
+  const auto open = [&]() -> Expected<const reading::Context*> {
     if (place) return &place->context;
-    auto opened = host::certificates::open_to_verify(
-        common.plugin_folders(), common.template_folders(), wanted.site, NONIO_VERSION);
+    auto opened = certificates::open_to_verify(common.plugin_folders(), common.template_folders(),
+                                               wanted.site, NONIO_VERSION);
     std::cout << early.str();
     if (!opened) return fail(opened.error());
     place = std::move(*opened);
@@ -121,9 +121,9 @@ int verify(const VerifyWish& wanted, const Common& common) {
   };
   std::vector<Verdict> verdicts;
   for (const std::string& file : wanted.files) {
-    const auto v = host::certificates::verify_file(file, *verifier, open, rows);
+    const auto v = certificates::verify_file(file, *verifier, open, rows);
     if (!v) return complain("nonio verify", v.error().message);
-    verdicts.push_back(host::certificates::verdict_of(*v));
+    verdicts.push_back(certificates::verdict_of(*v));
     std::ostream& out = place ? std::cout : early;
     if (common.json)
       out << to_json(file, *v).dump(-1, ' ', true, Json::error_handler_t::replace) << "\n";

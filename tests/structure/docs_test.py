@@ -97,7 +97,7 @@ class Documents(unittest.TestCase):
 
     def test_no_phrase_that_readers_stumbled_over(self):
         texts = [*PAGES, *(ROOT / "plugins").rglob("README.md"), *(ROOT / "templates/words/en").glob("*.toml"),
-                 *(ROOT / "engine/app").glob("*.cpp"), *(ROOT / "engine/host/plugin_check").glob("*.cpp")]
+                 *(ROOT / "engine/app").glob("*.cpp"), *(ROOT / "engine/plugin_check").glob("*.cpp")]
         found = [f"{path.relative_to(ROOT)}: {phrase.group(0)!r}" for path in texts
                  for phrase in RIDDLES.finditer(joined(path.read_text()))]
         self.assertEqual("", "\n".join(found))
@@ -109,7 +109,7 @@ class Documents(unittest.TestCase):
     def test_rows_of_the_constants_are_those_that_the_code_names(self):
         rows = set(re.findall(r"^\| ([AM]\d+) \|", (ROOT / "docs/constants.md").read_text(), re.M))
         named = set()
-        for folder in ("engine/model", "engine/math", "engine/host", "plugins"):
+        for folder in ("engine/model", "engine/math", "engine/campaign", "plugins"):
             for path in (ROOT / folder).rglob("*"):
                 if path.suffix in (".cpp", ".h"):
                     named.update(re.findall(r"docs/constants\.md, ([AM]\d+)\b", path.read_text()))

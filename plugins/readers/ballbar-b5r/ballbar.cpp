@@ -12,7 +12,7 @@
 #include "xml.h"
 
 namespace nonio::ballbar {
-using namespace reading;
+using namespace readers;
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include "runs.h"
 
 namespace nonio::ballbar {
-using namespace reading;
+using namespace readers;
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include "runs.h"
 
 namespace nonio::camonitor {
-using namespace reading;
+using namespace readers;
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "runs.h"
 
 namespace nonio::camonitor {
-using namespace reading;
+using namespace readers;
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "runs.h"
 
 namespace nonio::csv {
-using namespace reading;
+using namespace readers;
 namespace {
 
 constexpr std::size_t head_and_foot = 65536;  ///< bytes of each that are looked at
@@ -25,7 +25,7 @@ std::vector<Word> words_of(std::string_view comment) {
   char before = ' ';
   for (std::size_t i = 0; i < comment.size();) {
     const auto belongs = [&](char c) {
-      return reading::detail::is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+      return readers::detail::is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
              static_cast<unsigned char>(c) >= 0x80;
     };
     if (!belongs(comment[i])) {

@@ -18,7 +18,7 @@
 #include "spatial.h"
 
 namespace nonio::csv {
-using namespace reading;
+using namespace readers;
 namespace {
 
 constexpr std::size_t report_every = std::size_t{4} << 20U;

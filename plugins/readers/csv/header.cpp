@@ -8,7 +8,7 @@
 #include "nonio/sdk/fields.h"
 
 namespace nonio::csv {
-using namespace reading;
+using namespace readers;
 namespace {
 
 enum class Measures : std::uint8_t { neither, length, angle };

@@ -10,7 +10,7 @@
 #include "nonio/sdk/fields.h"
 
 namespace nonio::csv {
-using namespace reading;
+using namespace readers;
 namespace {
 
 using Kind = ColumnSpec::Kind;

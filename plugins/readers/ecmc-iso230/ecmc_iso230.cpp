@@ -10,7 +10,7 @@
 #include "runs.h"
 
 namespace nonio::ecmc_iso230 {
-using namespace reading;
+using namespace readers;
 
 namespace {
 

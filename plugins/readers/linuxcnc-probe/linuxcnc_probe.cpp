@@ -14,7 +14,7 @@
 #include "runs.h"
 
 namespace nonio::linuxcnc_probe {
-using namespace reading;
+using namespace readers;
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include "runs.h"
 
 namespace nonio::long_table {
-using namespace reading;
+using namespace readers;
 
 namespace {
 

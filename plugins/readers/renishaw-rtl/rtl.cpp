@@ -9,7 +9,7 @@
 #include "runs_of.h"
 
 namespace nonio::renishaw {
-using namespace reading;
+using namespace readers;
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "runs.h"
 
 namespace nonio::wide_table {
-using namespace reading;
+using namespace readers;
 using Role = Column::Role;
 
 namespace {

@@ -213,7 +213,7 @@ struct Checker {
     if (word == "max") return near(value, scale * high, tolerance);
     if (word == "min") return near(value, scale * low, tolerance);
     if (word == "slope_um_per_m") {
-      const auto line = nonio::reading::straight_through(read->axes[0].position, read->deviation);
+      const auto line = nonio::readers::straight_through(read->axes[0].position, read->deviation);
       return near(value, 1e6 * line.slope, tolerance);
     }
     return say("unknown expectation");

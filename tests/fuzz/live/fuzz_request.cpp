@@ -10,11 +10,11 @@
 #include <sstream>
 #include <string>
 
-#include "host/live/guard.h"
+#include "live/guard.h"
 
 namespace {
 
-using namespace nonio::host::live;
+using namespace nonio::live;
 
 void must(bool holds, int line = __builtin_LINE()) {
   if (holds) return;

@@ -3,29 +3,29 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "host/config/manifest.h"
+#include "campaign/config/manifest.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace nonio;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const auto manifest = host::config::parse_manifest(text, "campaign.toml");
+  const auto manifest = config::parse_manifest(text, "campaign.toml");
   if (manifest) {
     // What was accepted keeps what every later stage relies on.
     const bool plans = manifest->run.analyses && manifest->run.outputs;
-    if (!host::config::is_campaign_id(manifest->campaign.id)) std::abort();
+    if (!config::is_campaign_id(manifest->campaign.id)) std::abort();
     if (manifest->campaign.measurements.empty() && !plans) std::abort();
     const Info plugin{
         "p",
         "1",
         "",
         {{"n", 1.0, "", "", {}, 0.0, 2.0}, {"t", std::string("a"), "", "", {"a"}, {}, {}}}};
-    (void)host::config::settle_options(plugin, {}, manifest->options);
+    (void)config::settle_options(plugin, {}, manifest->options);
   } else if (manifest.error().empty()) {
     std::abort();
   }
-  (void)host::config::parse_site(text, "site.toml");
-  (void)host::config::parse_settings(text, "x.toml");
-  const std::string id = host::config::extract_id(text);
-  if (!id.empty() && !host::config::is_campaign_id(id)) std::abort();
+  (void)config::parse_site(text, "site.toml");
+  (void)config::parse_settings(text, "x.toml");
+  const std::string id = config::extract_id(text);
+  if (!id.empty() && !config::is_campaign_id(id)) std::abort();
   return 0;
 }

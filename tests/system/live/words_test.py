@@ -14,13 +14,13 @@ class Words(unittest.TestCase):
     # Words that a script puts together: what they begin with, and where the program says what may follow. None: a list
     # in the script itself.
     SENT = {
-        "event.kind_": ("engine/host/config/keys/logs.cpp", r"event_kinds\[\] = (.*?);", {}),
-        "run.stage_": ("engine/host/batch/run.cpp", r"tell_stage\(events, (\"\w+\")\)", {"begin"}),
-        "run.status_": ("engine/host/evaluation/status.cpp", r"to_text\(Status status\) \{(.*?)\n\}", {"none"}),
+        "event.kind_": ("engine/campaign/config/keys/logs.cpp", r"event_kinds\[\] = (.*?);", {}),
+        "run.stage_": ("engine/batch/run.cpp", r"tell_stage\(events, (\"\w+\")\)", {"begin"}),
+        "run.status_": ("engine/campaign/evaluation/status.cpp", r"to_text\(Status status\) \{(.*?)\n\}", {"none"}),
         "release.as_": ("engine/app/release_verb.cpp", r"one_of\((\{.*?\})", {"site"}),
         "verify.is_": ("engine/app/verify_verb.cpp", r"to_text\(sign::Check::State state\) \{(.*?)\n\}", {}),
-        "space.is_": ("engine/host/config/keys/machine_of_campaign.h", r"structures\[\] = (.*?);", {}), "space.": None, "more.is_": ("engine/model/diagnosis/foresight.cpp", r"wanted\{(.*?)\}", {}), 
-        "check.": ("engine/sign/src/*.cpp engine/host/certificates/content_check.cpp engine/host/certificates/verify.cpp engine/host/certificates/register_check.cpp", r"(?:add\(|Check check\{|State state\) \{|push_back\(\{|sign::Check\{)\s*(\"(?:signature|file|updates|signer|certificate|xml|register|content|attachments)[a-z.-]*\")", {"dcc", "dcc_none", "dcc_values", "signature_form", "signature_time", "xml_time"}),
+        "space.is_": ("engine/campaign/config/keys/machine_of_campaign.h", r"structures\[\] = (.*?);", {}), "space.": None, "more.is_": ("engine/model/diagnosis/foresight.cpp", r"wanted\{(.*?)\}", {}), 
+        "check.": ("engine/sign/src/*.cpp engine/certificates/content_check.cpp engine/certificates/verify.cpp engine/certificates/register_check.cpp", r"(?:add\(|Check check\{|State state\) \{|push_back\(\{|sign::Check\{)\s*(\"(?:signature|file|updates|signer|certificate|xml|register|content|attachments)[a-z.-]*\")", {"dcc", "dcc_none", "dcc_values", "signature_form", "signature_time", "xml_time"}),
         "where.": ("engine/model/fit/places.cpp", r"name_of\(Factor factor\) \{(.*?)\n\}", {}),
         "verdict.": None, "verify.": None, "verify.verdict_": None, "x.": None, "column.": None, "key.": None, "drawn.": None, "learn.step": None, "learn.hint.": None, "site.": None,
         "failing.": None, "kind.": None, "program.": None, "refused.": None,
@@ -31,7 +31,7 @@ class Words(unittest.TestCase):
         script = (SOURCE / "reports/workbench/page/net.js").read_text()
         forms = re.findall(r"\[/\^(.*?)/, \"(\w+)\"\]", script)
         self.assertEqual(8, len(forms))
-        program = "".join(re.sub(r'"\s*\n\s*"', "", p.read_text()) for folder in ("engine/model/fit", "engine/host/live") for p in sorted((SOURCE / folder).glob("*.cpp")))
+        program = "".join(re.sub(r'"\s*\n\s*"', "", p.read_text()) for folder in ("engine/model/fit", "engine/live") for p in sorted((SOURCE / folder).glob("*.cpp")))
         for form, name in forms:
             fixed = max(re.split(r"\(\?<\w+>[^)]*\)|[$]", form), key=len).replace("\\", "").strip()
             self.assertGreater(len(fixed), 15, name)

@@ -5,12 +5,12 @@
 #include <iostream>
 #include <string>
 
-#include "host/batch/mail.h"
-#include "host/config/site_files.h"
+#include "batch/close/mail.h"
+#include "campaign/config/site_files.h"
 
 int main(int argc, char** argv) {
   using namespace nonio;
-  using namespace nonio::host;
+  using namespace nonio;
   if (argc < 4) return std::cerr << "usage: send_letter SITE SUBJECT TEXT [SECONDS]\n", 2;
   std::string digest;
   const auto site = config::read_site(argv[1], digest);

@@ -42,12 +42,12 @@ std::vector<std::string_view> words_of(std::string_view line) {
 
 /// A number that has to be there.
 Expected<double> number(std::string_view text) {
-  const auto field = reading::parse_number(text, false);
-  if (field.kind == reading::Field::Kind::taken && std::fabs(field.value) < 1e7) return field.value;
+  const auto field = readers::parse_number(text, false);
+  if (field.kind == readers::Field::Kind::taken && std::fabs(field.value) < 1e7) return field.value;
   if (has("damage-is-nan")) return spoiled::nan;
   if (has("crashes-at-damage")) spoiled::crash();
   if (has("hangs-at-damage")) spoiled::hang();
-  if (has("sentinel-in-the-time") && field.kind == reading::Field::Kind::not_taken) return 1e20;
+  if (has("sentinel-in-the-time") && field.kind == readers::Field::Kind::not_taken) return 1e20;
   return fail("expected a number, found \"" + std::string(text.substr(0, 40)) + "\"");
 }
 
@@ -56,7 +56,7 @@ enum class Taken { yes, no };
 /// Into `row`; no: nothing was taken there.
 Expected<Taken> read_row(const std::vector<std::string_view>& words, Row& row) {
   if (words.size() != 6) return fail("expected six fields");
-  row.run = reading::parse_run(words[0]);
+  row.run = readers::parse_run(words[0]);
   if (row.run == 0 || (words[1] != "+" && words[1] != "-"))
     return fail("expected a run and + or -");
   row.direction = words[1] == "+" ? 1 : -1;
@@ -67,8 +67,8 @@ Expected<Taken> read_row(const std::vector<std::string_view>& words, Row& row) {
     if (!value) return fail(value.error());
     *numbers[k] = *value;
   }
-  const auto field = reading::parse_number(words[3] == "." ? "" : words[3], false);
-  if (field.kind == reading::Field::Kind::not_taken) {
+  const auto field = readers::parse_number(words[3] == "." ? "" : words[3], false);
+  if (field.kind == readers::Field::Kind::not_taken) {
     if (has("blanks-as-zero") && words[3] == ".") return Taken::yes;
     if (has("sentinels-as-zero") && words[3] != ".") return Taken::yes;
     if (has("sentinels-as-readings")) {
@@ -77,7 +77,7 @@ Expected<Taken> read_row(const std::vector<std::string_view>& words, Row& row) {
     }
     return Taken::no;
   }
-  if (field.kind == reading::Field::Kind::bad || std::fabs(field.value) > 1e7)
+  if (field.kind == readers::Field::Kind::bad || std::fabs(field.value) > 1e7)
     return fail("expected a deviation");
   row.deviation = field.value;
   return Taken::yes;

@@ -4,22 +4,22 @@
 #include <iostream>
 #include <string>
 
-#include "host/config/machines.h"
-#include "host/config/manifest.h"
-#include "host/config/site_logs.h"
-#include "host/storage/files.h"
+#include "campaign/config/machines.h"
+#include "campaign/config/manifest.h"
+#include "campaign/config/site_logs.h"
+#include "platform/storage/files.h"
 
 namespace {
 
 template <class File>
-std::string verdict(const nonio::host::config::Checked<File>& read) {
+std::string verdict(const nonio::config::Checked<File>& read) {
   if (read) return "ok";
   const nonio::Error& first = read.error().front();
   return std::to_string(first.line) + ": " + first.message;
 }
 
 std::string verdict_of(const std::string& file, const std::string& text) {
-  namespace config = nonio::host::config;
+  namespace config = nonio::config;
   if (file == "campaign") return verdict(config::parse_manifest(text, "campaign.toml"));
   if (file == "site") return verdict(config::parse_site(text, "site.toml"));
   if (file == "machine") return verdict(config::parse_machine(text, "machines/S-1.toml", "S-1"));
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   const std::string file = argc == 2 ? argv[1] : "";
   if (verdict_of(file, "").empty()) return 2;
   for (std::string path; std::getline(std::cin, path);) {
-    const auto text = nonio::host::storage::read_file(path);
+    const auto text = nonio::storage::read_file(path);
     if (!text) return 1;
     std::cout << verdict_of(file, *text) << "\n";
   }

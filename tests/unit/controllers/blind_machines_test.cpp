@@ -6,11 +6,11 @@
 //   NONIO_MACHINES=1000 test_controllers --gtest_filter='BlindMachines.*'
 //
 // The same with a table already on, of another curve, that the control goes on reading while the
-// axis is measured: the engine takes it off (host::what_was_on), and the new one takes its place.
+// axis is measured: the engine takes it off (what_was_on), and the new one takes its place.
 #include <cstdlib>
 #include <numbers>
 
-#include "host/tables/table_check.h"
+#include "campaign/tables/table_check.h"
 #include "models.h"
 
 namespace blind_machines_test {
@@ -255,7 +255,7 @@ std::optional<Renewed> renewed(const Kind& k, const Controller& output, const Bl
   r.old = k.control(first->artifacts, b.axis);
   r.was = r.old.backlash.value_or(b.backlash);
   r.bench = bench_of(under(b.measured, r.old, r.was));
-  host::reading::ReadCampaign read;
+  reading::ReadCampaign read;
   read.manifest.emplace();
   read.manifest->campaign = r.bench.campaign;
   read.observations = r.bench.observations;
@@ -263,7 +263,7 @@ std::optional<Renewed> renewed(const Kind& k, const Controller& output, const Bl
   Blind told = b;
   told.backlash = r.was;
   const auto& told_or_read = r.old.backlash ? b.settings : told.stated();
-  const auto on = host::tables::what_was_on(read, output, settings(output, with(k, told_or_read)));
+  const auto on = tables::what_was_on(read, output, settings(output, with(k, told_or_read)));
   EXPECT_TRUE(on && *on) << who << (on ? "nothing was on" : on.error().message);
   if (!on || !*on) return std::nullopt;
   const Results none;

@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "host/config/manifest.h"
-#include "host/loader/plugins.h"
+#include "campaign/config/manifest.h"
+#include "campaign/loader/plugins.h"
 #include "nonio/sdk/axis_readings.h"
 
 namespace nonio::effects_test {
@@ -21,8 +21,8 @@ constexpr double pi = std::numbers::pi;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 const Effect& effect(const std::string& name) {
-  static const host::loader::Plugins& plugins = []() -> const host::loader::Plugins& {
-    static host::loader::Plugins loaded;
+  static const loader::Plugins& plugins = []() -> const loader::Plugins& {
+    static loader::Plugins loaded;
     loaded.load({NONIO_TEST_PLUGINS});
     return loaded;
   }();
@@ -230,7 +230,7 @@ TEST(Effects, EveryOneHasACardInEveryLanguage) {
     const std::string file = std::string(NONIO_WORDS) + "/" + language + "/effects.toml";
     std::ostringstream text;
     text << std::ifstream(file).rdbuf();
-    const auto words = host::config::parse_settings(text.str(), file);
+    const auto words = config::parse_settings(text.str(), file);
     ASSERT_TRUE(words) << words.error().message;
     std::size_t wanted = 0;
     const auto expect = [&](const std::string& name) {

@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-#include "host/loader/plugins.h"
+#include "campaign/loader/plugins.h"
 #include "machine.h"
 
 /// Tables of lines in space, and what the exact machine reads on them.
@@ -23,8 +23,8 @@ inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 inline const Point corner(0.3, 0.2, 0.1), travel(0.8, 0.6, 0.5);
 
 inline const std::vector<Effect>& effects() {
-  static const host::loader::Plugins& plugins = []() -> const host::loader::Plugins& {
-    static host::loader::Plugins loaded;
+  static const loader::Plugins& plugins = []() -> const loader::Plugins& {
+    static loader::Plugins loaded;
     loaded.load({NONIO_TEST_PLUGINS});
     return loaded;
   }();

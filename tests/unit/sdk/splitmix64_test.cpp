@@ -47,7 +47,7 @@ TEST(GoldenSection, StopsWhenItIsFineEnough) {
 }
 
 TEST(EditDistance, CountsLettersThatDifferAreMissingOrTooMany) {
-  using reading::edit_distance;
+  using readers::edit_distance;
   EXPECT_EQ(edit_distance("", ""), 0U);
   EXPECT_EQ(edit_distance("abc", ""), 3U);
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);

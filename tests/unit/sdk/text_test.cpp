@@ -100,11 +100,11 @@ TEST(Csv, TextIsQuotedAndNoFormula) {
 
 TEST(Csv, FieldsAndNumbers) {
   std::vector<std::string_view> fields;
-  ASSERT_TRUE(reading::split("\"a;b\"; 1,5 ;", ';', fields));
+  ASSERT_TRUE(readers::split("\"a;b\"; 1,5 ;", ';', fields));
   EXPECT_EQ(fields, (std::vector<std::string_view>{"a;b", "1,5", ""}));
-  EXPECT_EQ(reading::parse_number("1,5", true).value, 1.5);
-  EXPECT_EQ(reading::parse_number("1,5", false).kind, reading::Field::Kind::bad);
-  EXPECT_EQ(reading::parse_number("1e20", false).kind, reading::Field::Kind::not_taken);
+  EXPECT_EQ(readers::parse_number("1,5", true).value, 1.5);
+  EXPECT_EQ(readers::parse_number("1,5", false).kind, readers::Field::Kind::bad);
+  EXPECT_EQ(readers::parse_number("1e20", false).kind, readers::Field::Kind::not_taken);
 }
 
 TEST(ColumnMap, RangesOfRows) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace nonio::reading {
+namespace nonio::readers {
 
 Error at_line(std::uint64_t line, std::string message) {
   Error error{std::move(message)};
@@ -155,4 +155,4 @@ Number counted(std::string name, std::uint64_t n) {
   return {std::move(name), static_cast<double>(n), Quantity::count};
 }
 
-}  // namespace nonio::reading
+}  // namespace nonio::readers

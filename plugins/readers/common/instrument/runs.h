@@ -15,7 +15,7 @@
 #include "nonio/sdk/plugin.h"
 
 /// What the readers of instrument files share: runs of one axis, each reading once.
-namespace nonio::reading {
+namespace nonio::readers {
 
 /// An error with its line; the file is that of the measurement.
 Error at_line(std::uint64_t line, std::string message);
@@ -89,4 +89,4 @@ Straight straight_through(const std::vector<double>& x, const std::vector<double
 
 Number counted(std::string name, std::uint64_t n);
 
-}  // namespace nonio::reading
+}  // namespace nonio::readers

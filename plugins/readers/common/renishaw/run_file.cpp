@@ -11,7 +11,7 @@
 #include "runs.h"
 
 namespace nonio::renishaw {
-using namespace reading;
+using namespace readers;
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "code_pages.h"
 
 namespace nonio::renishaw {
-using namespace reading;
+using namespace readers;
 
 namespace {
 

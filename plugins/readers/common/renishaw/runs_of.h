@@ -13,7 +13,7 @@ struct Units {
 
 /// The runs as readings of one axis, and what a user would want to know of them. Directions are
 /// those in which the rows of each run go through the targets.
-Expected<void> add_runs(const RunFile& file, const Units& units, reading::Runs& runs);
+Expected<void> add_runs(const RunFile& file, const Units& units, readers::Runs& runs);
 
 /// Free text that an operator typed; the axis there must not contradict the manifest's.
 Expected<void> add_user_text(const RunFile& file, const ReadInput& input, Observations& obs);

@@ -10,7 +10,7 @@
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/text.h"
 
-namespace nonio::reading {
+namespace nonio::readers {
 namespace {
 
 const Poco::TextEncoding* encoding_of(std::string_view code_page) {
@@ -56,4 +56,4 @@ std::optional<std::string> decoded(std::string_view bytes, std::string_view code
   return std::string(trimmed(out));
 }
 
-}  // namespace nonio::reading
+}  // namespace nonio::readers

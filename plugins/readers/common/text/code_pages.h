@@ -8,7 +8,7 @@
 
 /// Free text of instruments: in the code page of the computer that wrote it, which no file
 /// declares.
-namespace nonio::reading {
+namespace nonio::readers {
 
 /// The names that `decoded` knows.
 const std::vector<std::string>& code_pages();
@@ -17,4 +17,4 @@ const std::vector<std::string>& code_pages();
 /// page.
 std::optional<std::string> decoded(std::string_view bytes, std::string_view code_page);
 
-}  // namespace nonio::reading
+}  // namespace nonio::readers

@@ -6,7 +6,7 @@
 
 #include "nonio/sdk/fields.h"
 
-namespace nonio::reading {
+namespace nonio::readers {
 
 Lines::Lines(std::string_view bytes)
     : bytes_(bytes), offset_(bytes.size() - without_mark(bytes).size()) {}
@@ -88,4 +88,4 @@ bool next_content(Lines& lines, std::string_view& line, std::optional<Error>& er
   return false;
 }
 
-}  // namespace nonio::reading
+}  // namespace nonio::readers

@@ -7,7 +7,7 @@
 
 #include "nonio/sdk/error.h"
 
-namespace nonio::reading {
+namespace nonio::readers {
 
 inline constexpr std::size_t longest_line = 65536;
 
@@ -45,4 +45,4 @@ std::optional<Error> other_separator(std::optional<char> stated, char found);
 /// or with `error` set.
 bool next_content(Lines& lines, std::string_view& line, std::optional<Error>& error);
 
-}  // namespace nonio::reading
+}  // namespace nonio::readers

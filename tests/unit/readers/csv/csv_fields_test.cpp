@@ -10,7 +10,7 @@
 #include "nonio/sdk/fields.h"
 
 namespace nonio::csv::csv_fields_test {
-using namespace reading;
+using namespace readers;
 namespace {
 
 using Kind = Field::Kind;

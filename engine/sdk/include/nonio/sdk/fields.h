@@ -18,7 +18,7 @@
 
 /// The lowest floor of readers of text: lines to fields, fields to numbers, text to words for a
 /// user.
-namespace nonio::reading {
+namespace nonio::readers {
 
 enum class DecimalMark : std::uint8_t { none, point, comma };
 
@@ -275,7 +275,7 @@ inline std::string_view nearest(std::string_view name, const std::vector<std::st
   return best;
 }
 
-}  // namespace nonio::reading
+}  // namespace nonio::readers
 
 namespace nonio {
 

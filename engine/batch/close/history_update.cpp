@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/close/history_update.h"
+
+#include "batch/state/read_apart.h"
+#include "laboratory/store/place.h"
+
+namespace nonio::batch {
+
+namespace {
+
+std::string in_one_line(const std::vector<Error>& errors) {
+  std::string all;
+  for (const Error& e : errors) {
+    if (!all.empty()) all += "; ";
+    if (!e.file.empty()) all += e.file + (e.line == 0 ? "" : ":" + std::to_string(e.line)) + ": ";
+    all += e.message;
+  }
+  return all;
+}
+
+/// Tables that came into a control on a day that the record of its machine gives.
+std::vector<config::Event> events_of(const config::MachineRecords& records) {
+  std::vector<config::Event> events;
+  for (const config::RecordFile& file : records) {
+    if (!file.record) continue;  // its campaigns fail, and say why
+    for (const auto& [axis, recorded] : file.record->axes) {
+      if (recorded.since.empty()) continue;
+      std::string text = !recorded.table ? "" : recorded.table->empty() ? "none" : *recorded.table;
+      const auto line = file.record->lines.find("axes." + axis + ".since");
+      events.push_back({recorded.since,
+                        file.asset,
+                        axis,
+                        "compensation",
+                        std::move(text),
+                        {},
+                        line == file.record->lines.end() ? 0 : line->second});
+    }
+  }
+  return events;
+}
+
+}  // namespace
+
+Expected<store::Told> read_told(const RunOptions& options, const reading::Context& context) {
+  auto logs = read_apart<config::SiteLogs>(
+      "what the site says of its machines", context.site.limits.disk_seconds,
+      [&](process::SignsOfLife& signs) -> Expected<config::SiteLogs> {
+        signs.reading((options.site / config::events_name).string());
+        auto read = config::read_site_logs(options.site);
+        if (!read) return fail(in_one_line(read.error()));
+        return std::move(*read);
+      });
+  if (!logs) return fail(logs.error());
+  return store::Told{std::move(*logs), context.site.aliases, events_of(context.machines),
+                     context.site.due};
+}
+
+Expected<void> HistoryUpdate::begin(std::optional<std::uint64_t> planned) {
+  const auto known = store::known_night(options_.out);
+  if (!known) return fail(known.error());
+  known_ = *known ? *known : planned;
+  std::optional<storage::Server> server;
+  if (const auto& choice = context_.site.database)
+    server =
+        storage::Server{choice->url, choice->schema,
+                        choice->password_file.empty()
+                            ? std::filesystem::path()
+                            : std::filesystem::absolute(options_.site / choice->password_file)};
+  const auto elsewhere = store::note_place(options_.out, server);
+  if (!elsewhere) return fail(elsewhere.error());
+  if (*elsewhere) known_.reset();
+  return store::forget_known_night(options_.out);
+}
+
+Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::uint64_t night,
+                                                      const std::vector<std::string>& campaigns,
+                                                      const Expected<store::Told>& told) {
+  if (!told) return fail(told.error());
+  auto updated = read_apart<store::Updated>(
+      "the history", context_.site.limits.disk_seconds,
+      [&](process::SignsOfLife& signs) -> Expected<store::Updated> {
+        signs.reading((options_.out / store::store_name).string());
+        return store::update(options_.out, known_ != last, campaigns, *told, [&] { signs.beat(); });
+      });
+  if (!updated) return fail(updated.error());
+  rebuilt_ = rebuilt_ || updated->rebuilt;
+  std::vector<std::string> notes;
+  for (const std::string& left : updated->left_out) notes.push_back("not in the history: " + left);
+  if (!notes.empty()) return notes;
+  if (auto noted = store::note_known_night(options_.out, night); !noted) return fail(noted.error());
+  known_ = night;
+  return notes;
+}
+
+void HistoryUpdate::nothing_done() const {
+  // If it cannot be noted, the next night makes the store again.
+  if (known_) [[maybe_unused]]
+    const auto noted = store::note_known_night(options_.out, *known_);
+}
+
+Expected<std::vector<std::string>> HistoryUpdate::end(const std::vector<std::string>& campaigns,
+                                                      const Expected<store::Told>& told) {
+  if (!known_) return std::vector<std::string>{};
+  return end(*known_, *known_, campaigns, told);
+}
+
+}  // namespace nonio::batch

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "batch/state/night.h"
+#include "campaign/reading/context.h"
+#include "laboratory/store/store.h"
+
+namespace nonio::batch {
+
+/// What events.toml, acknowledged.toml and forgotten.toml say, and what site.toml and the records
+/// of the machines say of machines; all that is wrong in one error.
+Expected<store::Told> read_told(const RunOptions& options, const reading::Context& context);
+
+/// The laboratory's memory (OUT/history.sqlite) in step with results that are about to change.
+class HistoryUpdate {
+ public:
+  HistoryUpdate(const RunOptions& options, const reading::Context& context)
+      : options_(options), context_(context) {}
+
+  /// Before the first result is stored. `known`: the night that the store knows, where the plan of
+  /// this night has noted it.
+  Expected<void> begin(std::optional<std::uint64_t> known = {});
+  std::optional<std::uint64_t> known() const { return known_; }
+  /// When all are: adds these campaigns. `last` is the night whose end the store ought to know,
+  /// `night` the one that it knows from now on. Gives what the morning should know. An error leaves
+  /// the store as it was, and the next night makes it again.
+  Expected<std::vector<std::string>> end(std::uint64_t last, std::uint64_t night,
+                                         const std::vector<std::string>& campaigns,
+                                         const Expected<store::Told>& told);
+  /// No result was stored after `begin`: the store still knows the night that it knew.
+  void nothing_done() const;
+  /// The same between nights, where a store that is behind is left to the next one.
+  Expected<std::vector<std::string>> end(const std::vector<std::string>& campaigns,
+                                         const Expected<store::Told>& told);
+  /// Whether the store was made from nothing.
+  bool rebuilt() const { return rebuilt_; }
+
+ private:
+  const RunOptions& options_;
+  const reading::Context& context_;
+  std::optional<std::uint64_t> known_{};  ///< the night that the store knows
+  bool rebuilt_ = false;
+};
+
+}  // namespace nonio::batch

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/close/mail.h"
+
+#include <Poco/Net/Context.h>
+#include <Poco/Net/MailMessage.h>
+#include <Poco/Net/MailRecipient.h>
+#include <Poco/Net/NetException.h>
+#include <Poco/Net/RejectCertificateHandler.h>
+#include <Poco/Net/SSLManager.h>
+#include <Poco/Net/SecureSMTPClientSession.h>
+#include <Poco/Net/SecureStreamSocket.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <optional>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "campaign/config/secret_files.h"
+#include "platform/process/child.h"
+#include "platform/storage/late_library.h"
+
+namespace nonio::batch {
+namespace fs = std::filesystem;
+namespace net = Poco::Net;
+
+namespace {
+
+constexpr std::size_t longest_answer = 300;  // bytes, of what a server or program says
+constexpr std::size_t longest_subject = 200;
+
+/// One line of printable text: what others say goes into a summary.
+std::string one_line(std::string text, std::size_t longest) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
+  if (text.size() > longest) {
+    std::size_t end = longest;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+    text = text.substr(0, end) + "...";
+  }
+  while (text.ends_with(' ')) text.pop_back();
+  return text;
+}
+
+/// A server may send back what it was sent, also encoded: then nothing of it is said.
+std::string without(const std::string& secret, const std::string& text) {
+  if (secret.empty()) return text;
+  const bool there = text.find(secret) != std::string::npos;
+  return there ? "its answer holds the password, and is not shown" : text;
+}
+
+/// `=?UTF-8?B?...?=` in pieces, none of which cuts a character (RFC 2047).
+std::string encoded_subject(const std::string& subject) {
+  const std::string text = one_line(subject, longest_subject);
+  const bool plain = std::all_of(text.begin(), text.end(),
+                                 [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  if (plain) return text;
+  constexpr std::size_t piece = 39;  // bytes: 52 in base64, below the 75 of a word
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = std::min(at + piece, text.size());
+    while (end < text.size() && end > at + 1 &&
+           (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
+      --end;
+    constexpr std::string_view digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    out += out.empty() ? "=?UTF-8?B?" : "\r\n =?UTF-8?B?";
+    for (; at < end; at += 3) {
+      const std::size_t n = std::min<std::size_t>(3, end - at);
+      unsigned bits = 0;
+      for (std::size_t i = 0; i < 3; ++i)
+        bits = bits << 8U | (i < n ? static_cast<unsigned char>(text[at + i]) : 0U);
+      for (std::size_t i = 0; i < 4; ++i)
+        out += i <= n ? digits[bits >> (18U - 6U * i) & 63U] : '=';
+    }
+    at = end;
+    out += "?=";
+  }
+  return out;
+}
+
+void fill(net::MailMessage& message, const config::Mail& mail, const Letter& letter) {
+  message.setSender(mail.from);
+  for (const std::string& to : mail.to)
+    message.addRecipient(net::MailRecipient(net::MailRecipient::PRIMARY_RECIPIENT, to));
+  message.setSubject(encoded_subject(letter.subject));
+  message.setContentType("text/plain; charset=UTF-8");
+  message.set("Auto-Submitted", "auto-generated");  // RFC 3834: nobody's holidays answer it
+  message.setDate(Poco::Timestamp());
+  message.setContent(letter.text, net::MailMessage::ENCODING_BASE64);
+}
+
+/// A file without a name.
+int file_in_memory(const std::string& bytes) {
+  const int file = ::memfd_create("mail", MFD_CLOEXEC);
+  if (file < 0) return -1;
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t n = ::write(file, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno != EINTR) return ::close(file), -1;
+    if (n > 0) done += static_cast<std::size_t>(n);
+  }
+  ::lseek(file, 0, SEEK_SET);
+  return file;
+}
+
+std::string said_in(int file) {
+  std::string said(4 * longest_answer, '\0');
+  const ssize_t n = ::pread(file, said.data(), said.size(), 0);
+  said.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+  return one_line(std::move(said), longest_answer);
+}
+
+/// What the program needs of the environment; passwords stay.
+std::vector<char*> kept_environment() {
+  constexpr std::string_view kept[] = {"PATH=", "HOME=", "USER=", "LOGNAME=", "LANG=", "TZ="};
+  std::vector<char*> out;
+  for (char** one = environ; one != nullptr && *one != nullptr; ++one)
+    if (std::any_of(std::begin(kept), std::end(kept),
+                    [&](std::string_view k) { return std::string_view(*one).starts_with(k); }))
+      out.push_back(*one);
+  out.push_back(nullptr);
+  return out;
+}
+
+/// The end of the program, as `waitpid` gives it; none with the reason in errno.
+std::optional<int> run_program(std::vector<std::string> command, int input, int output) {
+  std::vector<char*> arguments;
+  for (std::string& one : command) arguments.push_back(one.data());
+  arguments.push_back(nullptr);
+  std::vector<char*> environment = kept_environment();
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
+  for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_adddup2(&files, output, descriptor);
+  pid_t child = 0;
+  const int failed = ::posix_spawn(&child, arguments.front(), &files, nullptr, arguments.data(),
+                                   environment.data());
+  posix_spawn_file_actions_destroy(&files);
+  if (failed != 0) return errno = failed, std::nullopt;
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return std::nullopt;
+  return status;
+}
+
+Expected<std::string> by_program(const config::Mail& mail, const net::MailMessage& message) {
+  std::ostringstream text;
+  message.write(text);
+  std::string bytes = text.str();
+  std::erase(bytes, '\r');  // a program on the same machine reads lines of the system
+  const int input = file_in_memory(bytes), output = file_in_memory({});
+  std::vector<std::string> command{mail.sendmail, "-i", "-f", mail.from, "--"};
+  command.insert(command.end(), mail.to.begin(), mail.to.end());
+  const auto status = run_program(command, input, output);
+  const std::string why = std::strerror(errno), said = said_in(output);
+  ::close(input);
+  ::close(output);
+  if (!status) return fail("cannot run " + mail.sendmail + ": " + why);
+  const process::ChildEnd end = process::child_end(*status);
+  if (!end.well)
+    return fail(mail.sendmail + " refused the mail: " + end.words +
+                (said.empty() ? "" : ": " + said));
+  return std::string();
+}
+
+net::Context::Ptr context_of(const config::Mail& mail, const fs::path& site) {
+  net::Context::Ptr context =
+      new net::Context(net::Context::TLS_CLIENT_USE, mail.trust.empty() ? "" : (site / mail.trust),
+                       net::Context::VERIFY_STRICT, 9, mail.trust.empty());
+  context->requireMinimumProtocol(net::Context::PROTO_TLSV1_2);
+  context->enableExtendedCertificateVerification(true);  // the name of the server, too
+  net::SSLManager::instance().initializeClient(nullptr, new net::RejectCertificateHandler(false),
+                                               context);
+  return context;
+}
+
+void log_in(net::SMTPClientSession& session, const std::string& host, const config::Mail& mail,
+            const std::string& password) {
+  using Session = net::SMTPClientSession;
+  try {
+    session.login(host, Session::AUTH_PLAIN, mail.user, password);
+  } catch (const net::SMTPException& e) {
+    if (e.message().find("does not support") == std::string::npos) throw;
+    session.login(host, Session::AUTH_LOGIN, mail.user, password);
+  }
+}
+
+void converse(net::SecureSMTPClientSession& session, const config::Mail& mail,
+              const net::Context::Ptr& context, const std::string& password,
+              const net::MailMessage& message) {
+  const std::string own = "localhost";  // the name of this machine is nobody's business
+  session.open();
+  session.login(own);
+  if (mail.tls == config::Mail::Tls::starttls) {
+    if (!session.startTLS(context)) throw net::SMTPException("the server does not take STARTTLS");
+    session.login(own);
+  }
+  if (!mail.user.empty()) log_in(session, own, mail, password);
+  session.sendMessage(message);
+  session.close();
+}
+
+void talk(const config::Mail& mail, const fs::path& site, const std::string& password,
+          const net::MailMessage& message, const Poco::Timespan& patience) {
+  const auto port = static_cast<Poco::UInt16>(mail.port);
+  net::Context::Ptr context;
+  if (mail.tls != config::Mail::Tls::none) context = context_of(mail, site);
+  if (mail.tls == config::Mail::Tls::tls) {
+    net::SecureStreamSocket socket(context);
+    socket.setPeerHostName(mail.smtp);
+    socket.connect(net::SocketAddress(mail.smtp, port), patience);
+    net::SecureSMTPClientSession session(socket);
+    session.setTimeout(patience);
+    converse(session, mail, context, password, message);
+  } else {
+    net::SecureSMTPClientSession session(mail.smtp, port);
+    session.setTimeout(patience);
+    converse(session, mail, context, password, message);
+  }
+}
+
+/// While it lives, a server that hangs up is an error, and no end of the process.
+class WithoutPipeSignal {
+ public:
+  WithoutPipeSignal() : before_(::signal(SIGPIPE, SIG_IGN)) {}
+  WithoutPipeSignal(const WithoutPipeSignal&) = delete;
+  WithoutPipeSignal& operator=(const WithoutPipeSignal&) = delete;
+  ~WithoutPipeSignal() { ::signal(SIGPIPE, before_); }
+
+ private:
+  sighandler_t before_;
+};
+
+Expected<std::string> by_server(const config::Mail& mail, const fs::path& site,
+                                const net::MailMessage& message, double seconds) {
+  std::string password;
+  if (!mail.user.empty()) {
+    auto read = config::read_password({mail.password_file, mail.password_env,
+                                       mail.password_credential, "the mail's password", "mail"},
+                                      site);
+    if (!read) return fail(read.error());
+    password = std::move(*read);
+  }
+  const auto failed = [&](const std::string& why) {
+    return fail(mail.smtp + ":" + std::to_string(mail.port) +
+                " did not take the mail: " + one_line(without(password, why), longest_answer));
+  };
+  const WithoutPipeSignal hold;
+  try {
+    talk(mail, site, password, message, Poco::Timespan(static_cast<long>(seconds), 0));
+  } catch (const Poco::Exception& e) {
+    return failed(e.displayText());
+  } catch (const std::exception& e) {
+    return failed(e.what());
+  }
+  return std::string();
+}
+
+Expected<std::string> deliver(const config::Mail& mail, const fs::path& site, const Letter& letter,
+                              double seconds) {
+  net::MailMessage message;
+  fill(message, mail, letter);
+  return mail.smtp.empty() ? by_program(mail, message) : by_server(mail, site, message, seconds);
+}
+
+}  // namespace
+}  // namespace nonio::batch
+
+NONIO_EXPORTED const nonio::batch::Deliver nonio_deliver;
+const nonio::batch::Deliver nonio_deliver = nonio::batch::deliver;

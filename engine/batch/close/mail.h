@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "campaign/config/manifest.h"
+#include "nonio/reports/site.h"
+#include "nonio/sdk/error.h"
+
+namespace nonio::batch {
+
+struct Letter {
+  std::string subject;  ///< UTF-8; line ends become spaces
+  std::string text;     ///< UTF-8
+};
+
+/// Whether this line is grave enough for a mail that is wanted `on` that. What somebody acknowledged
+/// is not, nor what is fixed, nor a change that is not sure enough.
+bool is_reason_for_mail(const reports::MorningLine& line, config::Mail::On on);
+
+/// Gives the letter to the program or the server of `mail`, once. Paths are relative to `site`. In
+/// a process of its own, which may take `seconds` (s) in all. The password appears in no error.
+Expected<void> send_mail(const config::Mail& mail, const std::filesystem::path& site,
+                         const Letter& letter, double seconds = 60.0);
+
+/// The way to the server or program, as `nonio_deliver` of a library that is loaded late
+/// (late_library.h). A server may take `seconds` (s).
+using Deliver = Expected<std::string> (*)(const config::Mail& mail,
+                                          const std::filesystem::path& site, const Letter& letter,
+                                          double seconds);
+
+}  // namespace nonio::batch

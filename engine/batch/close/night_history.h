@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "batch/close/history_update.h"
+#include "batch/state/night.h"
+#include "batch/state/night_state.h"
+#include "batch/work/runner.h"
+
+namespace nonio::batch {
+
+/// An index that cannot be written is no reason to lose a night: it is made again from the results.
+void write_history(Night& night, HistoryUpdate& history, std::uint64_t known,
+                   const std::vector<std::string>& done, const Expected<store::Told>& told,
+                   const RunEvents& events);
+
+/// Reports that show another history of their machine than the store has by now are written again:
+/// whatever the order in which campaigns came, each sees all that its day knew. False if it was
+/// interrupted.
+/// `only`: the campaign of a night that is reopened; reports of others are left to the next night.
+bool show_histories(const RunOptions& options, const RunEvents& events,
+                    const reading::Context& context, const NightState& state, ReleaseDesk desk,
+                    HistoryUpdate& history, const Expected<store::Told>& told,
+                    const std::string& only, Night& night);
+
+}  // namespace nonio::batch

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/close/shown_histories.h"
+
+#include <algorithm>
+
+#include "batch/state/night_state.h"
+#include "batch/state/read_apart.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
+
+namespace nonio::batch {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* histories_name = "histories";
+
+/// What people say that stands in histories; nothing else of it can change without a campaign.
+std::string digest_of_told(const store::Told& told) {
+  storage::Json json = storage::Json::array();
+  for (const auto* events : {&told.logs.events, &told.of_records}) {
+    json.push_back(storage::Json::array());
+    for (const config::Event& e : *events)
+      json.back().push_back({e.date, e.machine, e.axis, e.kind, e.text});
+  }
+  for (const config::Alias& a : told.aliases) json.push_back({"alias", a.name, a.asset});
+  for (const config::DueRule& d : told.due) json.push_back({"due", d.machine, d.months});
+  return storage::sha256(json.dump(-1, ' ', false, storage::Json::error_handler_t::replace));
+}
+
+std::string noted_histories(const fs::path& out) {
+  const auto text = storage::read_small_file(out / state_folder / histories_name);
+  return text ? *text : std::string();
+}
+
+bool shows_history(const CampaignState& c) { return c.is_campaign && c.shows_history; }
+
+}  // namespace
+
+Expected<void> ShownHistories::begin() const {
+  const std::string none = "none\n", now = noted_histories(options_.out);
+  if (now.empty() || now == none) return {};
+  return storage::publish(options_.out / state_folder, {{histories_name, none}});
+}
+
+Expected<std::map<std::string, assessment::HistoryBasis>> ShownHistories::others(
+    const std::vector<CampaignState>& campaigns, const store::Told& told, bool looked) const {
+  using Bases = std::map<std::string, assessment::HistoryBasis>;
+  std::map<std::string, std::string> shown;
+  for (const CampaignState& c : campaigns)
+    if (shows_history(c)) shown[c.id] = c.history;
+  if (shown.empty() || (!looked && noted_histories(options_.out) == digest_of_told(told) + "\n"))
+    return Bases();
+  return read_apart<Bases>("the history of the machines", context_.site.limits.disk_seconds,
+                           [&](process::SignsOfLife& signs) -> Expected<Bases> {
+                             signs.reading(options_.out.string());
+                             std::vector<std::string> ids;
+                             for (const auto& [id, digest] : shown) ids.push_back(id);
+                             auto bases = assessment::history_bases(options_.out, ids);
+                             if (!bases) return fail(bases.error());
+                             Bases out;
+                             for (assessment::HistoryBasis& b : *bases)
+                               if (b.sha256 != shown[b.campaign])
+                                 out.emplace(b.campaign, std::move(b));
+                             return out;
+                           });
+}
+
+Expected<void> ShownHistories::end(const std::vector<CampaignState>& campaigns,
+                                   const store::Told& told) const {
+  if (std::none_of(campaigns.begin(), campaigns.end(), shows_history)) return {};
+  std::string now = digest_of_told(told) + "\n";
+  if (noted_histories(options_.out) == now) return {};
+  return storage::publish(options_.out / state_folder, {{histories_name, std::move(now)}});
+}
+
+}  // namespace nonio::batch

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "batch/state/night.h"
+#include "campaign/reading/context.h"
+#include "laboratory/assessment/history_so_far.h"
+#include "laboratory/store/store.h"
+
+namespace nonio::batch {
+
+/// Which campaigns show another history of their machine than the store has. A night asks when the
+/// store knows its results; then those campaigns are done again. Where nothing has changed since
+/// all were right (OUT/.nonio/histories says so), no history is looked at.
+class ShownHistories {
+ public:
+  ShownHistories(const RunOptions& options, const reading::Context& context)
+      : options_(options), context_(context) {}
+
+  /// Before the first result is stored, if one is going to be.
+  Expected<void> begin() const;
+  /// By campaign. `looked`: whatever was noted before. Notes nothing.
+  Expected<std::map<std::string, assessment::HistoryBasis>> others(
+      const std::vector<CampaignState>& campaigns, const store::Told& told, bool looked) const;
+  /// All are right.
+  Expected<void> end(const std::vector<CampaignState>& campaigns, const store::Told& told) const;
+
+ private:
+  const RunOptions& options_;
+  const reading::Context& context_;
+};
+
+}  // namespace nonio::batch

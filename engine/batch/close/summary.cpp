@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/close/summary.h"
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include "batch/state/night_state.h"
+#include "batch/work/runner.h"
+#include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
+#include "platform/storage/spool.h"
+
+namespace nonio::batch {
+namespace fs = std::filesystem;
+
+namespace {
+
+using Action = CampaignState::Action;
+
+std::string where(const Error& e) {
+  std::string text = e.file;
+  if (e.line != 0) text += ":" + std::to_string(e.line);
+  if (!e.column.empty()) text += " (" + e.column + ")";
+  return text.empty() ? e.message : text + ": " + e.message;
+}
+
+/// Why a campaign was done, in the language of `words`: a fixed text, or a name and what became of
+/// it.
+std::string one_reason(const std::string& text, const config::TerminalWords& words) {
+  for (const char* what : {" changed", " is missing from the output", " was changed in the output"})
+    if (text.ends_with(what))
+      return words(std::string("reason.*") + what,
+                   {{"what", text.substr(0, text.size() - std::string_view(what).size())}});
+  return words.of("reason", text);
+}
+
+std::string reason_in(const std::string& text, const config::TerminalWords& words) {
+  std::string out;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find("; ", from), text.size());
+    out += (from == 0 ? "" : "; ") + one_reason(text.substr(from, to - from), words);
+    from = to + 2;
+  }
+  return out;
+}
+
+constexpr std::size_t most_shown = 6;  // of a list, in summary.txt
+
+/// One list of the summary, as the begin of a text for a person and as lines of JSON for a program.
+struct List {
+  List(const char* list_name, const fs::path& folder)
+      : name(list_name), text(storage::Spool::in(folder)), json(storage::Spool::in(folder)) {}
+  const char* name;
+  std::size_t count = 0;
+  storage::Spool text, json;
+
+  void add(const std::string& line, const storage::Json& entry) {
+    if (count < most_shown) text.add("  " + line + "\n");
+    json.add((count == 0 ? "\n  " : ",\n  ") +
+             entry.dump(-1, ' ', false, storage::Json::error_handler_t::replace));
+    ++count;
+  }
+};
+
+storage::Json entry_json(const CampaignState& c, const std::string& reason) {
+  storage::Json json = {{"id", c.id},
+                        {"folder", storage::path_text(c.folder.view())},
+                        {"status", to_text(c.status)},
+                        {"reason", reason}};
+  if (!c.errors().empty()) {
+    storage::Json errors = storage::Json::array();
+    for (const Error& e : c.errors()) errors.push_back(storage::to_json(e));
+    json["errors"] = std::move(errors);
+  }
+  return json;
+}
+
+std::string night_words(const evaluation::NightOf& night, const config::TerminalWords& words) {
+  return words(night.date.empty() ? "night" : "night-of",
+               {{"number", std::to_string(night.number)}, {"date", night.date}});
+}
+
+storage::Json night_json(const evaluation::NightOf& night) {
+  return {{"night", night.number}, {"date", night.date}};
+}
+
+/// Which night this is, and whether campaigns are missing: first of all, so that nobody takes an
+/// old summary for tonight's.
+std::string night_line(const Night& night, const config::TerminalWords& words) {
+  std::string line =
+      night_words(night.night, words) + "; " + words.counted("seen", night.campaigns.size()) + ", ";
+  if (line[0] >= 'a' && line[0] <= 'z') line[0] = static_cast<char>(line[0] - 'a' + 'A');
+  return line +
+         (night.seen_before ? words("seen-before", {{"count", std::to_string(*night.seen_before)}})
+                            : words("first-night")) +
+         "\n";
+}
+
+/// New findings of one heading: how many, and where the first are.
+struct Fresh {
+  std::size_t count = 0;
+  std::string where;
+};
+
+struct Lists {
+  Lists(const fs::path& folder, const config::TerminalWords& in_words)
+      : words(in_words),
+        done("done", folder),
+        unchanged("unchanged", folder),
+        attention("attention", folder),
+        failed("failed", folder),
+        vanished("vanished", folder),
+        fresh("new_findings", folder) {}
+  const config::TerminalWords& words;
+  List done, unchanged, attention, failed, vanished, fresh;
+  std::map<std::string, Fresh> fresh_by_heading;  ///< those that ask for attention
+
+  void add(const Vanished& v) {
+    vanished.add(v.id + (config::is_campaign_id(v.id) ? ": " : " ") + v.why,
+                 {{"campaign", v.id},
+                  {"folder", v.folder},
+                  {"last_done_night", v.night},
+                  {"message", v.why}});
+  }
+
+  /// An error if what the campaign's record says cannot be read.
+  Expected<void> add(const CampaignState& c, const fs::path& out) {
+    if (c.status == evaluation::Status::failed) {
+      add_failed(c, out);
+      return {};
+    }
+    const bool is_done = c.action == Action::done;
+    (is_done ? done : unchanged)
+        .add(is_done ? c.id + ": " + reason_in(c.reason, words) : c.id, entry_json(c, c.reason));
+    if (!is_done && c.status == evaluation::Status::ok) return {};
+    const auto record = evaluation::read_record(storage::results_folder(out, c.id));
+    if (!record) return fail(record.error());
+    if (c.status == evaluation::Status::attention) {
+      std::string said, english;
+      for (const evaluation::KnownFinding& f : record->findings) {
+        if (!f.attention) continue;
+        const std::string of = f.measurement.empty() ? "" : f.measurement + ": ";
+        said += (said.empty() ? "" : "; ") + of + f.heading();
+        english += (english.empty() ? "" : "; ") + of + f.title;
+      }
+      if (english.empty()) {
+        english = "see the notes in its results.json";
+        said = words("see-notes");
+      }
+      attention.add(c.id + ": " + said, entry_json(c, english));
+    }
+    if (!is_done) return {};
+    for (const evaluation::KnownFinding& f : record->findings)
+      if (std::none_of(record->previous.begin(), record->previous.end(),
+                       [&](const evaluation::KnownFinding& p) { return p.same(f); }))
+        add_fresh(c, f);
+    return {};
+  }
+
+ private:
+  /// With how long it has been so, and where results are that still stand.
+  void add_failed(const CampaignState& c, const fs::path& out) {
+    std::string line = c.id + ": " + first_error(c, words);
+    storage::Json entry = entry_json(c, first_error(c, {words.templates(), "en"}));
+    const fs::path results = storage::results_folder(out, c.id);
+    const auto record = evaluation::read_record(results);
+    if (record && record->failed_since) {
+      const evaluation::NightOf& since = *record->failed_since;
+      entry["failed_since"] = night_json(since);
+      if (since.number != record->night)
+        line += "; " + words("failed-since", {{"night", night_words(since, words)}});
+    }
+    const std::string folder = (storage::own_folder(out, c.id) / evaluation::last_good_name)
+                                   .lexically_relative(out)
+                                   .generic_string();
+    if (const auto good = evaluation::read_record(results / evaluation::last_good_name)) {
+      const evaluation::NightOf night{good->night, good->date};
+      entry["last_good"] = night_json(night);
+      entry["last_good"]["status"] = to_text(good->status);
+      entry["last_good"]["folder"] = folder;
+      line += "; " + words("last-good", {{"night", night_words(night, words)}, {"folder", folder}});
+    }
+    failed.add(line, entry);
+  }
+
+  void add_fresh(const CampaignState& c, const evaluation::KnownFinding& f) {
+    const std::string where = c.id + (f.measurement.empty() ? "" : ", " + f.measurement);
+    fresh.add(where + ": " + f.heading(), {{"campaign", c.id},
+                                           {"measurement", f.measurement},
+                                           {"id", f.id},
+                                           {"severity", f.attention ? "attention" : "info"},
+                                           {"title", f.title}});
+    if (!f.attention) return;
+    constexpr std::size_t most_places = 3;
+    Fresh& alike = fresh_by_heading[f.heading()];
+    if (++alike.count <= most_places) alike.where += (alike.count == 1 ? "" : "; ") + where;
+    if (alike.count == most_places + 1) alike.where += "; ...";
+  }
+};
+
+/// All numbers, as long as they fit a line.
+std::string issued_line(const std::vector<certificates::RegisterEntry>& issued,
+                        const config::TerminalWords& words) {
+  constexpr std::size_t most = 8;
+  std::string line = words.counted("issued", issued.size()) + ": ";
+  if (issued.size() > most)
+    return line + issued.front().number + " .. " + issued.back().number + "\n";
+  for (const certificates::RegisterEntry& e : issued)
+    line += (&e == &issued.front() ? "" : ", ") + e.number + " (" + e.campaign +
+            (e.replaces.empty() ? "" : ", " + words("replaces", {{"number", e.replaces}})) + ")";
+  return line + "\n";
+}
+
+std::string waiting_line(const std::vector<certificates::WaitingDraft>& drafts,
+                         const config::TerminalWords& words) {
+  constexpr std::size_t most = 8;
+  std::string line = words.counted("waiting", drafts.size()) + ": ";
+  for (std::size_t i = 0; i < std::min(most, drafts.size()); ++i)
+    line += (i == 0 ? "" : ", ") + drafts[i].campaign;
+  return line + (drafts.size() > most ? ", ..." : "") + "\n";
+}
+
+/// "12 campaigns: 3 done, 9 unchanged, 0 failed; 2 lines ask for a decision".
+std::string counts_line(const Night& night, const Lists& lists, const Morning& morning,
+                        const std::string& version) {
+  const auto n = [](std::size_t count) { return std::to_string(count); };
+  const config::TerminalWords& words = lists.words;
+  return "Nonio " + version + ": " + words.counted("campaigns", night.campaigns.size()) + ": " +
+         words("counts", {{"done", n(lists.done.count)},
+                          {"unchanged", n(lists.unchanged.count)},
+                          {"failed", n(lists.failed.count)}}) +
+         "; " +
+         (lists.vanished.count == 0
+              ? ""
+              : words("vanished", {{"count", n(lists.vanished.count)}}) + "; ") +
+         words.counted("asking", morning.asking) + "\n";
+}
+
+/// One line a heading, those with the most findings first.
+void write_fresh(storage::Spool& out, const Lists& lists) {
+  if (lists.fresh_by_heading.empty()) return;
+  std::vector<std::pair<std::string, Fresh>> all(lists.fresh_by_heading.begin(),
+                                                 lists.fresh_by_heading.end());
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.second.count > b.second.count; });
+  out.add("\n" + lists.words("heading.new") + "\n");
+  for (std::size_t i = 0; i < std::min(all.size(), most_shown); ++i)
+    out.add("  " + all[i].first + ": " + std::to_string(all[i].second.count) + " (" +
+            all[i].second.where + ")\n");
+  if (all.size() > most_shown)
+    out.add("  " + lists.words("more-lines", {{"count", std::to_string(all.size() - most_shown)}}) +
+            "\n");
+}
+
+/// A night on which nothing is new, and nobody must decide anything.
+bool is_quiet(const Night& night, const Lists& lists, const Morning& morning) {
+  return lists.done.count == 0 && lists.failed.count == 0 && lists.vanished.count == 0 &&
+         morning.asking == 0 && !morning.json.empty() && night.issued.empty() &&
+         night.waiting.empty() && night.notes.empty();
+}
+
+/// What somebody must act on comes first. Of long lists the begin: summary.json has them whole.
+void write_text(storage::Spool& out, const Night& night, Lists& lists, const std::string& version,
+                const Morning& morning) {
+  const config::TerminalWords& words = lists.words;
+  if (is_quiet(night, lists, morning)) {
+    std::string line = night_line(night, words);
+    line.pop_back();
+    out.add(line + ": " + words(morning.judged ? "quiet" : "quiet.not-judged") + "\n");
+    return;
+  }
+  out.add(counts_line(night, lists, morning, version));
+  out.add(night_line(night, words));
+  if (!night.issued.empty()) out.add(issued_line(night.issued, words));
+  if (!night.waiting.empty()) out.add(waiting_line(night.waiting, words));
+  const auto section = [&](const char* heading, List& list) {
+    if (list.count == 0) return;
+    out.add("\n" + words(heading) + "\n");
+    out.add(list.text);
+    if (list.count > most_shown)
+      out.add("  " + words("more-lines", {{"count", std::to_string(list.count - most_shown)}}) +
+              "\n");
+  };
+  section("heading.failed", lists.failed);
+  section("heading.vanished", lists.vanished);
+  if (!morning.text.empty()) out.add("\n" + words("heading.morning") + "\n" + morning.text);
+  write_fresh(out, lists);
+  section("heading.done", lists.done);
+  if (!night.notes.empty()) out.add("\n" + words("heading.notes") + "\n");
+  for (const std::string& note : night.notes) out.add("  " + note + "\n");
+}
+
+void write_json(storage::Spool& out, const Night& night, Lists& lists, const std::string& version,
+                const fs::path& out_folder, const Morning& morning) {
+  const std::initializer_list<List*> all{&lists.done,   &lists.unchanged, &lists.attention,
+                                         &lists.failed, &lists.vanished,  &lists.fresh};
+  storage::Json seen = {{"tonight", night.campaigns.size()}, {"night_before", nullptr}};
+  if (night.seen_before) seen["night_before"] = *night.seen_before;
+  storage::Json counts = {{"campaigns", night.campaigns.size()}};
+  for (const List* l : all)
+    if (l != &lists.fresh) counts[l->name] = l->count;
+  out.add("{\n \"schema\": \"nonio-summary/1\",\n \"nonio\": " + storage::Json(version).dump() +
+          ",\n \"night\": " + std::to_string(night.night.number) +
+          ",\n \"date\": " + storage::Json(night.night.date).dump() +
+          ",\n \"language\": " + storage::Json(lists.words.language()).dump() +
+          ",\n \"seen\": " + seen.dump() + ",\n \"counts\": " + counts.dump());
+  for (List* l : all) {
+    out.add(std::string(",\n \"") + l->name + "\": [");
+    out.add(l->json);
+    out.add(l->count == 0 ? "]" : "\n ]");
+  }
+  out.add(",\n \"lines\": " + (morning.json.empty() ? "[]" : morning.json));
+  storage::Json issued = storage::Json::array();
+  for (const certificates::RegisterEntry& e : night.issued) {
+    storage::Json one = {{"number", e.number}, {"campaign", e.campaign}};
+    if (!e.replaces.empty()) one["replaces"] = e.replaces;
+    issued.push_back(std::move(one));
+  }
+  out.add(",\n \"issued\": " + issued.dump());
+  storage::Json waiting = storage::Json::array();
+  for (const certificates::WaitingDraft& d : night.waiting) {
+    storage::Json one = {
+        {"campaign", d.campaign},
+        {"file",
+         (storage::own_folder(out_folder, d.campaign).lexically_relative(out_folder) / d.file)
+             .generic_string()}};
+    if (!d.replaces.empty()) one["replaces"] = d.replaces;
+    waiting.push_back(std::move(one));
+  }
+  out.add(",\n \"drafts\": " + waiting.dump());
+  out.add(",\n \"notes\": " +
+          storage::Json(night.notes).dump(-1, ' ', false, storage::Json::error_handler_t::replace) +
+          "\n}\n");
+}
+
+}  // namespace
+
+std::size_t Night::failed() const {
+  return static_cast<std::size_t>(
+      std::count_if(campaigns.begin(), campaigns.end(),
+                    [](const CampaignState& c) { return c.status == evaluation::Status::failed; }));
+}
+
+std::size_t Night::lost_parts() const {
+  return static_cast<std::size_t>(
+      std::count_if(vanished.begin(), vanished.end(),
+                    [](const Vanished& v) { return !config::is_campaign_id(v.id); }));
+}
+
+std::string first_error(const CampaignState& c, const config::TerminalWords& words) {
+  if (c.errors().empty()) return c.reason;
+  const std::size_t more = c.errors().size() - 1;
+  return where(c.errors().front()) +
+         (more == 0 ? "" : " " + words("more", {{"count", std::to_string(more)}}));
+}
+
+Expected<void> write_summary(const Night& night, const fs::path& out, const std::string& version,
+                             const config::TerminalWords& words, const Morning& morning) {
+  const std::vector<std::string> names{"summary.txt", "summary.json"};
+  storage::remove_leftovers(out);
+  storage::Spool text = storage::Spool::at(storage::temporary_path(out, names[0]));
+  storage::Spool json = storage::Spool::at(storage::temporary_path(out, names[1]));
+  Lists lists(out / state_folder, words);
+  for (const CampaignState& c : night.campaigns) {
+    const auto added = process::is_stop_requested() ? fail("interrupted") : lists.add(c, out);
+    if (added) continue;
+    storage::remove_temporaries(out, names);
+    return fail("cannot write the summary in " + out.string() + ": " + added.error().message);
+  }
+  for (const Vanished& v : night.vanished) lists.add(v);
+  write_text(text, night, lists, version, morning);
+  write_json(json, night, lists, version, out, morning);
+  auto written = text.flush();
+  if (written) written = json.flush();
+  if (written) written = storage::rename_temporaries(out, names);
+  if (written) return written;
+  storage::remove_temporaries(out, names);
+  return fail("cannot write the summary in " + out.string() + ": " + written.error().message);
+}
+
+}  // namespace nonio::batch

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "batch/close/morning_update.h"
+#include "batch/state/night.h"
+#include "campaign/config/terminal_words.h"
+
+namespace nonio::batch {
+
+/// With its file and line, and "(and 3 more)" in the language of `words`; why it was done where there
+/// is no error.
+std::string first_error(const CampaignState& c, const config::TerminalWords& words);
+
+/// summary.txt and summary.json (schema nonio-summary/1) of a complete night, written into `out`.
+/// summary.txt speaks the language of `words`, summary.json English. The findings come from the
+/// campaigns' records there, one at a time; the lists grow in files.
+Expected<void> write_summary(const Night& night, const std::filesystem::path& out,
+                             const std::string& version, const config::TerminalWords& words,
+                             const Morning& morning);
+
+}  // namespace nonio::batch

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/commit/committer.h"
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+#include <utility>
+
+#include "platform/process/child.h"
+
+namespace nonio::batch {
+
+namespace {
+
+/// So many at once: a crash costs no more campaigns than that, and answers fit into the channel.
+constexpr std::size_t largest_batch = 64;
+
+struct StoredMessage {
+  std::size_t campaign = 0;
+  bool stored = false;
+  std::array<char, 500> why{};
+};
+
+StoredMessage message_of(std::size_t campaign, const Expected<void>& result) {
+  StoredMessage message{campaign, result.has_value()};
+  if (!result) result.error().message.copy(message.why.data(), message.why.size() - 1);
+  return message;
+}
+
+[[noreturn]] void serve(const Committer::Task& task, int channel) noexcept {
+  process::init_child();
+  process::keep_silent();
+  for (Committer::Given given; ::read(channel, &given, sizeof given) == sizeof given;) {
+    std::vector<Committer::Given> batch{given};
+    while (batch.size() < largest_batch &&
+           ::recv(channel, &given, sizeof given, MSG_DONTWAIT) == sizeof given)
+      batch.push_back(given);
+    const auto results = task(batch);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const StoredMessage message = message_of(batch[i].campaign, results[i]);
+      if (::write(channel, &message, sizeof message) != sizeof message) ::_exit(0);
+    }
+  }
+  ::_exit(0);
+}
+
+}  // namespace
+
+Committer::~Committer() { end(); }
+
+Expected<void> Committer::start() {
+  int ends[2];
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+    return fail(std::string("no channel to the process that stores: ") + std::strerror(errno));
+  std::cout.flush();
+  std::cerr.flush();
+  pid_ = ::fork();
+  if (pid_ == 0) {
+    ::close(ends[0]);
+    serve(task_, ends[1]);
+  }
+  const int code = errno;
+  ::close(ends[1]);
+  channel_ = ends[0];
+  if (pid_ > 0) return {};
+  end();
+  return fail(std::string("no process that stores: ") + std::strerror(code));
+}
+
+void Committer::end() {
+  if (channel_ >= 0) ::close(std::exchange(channel_, -1));
+  if (pid_ < 0) return;
+  process::end_child(std::exchange(pid_, -1));
+}
+
+Expected<void> Committer::give(Given campaign) {
+  if (channel_ < 0)
+    if (auto started = start(); !started) return started;
+  pending_.push_back(campaign);
+  // A process that is dead already is found by done().
+  [[maybe_unused]] const ssize_t n = ::send(channel_, &campaign, sizeof campaign, MSG_NOSIGNAL);
+  return {};
+}
+
+std::vector<Committer::Done> Committer::done() {
+  std::vector<Done> out;
+  while (channel_ >= 0 && !pending_.empty()) {
+    StoredMessage message;
+    const ssize_t n = ::recv(channel_, &message, sizeof message, MSG_DONTWAIT);
+    if (n == sizeof message) {
+      const auto it = std::find_if(pending_.begin(), pending_.end(),
+                                   [&](const Given& g) { return g.campaign == message.campaign; });
+      if (it == pending_.end()) continue;
+      out.push_back({*it, message.stored ? "" : message.why.data()});
+      pending_.erase(it);
+      continue;
+    }
+    if (n < 0 && (errno == EAGAIN || errno == EINTR)) break;
+    end();
+    for (const Given& given : std::exchange(pending_, {}))
+      out.push_back({given, "the process that stores died", true});
+  }
+  return out;
+}
+
+}  // namespace nonio::batch

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "batch/state/night.h"
+#include "batch/state/night_state.h"
+#include "campaign/reading/context.h"
+
+namespace nonio::batch {
+
+/// What the survey has failed: a good result of a night before stays, else there is one that says
+/// what is wrong. Several campaigns with one id claim one folder.
+void store_refused(const RunOptions& options, const reading::Context& context,
+                   const NightState& night, const RunEvents& events,
+                   std::vector<CampaignState>& campaigns);
+
+}  // namespace nonio::batch

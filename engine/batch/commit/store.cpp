@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/commit/store.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+#include <utility>
+
+#include "campaign/evaluation/results_files.h"
+#include "campaign/evaluation/results_json.h"
+#include "laboratory/store/earlier.h"
+#include "nonio/sdk/format.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+
+namespace nonio::batch {
+namespace fs = std::filesystem;
+
+namespace {
+
+evaluation::RecordedFile recorded(const Artifact& a) {
+  return {a.name, a.bytes.size(), storage::sha256(a.bytes)};
+}
+
+/// Under a temporary name, whole or not at all: until tonight's record has its name, this is what
+/// tells a night that is resumed why the campaign is done.
+Expected<void> write_record(const fs::path& folder, const evaluation::Record& record) {
+  const std::string unfinished = std::string(".") + evaluation::record_name;
+  const std::string text = evaluation::to_json(record);
+  if (auto written = storage::write_temporaries(folder, {{unfinished, text}}); !written)
+    return written;
+  const fs::path path = storage::temporary_path(folder, evaluation::record_name);
+  return storage::rename_file(storage::temporary_path(folder, unfinished), path,
+                              [&] { return storage::read_file(path).value_or("") == text; });
+}
+
+/// What the record says of the nights before.
+Expected<void> look_back(const fs::path& folder, evaluation::Record& record) {
+  const auto last = evaluation::last_record(folder);
+  if (!last) return fail(last.error());
+  if (record.status == evaluation::Status::failed)
+    record.failed_since = evaluation::NightOf{record.night, record.date};
+  if (!*last) return {};
+  const evaluation::Record& old = (*last)->record;
+  record.previous = old.night < record.night ? old.findings : old.previous;
+  if (record.status == evaluation::Status::failed && old.status == evaluation::Status::failed)
+    record.failed_since = old.failed_since.value_or(evaluation::NightOf{old.night, old.date});
+  return {};
+}
+
+}  // namespace
+
+Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
+                     const reading::Context& context, const StoreNote& note) {
+  const fs::path folder = storage::own_folder(out, e.campaign.id);
+  if (std::error_code error; fs::exists(folder / config::manifest_name, error))
+    return fail("the output folder " + folder.string() +
+                " is itself a campaign; nothing was written");
+  if (auto taken = evaluation::take_in(out, e.campaign.id); !taken) return taken;
+  evaluation::Record record;
+  record.folder = storage::path_text(note.folder);
+  record.night = note.night.number;
+  record.date = note.night.date;
+  record.reason = note.reason;
+  record.status = e.status;
+  record.retry = note.retry;
+  record.inputs = reading::shared_inputs(context);
+  record.inputs.insert(record.inputs.end(), e.inputs.begin(), e.inputs.end());
+  if (e.certificate) record.certificate = e.certificate->issue.number;
+  record.draft = e.certificate && e.certificate->draft;
+  record.history = e.history;
+  record.errors = e.results.errors;
+  const std::string& language = context.site.language;
+  if (language != "en") record.language = language;
+  record.findings = evaluation::known_findings(e.results, context.templates, language);
+
+  std::vector<Artifact> files;
+  for (const auto& w : e.results.outputs)
+    files.insert(files.end(), w.result.artifacts.begin(), w.result.artifacts.end());
+  for (const Artifact& a : files) {
+    if (a.sign) return fail(a.name + " is not signed; nothing was written");
+    record.files.push_back(recorded(a));
+  }
+  std::string results = evaluation::results_json(e, context, record.files);
+  auto carried = store::carry_over(folder, record, results, e.campaign.id);
+  if (!carried) return fail(carried.error());
+  record.indexed = carried->indexed;
+  if (!carried->earlier.empty()) {
+    files.push_back({store::earlier_name, std::move(carried->earlier)});
+    record.files.push_back(recorded(files.back()));
+  }
+  // Last, so that it never speaks of a file that is not there.
+  files.push_back({evaluation::results_name, std::move(results)});
+  record.files.push_back(recorded(files.back()));
+
+  if (auto looked = look_back(folder, record); !looked) return looked;
+  if (auto written = write_record(folder, record); !written) return written;
+  const auto left = storage::temporaries(folder);
+  if (!left) return fail(left.error());
+  for (const std::string& name : *left)
+    if (std::error_code ignored; name != evaluation::record_name)
+      fs::remove(storage::temporary_path(folder, name), ignored);
+  return storage::write_temporaries(folder, files);
+}
+
+namespace {
+
+/// The results of one campaign on their way from temporary names to their own.
+class Move {
+ public:
+  /// What a commit that was cut short has done already is not staged any more.
+  Move(fs::path to, std::uint64_t night, const Expected<void>& sound) : folder_(std::move(to)) {
+    auto staged = evaluation::staged_record(folder_);
+    if (storage::has_own_names() && is_stored(night)) {
+      leave_to_other();
+    } else if (!staged) {
+      done_ = fail(staged.error());
+    } else if (*staged && (*staged)->night == night) {
+      record_ = std::move(**staged);
+      for (const evaluation::RecordedFile& f : record_.files) names_.insert(f.name);
+      done_ = sound;
+    } else {
+      const auto record = evaluation::read_record(folder_);
+      moved_ = record && record->night == night;  // an older one would pass for tonight's
+      if (!moved_) done_ = fail("nothing is staged in " + folder_.string());
+    }
+  }
+
+  /// An error if what is on the disk is not what was written.
+  void read_back() {
+    for (const evaluation::RecordedFile& f : record_.files) {
+      const fs::path path = storage::temporary_path(folder_, f.name);
+      const auto same = storage::disk_gives_back(path, f.size, f.sha256);
+      if (!same || !*same)
+        return give_up("the disk does not give back what was written to it: " +
+                       (folder_ / f.name).string() + (same ? "" : ": " + same.error().message));
+    }
+    storage::drop_cached(storage::temporary_path(folder_, evaluation::record_name));
+    const auto record = evaluation::staged_record(folder_);
+    if (!record || !*record || evaluation::to_json(**record) != evaluation::to_json(record_))
+      give_up("the disk does not give back what was written to it: " +
+              (folder_ / evaluation::record_name).string());
+  }
+
+  /// The old record, and files of it that the new results do not have.
+  void put_old_aside() {
+    std::error_code error;
+    const bool there = fs::exists(fs::symlink_status(folder_ / evaluation::record_name, error));
+    if (there) rename(folder_ / evaluation::record_name, folder_ / evaluation::record_before_name);
+    if (there && done_ && storage::has_own_names()) {
+      const auto moved = evaluation::last_record(folder_);
+      if (moved && *moved && (*moved)->record.night >= record_.night) {
+        // It has taken its place since this process looked.
+        rename(folder_ / evaluation::record_before_name, folder_ / evaluation::record_name);
+        return leave_to_other();
+      }
+    }
+    const auto old = evaluation::last_record(folder_);
+    if (!old) return give_up(old.error().message);
+    const bool may_pass = record_.status == evaluation::Status::failed && record_.retry;
+    const bool was_good = *old && (*old)->record.status != evaluation::Status::failed;
+    if (may_pass && was_good) keep((*old)->record);
+    if (!may_pass) remove_all(folder_ / evaluation::last_good_name);
+    if (!*old) return;
+    for (const evaluation::RecordedFile& f : (*old)->record.files)
+      if (is_result(f.name) && !names_.contains(f.name)) remove(folder_ / f.name);
+  }
+  void rename_files() {
+    for (const evaluation::RecordedFile& f : record_.files)
+      rename(storage::temporary_path(folder_, f.name), folder_ / f.name,
+             [&] { return storage::sha256_of_file(folder_ / f.name).value_or("") == f.sha256; });
+  }
+  void rename_record() {
+    // The survey takes a file that is younger than the record for one that was touched.
+    ::utimensat(AT_FDCWD, storage::temporary_path(folder_, evaluation::record_name).c_str(),
+                nullptr, 0);
+    rename(storage::temporary_path(folder_, evaluation::record_name),
+           folder_ / evaluation::record_name, [&] {
+             const auto now = evaluation::read_record(folder_);
+             return now && evaluation::to_json(*now) == evaluation::to_json(record_);
+           });
+    if (!done_) return;
+    // The new results are complete; what is left of the old ones may as well go later.
+    [[maybe_unused]] const auto gone = put_away_record_before(folder_);
+  }
+
+  static Expected<void> put_away_record_before(const fs::path& folder) {
+    std::error_code error;
+    const fs::path before = folder / evaluation::record_before_name;
+    const fs::path last_good = folder / evaluation::last_good_name;
+    const auto aside = storage::is_there(before), kept = storage::is_there(last_good),
+               whole = storage::is_there(last_good / evaluation::record_name);
+    for (const auto* looked : {&aside, &kept, &whole})
+      if (!*looked) return fail(looked->error());
+    if (!*aside) return {};
+    if (*kept && !*whole) return storage::rename_file(before, last_good / evaluation::record_name);
+    fs::remove(before, error);
+    if (error) return fail("cannot remove " + before.string() + ": " + error.message());
+    return {};
+  }
+
+  bool moved() const { return moved_; }
+  const Expected<void>& done() const { return done_; }
+  void give_up(const std::string& why) {
+    if (done_) done_ = fail(why);
+  }
+  void remove_staged() const { storage::remove_leftovers(folder_); }
+
+ private:
+  static bool is_result(const std::string& name) {
+    return storage::is_artifact_name(name) || name == evaluation::results_name ||
+           name == store::earlier_name;
+  }
+  /// Whether the results that are there are of this night, or of a later one that has begun since.
+  bool is_stored(std::uint64_t night) const {
+    const auto record = evaluation::read_record(folder_);
+    return record && record->night >= night;
+  }
+  /// Another process that did the same shard was quicker: what it has stored are the same bytes.
+  void leave_to_other() {
+    storage::remove_leftovers(folder_);
+    moved_ = true;
+  }
+  void remove(const fs::path& path) {
+    if (std::error_code error; done_ && !fs::remove(path, error) && error)
+      give_up("cannot remove " + path.string() + ": " + error.message());
+  }
+  void remove_all(const fs::path& path) {
+    std::error_code error;
+    if (done_) fs::remove_all(path, error);
+    if (error) give_up("cannot remove " + path.string() + ": " + error.message());
+  }
+  void rename(const fs::path& from, const fs::path& to, const std::function<bool()>& is_ours = {}) {
+    if (!done_) return;
+    if (const auto renamed = storage::rename_file(from, to, is_ours); !renamed)
+      give_up(renamed.error().message);
+  }
+  /// The old results as they are, or nothing of them: some may be there already, and where storing
+  /// others was cut short some may be gone.
+  void keep(const evaluation::Record& old) {
+    if (!done_) return;
+    const fs::path to = folder_ / evaluation::last_good_name;
+    std::error_code error;
+    fs::create_directory(to, error);
+    if (error) return give_up("cannot make the folder " + to.string() + ": " + error.message());
+    for (const evaluation::RecordedFile& f : old.files) {
+      if (!is_result(f.name) || storage::sha256_of_file(to / f.name).value_or("") == f.sha256)
+        continue;
+      if (storage::sha256_of_file(folder_ / f.name).value_or("") != f.sha256) return remove_all(to);
+      rename(folder_ / f.name, to / f.name,
+             [&] { return storage::sha256_of_file(to / f.name).value_or("") == f.sha256; });
+    }
+  }
+
+  fs::path folder_;
+  evaluation::Record record_{};
+  std::set<std::string> names_{};
+  bool moved_ = false;  ///< already
+  Expected<void> done_{};
+};
+
+}  // namespace
+
+std::vector<Expected<void>> commit(const fs::path& out, const std::vector<Staged>& campaigns,
+                                   std::uint64_t night, const storage::Disk& disk) {
+  std::vector<Move> moves;
+  const auto sound = [&](const Staged& c) -> Expected<void> {
+    if (c.losses == disk.losses()) return {};
+    return fail("the disk lost writes while the results were written");
+  };
+  const auto flush = [&] {
+    if (const auto flushed = disk.flush(); !flushed)
+      for (Move& m : moves) m.give_up(flushed.error().message);
+  };
+  const auto each = [&](void (Move::*step)()) {
+    for (Move& m : moves)
+      if (!m.moved() && m.done()) (m.*step)();
+  };
+  for (const Staged& c : campaigns)
+    moves.emplace_back(storage::own_folder(out, c.id), night, sound(c));
+  flush();
+  each(&Move::read_back);
+  each(&Move::put_old_aside);
+  flush();
+  each(&Move::rename_files);
+  flush();
+  each(&Move::rename_record);
+  flush();
+  std::vector<Expected<void>> done;
+  for (const Move& m : moves) {
+    if (!m.done()) m.remove_staged();
+    done.push_back(m.done());
+  }
+  return done;
+}
+
+Expected<void> store(const fs::path& out, const evaluation::Evaluated& evaluated,
+                     const reading::Context& context, const StoreNote& note,
+                     const storage::Disk& disk) {
+  const std::uint32_t losses = disk.losses();
+  if (auto staged = stage(out, evaluated, context, note); !staged) return staged;
+  return commit(out, {{evaluated.campaign.id, losses}}, note.night.number, disk).front();
+}
+
+Expected<void> tidy(const fs::path& folder) {
+  constexpr int tries = 3;  // a refusal may pass
+  auto left = storage::temporaries(folder);
+  for (int i = 0; i < tries && (!left || !left->empty()); ++i, left = storage::temporaries(folder))
+    storage::remove_leftovers(folder);
+  if (!left) return fail(left.error());
+  if (!left->empty())
+    return fail("cannot remove " + storage::temporary_path(folder, left->front()).string());
+  const auto complete = storage::is_there(folder / evaluation::record_name);
+  if (!complete) return fail(complete.error());
+  if (!*complete) return {};
+  return Move::put_away_record_before(folder);
+}
+
+}  // namespace nonio::batch

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/release/release.h"
+
+#include <algorithm>
+
+#include "batch/close/history_update.h"
+#include "batch/state/output_lock.h"
+#include "batch/survey/twins.h"
+#include "batch/work/runner.h"
+#include "batch/work/set_up.h"
+#include "campaign/config/site_files.h"
+#include "campaign/evaluation/record.h"
+#include "certificates/certificate_list.h"
+#include "certificates/journal.h"
+#include "certificates/person_name.h"
+#include "certificates/register_place.h"
+#include "nonio/sdk/statement.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+
+namespace nonio::batch {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* author = "author";
+constexpr const char* authoriser = "authoriser";
+
+/// Blanks and capital letters make no other person.
+std::string plain_name(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const bool blank = c == ' ' || c == '\t';
+    if (blank && (out.empty() || out.back() == ' ')) continue;
+    out += blank ? ' ' : c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  while (out.ends_with(' ')) out.pop_back();
+  return out;
+}
+
+/// "B. Sample; A. Bianchi": the persons of the laboratory who may authorise.
+std::vector<std::string> persons_in(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(';', at), text.size());
+    if (std::string name = plain_name(text.substr(at, end - at)); !name.empty())
+      out.push_back(std::move(name));
+    at = end + 1;
+  }
+  return out;
+}
+
+bool is_one_line(const std::string& text) {
+  return std::none_of(text.begin(), text.end(),
+                      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; });
+}
+
+/// What is wrong with names and reasons; empty if nothing.
+std::string mistake_in(const ReleaseRequest& request) {
+  if (const std::string mistake = certificates::mistake_in_name(request.by); !mistake.empty())
+    return "--by: " + mistake;
+  for (const auto& [finding, reason] : request.reasons)
+    if (!says_something(reason) || !is_one_line(reason))
+      return "the reason for " + finding +
+             " says nothing or has a control character; expected one line of text";
+  return {};
+}
+
+/// Sorted by the findings themselves; what matches no finding comes out as a mistake.
+Expected<std::map<std::string, std::string>> reasons_for(const certificates::WaitingDraft& draft,
+                                                         const ReleaseRequest& request) {
+  std::map<std::string, std::string> reasons;
+  std::string known;
+  for (const evaluation::KnownFinding& f : draft.findings) {
+    known += (known.empty() ? "" : ", ") + certificates::finding_key(f);
+    for (const std::string& name : {certificates::finding_key(f), f.id})
+      if (const auto given = request.reasons.find(name); given != request.reasons.end()) {
+        reasons[certificates::finding_key(f)] = given->second;
+        break;
+      }
+  }
+  for (const auto& given : request.reasons) {
+    const std::string& name = given.first;
+    if (std::none_of(draft.findings.begin(), draft.findings.end(),
+                     [&](const evaluation::KnownFinding& f) {
+                       return name == certificates::finding_key(f) || name == f.id;
+                     }))
+      return fail("the draft has no finding " + name + "; it has " +
+                  (known.empty() ? "none" : known));
+  }
+  return reasons;
+}
+
+class Releaser {
+ public:
+  Releaser(const ReleaseRequest& request, const RunOptions& base, const RunEvents& events)
+      : request_(request), options_(base), events_(events) {}
+
+  Released run() {
+    if (auto well = open_campaign(); !well) return refuse(well.error().message);
+    if (auto well = open_draft(); !well) return refuse(well.error().message);
+    if (auto well = take_output(); !well) return refuse(well.error().message);
+    const certificates::WaitingDraft& draft = *out_.draft;
+    auto reasons = reasons_for(draft, request_);
+    if (!reasons) return refuse(reasons.error().message);
+    const certificates::Approval approval{request_.by, role_, certificates::utc_now(),
+                                          std::move(*reasons)};
+    for (const evaluation::KnownFinding& f : draft.findings) {
+      const auto has = [&](const certificates::Approval& a) {
+        return a.reasons.contains(certificates::finding_key(f));
+      };
+      if (f.attention && !has(approval) && !(draft.author && has(*draft.author)))
+        out_.without_reason.push_back(certificates::finding_key(f));
+    }
+    if (!out_.without_reason.empty()) {
+      out_.state = Released::State::lacking;
+      return std::move(out_);
+    }
+    if (role_ == author) return approve(approval);
+    return issue(approval);
+  }
+
+ private:
+  Released refuse(std::string why) {
+    out_.state = Released::State::refused;
+    out_.why = std::move(why);
+    return std::move(out_);
+  }
+
+  Expected<void> open_campaign() {
+    if (const std::string mistake = mistake_in(request_); !mistake.empty()) return fail(mistake);
+    auto text = storage::read_file(request_.campaign / config::manifest_name);
+    if (!text) return fail(text.error().message + ": it is not the folder of a campaign");
+    const auto manifest = config::parse_manifest(*text, config::manifest_name);
+    if (!manifest) {
+      const Error& e = manifest.error().front();
+      return fail(e.file + ":" + std::to_string(e.line) + ": " + e.message);
+    }
+    id_ = manifest->campaign.id;
+    options_.site = config::site_of(request_.campaign);
+    const auto numbering = certificates::numbering_of(options_.site);
+    if (!numbering) return fail("site.toml: " + numbering.error().message);
+    numbering_ = *numbering;
+    role_ = !request_.role.empty() ? request_.role : numbering_.two_persons ? author : authoriser;
+    return role_ == authoriser ? may_authorise() : Expected<void>{};
+  }
+
+  /// Whoever authorises is one of those whom the laboratory names.
+  Expected<void> may_authorise() const {
+    std::string digest;
+    const auto site = config::read_site(options_.site, digest);
+    if (!site) return fail("site.toml: " + site.error().front().message);
+    const auto persons = persons_in(site->laboratory.authoriser);
+    if (persons.empty() ||
+        std::find(persons.begin(), persons.end(), plain_name(request_.by)) != persons.end())
+      return {};
+    return fail("--by \"" + request_.by +
+                "\" is not an authoriser of this laboratory: site.toml, "
+                "laboratory.authoriser, names " +
+                site->laboratory.authoriser);
+  }
+
+  Expected<void> open_draft() {
+    const std::string none = "nothing of campaign " + id_ +
+                             " waits for a release; a draft is made by `nonio run SITE --out OUT`";
+    const auto place = certificates::register_place(options_.site, numbering_);
+    if (!place) return fail(place.error());
+    const auto there = certificates::has_register(*place, numbering_.patience);
+    if (!there) return fail(there.error());
+    if (!*there) return fail(none);
+    auto opened = certificates::Register::open(options_.site, numbering_);
+    if (!opened) return fail(opened.error());
+    if (auto sound = opened->check_journal(true); !sound) return fail(sound.error());
+    auto draft = opened->draft(id_);
+    if (!draft) return fail(draft.error());
+    auto last = opened->last_number(id_);
+    if (!last) return fail(last.error());
+    if (*last) last_number_ = (*last)->number;
+    if (!*draft) return fail(*last ? none_but(*opened, **last) : none);
+    out_.draft = std::move(*draft);
+    seen_ = *out_.draft;
+    std::error_code error;
+    const fs::path folder = fs::canonical(request_.campaign, error)
+                                .lexically_relative(fs::canonical(options_.site, error));
+    if (folder.generic_string() != out_.draft->folder)
+      return fail("the draft of " + id_ + " was made from the folder " + out_.draft->folder +
+                  ", not from " + folder.generic_string());
+    const auto& by_author = out_.draft->author;
+    if (numbering_.two_persons && role_ == authoriser) {
+      if (!by_author)
+        return fail(
+            "two_persons = true in site.toml: the author has to approve it first "
+            "(nonio release CAMPAIGN --by NAME --as author)");
+      if (certificates::likeness_of(by_author->by) == certificates::likeness_of(request_.by))
+        return fail("two_persons = true in site.toml: " + by_author->by +
+                    " is the author; expected another person as authoriser");
+      // A name is typed by whoever sits there: two persons are two accounts.
+      if (by_author->account == certificates::own_account())
+        return fail("two_persons = true in site.toml: the author approved it under this account, " +
+                    by_author->account + "; the authoriser needs an account of their own");
+    }
+    return {};
+  }
+
+  std::string none_but(certificates::Register& opened,
+                       const certificates::RegisterEntry& last) const {
+    const auto first = opened.approval_of(last.number).value_or(std::nullopt);
+    return "nothing of campaign " + id_ + " waits for a release; " + last.number + " of " +
+           last.date + " is its last certificate" +
+           (first ? ", approved by " + first->by + " at " + first->at : "");
+  }
+
+  /// And holds the draft there against the one that was entered.
+  Expected<void> take_output() {
+    if (!request_.out.empty()) out_.draft->out = fs::absolute(request_.out).string();
+    options_.out = out_.draft->out;
+    if (const std::string why = why_stale(*out_.draft); !why.empty()) return fail(why);
+    auto taken = OutputLock::take(options_.out);
+    if (!taken) return fail(taken.error());
+    lock_.emplace(std::move(*taken));
+    const fs::path results = storage::results_folder(options_.out, id_);
+    auto record = evaluation::read_record(results);
+    if (!record) return fail("no result of a night in " + results.string());
+    night_.number = record->night;
+    twins_ = twins_of(record->inputs);
+    return {};
+  }
+
+  Released approve(const certificates::Approval& approval) {
+    auto opened = certificates::Register::open(options_.site, numbering_);
+    if (!opened) return refuse(opened.error().message);
+    if (auto done = opened->approve(seen_, approval); !done) return fail_with(done.error().message);
+    out_.state = Released::State::approved;
+    return std::move(out_);
+  }
+
+  Released issue(const certificates::Approval& approval) {
+    auto place = set_up(options_);
+    if (!place) return refuse(place.error().message);
+    out_.notes = (*place)->notes;
+    if (!(*place)->signer) return refuse("site.toml says nothing of a key; expected [signing]");
+    if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
+    const certificates::Releasing releasing{seen_, approval, twins_};
+    ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
+    // What the store does not know yet comes in with the next night.
+    if (auto bases = assessment::history_bases(options_.out, {id_}); bases)
+      for (assessment::HistoryBasis& b : *bases) desk.histories.emplace(id_, std::move(b));
+    CampaignState campaign;
+    campaign.id = id_;
+    campaign.folder = out_.draft->folder;
+    campaign.reason = "released by " + request_.by;
+    std::vector<CampaignState> campaigns{campaign};
+    HistoryUpdate history(options_, (*place)->context);
+    if (const auto begun = history.begin(); !begun) return fail_with(begun.error().message);
+    if (!do_campaigns(options_, events_, (*place)->context, night_, desk, campaigns))
+      return fail_with("interrupted");
+    // What does not come in now does with the next night.
+    [[maybe_unused]] const auto entered =
+        history.end({id_}, read_told(options_, (*place)->context));
+    auto opened = certificates::Register::open(options_.site, numbering_);
+    if (!opened) return fail_with(opened.error().message);
+    auto last = opened->last_number(id_);
+    if (!last || !*last || (*last)->number == last_number_)
+      return fail_with(campaigns.front().errors().empty()
+                           ? "nothing was issued"
+                           : campaigns.front().errors().front().message);
+    // Another person may have approved it first.
+    const auto first = opened->approval_of((*last)->number);
+    if (!first) return fail_with(first.error().message);
+    if (!*first || (*first)->by != approval.by || (*first)->at != approval.at ||
+        (*first)->reasons != approval.reasons)
+      return fail_with(campaigns.front().errors().empty()
+                           ? (*last)->number + " was issued first by another person"
+                           : campaigns.front().errors().front().message);
+    out_.entry = std::move(**last);
+    out_.state = Released::State::issued;
+    if (const auto files = opened->files(out_.entry.number))
+      for (const evaluation::IssuedFile& f : *files)
+        out_.files.push_back(storage::own_folder(options_.out, id_) / f.name);
+    if (!campaigns.front().errors().empty()) out_.why = campaigns.front().errors().front().message;
+    return std::move(out_);
+  }
+
+  Released fail_with(std::string why) {
+    out_.state = Released::State::failed;
+    out_.why = std::move(why);
+    return std::move(out_);
+  }
+
+  const ReleaseRequest& request_;
+  RunOptions options_;
+  const RunEvents& events_;
+  config::Numbering numbering_;
+  NightState night_;
+  std::optional<OutputLock> lock_;
+  std::string id_, role_, last_number_;
+  certificates::WaitingDraft seen_;  ///< the draft as the register had it when it was read
+  reading::Twins twins_;             ///< what the night knew of other campaigns
+  Released out_;
+};
+
+}  // namespace
+
+std::string why_stale(const certificates::WaitingDraft& draft) {
+  const fs::path file = fs::path(draft.out) / draft.campaign / draft.file;
+  const auto now = storage::sha256_of_file(file);
+  if (now && *now == draft.sha256) return {};
+  return "the draft " + file.string() + (now ? " is not what the night left" : " is not there") +
+         ": run the night again (or name its output folder with --out, if that was moved)";
+}
+
+Released release(const ReleaseRequest& request, const RunOptions& base, const RunEvents& events) {
+  return Releaser(request, base, events).run();
+}
+
+Expected<std::vector<certificates::WaitingDraft>> waiting_drafts(const fs::path& folder) {
+  const fs::path site = config::site_of(folder);
+  const auto numbering = certificates::numbering_of(site);
+  if (!numbering) return fail(numbering.error());
+  auto drafts = certificates::Register::drafts(site, *numbering);
+  std::error_code error;
+  if (!drafts || !fs::exists(folder / config::manifest_name, error)) return drafts;
+  const std::string own =
+      fs::canonical(folder, error).lexically_relative(fs::canonical(site, error)).generic_string();
+  std::erase_if(*drafts, [&](const certificates::WaitingDraft& d) { return d.folder != own; });
+  return drafts;
+}
+
+}  // namespace nonio::batch

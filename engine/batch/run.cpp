@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long: one run, in the order of its steps.
+#include "batch/run.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <new>
+
+#include "batch/close/history_update.h"
+#include "batch/close/mail.h"
+#include "batch/close/morning_update.h"
+#include "batch/close/night_history.h"
+#include "batch/close/shown_histories.h"
+#include "batch/close/summary.h"
+#include "batch/commit/leftovers.h"
+#include "batch/commit/refused.h"
+#include "batch/commit/store.h"
+#include "batch/release/one_again.h"
+#include "batch/shards/packed_shard.h"
+#include "batch/shards/parts.h"
+#include "batch/state/night_plan.h"
+#include "batch/state/night_state.h"
+#include "batch/state/output_lock.h"
+#include "batch/state/read_apart.h"
+#include "batch/survey/known_numbers.h"
+#include "batch/survey/survey.h"
+#include "batch/work/runner.h"
+#include "batch/work/set_up.h"
+#include "platform/storage/database.h"
+#include "platform/storage/disk.h"
+#include "platform/storage/files.h"
+
+namespace nonio::batch {
+namespace fs = std::filesystem;
+
+namespace {
+
+using Action = CampaignState::Action;
+
+bool is_todo(const CampaignState& c) { return c.action == Action::todo; }
+
+/// Results are never written among the files of a campaign, which they could replace.
+std::string unfit_output(const fs::path& site, const fs::path& out) {
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(site, error);
+  fs::path folder = fs::weakly_canonical(out, error);
+  if (folder == root) return "the output folder is the site itself; expected another folder";
+  for (; folder != folder.parent_path(); folder = folder.parent_path())
+    if (fs::exists(folder / config::manifest_name, error))
+      return "the output folder lies in the campaign " + folder.string() +
+             "; expected another folder";
+  return {};
+}
+
+/// The first look at the site: the name by which the night's record knows it.
+Expected<std::string> look_at_site(const RunOptions& options) {
+  const fs::path& site = options.site;
+  return read_apart<std::string>("the site " + site.string(), config::Limits{}.disk_seconds,
+                                 [&](process::SignsOfLife& signs) -> Expected<std::string> {
+                                   signs.reading(site.string());
+                                   std::error_code error;
+                                   if (!fs::is_directory(site, error))
+                                     return fail("there is no site folder " + site.string());
+                                   if (std::string why = unfit_output(site, options.out);
+                                       !why.empty())
+                                     return fail(std::move(why));
+                                   return fs::weakly_canonical(site, error).string();
+                                 });
+}
+
+/// What is new, in the order of the numbers, and what waits. An error if the register cannot be
+/// read: a summary without what was issued would pass for one of a night that issued nothing.
+Expected<void> note_certificates(Night& night, const RunOptions& options,
+                                 const reading::Context& context, NightState& state) {
+  auto known = known_of(options, context, Look::again);
+  if (!known) return fail(known.error());
+  if (!*known) {  // the next night lists it
+    night.notes.push_back("the register of certificates is locked: what was issued is not listed");
+    return {};
+  }
+  const std::uint64_t before = state.issued_before.value_or(0);
+  state.issued_at_begin = before;
+  state.issued_before = issued_so_far((*known)->numbers);
+  for (certificates::RegisterEntry& e : (*known)->numbers)
+    if (e.order > before) night.issued.push_back(std::move(e));
+  for (certificates::WaitingDraft& draft : (*known)->drafts) {
+    const auto here = std::find_if(night.campaigns.begin(), night.campaigns.end(),
+                                   [&](const CampaignState& c) { return c.id == draft.campaign; });
+    if (here != night.campaigns.end() && here->status != evaluation::Status::failed)
+      night.waiting.push_back(std::move(draft));
+  }
+  return {};
+}
+
+bool is_campaign(const Vanished& v) { return config::is_campaign_id(v.id); }
+
+/// Campaigns that somebody has said to be gone are none that vanished.
+void leave_out_forgotten(Night& night, const Expected<store::Told>& told) {
+  if (!told) return;
+  std::erase_if(night.vanished, [&](const Vanished& v) {
+    return is_campaign(v) &&
+           std::any_of(told->logs.forgotten.begin(), told->logs.forgotten.end(),
+                       [&](const config::Forgotten& f) { return f.campaign == v.id; });
+  });
+}
+
+/// Pages that cannot be made are no reason to lose a night: they are made again from the results.
+Morning morning_of(Night& night, const RunOptions& options, const RunEvents& events,
+                   const reading::Context& context) {
+  auto made = make_morning(options, context, tonight_of(night, options.out, context.templates));
+  if (made) {
+    night.asking = made->asking;
+    return std::move(*made);
+  }
+  if (process::is_stop_requested()) return {};
+  night.morning_error = "the pages of the morning were not made: " + made.error().message;
+  night.notes.push_back(night.morning_error + "; the next night makes them");
+  events.note(night.notes.back());
+  return {};
+}
+
+/// A mail that cannot be sent is said in the summary, and loses nothing.
+void write_mail(Night& night, const RunOptions& options, const RunEvents& events,
+                const reading::Context& context, const Morning& morning) {
+  if (morning.mail.empty() || process::is_stop_requested()) return;
+  const config::TerminalWords words(context.templates, context.site.language);
+  const std::string subject = words(
+      "mail.subject", {{"number", std::to_string(night.night.number)}, {"date", night.night.date}});
+  const auto sent = send_mail(*context.site.mail, options.site, {subject, morning.mail});
+  if (sent) return;
+  night.morning_error = "the mail of this night was not sent: " + sent.error().message;
+  night.notes.push_back(night.morning_error);
+  events.note(night.notes.back());
+}
+
+/// First what cannot be left lying; then what the register says; the summary last.
+Expected<void> close_night(Night& night, const RunOptions& options, const RunEvents& events,
+                           const SetUp& place, NightState& state) {
+  const reading::Context& context = place.context;
+  if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
+  if (auto noted = note_certificates(night, options, context, state); !noted) return noted;
+  const Morning morning = morning_of(night, options, events, context);
+  if (!state.reopened) write_mail(night, options, events, context, morning);
+  const config::TerminalWords words(context.templates, context.site.language);
+  if (auto written = write_summary(night, options.out, options.version, words, morning); !written)
+    return written;
+  if (auto kept = place.parts.keep(state.of()); !kept) return kept;
+  return end_night(options.out, state, {state.of(), night.campaigns.size(), night.failed()});
+}
+
+/// All of them stand in the summary; of very many the messages name the first.
+void tell_vanished(const Night& night, const RunEvents& events) {
+  constexpr std::size_t most = 100;
+  for (std::size_t i = 0; i < std::min(most, night.vanished.size()); ++i) {
+    const Vanished& v = night.vanished[i];
+    events.note(is_campaign(v) ? "campaign " + v.id + " has vanished: " + v.why
+                               : v.id + " " + v.why);
+  }
+  if (night.vanished.size() > most)
+    events.note("and " + std::to_string(night.vanished.size() - most) +
+                " more have vanished: see the summary");
+}
+
+/// Which campaigns there are, and what is to do with each.
+Expected<void> survey_site(const RunOptions& options, const reading::Context& context,
+                           const NightState& state, const std::optional<Known>& known,
+                           Night& night) {
+  SurveyInput input{options.site,
+                    options.out,
+                    context,
+                    state.number,
+                    state.force,
+                    std::nullopt,
+                    {},
+                    night.notes,
+                    process::is_stop_requested,
+                    options.verify_results};
+  if (known) {
+    input.numbers = known->numbers;
+    for (const certificates::WaitingDraft& draft : known->drafts)
+      input.drafts.insert(draft.campaign);
+  }
+  auto surveyed = survey(input);
+  if (!surveyed) return fail(surveyed.error());
+  night.campaigns = std::move(surveyed->campaigns);
+  night.vanished = std::move(surveyed->vanished);
+  night.may_vanish = context.site.limits.vanished;
+  return {};
+}
+
+void tell_plan(const Night& night, const RunEvents& events) {
+  tell_vanished(night, events);
+  events.planned(night.campaigns.size(),
+                 static_cast<std::size_t>(
+                     std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
+}
+
+/// What was found out before the first campaign is done.
+struct Plan {
+  Expected<store::Told> told;
+  std::string only;                              ///< the campaign of a night that is reopened
+  std::optional<std::uint64_t> history_known{};  ///< by the store, when this night was planned
+};
+
+/// Surveyed and told. An error: the night ends here; empty if somebody wants to stop.
+Expected<Plan> plan_night(const RunOptions& options, const RunEvents& events, const SetUp& place,
+                          const NightState& state, const std::optional<Known>& known,
+                          Night& night) {
+  const reading::Context& context = place.context;
+  const std::size_t notes_so_far = night.notes.size();
+  const auto surveyed = survey_site(options, context, state, known, night);
+  if (process::is_stop_requested()) return fail("");
+  if (!surveyed) return fail(surveyed.error());
+  std::string only;
+  if (state.reopened) {
+    auto one = leave_only(options, state, night);
+    if (!one) return fail(one.error());
+    only = std::move(*one);
+  }
+  const auto& lost = place.parts.lost();
+  night.vanished.insert(night.vanished.end(), lost.begin(), lost.end());
+  Plan plan{read_told(options, context), std::move(only)};
+  leave_out_forgotten(night, plan.told);
+  for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
+  tell_plan(night, events);
+  return plan;
+}
+
+void tell_stage(const RunEvents& events, const char* name) {
+  if (events.stage) events.stage(name);
+}
+
+/// A night that was planned, as its shards have left it.
+Expected<Plan> planned_night_of(const RunOptions& options, const RunEvents& events,
+                                const SetUp& place, const NightPlan& planned,
+                                const std::optional<Known>& known, Night& night) {
+  const reading::Context& context = place.context;
+  night.may_vanish = context.site.limits.vanished;
+  if (!planned.register_read && known)
+    if (auto fit = check_numbers(options.out, night.campaigns, known->numbers); !fit)
+      return fail(fit.error());
+  if (auto noted = note_failures(options, context, night, place.signer.has_value()); !noted)
+    return fail(noted.error());
+  Plan plan{read_told(options, context), {}, planned.history_known};
+  leave_out_forgotten(night, plan.told);
+  tell_plan(night, events);
+  return plan;
+}
+
+/// Every campaign that is to do, and what the history and the reports know of it. An error: the
+/// night ends here; empty if somebody wants to stop.
+Expected<void> do_planned(const RunOptions& options, const RunEvents& events, SetUp& place,
+                          const Plan& plan, bool register_known, NightState& state, Night& night) {
+  const reading::Context& context = place.context;
+  tell_stage(events, "campaigns");
+  HistoryUpdate history(options, context);
+  if (const auto begun = history.begin(plan.history_known); !begun) return begun;
+  if (std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
+    if (const auto begun = ShownHistories(options, context).begin(); !begun) return begun;
+  store_refused(options, context, state, events, night.campaigns);
+  ReleaseDesk desk;
+  desk.signer = place.signer ? &*place.signer : nullptr;
+  desk.plugins = &*place.host;
+  if (!register_known)
+    desk.recheck = [&](const std::vector<certificates::RegisterEntry>& numbers) {
+      if (!state.issued_before) state.issued_before = issued_so_far(numbers);
+      return check_numbers(options.out, night.campaigns, numbers);
+    };
+  RunOptions numbered = options;  // numbers in the order of the campaigns
+  if (options.step == RunOptions::Step::merge && context.site.numbering.automatic)
+    numbered.jobs = 1;
+  bool well = do_campaigns(numbered, events, context, state, desk, night.campaigns);
+  if (well && !process::is_stop_requested()) {
+    std::vector<std::string> done;
+    for (const CampaignState& c : night.campaigns)
+      if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
+    tell_stage(events, "history");
+    const std::uint64_t before = state.reopened ? state.number
+                                 : state.last   ? state.last->night.number
+                                                : 0;
+    write_history(night, history, before, done, plan.told, events);
+    well =
+        show_histories(options, events, context, state, desk, history, plan.told, plan.only, night);
+  }
+  if (well) return {};
+  if (state.reopened && std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
+    history.nothing_done();
+  tidy_root(options.out);
+  return fail("");
+}
+
+/// The output folder, before anything is looked up in it.
+Expected<void> make_ready(const RunOptions& options, const reading::Context& context) {
+  auto ready = settle_folders(options.out, context.site.hashed_folders, options.dry_run);
+  if (ready) ready = storage::check_catalogue(options.out);
+  if (ready && options.step == RunOptions::Step::plan) ready = keep_packs(options.out);
+  return ready;
+}
+
+/// The night itself, in an output folder that nobody else uses.
+void do_night(const RunOptions& options, const RunEvents& events, const std::string& site_text,
+              SetUp& place, const std::optional<Known>& known, Night& night) {
+  const reading::Context& context = place.context;
+  const auto refuse = [&](std::string why) {
+    night.end =
+        process::is_stop_requested() || why.empty() ? Night::End::interrupted : Night::End::refused;
+    night.error = std::move(why);
+  };
+  if (const auto ready = make_ready(options, context); !ready) return refuse(ready.error().message);
+  std::optional<NightPlan> planned;
+  if (options.step == RunOptions::Step::merge) {
+    auto read = read_plan(options.out);
+    if (!read) return refuse(read.error().message);
+    planned = std::move(*read);
+  }
+  auto state =
+      planned ? planned_night(options, site_text, planned->night.number)
+      : !options.only.empty()
+          ? reopen_night(options, site_text)
+          : begin_night(options, site_text,
+                        known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
+  if (!state) return refuse(state.error().message);
+  night.night = state->of();
+  if (state->last) night.seen_before = state->last->seen;
+  tell_stage(events, "survey");
+  const std::size_t own_notes = night.notes.size();
+  if (planned) {
+    if (auto same = check_made_with(*planned, context); !same) return refuse(same.error().message);
+    if (auto gathered = gather(options, *planned, night); !gathered) {
+      if (process::is_stop_requested()) return refuse({});
+      night.error = gathered.error().message;
+      return;
+    }
+  }
+  const auto plan = planned ? planned_night_of(options, events, place, *planned, known, night)
+                            : plan_night(options, events, place, *state, known, night);
+  if (!plan) return refuse(plan.error().message);
+  if (options.dry_run) return;
+  if (options.step == RunOptions::Step::plan) {
+    const auto written = plan_shards(options, context, *state, known.has_value(), own_notes, night);
+    if (!written) refuse(written.error().message);
+    return;
+  }
+  if (const auto done = do_planned(options, events, place, *plan, known.has_value(), *state, night);
+      !done)
+    return refuse(done.error().message);
+  leave_out_new(*state, night.campaigns);
+  tell_stage(events, "pages");
+  const auto closed = close_night(night, options, events, place, *state);
+  if (closed && planned) {
+    auto gone = remove_plan(options.out);
+    if (gone) gone = storage::sweep_packs(options.out);
+    if (!gone) night.error = gone.error().message;
+  }
+  if (closed) return;
+  tidy_root(options.out);
+  if (process::is_stop_requested()) return refuse({});
+  night.error = closed.error().message + "; the same command goes on where it stopped";
+}
+
+}  // namespace
+
+Night run_site(const RunOptions& options, const RunEvents& events) {
+  Night night;
+  const auto refuse = [&](std::string why) {
+    night.end = process::is_stop_requested() ? Night::End::interrupted : Night::End::refused;
+    night.error = std::move(why);
+    return std::move(night);
+  };
+  const auto site_text = look_at_site(options);
+  if (!site_text) return refuse(site_text.error().message);
+  const auto place = set_up(options);
+  if (!place) return refuse(place.error().message);
+  const reading::Context& context = (*place)->context;
+  night.notes = (*place)->notes;
+
+  std::optional<OutputLock> lock;
+  if (options.dry_run) {
+    if (const auto free = check_not_planned(options.out); !free)
+      return refuse(free.error().message);
+  } else {
+    const bool whole = options.step == RunOptions::Step::whole;
+    auto taken =
+        OutputLock::take(options.out, whole ? OutputLock::Use::whole : OutputLock::Use::planned);
+    if (!taken) return refuse(taken.error().message);
+    lock.emplace(std::move(*taken));
+  }
+  const auto known = known_of(options, context);
+  if (!known) return refuse(known.error().message);
+  if (!*known)
+    night.notes.push_back(
+        "another process keeps the register of certificates locked, or its server is away: "
+        "campaigns that need a number wait for it");
+  for (const std::string& note : night.notes) events.note(note);
+  if (!(*place)->unstamped.empty()) night.notes.push_back((*place)->unstamped);
+  // What takes the memory goes first, then there is enough to tell of it.
+  auto reserve = std::make_unique<std::array<char, 1 << 18>>();
+  try {
+    do_night(options, events, *site_text, **place, *known, night);
+  } catch (const std::exception& e) {
+    reserve.reset();
+    night.error = dynamic_cast<const std::bad_alloc*>(&e) != nullptr
+                      ? "out of memory; the same command goes on where it stopped"
+                      : e.what();
+    if (lock) [[maybe_unused]]
+      const auto tidied = tidy_all(night, options.out, true);
+  }
+  return night;
+}
+
+}  // namespace nonio::batch

@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/shards/parts.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <random>
+#include <thread>
+
+#include "batch/close/shown_histories.h"
+#include "batch/commit/leftovers.h"
+#include "batch/shards/packed_shard.h"
+#include "batch/state/output_lock.h"
+#include "batch/state/read_apart.h"
+#include "batch/work/runner.h"
+#include "batch/work/set_up.h"
+#include "campaign/evaluation/results_files.h"
+#include "certificates/numbering.h"
+#include "platform/storage/files.h"
+#include "platform/storage/pack.h"
+
+namespace nonio::batch {
+namespace fs = std::filesystem;
+using Action = CampaignState::Action;
+
+namespace {
+
+/// For temporary names: no other process, on no other host, has it.
+std::string own_token() {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  std::string token;
+  for (const char c : std::string_view(host.data()).substr(0, 20))
+    token += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  std::random_device device;
+  std::array<char, 40> more{};
+  std::snprintf(more.data(), more.size(), "-%ld-%08x", static_cast<long>(::getpid()), device());
+  return token + more.data();
+}
+
+/// Into one list, ordered by id. Campaigns that others name only by their ids are added behind the
+/// end, where nothing is done with them.
+std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site) {
+  std::stable_sort(listed.begin(), listed.end(),
+                   [](const Listed& a, const Listed& b) { return a.campaign.id < b.campaign.id; });
+  std::vector<CampaignState> states;
+  states.reserve(listed.size());
+  for (Listed& one : listed) states.push_back(std::move(one.campaign));
+  const std::size_t own = states.size();
+  const auto at = [&](const std::string& id) {
+    const auto end = states.begin() + static_cast<std::ptrdiff_t>(own);
+    const auto found =
+        std::lower_bound(states.begin(), end, id,
+                         [](const CampaignState& c, const std::string& x) { return c.id < x; });
+    if (found != end && found->id == id) return static_cast<std::uint32_t>(found - states.begin());
+    states.emplace_back();
+    states.back().id = id;
+    states.back().action = Action::unchanged;
+    states.back().is_campaign = false;
+    return static_cast<std::uint32_t>(states.size() - 1);
+  };
+  for (std::size_t i = 0; i < own; ++i)
+    for (const auto& [digest, id] : listed[i].twins) {
+      const std::uint32_t other = at(id);
+      states[i].add_twin({digest, other});
+    }
+  if (whole_site) states.resize(own);
+  return states;
+}
+
+/// Stored in this night already: by this shard before it was killed, or by another copy of it.
+bool take_stored(const fs::path& out, std::uint64_t night, CampaignState& c) {
+  const auto record = evaluation::read_record(storage::results_folder(out, c.id));
+  if (!record || record->night != night) return false;
+  c.action = Action::done;
+  c.status = record->status;
+  c.set_errors(record->errors);
+  c.reason = KeptText::shared(record->reason);
+  c.shows_history = record->history.has_value();
+  c.history = record->history ? record->history->sha256 : "";
+  return true;
+}
+
+ShardRecord record_of(const fs::path& out, std::uint64_t night,
+                      const std::vector<CampaignState>& campaigns) {
+  ShardRecord record;
+  std::vector<ShardResult>& results = record.results;
+  for (const CampaignState& c : campaigns) {
+    results.push_back({c.id, c.status});
+    if (c.action == Action::todo) results.back().status = evaluation::Status::none;
+    if (c.status != evaluation::Status::failed) continue;
+    results.back().errors = c.errors();
+    CampaignState stored = c;
+    results.back().stored = take_stored(out, night, stored);
+  }
+  return record;
+}
+
+std::string numbers_text(const std::vector<std::uint64_t>& numbers) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, numbers.size()); ++i)
+    text += (i == 0 ? "" : ", ") + std::to_string(numbers[i]);
+  return text +
+         (numbers.size() > most ? " and " + std::to_string(numbers.size() - most) + " more" : "");
+}
+
+/// `try_it` again until it succeeds: on a shared file system what another host has written may
+/// appear some time later.
+template <class Try>
+auto with_patience(std::chrono::steady_clock::time_point until, const Try& try_it) {
+  for (;;) {
+    auto got = try_it();
+    if (got || process::is_stop_requested() || std::chrono::steady_clock::now() >= until)
+      return got;
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+}
+
+/// What the shard has handed over before, in place of doing it.
+void take_reported(const ShardRecord& record, std::vector<CampaignState>& campaigns) {
+  for (std::size_t i = 0; i < campaigns.size() && i < record.results.size(); ++i) {
+    const ShardResult& r = record.results[i];
+    if (r.status == evaluation::Status::none) continue;
+    campaigns[i].action = Action::done;
+    campaigns[i].status = r.status;
+    campaigns[i].set_errors(r.errors);
+  }
+}
+
+/// The campaigns of a shard, the first `own` of the night's. An error without a word of the night: it was refused, or
+/// interrupted.
+Expected<void> do_part(const RunOptions& options, const RunEvents& events, const NightPlan& plan,
+                       std::size_t own, Night& night) {
+  RunOptions where = options;
+  std::optional<PackedShard> packed;
+  if (options.pack) {
+    if (const auto record = reported_pack(options.out, plan, options.shard)) {
+      night.campaigns.resize(own);
+      take_reported(*record, night.campaigns);
+      events.planned(own, 0);
+      return {};
+    }
+    auto begun = PackedShard::begin(options, night.campaigns);
+    if (!begun) return fail(begun.error());
+    packed.emplace(std::move(*begun));
+    where.out = packed->out();
+  }
+  std::size_t to_do = own;
+  for (std::size_t i = 0; i < own && !packed; ++i)
+    if (take_stored(options.out, plan.night.number, night.campaigns[i])) --to_do;
+  events.planned(own, to_do);
+  if (to_do > 0) {  // else no plugin is loaded
+    const auto place = set_up(options);
+    if (!place) return fail(place.error());
+    if (const auto same = check_made_with(plan, (*place)->context); !same) return same;
+    NightState state;
+    state.number = plan.night.number;
+    state.date = plan.night.date;
+    ReleaseDesk desk;
+    desk.plugins = &*(*place)->host;
+    desk.elsewhere = true;
+    if (!do_campaigns(where, events, (*place)->context, state, desk, night.campaigns))
+      return fail("");
+  }
+  night.campaigns.resize(own);
+  night.error = "not reported";
+  ShardRecord record = record_of(where.out, plan.night.number, night.campaigns);
+  if (packed)
+    if (auto handed = packed->hand_over(options, plan, record); !handed) return handed;
+  if (auto written = write_shard_record(options.out, plan, options.shard, record); !written)
+    return written;
+  night.error.clear();
+  return {};
+}
+
+}  // namespace
+
+Night run_shard(const RunOptions& options, const RunEvents& events) {
+  Night night;
+  const auto refuse = [&](std::string why) {
+    night.end = process::is_stop_requested() ? Night::End::interrupted : Night::End::refused;
+    night.error = std::move(why);
+    return std::move(night);
+  };
+  const auto lock = OutputLock::take(options.out, OutputLock::Use::shard);
+  if (!lock) return refuse(lock.error().message);
+  const auto plan = read_plan(options.out);
+  if (!plan) return refuse(plan.error().message);
+  night.night = plan->night;
+  if (plan->shards.size() != options.shards)
+    return refuse("night " + std::to_string(plan->night.number) + " is planned for " +
+                  std::to_string(plan->shards.size()) + " shards; expected --shard i/" +
+                  std::to_string(plan->shards.size()) + ", found " + std::to_string(options.shard) +
+                  "/" + std::to_string(options.shards));
+  auto listed = read_shard_list(options.out, *plan, options.shard);
+  if (!listed) return refuse(listed.error().message);
+  const std::size_t own = listed->size();
+  night.campaigns = states_of(std::move(*listed), false);
+  storage::take_own_names(own_token());
+  if (const auto done = do_part(options, events, *plan, own, night); !done) {
+    if (night.error.empty()) return refuse(done.error().message);
+    night.error = done.error().message + "; run the shard again";
+  }
+  return night;
+}
+
+namespace {
+
+/// What this night has stored in a pack, into the folder of the campaign.
+Expected<void> take_in_of(const fs::path& out, std::uint64_t night, const std::string& id) {
+  const auto record = evaluation::read_record(storage::results_folder(out, id));
+  if (!record || record->night != night) return {};
+  return evaluation::take_in(out, id);
+}
+
+}  // namespace
+
+Expected<void> plan_shards(const RunOptions& options, const reading::Context& context,
+                           const NightState& state, bool register_read, std::size_t own_notes,
+                           Night& night) {
+  const bool any = std::any_of(night.campaigns.begin(), night.campaigns.end(),
+                               [](const CampaignState& c) { return c.action == Action::todo; });
+  if (auto removed = remove_plan(options.out); !removed) return removed;
+  if (auto swept = storage::sweep_packs(options.out); !swept) return swept;
+  if (state.resumed)  // of a run or a plan that was cut short
+    if (auto tidied = tidy_all(night, options.out, true); !tidied) return tidied;
+  for (const CampaignState& c : night.campaigns) {
+    if (!state.resumed || c.action != Action::todo || !c.is_campaign) continue;
+    // Its shard would take what this night has stored before for its own.
+    if (auto taken = take_in_of(options.out, state.number, c.id); !taken) return taken;
+    const fs::path folder = storage::own_folder(options.out, c.id);
+    const auto record = evaluation::read_record(folder);
+    if (!record || record->night != state.number) continue;
+    if (auto aside = storage::rename_file(folder / evaluation::record_name,
+                                          folder / evaluation::record_before_name);
+        !aside)
+      return fail("cannot put aside " + (folder / evaluation::record_name).string() + ": " +
+                  aside.error().message);
+  }
+  HistoryUpdate history(options, context);
+  if (auto begun = history.begin(); !begun) return begun;
+  if (any)
+    if (const auto begun = ShownHistories(options, context).begin(); !begun) return begun;
+  NightPlan plan;
+  plan.night = state.of();
+  plan.site = state.site;
+  plan.made_with = reading::shared_inputs(context);
+  plan.register_read = register_read;
+  plan.history_known = history.known();
+  plan.notes.assign(night.notes.begin() + static_cast<std::ptrdiff_t>(own_notes),
+                    night.notes.end());
+  plan.vanished = night.vanished;
+  plan.shards.resize(options.shards);
+  if (process::is_stop_requested()) return fail("");
+  if (auto written = write_plan(options.out, plan, night.campaigns); !written) return written;
+  for (const NightPlan::List& list : plan.shards) night.planned.push_back(list.campaigns);
+  return {};
+}
+
+namespace {
+
+bool is_of(const std::vector<ShardResult>& record, const std::vector<Listed>& list) {
+  return std::equal(
+      record.begin(), record.end(), list.begin(), list.end(),
+      [](const ShardResult& r, const Listed& l) { return r.campaign == l.campaign.id; });
+}
+
+/// A shard's list and what it has reported.
+struct Reported {
+  std::vector<Listed> listed;
+  ShardRecord record;
+};
+
+using Until = std::chrono::steady_clock::time_point;
+
+/// Its record, with a pack that is whole. None, and why, if it has not reported.
+std::optional<ShardRecord> sound_record(const fs::path& out, const NightPlan& plan,
+                                        std::uint64_t shard, std::string& why) {
+  auto record = read_shard_record(out, plan, shard);
+  if (!record) why = record.error().message;
+  if (!record || !*record) return std::nullopt;
+  if ((*record)->pack)
+    if (const auto sound = storage::check_handed_over(out, *(*record)->pack); !sound) {
+      why = sound.error().message;
+      return std::nullopt;
+    }
+  return std::move(*record);
+}
+
+Expected<std::vector<Reported>> reported_by_all(const fs::path& out, const NightPlan& plan,
+                                                Until until) {
+  std::vector<Reported> all;
+  std::vector<std::uint64_t> silent;
+  std::string why;
+  for (std::uint64_t shard = 0; shard < plan.shards.size(); ++shard) {
+    auto listed = read_shard_list(out, plan, shard);
+    if (!listed) return fail(listed.error());
+    auto record = with_patience(until, [&] { return sound_record(out, plan, shard, why); });
+    if (process::is_stop_requested()) return fail("");
+    if (!record || !is_of(record->results, *listed))
+      silent.push_back(shard);
+    else
+      all.push_back({std::move(*listed), std::move(*record)});
+  }
+  if (silent.empty()) return all;
+  return fail(std::string("not complete: ") + (silent.size() == 1 ? "shard " : "shards ") +
+              numbers_text(silent) + " of " + std::to_string(plan.shards.size()) +
+              (silent.size() == 1 ? " has" : " have") + " not reported" +
+              (why.empty() ? "" : " (" + why + ")") + "; run `nonio run SITE --out OUT --shard " +
+              std::to_string(silent.front()) + "/" + std::to_string(plan.shards.size()) +
+              "`, and so on, then `nonio night merge OUT` again");
+}
+
+/// What became of the campaigns of a shard; those without results that should be there are added to `missing`.
+void take_results(const fs::path& out, const NightPlan& plan, std::uint64_t shard, Until until,
+                  Reported& reported, std::vector<std::string>& missing) {
+  for (std::size_t i = 0; i < reported.listed.size(); ++i) {
+    CampaignState& c = reported.listed[i].campaign;
+    const ShardResult& result = reported.record.results[i];
+    const bool left = result.status == evaluation::Status::none;
+    const bool stored = with_patience(left || !result.stored ? Until{} : until,
+                                      [&] { return take_stored(out, plan.night.number, c); });
+    if (stored || left) continue;
+    if (result.stored) missing.push_back(c.id + " (shard " + std::to_string(shard) + ")");
+    c.action = Action::done;
+    c.status = result.status;
+    c.set_errors(result.errors);
+  }
+}
+
+}  // namespace
+
+Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& night) {
+  const auto until = std::chrono::steady_clock::now() +
+                     std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                         std::chrono::duration<double>(options.patience));
+  auto all = read_rest(options.out, plan);
+  if (!all) return fail(all.error());
+  for (Listed& one : *all) {  // of a merge that was cut short
+    CampaignState& c = one.campaign;
+    if (c.action == Action::todo && c.status != evaluation::Status::failed)
+      take_stored(options.out, plan.night.number, c);
+  }
+  auto reported = reported_by_all(options.out, plan, until);
+  if (!reported) return fail(reported.error());
+  std::vector<const ShardRecord*> records;
+  for (const Reported& r : *reported) records.push_back(&r.record);
+  if (auto accepted = accept_packs(options.out, plan, records); !accepted) return accepted;
+  std::vector<std::string> missing;
+  for (std::uint64_t shard = 0; shard < reported->size(); ++shard) {
+    Reported& one = (*reported)[shard];
+    take_results(options.out, plan, shard, until, one, missing);
+    if (process::is_stop_requested()) return fail("");
+    std::move(one.listed.begin(), one.listed.end(), std::back_inserter(*all));
+    one = {};
+  }
+  if (!missing.empty())
+    return fail("not complete: the results of " + missing.front() +
+                (missing.size() == 1 ? " are"
+                                     : " and " + std::to_string(missing.size() - 1) + " more are") +
+                " not in the output folder; run their shards again, then `nonio night merge OUT`");
+  night.campaigns = states_of(std::move(*all), true);
+  night.vanished = plan.vanished;
+  night.notes.insert(night.notes.end(), plan.notes.begin(), plan.notes.end());
+  return {};
+}
+
+Expected<void> note_failures(const RunOptions& options, const reading::Context& context,
+                             const Night& night, bool can_sign) {
+  std::vector<const CampaignState*> failed;
+  for (const CampaignState& c : night.campaigns)
+    if (c.action == Action::done && c.is_campaign && c.status == evaluation::Status::failed &&
+        !c.errors().empty())
+      failed.push_back(&c);
+  if (failed.empty()) return {};
+  const auto noted = read_apart<bool>(
+      "the register of certificates", context.site.limits.disk_seconds,
+      [&](process::SignsOfLife& signs) {
+        const certificates::Numbers numbers({options.site, options.out, night.night.date, can_sign},
+                                            context, nullptr);
+        for (const CampaignState* c : failed) {
+          numbers.note_failure(c->id, c->errors().front().message);
+          signs.beat();
+        }
+        return Expected<bool>(true);
+      });
+  if (!noted) return fail(noted.error());
+  return {};
+}
+
+}  // namespace nonio::batch

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "campaign/evaluation/record.h"
+#include "nonio/sdk/error.h"
+
+namespace nonio::batch {
+
+/// What a night that is complete has counted.
+struct NightEnd {
+  evaluation::NightOf night{};
+  std::uint64_t seen = 0;  ///< campaigns
+  std::uint64_t failed = 0;
+};
+
+/// How an output folder's nights stand.
+struct NightStatus {
+  enum class State { complete, running, cut_short, planned } state = State::complete;
+  evaluation::NightOf night{};             ///< the last that began
+  std::optional<NightEnd> last{};          ///< the last that is complete
+  double age = 0.0;                        ///< s since the last summary was written
+  std::uint64_t shards = 0, reported = 0;  ///< of a night that is planned
+  std::string used_by{};                   ///< who uses the folder now, for people; "" if nobody
+};
+
+/// complete, running, planned, cut-short
+const char* to_text(NightStatus::State state);
+
+/// An error if no night was begun there, or if its files cannot be read.
+Expected<NightStatus> night_status(const std::filesystem::path& out);
+
+}  // namespace nonio::batch

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/state/output_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+#include "batch/state/night_state.h"
+#include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
+
+namespace nonio::batch {
+namespace fs = std::filesystem;
+using storage::Json;
+
+namespace {
+
+constexpr const char* user_name = "user";
+
+/// The process in OUT/.nonio/user. `machine` and `boot` tell whether it was on this host, and
+/// whether the host has started anew since; empty if the system does not say.
+struct User {
+  std::string host, machine, boot, job;
+  long pid = 0;
+};
+
+std::string first_line(const char* path) {
+  std::ifstream in(path);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+User own_user() {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  const char* const job = std::getenv("NONIO_JOB");
+  return {host.data(), first_line("/etc/machine-id"), first_line("/proc/sys/kernel/random/boot_id"),
+          job != nullptr ? job : "", static_cast<long>(::getpid())};
+}
+
+std::string text_of(const User& user) {
+  return storage::dump_line({{"host", user.host},
+                             {"pid", user.pid},
+                             {"job", user.job},
+                             {"machine", user.machine},
+                             {"boot", user.boot}}) +
+         "\n";
+}
+
+/// A file that says nothing that can be understood names nobody, and is believed all the same.
+User user_in(const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) return {};
+  const auto word = [&](const char* key) {
+    const auto it = json.find(key);
+    return it != json.end() && it->is_string() ? it->get<std::string>() : "";
+  };
+  User user{word("host"), word("machine"), word("boot"), word("job")};
+  if (const auto pid = json.find("pid"); pid != json.end() && pid->is_number_integer())
+    user.pid = pid->get<long>();
+  return user;
+}
+
+std::string words_for(const User& user) {
+  if (user.host.empty()) return "a process of unknown name";
+  return "process " + std::to_string(user.pid) + " on host " + user.host +
+         (user.job.empty() ? "" : " (job " + user.job + ")");
+}
+
+/// Asked by who has the flock of this host.
+bool is_gone(const User& user, const User& own) {
+  if (!user.boot.empty() && user.boot == own.boot) return true;  // it would have the flock
+  return !user.machine.empty() && user.machine == own.machine && user.host == own.host;
+}
+
+/// The bytes of OUT/.nonio/user; none if there is no such file.
+Expected<std::optional<std::string>> read_user(const fs::path& path) {
+  const auto there = storage::is_there(path);
+  if (!there) return fail(there.error());
+  if (!*there) return std::nullopt;
+  auto text = storage::read_small_file(path);
+  if (text) return *text;
+  const auto still = storage::is_there(path);
+  if (still && !*still) return std::nullopt;  // removed meanwhile
+  return fail(text.error());
+}
+
+/// Front of the temporary names of this host since it started.
+std::string temporary(const fs::path& path, const User& own) {
+  return path.string() + "-" + own.boot.substr(0, own.boot.find('-')) + "-";
+}
+
+/// What processes of this host that were killed have left. Asked by who has the flock.
+void sweep(const fs::path& path, const User& own) {
+  const std::string front = temporary(path, own);
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(path.parent_path(), error))
+    if (entry.path().string().starts_with(front)) ::unlink(entry.path().c_str());
+}
+
+enum class Made { done, taken, no_links };
+
+/// Gives `path` the bytes, if there is no such file. link(2) is one step on every server; two names
+/// prove that it was done, also where the answer was lost and a second try was told "exists".
+Expected<Made> make_user(const fs::path& path, const User& user, const std::string& says) {
+  std::string own = temporary(path, user) + "XXXXXX";  // mkostemp puts its letters there
+  const int fd = ::mkostemp(own.data(), O_CLOEXEC);
+  if (fd < 0) return fail("cannot write " + own + ": " + std::strerror(errno));
+  const bool written = ::write(fd, says.data(), says.size()) == static_cast<ssize_t>(says.size()) &&
+                       ::fchmod(fd, 0644) == 0 && ::fsync(fd) == 0;
+  const int trouble = written ? 0 : errno;
+  ::close(fd);
+  if (!written) {
+    ::unlink(own.c_str());
+    return fail("cannot write " + own + ": " + std::strerror(trouble));
+  }
+  const int linked = ::link(own.c_str(), path.c_str()) == 0 ? 0 : errno;
+  struct stat state {};
+  const bool two_names = ::stat(own.c_str(), &state) == 0 && state.st_nlink == 2;
+  ::unlink(own.c_str());
+  if (linked == 0 || two_names) return Made::done;
+  if (linked == EEXIST) return Made::taken;
+  if (linked == EPERM || linked == EOPNOTSUPP || linked == ENOSYS || linked == EMLINK)
+    return Made::no_links;  // FAT, some shares: flock alone
+  return fail("cannot write " + path.string() + ": " + std::strerror(linked));
+}
+
+/// True if it is ours now; false where files have one name only, and flock is all there is.
+Expected<bool> become_user(const fs::path& out, const fs::path& path, const User& own,
+                           const std::string& says) {
+  sweep(path, own);
+  for (int i = 0; i < 5; ++i) {
+    const auto made = make_user(path, own, says);
+    if (!made) return fail(made.error());
+    if (*made != Made::taken) return *made == Made::done;
+    const auto text = read_user(path);
+    if (!text) return fail(text.error());
+    if (!*text) continue;
+    const User user = user_in(**text);
+    if (!is_gone(user, own))
+      return fail(words_for(user) + " is using the output folder " + out.string() +
+                  "; expected its end. If you know that it is gone: nonio night unlock " +
+                  out.string());
+    ::unlink(path.c_str());
+  }
+  return fail("cannot take the output folder " + out.string() + ": others take it all the time");
+}
+
+bool is_line_of(const std::string& text, const std::string& wanted) {
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (line == wanted) return true;
+  return false;
+}
+
+int open_lock(const fs::path& out, int how) {
+  return ::open((out / state_folder / "lock").c_str(), how | O_CLOEXEC, 0644);
+}
+
+/// Whether a process has the lock that excludes others, as far as the file system tells.
+bool is_held(const fs::path& out) {
+  const int fd = open_lock(out, O_RDONLY);
+  const bool held = fd >= 0 && ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (fd >= 0) ::close(fd);
+  return held;
+}
+
+}  // namespace
+
+std::string user_of(const fs::path& out) {
+  const auto text = read_user(out / state_folder / user_name);
+  const std::string named = text && *text ? words_for(user_in(**text)) : "";
+  if (is_held(out)) return named.empty() ? "a process" : named;
+  return named.empty() || is_gone(user_in(**text), own_user()) ? "" : named;
+}
+
+Expected<std::string> unlock(const fs::path& out, const std::optional<std::string>& alive) {
+  const fs::path path = out / state_folder / user_name;
+  const auto text = read_user(path);
+  if (!text) return fail(text.error());
+  if (!*text) return std::string();
+  const User user = user_in(**text);
+  if (alive && user.job.empty())
+    return fail(words_for(user) + ", which uses the output folder " + out.string() +
+                ", is of no job; expected somebody who knows that it is gone: without --alive");
+  if (alive && is_line_of(*alive, user.job))
+    return fail(words_for(user) + " is using the output folder " + out.string() +
+                ", and its job is alive; expected its end");
+  if (is_held(out))
+    return fail(words_for(user) + " holds the lock of the output folder " + out.string() +
+                ", so it is not gone; expected its end");
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT)
+    return fail("cannot remove " + path.string() + ": " + std::strerror(errno));
+  return words_for(user);
+}
+
+Expected<OutputLock> OutputLock::take(const fs::path& out, Use use) {
+  std::error_code error;
+  fs::create_directories(out / state_folder, error);
+  if (error) return fail("cannot use the output folder " + out.string() + ": " + error.message());
+  const int fd = open_lock(out, O_RDWR | O_CREAT);
+  if (fd < 0)
+    return fail("cannot use the output folder " + out.string() + ": " + std::strerror(errno));
+  OutputLock lock(fd);
+  // What was killed has processes that end a moment later, as soon as the disk lets them.
+  constexpr int tries = 50;
+  int code = EWOULDBLOCK;
+  for (int i = 0; i < tries && (code == EWOULDBLOCK || code == EINTR); ++i) {
+    if (i > 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    code = ::flock(fd, (use == Use::shard ? LOCK_SH : LOCK_EX) | LOCK_NB) == 0 ? 0 : errno;
+  }
+  if (code == EWOULDBLOCK || code == EINTR)
+    return fail((use == Use::planned ? "a run, or a shard of one, is using the output folder "
+                                     : "another run is using the output folder ") +
+                out.string());
+  if (code != 0)
+    return fail("cannot lock " + (out / state_folder / "lock").string() + ": " +
+                std::strerror(code) +
+                "; expected an output folder on a file system with locks (flock)");
+  if (use == Use::shard) return lock;
+  const User own = own_user();
+  const fs::path path = out / state_folder / user_name;
+  std::string says = text_of(own);
+  const auto ours = become_user(out, path, own, says);
+  if (!ours) return fail(ours.error());
+  if (*ours) {
+    lock.user_ = path;
+    lock.says_ = std::move(says);
+    lock.pid_ = own.pid;
+  }
+  if (use == Use::planned) return lock;
+  if (const auto free = check_not_planned(out); !free) return fail(free.error());
+  return lock;
+}
+
+OutputLock::OutputLock(OutputLock&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)),
+      user_(std::exchange(other.user_, {})),
+      says_(std::exchange(other.says_, {})),
+      pid_(other.pid_) {}
+
+OutputLock::~OutputLock() {
+  if (fd_ < 0) return;
+  if (!user_.empty() && pid_ == static_cast<long>(::getpid())) {
+    const auto text = read_user(user_);
+    if (text && *text == says_) ::unlink(user_.c_str());
+  }
+  ::flock(fd_, LOCK_UN);  // for a process that was left behind too, since a disk hangs
+  ::close(fd_);
+}
+
+}  // namespace nonio::batch

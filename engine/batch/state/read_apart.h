@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <exception>
+#include <functional>
+#include <new>
+#include <optional>
+#include <string>
+
+#include "batch/state/wire.h"
+#include "platform/process/watched.h"
+
+namespace nonio::batch {
+
+/// Bytes that a child reads and sends. It may take `seconds` without a sign of life, and is left
+/// behind where this process is asked to stop. The error names `what`.
+Expected<std::string> bytes_apart(const std::string& what, double seconds,
+                                  const std::function<std::string(process::SignsOfLife&)>& read);
+
+/// What `read` gives, read in a child: a disk or share that hangs holds up neither this process
+/// nor whoever wants to stop it.
+template <class T, class Read>
+Expected<T> read_apart(const std::string& what, double seconds, const Read& read) {
+  const auto bytes = bytes_apart(what, seconds, [&](process::SignsOfLife& signs) {
+    try {
+      const Expected<T> got = read(signs);
+      return got ? wire::pack(std::optional<T>(*got), Error{})
+                 : wire::pack(std::optional<T>(), got.error());
+    } catch (const std::bad_alloc&) {
+      return wire::pack(std::optional<T>(), Error{"out of memory while reading " + what});
+    } catch (const std::exception& e) {
+      return wire::pack(std::optional<T>(), Error{"cannot read " + what + ": " + e.what()});
+    }
+  });
+  if (!bytes) return fail(bytes.error());
+  std::optional<T> value;
+  Error why;
+  if (!wire::unpack(*bytes, value, why)) return fail("cannot read " + what + ": no whole answer");
+  if (!value) return fail(std::move(why));
+  return std::move(*value);
+}
+
+}  // namespace nonio::batch

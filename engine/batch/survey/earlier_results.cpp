@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/survey/earlier_results.h"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include "campaign/config/manifest.h"
+#include "campaign/evaluation/record.h"
+#include "platform/storage/files.h"
+
+namespace nonio::batch {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Finds campaigns by their folders as text.
+class ByFolder {
+ public:
+  ByFolder(const std::vector<CampaignState>& campaigns, std::size_t ordered)
+      : first_(campaigns.data()), end_(first_ + ordered) {
+    for (const CampaignState& c : campaigns) {
+      std::string text = storage::path_text(c.folder.view());
+      if (&c >= end_ || text != c.folder.view()) others_.emplace(std::move(text), &c);
+    }
+  }
+
+  const CampaignState* at(const std::string& folder) const {
+    const CampaignState* const found = std::lower_bound(
+        first_, end_, folder,
+        [](const CampaignState& c, const std::string& text) { return c.folder.view() < text; });
+    if (found != end_ && found->folder == folder) return found;
+    const auto other = others_.find(folder);
+    return other == others_.end() ? nullptr : other->second;
+  }
+
+ private:
+  const CampaignState* first_;
+  const CampaignState* end_;
+  std::map<std::string, const CampaignState*> others_;  // few: not UTF-8, or not in the order
+};
+
+}  // namespace
+
+ClaimedIds::ClaimedIds(const std::vector<CampaignState>& campaigns) : campaigns_(campaigns) {
+  by_id_.reserve(campaigns.size());
+  for (std::size_t i = 0; i < campaigns.size(); ++i)
+    if (!campaigns[i].named_by_folder) by_id_.push_back(static_cast<std::uint32_t>(i));
+  std::sort(by_id_.begin(), by_id_.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return campaigns[a].id < campaigns[b].id; });
+}
+
+bool ClaimedIds::contains(std::string_view id) const {
+  const auto found = std::lower_bound(
+      by_id_.begin(), by_id_.end(), id,
+      [&](std::uint32_t i, std::string_view text) { return campaigns_[i].id.view() < text; });
+  return found != by_id_.end() && campaigns_[*found].id == id;
+}
+
+Expected<std::vector<EarlierResult>> unclaimed_results(const fs::path& out,
+                                                       const ClaimedIds& claimed) {
+  std::vector<EarlierResult> found;
+  const auto take = [&](const fs::path& folder) {
+    std::string id = folder.filename().string();
+    if (!config::is_campaign_id(id) || claimed.contains(id)) return;
+    if (const auto record = evaluation::read_record(folder))
+      found.push_back({std::move(id), record->folder, record->night,
+                       record->status == evaluation::Status::failed});
+  };
+  if (const auto listed = storage::each_results_folder(out, take); !listed)
+    return fail(listed.error());
+  std::sort(found.begin(), found.end(),
+            [](const EarlierResult& a, const EarlierResult& b) { return a.id < b.id; });
+  return found;
+}
+
+std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
+                                  const std::vector<CampaignState>& campaigns, std::size_t ordered,
+                                  const std::vector<SiteWalk::Unlisted>& unlisted,
+                                  const fs::path& out, std::vector<std::string>& notes) {
+  std::vector<Vanished> vanished;
+  if (earlier.empty()) return vanished;
+  const ByFolder by_folder(campaigns, ordered);
+  for (const EarlierResult& e : earlier) {
+    const CampaignState* const now = by_folder.at(e.folder);
+    const std::string meant = "if it was removed on purpose, record that (nonio forget SITE " +
+                              e.id + " --by NAME --why TEXT); otherwise restore it";
+    const auto above = std::find_if(unlisted.begin(), unlisted.end(), [&](const auto& u) {
+      const std::string folder = storage::path_text(u.folder);
+      return e.folder == folder || e.folder.starts_with(folder + "/");
+    });
+    if (now != nullptr && now->id == e.id) continue;
+    if (now != nullptr && e.failed)
+      notes.push_back(storage::own_folder(out, e.id).string() + " is left over: it says that " +
+                      e.folder + " failed, which is the campaign " + now->id.str() + " now");
+    else if (now != nullptr)
+      vanished.push_back(
+          {e.id, e.folder, e.night,
+           "its folder " + e.folder + " is the campaign " + now->id.str() + " now; " + meant});
+    else if (above != unlisted.end())
+      vanished.push_back({e.id, e.folder, e.night,
+                          "it was not seen: the folder " + storage::path_text(above->folder) +
+                              " could not be listed"});
+    else
+      vanished.push_back({e.id, e.folder, e.night,
+                          "its folder " + e.folder + " is gone, or has no " +
+                              std::string(config::manifest_name) + " any more; " + meant});
+  }
+  return vanished;
+}
+
+}  // namespace nonio::batch

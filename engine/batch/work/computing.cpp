@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/work/computing.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <set>
+
+#include "batch/state/wire.h"
+#include "campaign/evaluation/evaluation.h"
+#include "platform/process/channel.h"
+#include "platform/process/child.h"
+#include "platform/storage/files.h"
+#include "platform/storage/real_folder.h"
+
+namespace nonio::batch {
+namespace fs = std::filesystem;
+
+namespace {
+
+// What the process with the plugins says, first byte.
+constexpr char wants_file = 'f', has_analysed = 'a', has_done = 'e';
+
+int ask_for_file(int stream, const fs::path& path) {
+  if (!process::write_text(stream, wants_file + path.string())) ::_exit(0);
+  auto handed = process::receive_descriptors(stream);
+  if (!handed) ::_exit(0);
+  if (!handed->descriptors.empty()) return handed->descriptors.front().release();
+  errno = static_cast<unsigned char>(handed->word);
+  return -1;
+}
+
+/// Says what is analysed; where a number is wanted, all of it, and waits for the number.
+std::optional<evaluation::AssignedNumber> ask_for_number(
+    int stream, const evaluation::AnalysedCampaign& analysed) {
+  if (!analysed.number) {
+    if (!process::write_text(stream, std::string(1, has_analysed))) ::_exit(0);
+    return std::nullopt;
+  }
+  evaluation::AssignedNumber assigned;
+  std::string reply;
+  if (!process::write_text(
+          stream, has_analysed + wire::pack(analysed.evaluated, analysed.number->missing)) ||
+      !process::read_text(stream, reply) || !wire::unpack(reply, assigned))
+    ::_exit(0);
+  return assigned;
+}
+
+/// What no honest process says: these values decide which files are written.
+std::string unsound_answer(const evaluation::Evaluated& e, const std::string& id) {
+  if (e.campaign.id != id) return "another campaign's results";
+  if (e.status != evaluation::Status::ok && e.status != evaluation::Status::attention &&
+      e.status != evaluation::Status::failed)
+    return "no status";
+  if ((e.status == evaluation::Status::failed) == e.results.errors.empty())
+    return "a status against its errors";
+  std::set<std::string> names;
+  for (const Results::Written& w : e.results.outputs)
+    for (const Artifact& a : w.result.artifacts)
+      if (!storage::is_artifact_name(a.name) || !names.insert(a.name).second)
+        return "an artifact that cannot be called \"" + a.name + "\"";
+  return {};
+}
+
+}  // namespace
+
+void evaluate_for(int stream, const reading::Context& context, process::SharedStatus& stage,
+                  Prints& prints) {
+  storage::open_files_with([stream](const fs::path& path) { return ask_for_file(stream, path); });
+  process::keep_freed_memory();
+  const std::size_t at_start = process::memory_held();
+  std::string now;
+  const reading::Stage tell = [&](const std::string& words) {
+    prints.pass_on(now);
+    now = words;
+    stage.set(words);
+  };
+  for (std::string request; process::read_text(stream, request);) {
+    fs::path folder;
+    std::string id;
+    reading::Twins twins;
+    std::optional<HistorySoFar> history;
+    if (!wire::unpack(request, folder, id, twins, history)) return;
+    evaluation::AnalysedCampaign analysed = evaluation::analyse(
+        reading::read_campaign(folder, context, tell), id, context, tell, twins);
+    const auto number = ask_for_number(stream, analysed);
+    const evaluation::Evaluated evaluated =
+        evaluation::write_documents(std::move(analysed), number ? &*number : nullptr, context, tell,
+                                    history ? &*history : nullptr);
+    prints.pass_on(now);
+    const bool grown = process::has_grown(at_start);
+    if (!process::write_text(stream, has_done + wire::pack(evaluated, grown))) return;
+  }
+}
+
+/// Files of the campaign, and nothing else that this user could read.
+bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const {
+  std::error_code error;
+  const fs::path root = fs::path(path).is_absolute() ? storage::real_folder(folder, error) : folder;
+  const std::string inside = fs::path(path).lexically_relative(root).string();
+  // A manifest may be a link to anywhere, as for the survey.
+  const auto full = inside == config::manifest_name
+                        ? Expected<fs::path>(folder / config::manifest_name)
+                        : storage::path_inside(folder, inside);
+  const bool secret = full && std::any_of(secrets_.begin(), secrets_.end(), [&](const fs::path& s) {
+                        return fs::equivalent(*full, s, error);
+                      });
+  if (!full || secret) return process::send_descriptors(stream_, static_cast<char>(EACCES), {});
+  const process::Handle file(::open(full->c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  const int code = errno;
+  return file ? process::send_descriptors(stream_, 0, {file.get()})
+              : process::send_descriptors(stream_, static_cast<char>(code), {});
+}
+
+namespace {
+
+constexpr const char* no_process_of_ours =
+    "the process that evaluates says what no process of ours says";
+
+}  // namespace
+
+Expected<Evaluator::Analysed> Evaluator::analyse(const fs::path& folder, const std::string& id,
+                                                 const reading::Twins& twins,
+                                                 const std::optional<HistorySoFar>& history) {
+  if (!process::write_text(stream_, wire::pack(folder, id, twins, history))) ::_exit(0);
+  for (std::string said;;) {
+    if (!process::read_text(stream_, said)) ::_exit(0);
+    if (said.empty()) break;
+    const std::string_view rest = std::string_view(said).substr(1);
+    if (said[0] == wants_file) {
+      if (!hand_out(folder, std::string(rest))) ::_exit(0);
+      continue;
+    }
+    Analysed analysed;
+    if (said[0] != has_analysed) break;
+    if (rest.empty()) return analysed;
+    if (!wire::unpack(rest, analysed.evaluated, analysed.missing.emplace()) ||
+        analysed.evaluated.campaign.id != id)
+      break;
+    return analysed;
+  }
+  return fail(no_process_of_ours);
+}
+
+Expected<evaluation::Evaluated> Evaluator::write_documents(
+    const std::string& id, std::optional<evaluation::AssignedNumber> assigned) {
+  if (assigned && !process::write_text(stream_, wire::pack(*assigned))) ::_exit(0);
+  std::string said;
+  evaluation::Evaluated evaluated;
+  if (!process::read_text(stream_, said)) ::_exit(0);
+  if (said.empty() || said[0] != has_done ||
+      !wire::unpack(std::string_view(said).substr(1), evaluated, grown_))
+    return fail(no_process_of_ours);
+  if (const std::string why = unsound_answer(evaluated, id); !why.empty())
+    return fail("the process that evaluates gave " + why);
+  // A certificate is what was assigned here; of it the other side says only whose it is.
+  if (evaluated.certificate) {
+    if (!assigned || !assigned->certificate) return fail(no_process_of_ours);
+    assigned->certificate->output = evaluated.certificate->output;
+    evaluated.certificate = std::move(assigned->certificate);
+  }
+  return evaluated;
+}
+
+}  // namespace nonio::batch

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/config/formula.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "campaign/config/formula_expression.h"
+#include "campaign/config/formula_units.h"
+#include "nonio/sdk/axis_readings.h"
+#include "nonio/sdk/format.h"
+#include "nonio/sdk/splitmix64.h"
+
+namespace nonio::config {
+
+namespace {
+
+std::string symbol_of(Quantity q) { return std::string(FormulaUnit{q, {}}.symbol()); }
+
+/// One printed unit, in SI.
+double amount(const Formula::Parameter& p) { return 1.0 / unit_of(p.quantity).per_si; }
+
+/// Proves on readings made up for it that the expression is finite, linear in its linear
+/// parameters and of the unit of a deviation.
+class Trial {
+ public:
+  Trial(const Formula& formula, const Axis& axis, Expression& expression)
+      : formula_(formula), axis_(axis), expression_(expression), point_(expression.slots()) {}
+
+  /// What is wrong, or "".
+  std::string run() {
+    largest_.assign(formula_.parameters.size(), 0.0);
+    for (const auto& p : formula_.parameters)
+      if (!expression_.uses(p.name)) return "parameter \"" + p.name + "\" is not in the expression";
+    for (int n = 0; n < points; ++n) {
+      draw(n);
+      if (auto why = wrong_here(); !why.empty()) return why;
+    }
+    for (std::size_t k = 0; k < largest_.size(); ++k)
+      if (!formula_.parameters[k].range && largest_[k] == 0.0)
+        return "parameter \"" + formula_.parameters[k].name + "\" changes nothing";
+    return {};
+  }
+
+ private:
+  static constexpr int points = 64;
+  static constexpr double near = 1e-9;
+
+  bool linear(std::size_t k) const { return !formula_.parameters[k].range; }
+
+  /// The first point is the middle of the stretch at the start, with shapes at the low end.
+  void draw(int n) {
+    const auto between = [&](double low, double high) {
+      return low + (high - low) * numbers_.uniform();
+    };
+    const auto sized = [&](double low, double high) {
+      return low * std::pow(high / low, numbers_.uniform());
+    };
+    const auto sign = [&] { return numbers_.uniform() < 0.5 ? -1.0 : 1.0; };
+    using E = Expression;
+    point_[E::p] = n == 0 ? 0.0 : sign() * sized(1e-3, 1.0);
+    point_[E::theta] = n == 0 ? 0.0 : sign() * sized(1e-3, 6.0);
+    point_[E::d] = n % 2 == 0 ? 1.0 : -1.0;
+    point_[E::t] = n == 0 ? 0.0 : sized(1.0, 1e4);
+    point_[E::K] = n == 0 ? 0.0 : sign() * sized(0.01, 3.0);
+    point_[E::run] = 1.0 + n % 5;
+    for (std::size_t k = 0; k < formula_.parameters.size(); ++k) {
+      const auto& p = formula_.parameters[k];
+      double& slot = point_[E::parameter_slot(k)];
+      if (linear(k))
+        slot = amount(p) * sign() * between(0.5, 2.0);
+      else
+        slot = n == 0   ? p.range->first
+               : n == 1 ? p.range->second
+               : n == 2 ? p.start
+                        : between(p.range->first, p.range->second);
+    }
+  }
+
+  /// The point with all linear parameters 0, but number `k` times `factor`.
+  std::vector<double> only(std::size_t k, double factor) const {
+    std::vector<double> point = point_;
+    for (std::size_t other = 0; other < formula_.parameters.size(); ++other)
+      if (linear(other)) point[Expression::parameter_slot(other)] *= other == k ? factor : 0.0;
+    return point;
+  }
+
+  std::string wrong_here() {
+    const double all = expression_.value(point_);
+    if (!std::isfinite(all)) return "no finite value at " + place();
+    const double nothing = expression_.value(only(formula_.parameters.size(), 0.0));
+    double sum = 0.0, size = std::abs(all);
+    for (std::size_t k = 0; k < formula_.parameters.size(); ++k) {
+      if (!linear(k)) continue;
+      const double one = expression_.value(only(k, 1.0));
+      const double other = expression_.value(only(k, -2.0));
+      if (!std::isfinite(one) || !std::isfinite(other))
+        return "no finite value where a linear parameter is 0: one in a denominator needs start "
+               "and range";
+      largest_[k] = std::max(largest_[k], std::abs(one));
+      sum += one;
+      size += std::abs(one);
+      if (!(std::abs(other + 2.0 * one - 3.0 * nothing) <=
+            near * (std::abs(one) + std::abs(other))))
+        return "parameter \"" + formula_.parameters[k].name +
+               "\" does not enter linearly: give it start and range";
+      if (auto why = wrong_unit(k, one); !why.empty()) return why;
+    }
+    if (!(std::abs(nothing) <= near * size))
+      return "with all linear parameters 0 the value is not 0: every term needs a parameter";
+    if (!(std::abs(all - sum) <= near * size))
+      return "two linear parameters are multiplied: give one of them start and range";
+    return {};
+  }
+
+  /// A deviation scales with the unit of length (an angle with none), and with no other.
+  std::string wrong_unit(std::size_t k, double one) {
+    constexpr std::array<const char*, 3> names{"length", "time", "temperature"};
+    constexpr int bits = 10;
+    for (std::size_t unit = 0; unit < names.size(); ++unit) {
+      const int wanted = unit == 0 && !axis_.rotary ? 1 : 0;
+      const double scaled = expression_.value(expression_.in_finer_units(only(k, 1.0), unit, bits));
+      if (std::abs(scaled - std::ldexp(one, bits * wanted)) <= near * std::abs(scaled)) continue;
+      const auto& p = formula_.parameters[k];
+      const double power = std::log2(scaled / one) / bits;
+      std::string words =
+          "the term of parameter \"" + p.name + "\" (" + symbol_of(p.quantity) + ") ";
+      if (std::isfinite(power) && std::abs(power - std::round(power)) < 1e-6)
+        return words + "has the unit " + names[unit] + "^" + std::to_string(std::lround(power)) +
+               " where a deviation has " + names[unit] + "^" + std::to_string(wanted) +
+               ": give the parameter another unit (" + known_units() +
+               ") or divide by a fixed value, as p/(100*mm)";
+      return words + "depends on the unit of " + names[unit] +
+             ": it adds unlike quantities or takes sin, exp, ... of one; a fixed value is "
+             "written with its unit, as p/(10*mm)";
+    }
+    return {};
+  }
+
+  std::string place() const {
+    using E = Expression;
+    std::string text;
+    const auto add = [&](const std::string& name, Quantity q, double si) {
+      if (!expression_.uses(name)) return;
+      text += (text.empty() ? "" : ", ") + name + " = " + short_text(printed(si, q)) + " " +
+              symbol_of(q);
+    };
+    const Quantity position = position_of(axis_.rotary);
+    add("p", position, point_[E::p]);
+    add("theta", position, point_[E::theta]);
+    add("t", Quantity::time, point_[E::t]);
+    add("K", Quantity::temperature_difference, point_[E::K]);
+    for (std::size_t k = 0; k < formula_.parameters.size(); ++k)
+      add(formula_.parameters[k].name, formula_.parameters[k].quantity,
+          point_[E::parameter_slot(k)]);
+    return text;
+  }
+
+  const Formula& formula_;
+  const Axis& axis_;
+  Expression& expression_;
+  std::vector<double> point_;
+  std::vector<double> largest_;
+  SplitMix64 numbers_{1};
+};
+
+std::vector<double> search(const Formula::Parameter& p) {
+  constexpr int count = 128;
+  const auto [low, high] = *p.range;
+  const bool ratios = low > 0.0 && high > 4.0 * low;
+  std::vector<double> grid{p.start};
+  for (int k = 0; k < count; ++k) {
+    const double part = k / (count - 1.0);
+    grid.push_back(ratios ? low * std::pow(high / low, part) : low + (high - low) * part);
+  }
+  std::sort(grid.begin(), grid.end());
+  grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
+  return grid;
+}
+
+Expected<Effect::Columns> columns(const Formula& formula, const Observations& o, const Axis& axis,
+                                  const std::vector<double>& shape) {
+  auto expression = Expression::parse(formula, axis);
+  if (!expression) return fail("formula " + formula.name + ": " + expression.error().message);
+  const auto r = readings_of(o, axis);
+  if (!r) return fail(r.error());
+  std::vector<double> slots = expression->slots();
+  std::vector<std::size_t> linear;
+  std::size_t shapes = 0;
+  for (std::size_t k = 0; k < formula.parameters.size(); ++k) {
+    if (!formula.parameters[k].range)
+      linear.push_back(k);
+    else if (shapes++ < shape.size())
+      slots[Expression::parameter_slot(k)] = shape[shapes - 1];
+  }
+  if (shapes != shape.size())
+    return fail("formula " + formula.name + ": expected " + std::to_string(shapes) +
+                " shape parameters, found " + std::to_string(shape.size()));
+  Effect::Columns out(linear.size(), std::vector<double>(o.size(), 0.0));
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    if (!r->moved[i]) continue;
+    const std::array<double, Expression::variables> row{
+        r->p[i], r->theta[i], r->d[i], r->t[i], r->K[i], o.run.empty() ? 1.0 : o.run[i]};
+    std::copy(row.begin(), row.end(), slots.begin());
+    for (std::size_t k = 0; k < linear.size(); ++k) {
+      const double one = amount(formula.parameters[linear[k]]);
+      slots[Expression::parameter_slot(linear[k])] = one;
+      const double value = expression->value(slots) / one;
+      slots[Expression::parameter_slot(linear[k])] = 0.0;
+      if (!std::isfinite(value)) {
+        Error e{"formula " + formula.name + " has no finite value for this reading"};
+        if (i < o.source_line.size()) e.line = o.source_line[i];
+        return fail(std::move(e));
+      }
+      out[k][i] = value;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Expected<Effect> formula_effect(const Formula& formula, const Axis& axis) {
+  constexpr std::size_t most_linear = 8, most_shapes = 3;
+  const auto wrong = [&](const std::string& why) {
+    return fail(Error{"formula " + formula.name + ": " + why, {}, formula.line});
+  };
+  auto expression = Expression::parse(formula, axis);
+  if (!expression) return wrong(expression.error().message);
+  Effect e;
+  e.info = {formula.name, "formula", formula.expression, {}};
+  for (const Formula::Parameter& p : formula.parameters) {
+    const Effect::Parameter parameter{p.name, "of the formula", p.quantity};
+    if (!p.range)
+      e.linear.push_back(parameter);
+    else
+      e.shapes.push_back(
+          {parameter, [p](const Observations&, const Axis&) { return search(p); }, true});
+  }
+  if (e.linear.empty()) return wrong("expected a linear parameter, one without start and range");
+  if (e.linear.size() > most_linear || e.shapes.size() > most_shapes)
+    return wrong("too many parameters: at most " + std::to_string(most_linear) +
+                 " linear ones and " + std::to_string(most_shapes) + " with a range");
+  if (const std::string why = Trial(formula, axis, *expression).run(); !why.empty())
+    return wrong(why);
+  const bool temperature = expression->uses("K");
+  e.applies = [name = axis.name, temperature](const Observations& o, const Axis& a) {
+    const auto r = a.name == name ? readings_of(o, a) : fail("another axis");
+    return r && (!temperature || r->temperature);
+  };
+  e.columns = [formula](const Observations& o, const Axis& a, const std::vector<double>& shape) {
+    return columns(formula, o, a, shape);
+  };
+  return e;
+}
+
+}  // namespace nonio::config

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+/// The keys of Nonio's TOML files as data. `TableReader` checks a file against them, `schema.cpp`
+/// makes a JSON schema of them; a check across several keys stays with the code that reads them.
+namespace nonio::config {
+
+struct Choice {
+  std::string_view name;
+  std::string_view meaning{};  ///< beside the name in messages: "um (deviation)"
+};
+
+/// A key of the same table has one of these values.
+struct When {
+  std::string_view key{};
+  std::span<const std::string_view> values{};
+};
+
+/// What a text is made of. An empty text is not held against it.
+struct TextRule {
+  std::string_view letters{};      ///< "a-z0-9._-"; empty: any
+  std::string_view not_letters{};  ///< any but these
+  std::string_view not_first{};
+  std::size_t shortest = 0, longest = 0;  ///< bytes; 0: any
+  std::span<const std::string_view> except{};
+  std::string_view begins{};
+};
+
+/// What is known only at run time, of the loaded plugins.
+enum class Named { nothing, reader, effect, analysis, output, control };
+
+struct Key {
+  enum class Holds {
+    text,            ///< one line
+    number,          ///< finite
+    number_or_none,  ///< a finite number, or the text "none"
+    whole,           ///< 0 to 1000000000
+    flag,            ///< true or false
+    date,            ///< a day without quotes
+    texts,           ///< a list
+    numbers,         ///< a list
+    wholes,          ///< a list of whole numbers
+    span,            ///< two numbers, the smaller one first
+    number_table,    ///< numbers under any name
+    translations,    ///< a text, or texts by language
+    table,           ///< with the keys `keys`
+    tables,          ///< a list of them: [[name]]
+    named_tables,    ///< tables of that kind under any name
+    options,         ///< a table for each plugin, with its options
+    anything         ///< a table that is not looked into
+  };
+
+  std::string_view name;
+  Holds holds;
+  std::string_view help;         ///< plain English; the first letter is a capital
+  std::string_view unit{};       ///< as in docs: "um", "mm or deg"; empty: none
+  std::string_view otherwise{};  ///< the default, if it is a value
+  bool required = false;
+  When only{};    ///< elsewhere the key is unknown
+  When needed{};  ///< there it is required
+  /// Of what is required or needed: "x: is missing: " and this. Empty: "x is missing".
+  std::string_view missing{};
+  /// What is said of a value that what follows refuses; {} stands for the value.
+  std::string_view wanted{};
+  bool may_be_secret = false;             ///< of a text: no message repeats it
+  std::span<const Choice> choices{};      ///< of a text
+  Named named = Named::nothing;           ///< of a text or of each in a list
+  TextRule text{};                        ///< of a text or of each in a list
+  std::optional<double> least{}, most{};  ///< of a number or of each in a list or table
+  bool above = false;                     ///< `least` itself is too small
+  std::size_t longest_list = 0;           ///< of a list; 0: any
+  bool distinct = false;                  ///< of a list: nothing twice
+  std::span<const Key> keys{};            ///< of a table
+  /// Of named_tables: where the name begins with one of these letters, the key `by_name` of the
+  /// table is `named_so` unless it says otherwise.
+  std::string_view initials{};
+  std::string_view by_name{};
+  std::string_view named_so{};
+};
+
+/// The whole file as one table: what is not named here is unknown.
+const Key& campaign_file();
+const Key& site_file();
+/// SITE/machines/<asset>.toml.
+const Key& machine_file();
+/// SITE/events.toml, acknowledged.toml and forgotten.toml: what people say of machines.
+const Key& events_file();
+const Key& acknowledged_file();
+const Key& forgotten_file();
+/// What a specification of `nonio simulate` has besides campaign.toml.
+const Key& specification_file();
+/// What tells the kind of axis that a cycle moves; settled by the code that reads cycles.
+inline constexpr std::string_view cycle_axis = "(axis)";
+
+/// Files that a run writes next to the folders of the campaigns, and files of a site next to its
+/// campaigns: no campaign can have such a name.
+inline constexpr std::string_view reserved_names[] = {"summary.json",
+                                                      "summary.txt",
+                                                      "history.sqlite",
+                                                      "history.json",
+                                                      "index.html",
+                                                      "due.html",
+                                                      "due.ics",
+                                                      "instruments.html",
+                                                      "compare.html",
+                                                      "machines",
+                                                      "history.sqlite-journal",
+                                                      "history.sqlite-shm",
+                                                      "history.sqlite-wal",
+                                                      "site.toml",
+                                                      "events.toml",
+                                                      "acknowledged.toml",
+                                                      "forgotten.toml",
+                                                      "templates"};
+/// Its record is the file of that name in SITE/machines.
+inline constexpr TextRule asset_rule{.not_letters = "/\\\n\t", .not_first = ". ", .longest = 100};
+/// Folders of results are named by it.
+inline constexpr const char* campaign_id_wanted =
+    "expected a-z 0-9 . _ - and no more than 100, not starting with . or -, and no name of a file "
+    "of the program (summary.json, machines); found \"{}\"";
+inline constexpr TextRule campaign_id_rule{
+    .letters = "a-z0-9._-", .not_first = ".-", .longest = 100, .except = reserved_names};
+
+bool obeys(std::string_view text, const TextRule& rule);
+bool in_range(double value, const Key& key);
+const Key* find_key(std::span<const Key> keys, std::string_view name);
+/// Whether the axis turns if nobody says so (ISO 841: A, B, C turn about X, Y, Z).
+bool rotary_by_name(std::string_view axis);
+
+}  // namespace nonio::config

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/config/run_reader.h"
+
+#include <cmath>
+
+namespace nonio::config {
+
+RunChoice read_run(TableReader& top) {
+  RunChoice run;
+  auto reader = top.table("run");
+  if (!reader) return run;
+  run.analyses = reader->texts("analyses");
+  run.outputs = reader->texts("outputs");
+  reader->finish();
+  return run;
+}
+
+namespace {
+
+/// What of an option is no setting: of a table, the first key in it that is no number.
+Error wrong_option(const std::string& place, const toml::node& value, const std::string& file) {
+  if (const toml::table* tables = value.as_table())
+    for (const auto& [name, node] : *tables) {
+      const std::string at = place + "." + std::string(name.str());
+      const toml::table* entries = node.as_table();
+      if (entries == nullptr)
+        return {at + ": expected a table of numbers, found " + type_name(node), file,
+                node.source().begin.line};
+      for (const auto& [key, item] : *entries)
+        if (const auto number = item.is_number() ? item.value<double>() : std::nullopt;
+            !number || !std::isfinite(*number))
+          return {at + "." + std::string(key.str()) + ": expected a finite number, found " +
+                      type_name(item),
+                  file, item.source().begin.line};
+    }
+  return {place + ": expected a value, found " + type_name(value), file, value.source().begin.line};
+}
+
+}  // namespace
+
+RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
+  RawOptions options;
+  const toml::table* table = top.anything("options");
+  if (table == nullptr) return options;
+  const std::string& file = top.file();
+  for (const auto& [plugin, node] : *table) {
+    const std::string name(plugin.str());
+    const toml::table* entries = node.as_table();
+    if (entries == nullptr) {
+      errors.push_back(Error{"options." + name + ": expected a table, found " + type_name(node),
+                             file, node.source().begin.line});
+      continue;
+    }
+    auto& of_plugin = options[name];
+    for (const auto& [key, value] : *entries) {
+      const std::uint64_t line = value.source().begin.line;
+      if (auto setting = to_setting(value))
+        of_plugin[std::string(key.str())] = RawOption{std::move(*setting), file, line};
+      else
+        errors.push_back(
+            wrong_option("options." + name + "." + std::string(key.str()), value, file));
+    }
+  }
+  return options;
+}
+
+}  // namespace nonio::config

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/config/site_files.h"
+
+#include <algorithm>
+
+#include "campaign/config/machines.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
+
+namespace nonio::config {
+namespace fs = std::filesystem;
+
+namespace {
+
+Expected<std::optional<std::string>> read_settings(const fs::path& site) {
+  const auto there = storage::is_there(site / site_name);
+  if (!there) return fail(there.error());
+  if (!*there) return std::nullopt;
+  auto text = storage::read_small_file(site / site_name);
+  if (!text) return fail(Error{text.error().message, site_name});
+  return std::move(*text);
+}
+
+}  // namespace
+
+Checked<SiteFile> site_in(const SiteFiles& files, std::string& digest) {
+  digest = storage::sha256(files.settings.value_or(""));
+  if (!files.settings) return SiteFile{};
+  return parse_site(*files.settings, site_name);
+}
+
+Checked<SiteFile> read_site(const fs::path& site, std::string& digest) {
+  auto settings = read_settings(site);
+  if (!settings) return tl::unexpected(std::vector<Error>{settings.error()});
+  return site_in({std::move(*settings)}, digest);
+}
+
+Expected<std::vector<fs::path>> with_site_templates(std::vector<fs::path> folders,
+                                                    const fs::path& site) {
+  const fs::path own = site / "templates";
+  const auto there = storage::is_there(own);
+  if (!there) return fail(there.error());
+  std::error_code error;
+  const auto kind = fs::status(own, error).type();
+  if (*there && error) return fail("cannot read " + own.string() + ": " + error.message());
+  if (*there && kind == fs::file_type::directory) folders.push_back(own);
+  return folders;
+}
+
+Expected<SiteFiles> read_site_files(const fs::path& site,
+                                    const std::function<void(const fs::path&)>& reading) {
+  SiteFiles files;
+  reading(site / site_name);
+  auto settings = read_settings(site);
+  if (!settings) return fail(settings.error());
+  files.settings = std::move(*settings);
+  // Read again where they are used; here a share that hangs is noticed.
+  reading(site / machines_folder);
+  if (const auto machines = read_machines(site); !machines) return fail(machines.error());
+  reading(site / "templates");
+  const auto own = with_site_templates({}, site);
+  if (!own) return fail(own.error());
+  if (own->empty()) return files;
+  files.templates.folder = own->front();
+  const auto paths = template_paths(own->front());
+  if (!paths) return fail(paths.error());
+  for (const auto& [name, path] : *paths) {
+    reading(path);
+    auto bytes = storage::read_file(path);
+    if (!bytes) return fail(bytes.error());
+    files.templates.files[name] = std::move(*bytes);
+  }
+  return files;
+}
+
+std::string to_hex(std::string_view bytes) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out;
+  for (const char c : bytes) {
+    out += digits[static_cast<unsigned char>(c) >> 4];
+    out += digits[static_cast<unsigned char>(c) & 15];
+  }
+  return out;
+}
+
+Expected<std::string> from_hex(const std::string& text) {
+  std::string out;
+  const auto value = [](char c) {
+    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+  };
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+    if (value(text[i]) < 0 || value(text[i + 1]) < 0) return fail("expected hexadecimal digits");
+    out += static_cast<char>(value(text[i]) * 16 + value(text[i + 1]));
+  }
+  if (text.size() % 2 != 0) return fail("expected hexadecimal digits");
+  return out;
+}
+
+fs::path site_of(const fs::path& campaign) {
+  std::error_code error;
+  const fs::path start = fs::canonical(campaign, error);
+  // One that cannot be looked at is not none: reading it says what is wrong.
+  const auto has = [](const char* name) {
+    return
+        [name](const fs::path& folder) { return storage::is_there(folder / name).value_or(true); };
+  };
+  const auto nearest = [&](const auto& is_it) -> std::optional<fs::path> {
+    for (fs::path folder = start; !error && !folder.empty(); folder = folder.parent_path()) {
+      if (is_it(folder)) return folder;
+      if (folder == folder.parent_path()) break;
+    }
+    return std::nullopt;
+  };
+  if (const auto site = nearest(has(site_name))) return *site;
+  return nearest(has(machines_folder)).value_or(campaign);
+}
+
+}  // namespace nonio::config

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/config/site_logs.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <charconv>
+#include <functional>
+
+#include "campaign/config/machines.h"
+#include "campaign/config/toml_reader.h"
+#include "nonio/sdk/statement.h"
+#include "platform/storage/files.h"
+
+namespace nonio::config {
+namespace fs = std::filesystem;
+
+bool is_site_part(std::string_view path) {
+  for (const std::string_view file : {site_name, events_name, acknowledged_name, forgotten_name})
+    if (path == file) return true;
+  for (const std::string_view folder : {machines_folder, templates_folder})
+    if (path == folder || (path.starts_with(folder) && path[folder.size()] == '/')) return true;
+  return false;
+}
+
+namespace {
+
+/// Every `[[name]]` by `read`, which takes one entry's keys.
+template <class T, class Read>
+std::vector<T> entries_of(TableReader& top, const char* name, const Read& read) {
+  std::vector<T> entries;
+  for (TableReader& reader : top.tables(name)) {
+    entries.push_back(read(reader));
+    entries.back().line = reader.line();
+    reader.finish();
+  }
+  return entries;
+}
+
+/// A file of one kind of entries.
+template <class T, class Read>
+Checked<std::vector<T>> parse_log(std::string_view text, const std::string& file,
+                                  const Key& declaration, const char* name, const Read& read) {
+  auto root = parse_toml(text, file);
+  if (!root) return tl::unexpected(std::vector<Error>{root.error()});
+  std::vector<Error> errors;
+  TableReader top(*root, declaration, file, errors);
+  top.integer("format");
+  auto entries = entries_of<T>(top, name, read);
+  top.finish();
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return entries;
+}
+
+bool takes_back(const Withdrawal& w, const Acknowledgement& a) {
+  return a.line < w.line && a.finding == w.finding && a.machine == w.machine && a.axis == w.axis &&
+         a.quantity == w.quantity;
+}
+
+/// A word that excuses something stands beside a name for years.
+std::string reason_of(TableReader& reader) {
+  std::string why = reader.text("why");
+  if (!why.empty() && !says_something(why))
+    reader.error("why", "expected a reason in words, found \"" + why + "\"");
+  return why;
+}
+
+Expected<std::string> text_of_log(const fs::path& site, const char* name) {
+  const auto there = storage::is_there(site / name);
+  if (!there) return fail(there.error());
+  if (!*there) return std::string();
+  auto text = storage::read_small_file(site / name);
+  if (!text) return fail(Error{text.error().message, name});
+  return text;
+}
+
+template <class T>
+Expected<void> take_log(const fs::path& site, const char* name,
+                        Checked<std::vector<T>> (*parse)(std::string_view, const std::string&),
+                        std::vector<T>& into, std::vector<Error>& errors) {
+  const auto text = text_of_log(site, name);
+  if (!text) return fail(text.error());
+  if (text->empty()) return {};
+  auto parsed = parse(*text, name);
+  if (parsed)
+    into = std::move(*parsed);
+  else
+    errors.insert(errors.end(), parsed.error().begin(), parsed.error().end());
+  return {};
+}
+
+/// A basic string of TOML. Control characters stay as escapes, which the reader refuses in words.
+std::string quoted(const std::string& text) {
+  constexpr const char* digits = "0123456789ABCDEF";
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+      out += std::string("\\") + c;
+    else if (byte < 0x20 || byte == 0x7f)
+      out += std::string("\\u00") + digits[byte >> 4] + digits[byte & 15];
+    else
+      out += c;
+  }
+  return out + "\"";
+}
+
+/// `[[name]]` and its keys, in the order in which they are declared.
+class Entry {
+ public:
+  explicit Entry(const char* name) : text_(std::string("[[") + name + "]]\n") {}
+  Entry& text(const char* key, const std::string& value) {
+    if (!value.empty()) text_ += std::string(key) + " = " + quoted(value) + "\n";
+    return *this;
+  }
+  /// As it is: what is no day is refused when the file is read again.
+  Entry& date(const char* key, const std::string& value) {
+    const bool is_day =
+        value.find_first_not_of("0123456789-") == std::string::npos && !value.empty();
+    text_ += std::string(key) + " = " + (is_day ? value : quoted(value)) + "\n";
+    return *this;
+  }
+  Entry& number(const char* key, const std::optional<double>& value) {
+    if (!value) return *this;
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), *value).ptr;
+    text_ += std::string(key) + " = " + std::string(digits.data(), end) + "\n";
+    return *this;
+  }
+  const std::string& all() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// One writer at a time among ours; an editor shows when the file is read again.
+class SiteLock {
+ public:
+  explicit SiteLock(const fs::path& site)
+      : fd_(::open(site.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (fd_ >= 0 && ::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+      ::close(fd_);
+      fd_ = -1;
+    }
+  }
+  SiteLock(const SiteLock&) = delete;
+  SiteLock& operator=(const SiteLock&) = delete;
+  ~SiteLock() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  explicit operator bool() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+std::vector<Error> one(Error error) { return {std::move(error)}; }
+
+using Check = std::function<Checked<std::size_t>(const std::string&)>;
+/// Whether so many entries count after one was added, of so many before.
+using Adds = bool (*)(std::size_t before, std::size_t after);
+
+Checked<void> append(
+    const fs::path& site, const char* name, const std::string& entry, const Check& count,
+    Adds adds = [](std::size_t before, std::size_t after) { return after == before + 1; }) {
+  const SiteLock lock(site);
+  if (!lock)
+    return tl::unexpected(one(Error{"cannot be written now: the site " + site.string() +
+                                        " is not there, or somebody else writes in it",
+                                    name}));
+  const auto before = text_of_log(site, name);
+  if (!before) return tl::unexpected(one(before.error()));
+  const auto entries = before->empty() ? Checked<std::size_t>(0) : count(*before);
+  if (!entries) return tl::unexpected(entries.error());
+  std::string after = before->empty() ? "format = 1\n" : *before;
+  if (!after.ends_with('\n')) after += '\n';
+  after += "\n" + entry;
+  const auto now = count(after);
+  if (!now) return tl::unexpected(now.error());
+  if (!adds(*entries, *now))
+    return tl::unexpected(one(Error{"the new entry would not be read as one", name}));
+  if (const auto meanwhile = text_of_log(site, name); !meanwhile || *meanwhile != *before)
+    return tl::unexpected(
+        one(Error{"somebody else has changed it meanwhile; nothing was written", name}));
+  if (const auto written = storage::publish(site, {{name, after}}); !written)
+    return tl::unexpected(one(written.error()));
+  return {};
+}
+
+template <class T>
+Check counts(Checked<std::vector<T>> (*parse)(std::string_view, const std::string&),
+             const char* name) {
+  return [=](const std::string& text) -> Checked<std::size_t> {
+    const auto parsed = parse(text, name);
+    if (!parsed) return tl::unexpected(parsed.error());
+    return parsed->size();
+  };
+}
+
+}  // namespace
+
+Checked<std::vector<Event>> parse_events(std::string_view text, const std::string& file) {
+  return parse_log<Event>(text, file, events_file(), "event", [](TableReader& reader) {
+    return Event{reader.date("date"), reader.text("machine"), reader.text("axis"),
+                 reader.text("kind"), reader.text("text"),    reader.text("by")};
+  });
+}
+
+Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
+                                                         const std::string& file) {
+  auto root = parse_toml(text, file);
+  if (!root) return tl::unexpected(std::vector<Error>{root.error()});
+  std::vector<Error> errors;
+  TableReader top(*root, acknowledged_file(), file, errors);
+  top.integer("format");
+  auto known = entries_of<Acknowledgement>(top, "acknowledged", [](TableReader& reader) {
+    Acknowledgement a{reader.date("date"),    reader.text("finding"),  reader.text("machine"),
+                      reader.text("axis"),    reader.text("quantity"), reader.date("until"),
+                      reader.number("value"), reader.number("U"),      reader.text("by"),
+                      reason_of(reader)};
+    if (!a.until.empty() && a.until < a.date)
+      reader.error("until", "expected a day that is not before date, " + a.date);
+    return a;
+  });
+  const auto withdrawn = entries_of<Withdrawal>(top, "withdrawn", [](TableReader& reader) {
+    return Withdrawal{reader.date("date"), reader.text("finding"),  reader.text("machine"),
+                      reader.text("axis"), reader.text("quantity"), reader.text("by"),
+                      reason_of(reader)};
+  });
+  top.finish();
+  for (const Withdrawal& w : withdrawn)
+    if (std::erase_if(known, [&](const Acknowledgement& a) { return takes_back(w, a); }) == 0)
+      errors.push_back(
+          Error{"[[withdrawn]] takes back no acknowledgement above it: none that "
+                "counts has this finding, machine, axis and quantity",
+                file, w.line});
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return known;
+}
+
+Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file) {
+  return parse_log<Forgotten>(text, file, forgotten_file(), "forgotten", [](TableReader& reader) {
+    return Forgotten{reader.date("date"), reader.text("campaign"), reader.text("by"),
+                     reason_of(reader)};
+  });
+}
+
+Checked<SiteLogs> read_site_logs(const fs::path& site) {
+  SiteLogs logs;
+  std::vector<Error> errors;
+  const auto note = [&](const Expected<void>& taken) {
+    if (!taken) errors.push_back(taken.error());
+  };
+  note(take_log(site, events_name, parse_events, logs.events, errors));
+  note(take_log(site, acknowledged_name, parse_acknowledged, logs.acknowledged, errors));
+  note(take_log(site, forgotten_name, parse_forgotten, logs.forgotten, errors));
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return logs;
+}
+
+Checked<void> add_event(const fs::path& site, const Event& e) {
+  Entry entry("event");
+  entry.date("date", e.date).text("machine", e.machine).text("axis", e.axis);
+  entry.text("kind", e.kind).text("text", e.text).text("by", e.by);
+  return append(site, events_name, entry.all(), counts(parse_events, events_name));
+}
+
+Checked<void> add_acknowledgement(const fs::path& site, const Acknowledgement& a) {
+  Entry entry("acknowledged");
+  entry.date("date", a.date).text("finding", a.finding).text("machine", a.machine);
+  entry.text("axis", a.axis).text("quantity", a.quantity).date("until", a.until);
+  entry.number("value", a.value).number("U", a.U).text("by", a.by).text("why", a.why);
+  return append(site, acknowledged_name, entry.all(),
+                counts(parse_acknowledged, acknowledged_name));
+}
+
+Checked<void> add_withdrawal(const fs::path& site, const Withdrawal& w) {
+  Entry entry("withdrawn");
+  entry.date("date", w.date).text("finding", w.finding).text("machine", w.machine);
+  entry.text("axis", w.axis).text("quantity", w.quantity).text("by", w.by).text("why", w.why);
+  return append(site, acknowledged_name, entry.all(), counts(parse_acknowledged, acknowledged_name),
+                [](std::size_t before, std::size_t after) { return after < before; });
+}
+
+Checked<void> add_forgotten(const fs::path& site, const Forgotten& f) {
+  if (!is_campaign_id(f.campaign) && !is_site_part(f.campaign))
+    return tl::unexpected(one(Error{
+        "expected the id of a campaign, or a file or folder of the site (machines/S-0042.toml, "
+        "templates, events.toml); found \"" +
+            f.campaign + "\"",
+        forgotten_name}));
+  Entry entry("forgotten");
+  entry.date("date", f.date).text("campaign", f.campaign).text("by", f.by).text("why", f.why);
+  return append(site, forgotten_name, entry.all(), counts(parse_forgotten, forgotten_name));
+}
+
+}  // namespace nonio::config

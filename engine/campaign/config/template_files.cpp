@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/config/template_files.h"
+
+#include <algorithm>
+
+#include "campaign/config/site_files.h"
+#include "nonio/sdk/gathered_words.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
+
+namespace nonio::config {
+namespace fs = std::filesystem;
+
+Expected<std::map<std::string, fs::path>> template_paths(const fs::path& folder) {
+  std::map<std::string, fs::path> files;
+  std::error_code error;
+  std::vector<fs::path> above{fs::canonical(folder, error)};  // the folders that the walk is in
+  fs::recursive_directory_iterator it(folder, fs::directory_options::follow_directory_symlink,
+                                      error);
+  for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
+    const auto kind = fs::status(it->path(), error).type();
+    if (kind == fs::file_type::not_found) error.clear();
+    if (kind == fs::file_type::regular)
+      files[it->path().lexically_relative(folder).generic_string()] = it->path();
+    if (error) break;
+    if (kind != fs::file_type::directory) continue;
+    above.resize(static_cast<std::size_t>(it.depth()) + 1);
+    const fs::path real = fs::canonical(it->path(), error);
+    if (!error && std::find(above.begin(), above.end(), real) != above.end())
+      return fail("the template folder " + it->path().string() +
+                  " is a link back to a folder that it lies in; expected files");
+    if (error) break;
+    above.push_back(real);
+  }
+  if (error)
+    return fail("cannot read the templates in " + folder.string() + ": " + error.message());
+  return files;
+}
+
+namespace {
+
+/// Fonts have megabytes, and every installation has them.
+bool travels(std::string_view name) { return !name.starts_with("fonts/"); }
+
+}  // namespace
+
+namespace {
+
+std::string line_of(const std::string& name, const std::string& digest) {
+  return name + " " + digest + "\n";
+}
+
+Expected<void> keep(Templates& templates, const std::string& name, std::string bytes,
+                    const std::string& path) {
+  if (!name.ends_with(".toml")) {
+    templates.files[name] = std::move(bytes);
+    return {};
+  }
+  auto settings = parse_settings(bytes, path);
+  if (!settings) return fail(settings.error());
+  templates.tables[name.substr(0, name.size() - 5)] = std::move(*settings);
+  return {};
+}
+
+}  // namespace
+
+Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::string& digest,
+                                   std::string* json, const TemplateFiles& own,
+                                   const std::vector<std::string>& below) {
+  std::map<std::string, fs::path> files;
+  for (const fs::path& folder : folders) {
+    auto here = template_paths(folder);
+    if (!here) return fail(here.error());
+    for (auto& [name, path] : *here) files[name] = std::move(path);
+  }
+  for (const auto& [name, bytes] : own.files) files[name] = own.folder / name;
+  std::erase_if(files, [&](const auto& file) {
+    return !below.empty() &&
+           std::none_of(below.begin(), below.end(),
+                        [&](const std::string& start) { return file.first.starts_with(start); });
+  });
+  Templates templates;
+  std::string all;
+  storage::Json carried = storage::Json::object();
+  for (const auto& [name, path] : files) {
+    const auto of_site = own.files.find(name);
+    auto bytes = of_site == own.files.end() ? storage::read_file(path)
+                                            : Expected<std::string>(of_site->second);
+    if (!bytes) return fail(bytes.error());
+    const std::string sum = storage::sha256(*bytes);
+    all += line_of(name, sum);
+    if (json != nullptr)
+      carried[name] = !travels(name)            ? storage::Json{{"sha256", sum}}
+                      : name.ends_with(".toml") ? storage::Json{{"text", *bytes}}
+                                                : storage::Json{{"hex", to_hex(*bytes)}};
+    if (auto kept = keep(templates, name, std::move(*bytes), path.string()); !kept)
+      return fail(kept.error());
+  }
+  gather_words(templates);
+  digest = storage::sha256(all);
+  if (json != nullptr)
+    *json = storage::dump(
+        storage::Json{{"schema", "nonio-templates/1"}, {"files", std::move(carried)}});
+  return templates;
+}
+
+Expected<CarriedTemplates> templates_from(std::string_view text, const Templates& installed,
+                                          std::string_view installed_text) {
+  const storage::Json json = storage::Json::parse(text, nullptr, false),
+                      ours = storage::Json::parse(installed_text, nullptr, false);
+  if (!json.is_object() || !json.contains("files") || !json["files"].is_object() ||
+      storage::dump(json) != text)
+    return fail("the attached templates are none, or are written in another way");
+  CarriedTemplates out;
+  std::string all;
+  for (const auto& item : json["files"].items()) {
+    const std::string& name = item.key();
+    const auto of = [&file = item.value()](const char* key) {
+      return file.is_object() && file.contains(key) && file[key].is_string()
+                 ? std::optional(file[key].get<std::string>())
+                 : std::nullopt;
+    };
+    std::string bytes, sum;
+    if (const auto digest = of("sha256"); digest && !travels(name)) {
+      const auto own = installed.files.find(name);
+      if (own == installed.files.end() || storage::sha256(own->second) != *digest)
+        out.missing = name;
+      else
+        bytes = own->second;
+      sum = *digest;
+    } else if (const auto plain = of("text"); plain && travels(name)) {
+      bytes = *plain;
+    } else if (const auto digits = of("hex"); digits && travels(name)) {
+      auto packed = from_hex(*digits);
+      if (!packed) return fail("the template " + name + ": " + packed.error().message);
+      bytes = std::move(*packed);
+    } else {
+      return fail("the template " + name + " is not attached as Nonio attaches one");
+    }
+    const bool known = ours.is_object() && ours.contains("files") && ours["files"].contains(name) &&
+                       ours["files"][name] == item.value();
+    if (!known && travels(name)) out.strange.push_back(name);
+    all += line_of(name, sum.empty() ? storage::sha256(bytes) : sum);
+    if (auto kept = keep(out.templates, name, std::move(bytes), name); !kept)
+      return fail(kept.error());
+  }
+  if (ours.is_object() && ours.contains("files"))
+    for (const auto& [name, file] : ours["files"].items())
+      if (!json["files"].contains(name) && travels(name)) out.strange.push_back(name);
+  gather_words(out.templates);
+  out.sha256 = storage::sha256(all);
+  return out;
+}
+
+}  // namespace nonio::config

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "campaign/config/keys.h"
+#include "campaign/config/manifest.h"
+#include "nonio/sdk/error.h"
+#include "nonio/sdk/settings.h"
+
+namespace nonio::config {
+
+/// One table of a TOML file, read key by key as its declaration says. What is wrong is collected,
+/// not thrown. A key that is read and not declared, or read as something else than declared, is a
+/// mistake of the program: std::logic_error.
+class TableReader {
+ public:
+  /// The file itself: `declaration` is of a table, and stays where it is.
+  TableReader(const toml::table& table, const Key& declaration, const std::string& file,
+              std::vector<Error>& errors)
+      : TableReader(table, declaration, {}, file, errors) {}
+
+  std::string text(std::string_view key);
+  std::optional<double> number(std::string_view key, double scale = 1.0);
+  /// 0 where the file says "none".
+  std::optional<double> number_or_none(std::string_view key, double scale = 1.0);
+  std::optional<int> integer(std::string_view key);
+  std::optional<bool> flag(std::string_view key);
+  std::string date(std::string_view key);
+  std::optional<std::vector<std::string>> texts(std::string_view key);
+  std::optional<std::vector<double>> numbers(std::string_view key);
+  std::vector<std::uint32_t> integers(std::string_view key);
+  std::optional<std::pair<double, double>> span(std::string_view key, double scale = 1.0);
+  /// A table of numbers, each multiplied by `scale`; none if absent.
+  std::vector<std::pair<std::string, double>> number_table(std::string_view key, double scale);
+  /// A text, under "", or texts by language.
+  std::map<std::string, std::string> translations(std::string_view key);
+  std::optional<TableReader> table(std::string_view key);
+  std::vector<TableReader> tables(std::string_view key);
+  std::vector<std::pair<std::string, TableReader>> named_tables(std::string_view key);
+  const toml::table* anything(std::string_view key);
+
+  /// For conditions of the declaration: what `key` is where the table does not say so.
+  void settle(std::string_view key, std::string_view value) { settled_ = {key, value}; }
+  /// The same table, goes on with another declaration.
+  TableReader declared(const Key& declaration) const;
+  /// Reports every unknown key, with the nearest known one. A key that is declared and was not read
+  /// is a std::logic_error.
+  void finish();
+
+  void error(std::string_view key, std::string message);
+  std::size_t errors() const { return errors_.size(); }
+  std::uint64_t line_of(std::string_view key) const;
+  std::uint64_t line() const { return table_.source().begin.line; }
+  const std::string& file() const { return file_; }
+  const toml::table& raw() const { return table_; }
+  std::string place(std::string_view key) const {
+    return place_.empty() ? std::string(key) : place_ + "." + std::string(key);
+  }
+
+ private:
+  struct Found {
+    const Key& key;
+    const toml::node* node;
+  };
+
+  TableReader(const toml::table& table, const Key& declaration, std::string place,
+              const std::string& file, std::vector<Error>& errors)
+      : table_(table),
+        declaration_(&declaration),
+        place_(std::move(place)),
+        file_(file),
+        errors_(errors) {}
+  TableReader inside(const toml::table& table, const Key& declaration, std::string place) const {
+    return {table, declaration, std::move(place), file_, errors_};
+  }
+
+  std::optional<double> number_at(const Found& found, double scale);
+  Found find(std::string_view name, std::initializer_list<Key::Holds> as);
+  bool holds(const When& when) const;
+  bool is_needed(const Key& key) const { return key.required || holds(key.needed); }
+  void missing(const Key& key);
+  void refuse(const Key& key, const std::string& found = {});
+  void wrong_type(std::string_view key, const toml::node& found, std::string_view wanted);
+  std::optional<std::string> one_line(const Key& key, const toml::node& node);
+  std::optional<double> finite(std::string_view key, const toml::node& node);
+  void check_choice(const Key& key, std::string& value);
+  const toml::table* table_at(const Found& found);
+  std::optional<std::vector<double>> number_list(const Found& found);
+
+  const toml::table& table_;
+  const Key* declaration_;
+  std::string place_;
+  const std::string& file_;
+  std::vector<Error>& errors_;
+  std::pair<std::string_view, std::string_view> settled_;
+  std::vector<const Key*> read_;
+};
+
+/// The whole file, or one error with its line.
+Expected<toml::table> parse_toml(std::string_view text, const std::string& file);
+
+/// Adds the line of each key below a table to `lines`: "axes.X.number".
+void note_lines(const toml::table& table, const std::string& prefix, KeyLines& lines);
+
+std::string type_name(const toml::node& node);
+
+/// A value, or tables of numbers, as a setting; nothing for other tables, dates and mixed arrays.
+std::optional<Setting> to_setting(const toml::node& node);
+
+}  // namespace nonio::config

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "campaign/evaluation/evaluation.h"
+#include "nonio/math/decision.h"
+
+namespace nonio::evaluation {
+
+namespace {
+
+/// A limit, and of what it is one.
+struct Held {
+  std::string measurement, axis;
+  Tolerance tolerance;
+};
+
+Conformity decided(const Campaign& campaign, const Held& held, const std::string& plugin,
+                   const Value& v) {
+  Conformity c{.measurement = held.measurement,
+               .axis = held.axis,
+               .plugin = plugin,
+               .name = v.name,
+               .tolerance = held.tolerance.limit,
+               .quantity = v.quantity,
+               .decision = Decision::cannot_be_decided,
+               .reason = "no-uncertainty"};
+  if (!v.U || !(*v.U > 0.0)) return c;
+  c.decision = math::decide(std::fabs(v.value), *v.U, held.tolerance.limit,
+                            campaign.certificate.decision_rule);
+  c.reason = c.decision == Decision::cannot_be_decided ? "near-limit" : "";
+  return c;
+}
+
+bool is_in_unit_of(const Tolerance& tolerance, const Value& v) {
+  return unit_of(v.quantity).symbol == unit_of(tolerance.quantity).symbol;
+}
+
+/// One decision for each value of this name and unit; false if there is none.
+bool add_decisions(const Campaign& campaign, const std::vector<Results::Analysed>& analyses,
+                   const Held& held, std::vector<Conformity>& out) {
+  const std::size_t before = out.size();
+  for (const Results::Analysed& a : analyses)
+    for (const Value& v : a.evaluation.values)
+      if (a.measurement == held.measurement && v.name == held.tolerance.result &&
+          is_in_unit_of(held.tolerance, v))
+        out.push_back(decided(campaign, held, a.plugin, v));
+  return out.size() > before;
+}
+
+Conformity without_value(const Held& held) {
+  return {held.measurement,
+          held.axis,
+          "",
+          held.tolerance.result,
+          held.tolerance.limit,
+          held.tolerance.quantity,
+          Decision::cannot_be_decided,
+          "no-value"};
+}
+
+bool has_own(const Measurement& m, const std::string& result) {
+  return std::any_of(m.tolerances.begin(), m.tolerances.end(),
+                     [&](const Tolerance& t) { return t.result == result; });
+}
+
+}  // namespace
+
+std::vector<Conformity> held_against_tolerances(const Campaign& campaign,
+                                                const std::vector<Results::Analysed>& analyses) {
+  std::vector<Conformity> out;
+  for (const Axis& axis : campaign.machine.axes)
+    for (const auto& [name, limit] : axis.tolerance) {
+      const Tolerance tolerance{name, limit, deviation_of(axis.rotary)};
+      bool any = false;
+      for (const Measurement& m : campaign.measurements)
+        if (m.axis == axis.name && m.kind == "axis")
+          any |= has_own(m, name) ||
+                 add_decisions(campaign, analyses, {m.id, axis.name, tolerance}, out);
+      if (!any) out.push_back(without_value({"", axis.name, tolerance}));
+    }
+  for (const Measurement& m : campaign.measurements)
+    for (const Tolerance& tolerance : m.tolerances) {
+      const Held held{m.id, m.kind == "axis" ? m.axis : "", tolerance};
+      if (!add_decisions(campaign, analyses, held, out)) out.push_back(without_value(held));
+    }
+  return out;
+}
+
+void report_other_units(const Work& work, const std::vector<Results::Analysed>& analyses) {
+  for (const Measurement& m : work.campaign().measurements)
+    for (const Tolerance& t : m.tolerances)
+      for (const Results::Analysed& a : analyses)
+        for (const Value& v : a.evaluation.values) {
+          if (a.measurement != m.id || v.name != t.result || is_in_unit_of(t, v)) continue;
+          const std::string unit(unit_of(v.quantity).symbol);
+          work.report(work.error_at(
+              "measurement." + m.id + "." + tolerance_key(t.quantity) + "." + t.result,
+              "expected a limit in the unit of the result, which " + a.plugin + " gives in " +
+                  (unit.empty() ? "no unit" : unit) + ", found one in " +
+                  std::string(unit_of(t.quantity).symbol)));
+        }
+}
+
+}  // namespace nonio::evaluation

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/evaluation/followed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "nonio/math/followed.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::evaluation {
+
+namespace {
+
+/// Another certificate is another draw of its error. Empty if nobody could tell it from others.
+std::string instrument_source(const Instrument& i) {
+  if (i.serial.empty()) return {};
+  std::string out = "instrument";
+  for (const std::string& part : {i.maker, i.model, i.serial, i.certificate, i.calibrated})
+    if (!part.empty()) out += ' ' + part;
+  return out;
+}
+
+std::string found_or_left(const Measurement& m) {
+  return m.adjustment == "after" ? "as-left" : "as-found";
+}
+
+std::string compensation_of(const Machine& machine, const Measurement& m) {
+  if (!m.compensation.empty()) return m.compensation;
+  const Axis* axis = machine.axis(m.axis);
+  if (axis == nullptr || !axis->table_on) return {};
+  return axis->table_on->empty() ? "off" : "on";
+}
+
+std::string joined(const std::map<std::string, double>& places) {
+  std::string out;
+  for (const auto& [axis, at] : places)
+    out += (out.empty() ? "" : " ") + axis + '=' + short_text(printed(at, Quantity::length), 9);
+  return out;
+}
+
+std::optional<double> mean_temperature(const Observations& o) {
+  double sum = 0.0, n = 0.0;
+  for (const double t : o.material)
+    if (std::isfinite(t)) sum += t, n += 1.0;
+  return n > 0.0 ? std::optional(sum / n) : std::nullopt;
+}
+
+/// What is shared goes under its source; without one it is new in each campaign.
+void put_common(FollowedQuantity& to, double& variance, const std::string& source, double u) {
+  if (u == 0.0) return;
+  if (source.empty())
+    variance += u * u;
+  else
+    to.common.push_back({source, u});
+}
+
+void put_conditions(FollowedQuantity& to, const math::AxisTest& test, const Campaign& campaign,
+                    const Measurement& m) {
+  const Quantity position = test.rotary ? Quantity::angle : Quantity::length;
+  to.numbers = {{"from", printed(test.targets.front(), position)},
+                {"to", printed(test.targets.back(), position)}};
+  if (const std::string on = compensation_of(campaign.machine, m); !on.empty())
+    to.texts.emplace_back("compensation", on);
+  if (!m.at.empty()) to.texts.emplace_back("at", joined(m.at));
+  if (!m.lateral.empty()) to.texts.emplace_back("across", m.lateral);
+}
+
+/// Of the readings of one axis, along it or across it.
+std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::size_t index) {
+  const Campaign& campaign = read.manifest->campaign;
+  const Measurement& m = campaign.measurements[index];
+  const Observations& o = read.observations[index];
+  const bool across = m.kind == "straightness";
+  if ((m.kind != "axis" && !across) || o.size() == 0 || o.axes.empty()) return std::nullopt;
+  const math::AxisTest test = math::AxisTest::arrange(o);
+  const math::FollowedAxis found = math::followed_quantities(
+      test, campaign, m.axis, mean_temperature(o), across ? math::Across::yes : math::Across::no);
+  if (found.quantities.empty()) return std::nullopt;
+  FollowedGroup out{{}, found.covariance, compared_targets(test, found.other_targets)};
+  const std::size_t n = found.quantities.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const math::Followed& f = found.quantities[i];
+    FollowedQuantity q{.measurement = m.id,
+                       .axis = control_axis(campaign.machine, m),
+                       .name = across ? "straightness:" + m.lateral + '.' + f.name : f.name,
+                       .value = f.value,
+                       .quantity = f.quantity};
+    double& variance = out.covariance[i * n + i];
+    put_common(q, variance, instrument_source(campaign.instrument), f.of_instrument);
+    put_common(q, variance, "expansion of axis " + m.axis, f.of_expansion);
+    q.u = std::sqrt(variance);
+    q.state = found_or_left(m);
+    put_conditions(q, test, campaign, m);
+    const Axis* axis = campaign.machine.axis(m.axis);
+    if (f.name.starts_with("cyclic") && axis != nullptr && axis->screw_pitch)
+      q.numbers.emplace_back("period", printed(*axis->screw_pitch, Quantity::length));
+    if (f.name == "scale") q.not_stated = found.not_stated;
+    out.quantities.push_back(std::move(q));
+  }
+  return out;
+}
+
+/// Names of values of other analyses that are followed, and under which name and axis.
+struct Named {
+  std::string name, axis;
+};
+
+/// Of a circle: another way to measure, so another quantity beside that of axis runs and diagonals.
+/// What is not linear in the readings (G, H, F, amplitudes, spikes) is none of them.
+std::optional<Named> named_of_circle(const std::string& value, const Measurement& m) {
+  std::string plane;
+  for (const char letter : {'X', 'Y', 'Z'})
+    for (const auto& [axis, at] : m.from)
+      if (axis.front() == letter) plane += letter;
+  if (value == "scale_mismatch" || value == "servo_mismatch")
+    return Named{value + ':' + plane, plane};
+  if (value == "D") return Named{"radius:" + plane, plane};
+  if (value.size() == 3 && value[1] == '0') return Named{"squareness:" + plane + ".circle", plane};
+  if (value.starts_with("bow_")) return Named{"bow:" + value.substr(4), value.substr(6)};
+  for (const auto& [begin, name] :
+       {std::pair("B_", "B_circle"), std::pair("lateral_", "lateral"),
+        std::pair("cyclicCos_", "cyclic_circle_cos"), std::pair("cyclicSin_", "cyclic_circle_sin")})
+    if (value.starts_with(begin)) return Named{name, value.substr(std::string(begin).size())};
+  return std::nullopt;
+}
+
+/// Of two rotary axes in one chain: lines with both at 0, from other positions than those of one axis
+/// alone, so beside them. What both have is called by both.
+std::optional<Named> named_of_chain(const Results::Analysed& a, const std::string& value) {
+  if (value == "distance" || value == "angle") {
+    std::string axes;
+    for (const Value& v : a.evaluation.values)
+      if (v.name.starts_with("direction_i_")) axes += v.name.substr(12);
+    return Named{"chain_" + value + ':' + axes, axes};
+  }
+  for (const auto& [begin, name] :
+       {std::pair("centre_x_", "chain_x"), std::pair("centre_y_", "chain_y"),
+        std::pair("centre_z_", "chain_z"), std::pair("direction_i_", "chain_i"),
+        std::pair("direction_j_", "chain_j"), std::pair("direction_k_", "chain_k")})
+    if (value.starts_with(begin)) return Named{name, value.substr(std::string(begin).size())};
+  return std::nullopt;
+}
+
+std::optional<Named> named(const Results::Analysed& a, const std::string& value,
+                           const Campaign& campaign) {
+  if (a.plugin == "rotary-chain") return named_of_chain(a, value);
+  if (a.plugin == "circle")
+    for (const Measurement& m : campaign.measurements)
+      if (m.id == a.measurement) return named_of_circle(value, m);
+  static const std::map<char, std::string> pairs{{'A', "YZ"}, {'B', "XZ"}, {'C', "XY"}};
+  if (value.size() == 3 && value[1] == '0' && pairs.contains(value[0]))
+    return Named{"squareness:" + pairs.at(value[0]), pairs.at(value[0])};
+  if (a.plugin != "rotary-kinematics") return std::nullopt;
+  for (const char* of :
+       {"centre_x", "centre_y", "centre_z", "direction_i", "direction_j", "direction_k"})
+    if (value == of)
+      for (const Measurement& m : campaign.measurements)
+        if (m.id == a.measurement) return Named{value, m.axis};
+  return std::nullopt;
+}
+
+/// Along the axis of rotation a centre is where the ball stood.
+bool is_set_up(const Results::Analysed& a, const std::string& name) {
+  static const std::map<std::string, std::string> along{
+      {"centre_x", "direction_i"}, {"centre_y", "direction_j"}, {"centre_z", "direction_k"}};
+  const std::size_t size = std::string("centre_x").size();
+  const auto direction = along.find(name.substr(0, size));
+  if (direction == along.end()) return false;
+  const std::string of = direction->second + name.substr(size);  // of a chain: and its axis
+  for (const Value& v : a.evaluation.values)
+    if (v.name == of) return std::fabs(v.value) > 0.7;
+  return true;
+}
+
+/// Circles are compared at one place, with one radius and one feed.
+void put_conditions(FollowedQuantity& to, const Campaign& campaign, const Measurement& m) {
+  if (m.kind != "circle") return;
+  std::map<std::string, double> at = m.at;
+  for (const auto& [axis, centre] : m.from) {
+    at[axis] = centre;
+    if (const auto end = m.to.find(axis); end != m.to.end() && end->second != centre)
+      to.numbers.emplace_back("radius", printed(end->second - centre, Quantity::length));
+  }
+  if (m.feed) to.numbers.emplace_back("feed", *m.feed * 60e3);  // mm/min, as the manifest has it
+  if (const std::string on = compensation_of(campaign.machine, m); !on.empty())
+    to.texts.emplace_back("compensation", on);
+  to.texts.emplace_back("at", joined(at));
+}
+
+/// Values with a budget: what the instrument has in common is in its contributions.
+std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaign& campaign) {
+  if (!a.evaluation.budget || a.plugin == "iso230-2" || a.plugin == "vdi-dgq-3441")
+    return std::nullopt;
+  const UncertaintyBudget& budget = *a.evaluation.budget;
+  FollowedGroup out;
+  std::vector<double> variances;
+  for (const Value& v : a.evaluation.values) {
+    const auto name = named(a, v.name, campaign);
+    const auto result = std::find_if(budget.results.begin(), budget.results.end(),
+                                     [&](const auto& r) { return r.name == v.name; });
+    if (!name || result == budget.results.end() || is_set_up(a, v.name)) continue;
+    FollowedQuantity q{.measurement = a.measurement,
+                       .axis = name->axis,
+                       .name = name->name,
+                       .value = v.value,
+                       .quantity = v.quantity};
+    double variance = 0.0, shared = 0.0;
+    for (std::size_t i = 0; i < result->u.size(); ++i)
+      (budget.contributions[i].correlation == Correlation::device ? shared : variance) +=
+          result->u[i] * result->u[i];
+    put_common(q, variance, instrument_source(campaign.instrument), std::sqrt(shared));
+    q.u = std::sqrt(variance);
+    for (const Measurement& m : campaign.measurements)
+      if (m.id == a.measurement) q.state = found_or_left(m), put_conditions(q, campaign, m);
+    if (const Axis* axis = campaign.machine.axis(q.axis);
+        q.name.starts_with("cyclic") && axis != nullptr && axis->screw_pitch)
+      q.numbers.emplace_back("period", printed(*axis->screw_pitch, Quantity::length));
+    if (q.state.empty()) q.state = "as-found";
+    variances.push_back(variance);
+    if (q.u > 0.0)
+      out.quantities.push_back(std::move(q));
+    else
+      variances.pop_back();
+  }
+  if (out.quantities.empty()) return std::nullopt;
+  const std::size_t n = variances.size();
+  out.covariance.assign(n * n, 0.0);  // how these values hang together is not known here
+  for (std::size_t i = 0; i < n; ++i) out.covariance[i * n + i] = variances[i];
+  return out;
+}
+
+std::string effects_of(const ModelFit& fit) {
+  std::string out;
+  for (const auto& e : fit.effects) out += (out.empty() ? "" : ", ") + e.name;
+  return out;
+}
+
+/// Not followed by their names: parameters of curves, whose knots differ between campaigns, and
+/// scales, which `scale` follows with what the instrument and temperatures have in them.
+bool is_followed(const ModelFit& fit, const ModelFit::Parameter& p) {
+  const auto effect = std::find_if(fit.effects.begin(), fit.effects.end(),
+                                   [&](const ModelFit::Effect& e) { return e.name == p.effect; });
+  return !p.searched && p.quantity != Quantity::deviation_per_length &&
+         (effect == fit.effects.end() || !effect->curve);
+}
+
+/// Linear parameters of a model, with their covariance.
+std::optional<FollowedGroup> of_model(const ModelFit& fit, const Campaign& campaign) {
+  FollowedGroup out;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
+    const ModelFit::Parameter& p = fit.parameters[i];
+    if (!is_followed(fit, p) || !p.u || !(*p.u > 0.0) || !std::isfinite(p.value) ||
+        fit.correlation.size() <= i)
+      continue;
+    kept.push_back(i);
+    out.quantities.push_back(
+        {.measurement = fit.measurement.empty() ? "" : fit.measurements.front(),
+         .axis = fit.axis,
+         .name = p.effect + '.' + p.name,
+         .value = p.value,
+         .quantity = p.quantity,
+         .u = *p.u,
+         .texts = {{"model", effects_of(fit)}}});
+    FollowedQuantity& q = out.quantities.back();
+    for (const Measurement& m : campaign.measurements)
+      if (m.id == q.measurement) q.state = found_or_left(m);
+  }
+  if (kept.empty()) return std::nullopt;
+  for (const std::size_t i : kept)
+    for (const std::size_t j : kept)
+      out.covariance.push_back(fit.correlation[i][j] * *fit.parameters[i].u * *fit.parameters[j].u);
+  return out;
+}
+
+void put_quantity(storage::JsonWriter& json, const FollowedQuantity& q) {
+  json.begin_object();
+  if (!q.measurement.empty()) json.member("measurement", q.measurement);
+  json.member("axis", q.axis);
+  json.member("quantity", q.name);
+  json.member("unit", unit_of(q.quantity).symbol);
+  json.member("value", printed(q.value, q.quantity));
+  json.member("u", printed(q.u, q.quantity));
+  json.member("state", q.state);
+  if (!q.common.empty()) {
+    json.key("common");
+    json.begin_array();
+    for (const auto& c : q.common) {
+      json.begin_object();
+      json.member("source", c.source);
+      json.member("u", printed(c.u, q.quantity));
+      json.end_object();
+    }
+    json.end_array();
+  }
+  json.key("conditions");
+  json.begin_object();
+  for (const auto& [name, value] : q.numbers) json.member(name, value);
+  for (const auto& [name, text] : q.texts) json.member(name, text);
+  json.end_object();
+  if (!q.not_stated.empty()) {
+    json.key("not_stated");
+    json.begin_array();
+    for (const std::string& key : q.not_stated) json.value(key);
+    json.end_array();
+  }
+  json.end_object();
+}
+
+/// Upper triangle, row by row, in the units of the quantities. Nothing where a correlation is no
+/// more than what rounding leaves.
+void put_covariance(storage::JsonWriter& json, const FollowedGroup& group, std::size_t first) {
+  const std::size_t n = group.quantities.size();
+  json.begin_object();
+  json.member("first", static_cast<std::uint64_t>(first));
+  json.member("count", static_cast<std::uint64_t>(n));
+  json.key("upper");
+  json.begin_array();
+  constexpr double rounding = 1e-12;
+  const auto& v = group.covariance;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i; j < n; ++j) {
+      const double least = rounding * std::sqrt(v[i * n + i] * v[j * n + j]);
+      const double one = std::fabs(v[i * n + j]) > least ? v[i * n + j] : 0.0;
+      json.value(printed(printed(one, group.quantities[i].quantity), group.quantities[j].quantity));
+    }
+  json.end_array();
+  if (group.targets) {
+    std::vector<Quantity> quantities;
+    std::vector<double> variances;
+    for (std::size_t i = 0; i < n; ++i)
+      quantities.push_back(group.quantities[i].quantity), variances.push_back(v[i * n + i]);
+    put_other_targets(json, *group.targets, quantities, variances);
+  }
+  json.end_object();
+}
+
+}  // namespace
+
+std::vector<FollowedGroup> followed_of(const reading::ReadCampaign& read, const Results& results) {
+  std::vector<FollowedGroup> out;
+  const auto add = [&](std::optional<FollowedGroup> group) {
+    if (group) out.push_back(std::move(*group));
+  };
+  const Campaign& campaign = read.manifest->campaign;
+  for (std::size_t i = 0; i < read.observations.size(); ++i) add(of_axis(read, i));
+  for (const Results::Analysed& a : results.analyses) add(of_budget(a, campaign));
+  for (const ModelFit& fit : results.models) add(of_model(fit, campaign));
+  return out;
+}
+
+void put_followed(storage::JsonWriter& json, const std::vector<FollowedGroup>& groups) {
+  if (groups.empty()) return;
+  json.key("followed");
+  json.begin_array();
+  for (const FollowedGroup& group : groups)
+    for (const FollowedQuantity& q : group.quantities) put_quantity(json, q);
+  json.end_array();
+  json.key("followed_covariance");
+  json.begin_array();
+  std::size_t first = 0;
+  for (const FollowedGroup& group : groups) {
+    put_covariance(json, group, first);
+    first += group.quantities.size();
+  }
+  json.end_array();
+}
+
+}  // namespace nonio::evaluation

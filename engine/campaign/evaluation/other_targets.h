@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "nonio/sdk/units.h"
+#include "platform/storage/json_writer.h"
+
+namespace nonio::math {
+class AxisTest;
+struct OtherTargets;
+}  // namespace nonio::math
+
+namespace nonio::evaluation {
+
+/// What the history needs to compare a campaign with others that have other targets.
+/// (nonio/math/followed.h)
+struct ComparedTargets {
+  struct Fit {
+    double beyond = 0.0, dof = 0.0;
+    std::vector<double> coefficients{}, covariance{}, share{};
+    std::vector<double> sinusoids{};  ///< three of each: value, variance, share
+  };
+
+  std::uint64_t digest = 0;  ///< of the targets, to 1 um or 0.001 deg: the same targets, the same
+  double from = 0.0, to = 0.0;
+  bool rotary = false;
+  std::vector<double> of_readings{}, share{};
+  Fit mean{}, reversal{};
+};
+
+ComparedTargets compared_targets(const nonio::math::AxisTest&, const nonio::math::OtherTargets&);
+
+/// Member `other_targets`. variances: of the quantities' u, SI.
+void put_other_targets(storage::JsonWriter& json, const ComparedTargets&,
+                       const std::vector<Quantity>& quantities,
+                       const std::vector<double>& variances);
+
+}  // namespace nonio::evaluation

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/evaluation/results_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
+#include "campaign/evaluation/followed.h"
+#include "campaign/evaluation/issue_json.h"
+#include "nonio/sdk/format.h"
+#include "platform/storage/json_writer.h"
+
+namespace nonio::evaluation {
+
+namespace {
+
+void put_text(storage::JsonWriter& json, const char* key, const std::string& text) {
+  if (!text.empty()) json.member(key, text);
+}
+
+/// An object of the texts that are there; nothing if none is.
+void put_texts(storage::JsonWriter& json, const char* key,
+               std::initializer_list<std::pair<const char*, const std::string&>> texts) {
+  if (std::all_of(texts.begin(), texts.end(), [](const auto& t) { return t.second.empty(); }))
+    return;
+  json.key(key);
+  json.begin_object();
+  for (const auto& [name, text] : texts) put_text(json, name, text);
+  json.end_object();
+}
+
+/// results.json speaks English; documents look the words up in their own language.
+void put_notes(storage::JsonWriter& json, const std::vector<Remark>& notes,
+               const Templates& templates) {
+  if (notes.empty()) return;
+  json.key("notes");
+  json.begin_array();
+  for (const Remark& note : notes)
+    json.value((note.measurement.empty() ? "" : "measurement " + note.measurement + ": ") +
+               remark_text(templates, "en", note));
+  json.end_array();
+}
+
+void put_campaign(storage::JsonWriter& json, const Campaign& c, const std::string& purpose) {
+  json.key("campaign");
+  json.begin_object();
+  json.member("id", c.id);
+  put_text(json, "customer", c.customer);
+  put_text(json, "site", c.site);
+  put_text(json, "operator", c.operator_name);
+  put_text(json, "date", c.date);
+  put_text(json, "purpose", purpose);
+  put_texts(json, "machine",
+            {{"maker", c.machine.maker},
+             {"model", c.machine.model},
+             {"serial", c.machine.serial},
+             {"asset", c.machine.asset},
+             {"structure", c.machine.structure},
+             {"control", c.machine.control}});
+  put_texts(json, "instrument",
+            {{"maker", c.instrument.maker},
+             {"model", c.instrument.model},
+             {"serial", c.instrument.serial},
+             {"calibrated", c.instrument.calibrated},
+             {"certificate", c.instrument.certificate},
+             {"issuer", c.instrument.issuer},
+             {"valid_until", c.instrument.valid_until}});
+  json.end_object();
+}
+
+void put_value(storage::JsonWriter& json, const Value& v, const Results::Analysed& a,
+               const std::vector<Conformity>& conformity) {
+  json.key(v.name);
+  json.begin_object();
+  json.member("value", printed(v.value, v.quantity));
+  json.member("unit", unit_of(v.quantity).symbol);
+  if (v.U) json.member("U", printed(*v.U, v.quantity));
+  if (v.repeatability) json.member("repeatability", printed(*v.repeatability, v.quantity));
+  if (v.U || v.repeatability) json.member("k", printed(v.k, Quantity::number));
+  for (const Conformity& c : conformity)
+    if (c.measurement == a.measurement && c.plugin == a.plugin && c.name == v.name) {
+      json.member("tolerance", printed(c.tolerance, c.quantity));
+      json.member("decision", evaluation::to_text(c.decision));
+    }
+  json.end_object();
+}
+
+void put_number(storage::JsonWriter& json, double value, Quantity quantity) {
+  if (quantity == Quantity::count)
+    json.value(static_cast<std::int64_t>(std::llround(value)));
+  else
+    json.value(printed(value, quantity));
+}
+
+void put_table(storage::JsonWriter& json, const PointTable& table, const char* name,
+               const char* units) {
+  if (table.columns.empty()) return;
+  json.key(units);
+  json.begin_object();
+  for (const PointTable::Column& c : table.columns) json.member(c.name, unit_of(c.quantity).symbol);
+  json.end_object();
+  json.key(name);
+  json.begin_array();
+  for (std::size_t i = 0; i < table.columns.front().values.size(); ++i) {
+    json.begin_object();
+    for (const PointTable::Column& c : table.columns)
+      if (std::isfinite(c.values[i])) {
+        json.key(c.name);
+        put_number(json, c.values[i], c.quantity);
+      }
+    json.end_object();
+  }
+  json.end_array();
+}
+
+/// One of each column that has it.
+void put_point_U(storage::JsonWriter& json, const PointTable& points) {
+  const auto has_U = [](const PointTable::Column& c) { return c.U.has_value(); };
+  if (std::none_of(points.columns.begin(), points.columns.end(), has_U)) return;
+  json.key("point_U");
+  json.begin_object();
+  for (const PointTable::Column& c : points.columns)
+    if (c.U) json.member(c.name, printed(*c.U, c.quantity));
+  json.end_object();
+}
+
+void put_series(storage::JsonWriter& json, const std::vector<Series>& all) {
+  if (all.empty()) return;
+  const auto list = [&](const char* key, const std::vector<double>& values, Quantity q) {
+    json.key(key);
+    json.begin_array();
+    for (const double v : values) std::isfinite(v) ? json.value(printed(v, q)) : json.null();
+    json.end_array();
+  };
+  json.key("series");
+  json.begin_object();
+  for (const Series& s : all) {
+    json.key(s.name);
+    json.begin_object();
+    json.member("over", s.over);
+    json.member("position_unit", unit_of(s.position_quantity).symbol);
+    json.member("unit", unit_of(s.quantity).symbol);
+    list("position", s.position, s.position_quantity);
+    list("value", s.value, s.quantity);
+    if (!s.U.empty()) list("U", s.U, s.quantity);
+    if (!s.repeatability.empty()) list("repeatability", s.repeatability, s.quantity);
+    if (!s.U.empty() || !s.repeatability.empty()) json.member("k", printed(s.k, Quantity::number));
+    json.end_object();
+  }
+  json.end_object();
+}
+
+void put_contribution(storage::JsonWriter& json, const Contribution& c) {
+  json.begin_object();
+  json.member("id", c.id);
+  json.member("u", printed(c.u, c.quantity));
+  json.member("unit", unit_of(c.quantity).symbol);
+  json.member("with_length", c.with_length);
+  json.member("distribution", to_text(c.distribution));
+  json.member("correlation", to_text(c.correlation));
+  if (c.dof) json.member("dof", printed(*c.dof, Quantity::number));
+  json.member("source", c.source);
+  json.end_object();
+}
+
+/// Standard uncertainties: what goes in, and what it makes in each result.
+void put_budget(storage::JsonWriter& json, const std::optional<UncertaintyBudget>& budget) {
+  if (!budget) return;
+  json.key("budget");
+  json.begin_object();
+  json.member("length_mm", printed(budget->length, Quantity::length));
+  json.key("contributions");
+  json.begin_array();
+  for (const Contribution& c : budget->contributions) put_contribution(json, c);
+  json.end_array();
+  json.key("results");
+  json.begin_object();
+  for (const auto& r : budget->results) {
+    json.key(r.name);
+    json.begin_object();
+    json.member("unit", unit_of(r.quantity).symbol);
+    json.member("k", printed(r.k, Quantity::number));
+    if (std::isfinite(r.dof)) json.member("dof", printed(r.dof, Quantity::number));
+    json.key("u");
+    json.begin_object();
+    for (std::size_t i = 0; i < r.u.size(); ++i)
+      json.member(budget->contributions[i].id, printed(r.u[i], r.quantity));
+    json.end_object();
+    json.end_object();
+  }
+  json.end_object();
+  json.end_object();
+}
+
+void put_findings(storage::JsonWriter& json, const std::vector<Finding>& findings,
+                  bool with_measurement, const Templates& templates) {
+  json.key("findings");
+  json.begin_array();
+  for (const Finding& f : findings) {
+    json.begin_object();
+    json.member("id", f.id);
+    json.member("severity", f.attention ? "attention" : "info");
+    if (with_measurement) put_text(json, "measurement", f.measurement);
+    json.key("evidence");
+    json.begin_object();
+    for (const Number& n : f.evidence) {
+      json.key(n.name + std::string(unit_of(n.quantity).suffix));
+      put_number(json, n.value, n.quantity);
+    }
+    for (const auto& [key, words_of] : f.texts) json.member(key, words_of);
+    json.end_object();
+    json.member("advice", finding_text(templates, "en", f, "advice"));
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void put_analysis(storage::JsonWriter& json, const Results::Analysed& a,
+                  const std::vector<Conformity>& conformity, const Templates& templates) {
+  json.begin_object();
+  json.member("plugin", a.plugin);
+  json.member("version", a.version);
+  put_text(json, "measurement", a.measurement);
+  for (const Remark& note : a.evaluation.notes)
+    for (const Number& n : note.evidence)
+      if (n.name == "edition") json.member("edition", static_cast<std::uint64_t>(n.value));
+  if (!a.evaluation.uses.empty()) {
+    json.key("uses");
+    json.begin_array();
+    for (const std::string& id : a.evaluation.uses) json.value(id);
+    json.end_array();
+  }
+  json.key("values");
+  json.begin_object();
+  for (const Value& v : a.evaluation.values) put_value(json, v, a, conformity);
+  json.end_object();
+  put_table(json, a.evaluation.points, "points", "point_units");
+  put_point_U(json, a.evaluation.points);
+  put_table(json, a.evaluation.rows, "rows", "row_units");
+  put_series(json, a.evaluation.series);
+  put_budget(json, a.evaluation.budget);
+  put_findings(json, a.evaluation.findings, false, templates);
+  put_notes(json, a.evaluation.notes, templates);
+  json.end_object();
+}
+
+void put_conformity(storage::JsonWriter& json, const std::vector<Conformity>& all) {
+  if (all.empty()) return;
+  json.key("conformity");
+  json.begin_array();
+  for (const Conformity& c : all) {
+    json.begin_object();
+    put_text(json, "measurement", c.measurement);
+    put_text(json, "axis", c.axis);
+    put_text(json, "plugin", c.plugin);
+    json.member("name", c.name);
+    json.member("tolerance", printed(c.tolerance, c.quantity));
+    json.member("unit", unit_of(c.quantity).symbol);
+    json.member("decision", evaluation::to_text(c.decision));
+    put_text(json, "reason", c.reason);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+void put_files(storage::JsonWriter& json, const std::vector<Results::Written>& outputs,
+               const std::vector<RecordedFile>& files) {
+  json.key("outputs");
+  json.begin_array();
+  auto file = files.begin();
+  for (const Results::Written& w : outputs)
+    for (std::size_t i = 0; i < w.result.artifacts.size(); ++i, ++file) {
+      json.begin_object();
+      json.member("plugin", w.plugin);
+      json.member("file", file->name);
+      json.member("sha256", file->sha256);
+      json.end_object();
+    }
+  json.end_array();
+}
+
+void put_predictions(storage::JsonWriter& json, const std::vector<Prediction>& predictions) {
+  if (predictions.empty()) return;
+  json.key("predictions");
+  json.begin_array();
+  for (const Prediction& p : predictions) {
+    json.begin_object();
+    json.member("measurement", p.measurement);
+    json.member("name", p.name);
+    json.member("before", printed(p.before, p.quantity));
+    json.member("predicted", printed(p.after, p.quantity));
+    json.member("unit", unit_of(p.quantity).symbol);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+/// What outputs predict, find and note stands once, not with each of their files.
+void put_tables(storage::JsonWriter& json, const std::vector<Results::Written>& outputs,
+                const Templates& templates) {
+  const auto silent = [](const Results::Written& w) {
+    return w.result.predictions.empty() && w.result.findings.empty() && w.result.notes.empty();
+  };
+  if (std::all_of(outputs.begin(), outputs.end(), silent)) return;
+  json.key("tables");
+  json.begin_array();
+  for (const Results::Written& w : outputs) {
+    if (silent(w)) continue;
+    json.begin_object();
+    json.member("plugin", w.plugin);
+    json.member("version", w.version);
+    put_predictions(json, w.result.predictions);
+    put_findings(json, w.result.findings, true, templates);
+    put_notes(json, w.result.notes, templates);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+}  // namespace
+
+const char* to_text(Decision decision) {
+  switch (decision) {
+    case Decision::conforms:
+      return "conforms";
+    case Decision::does_not_conform:
+      return "does not conform";
+    case Decision::cannot_be_decided:
+      break;
+  }
+  return "cannot be decided";
+}
+
+std::string results_json(const Evaluated& e, const reading::Context& context,
+                         const std::vector<RecordedFile>& files) {
+  storage::JsonWriter json;
+  json.begin_object();
+  json.member("schema", "nonio-results/1");
+  json.member("nonio", context.version);
+  put_campaign(json, e.campaign, e.purpose);
+  json.member("status", to_text(e.status));
+  json.key("errors");
+  json.begin_array();
+  for (const Error& error : e.results.errors) storage::put_error(json, error);
+  json.end_array();
+  json.key("analyses");
+  json.begin_array();
+  for (const Results::Analysed& a : e.results.analyses)
+    put_analysis(json, a, e.results.conformity, context.templates);
+  json.end_array();
+  put_conformity(json, e.results.conformity);
+  put_followed(json, e.followed);
+  if (e.certificate) put_certificate(json, *e.certificate);
+  put_files(json, e.results.outputs, files);
+  put_tables(json, e.results.outputs, context.templates);
+  put_notes(json, e.results.notes, context.templates);
+  json.end_object();
+  return json.take();
+}
+
+}  // namespace nonio::evaluation

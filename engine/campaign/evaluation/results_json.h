@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "campaign/evaluation/evaluate.h"
+#include "campaign/evaluation/record.h"
+
+namespace nonio::evaluation {
+
+/// results.json (schema nonio-results/1); `files` are the artifacts of all outputs in their order.
+std::string results_json(const Evaluated& evaluated, const reading::Context& context,
+                         const std::vector<RecordedFile>& files);
+
+const char* to_text(Decision decision);
+
+}  // namespace nonio::evaluation

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "campaign/config/manifest.h"
+#include "campaign/loader/plugins.h"
+
+namespace nonio::importing {
+
+/// How the names of files say what was measured.
+struct ImportRule {
+  std::string pattern;               ///< "{machine}_{axis}_{date}.rtl"
+  std::string campaign;              ///< id of the campaign, with places; empty: see campaign_of
+  std::string kind = "axis";         ///< of every measurement
+  std::string reader;                ///< empty: by content
+  std::vector<std::string> exclude;  ///< files are passed over whose path holds one of these
+  std::string axis;                  ///< of every file; empty: what stands at {axis}
+  /// What may stand at {axis}, and the axis of the machine it means; empty: see `fits`.
+  std::map<std::string, std::string, std::less<>> axes;
+  std::string manifest;  ///< TOML: what stands in every campaign.toml besides
+};
+
+using Places = std::map<std::string, std::string, std::less<>>;
+
+/// A pattern alone, or a TOML file with `pattern`, `campaign`, `kind`, `reader`, `exclude`, `axis`
+/// and the tables [axes] and [manifest].
+config::Checked<ImportRule> import_rule_of_pattern(const std::string& pattern);
+config::Checked<ImportRule> parse_import_rule(std::string_view text, const std::string& file);
+
+/// Every way to read the path by the pattern, two at most; a pattern without "/" is for the file's
+/// name alone.
+std::vector<Places> readings_of_name(const ImportRule& rule, const std::string& path);
+
+struct ImportedFile {
+  std::string file;  ///< below the folder
+  std::string name;  ///< in the campaign
+  std::string measurement, axis, reader;
+  std::uint64_t readings = 0, missing = 0;
+  std::vector<std::string> lacks;    ///< what has to be said or mended before it can be read
+  std::string same_as;               ///< the file that has the same readings
+  std::vector<std::string> assumed;  ///< what was taken from the name or the rule, not as it stood
+};
+
+struct ImportedCampaign {
+  std::string id;
+  std::vector<ImportedFile> files;
+  std::vector<std::string> lacks;  ///< of the campaign as a whole
+  bool written = false;
+  std::string asset{}, maker{}, serial{};  ///< of its machine
+  bool there = false;  ///< imported before: its folder has these files, and measurements of them
+
+  bool whole() const;
+};
+
+struct ImportReport {
+  struct Passed {
+    std::string file, why;
+  };
+  std::vector<ImportedCampaign> campaigns;
+  std::vector<Passed> duplicates, unmatched, excluded;
+};
+
+struct ImportRequest {
+  std::filesystem::path folder, out;
+  ImportRule rule;
+  std::string asset{}, maker{}, serial{};  ///< of the machine of all campaigns; empty: not said
+  bool partial = false;  ///< write campaigns that lack something too, with what is to be filled
+  bool dry_run = false;
+};
+
+/// Makes campaigns from a folder of files. A campaign's folder is new and appears whole; nothing
+/// that is there is touched. Where all of it is there already, there is nothing to do.
+Expected<ImportReport> import_folder(const ImportRequest& request, const loader::Plugins& plugins);
+
+}  // namespace nonio::importing

@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/loader/plugins.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/dll/shared_library.hpp>
+#include <cstring>
+#include <iostream>
+#include <span>
+#include <variant>
+
+#include "campaign/loader/plugin_file.h"
+#include "platform/process/apart.h"
+#include "platform/process/child.h"
+#include "platform/process/confine.h"
+#include "platform/process/shared_status.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+#include "platform/storage/nearest.h"
+
+namespace nonio::loader {
+namespace fs = std::filesystem;
+namespace dll = boost::dll;
+
+namespace {
+
+constexpr double probe_seconds = 10.0;
+constexpr const char* out_of_memory = "could not be loaded: out of memory";
+
+/// The libraries of all plugins, for the life of the process: never unloaded.
+std::vector<dll::shared_library>& libraries() {
+  static auto* kept = new std::vector<dll::shared_library>;
+  return *kept;
+}
+
+}  // namespace
+
+Expected<const PluginEntry*> open_entry(const fs::path& path) {
+  boost::dll::fs::error_code error;
+  dll::shared_library library(path.string(), error, dll::load_mode::rtld_now);
+  if (error) return fail("cannot be loaded: " + error.message());
+  if (!library.has("nonio_plugin")) return fail("is not a plugin: it has no symbol nonio_plugin");
+  const PluginEntry* entry = &library.get<const PluginEntry>("nonio_plugin");
+  libraries().push_back(std::move(library));
+  const std::string tag(entry->abi_tag, ::strnlen(entry->abi_tag, sizeof entry->abi_tag));
+  if (tag != NONIO_ABI_TAG)
+    return fail("was built for \"" + tag + "\", this program is \"" NONIO_ABI_TAG "\"");
+  if (entry->add_to == nullptr) return fail("has no registration function");
+  return entry;
+}
+
+namespace {
+
+/// Why this one must be refused; empty if it registers as it should.
+std::string try_registering(const fs::path& path) {
+  struct Nobody final : Registry {
+    void add(Reader) override {}
+    void add(Effect) override {}
+    void add(Analysis) override {}
+    void add(Output) override {}
+    void add(Controller) override {}
+  } nobody;
+  try {
+    const auto entry = open_entry(path);
+    if (!entry) return entry.error().message;
+    (*entry)->add_to(nobody);
+  } catch (const std::bad_alloc&) {
+    return out_of_memory;
+  } catch (const std::exception& e) {
+    return std::string("threw while registering: ") + e.what();
+  } catch (...) {
+    return "threw while registering";
+  }
+  return "";
+}
+
+struct Probed {
+  std::vector<std::string> refusals;  ///< as far as the child came
+  process::ChildEnd end;
+};
+
+/// Loads and registers in a child, one after the other.
+Probed probe_in_child(std::span<const fs::path> paths) {
+  std::vector<process::SharedStatus> said(paths.size());  // empty until that one is through
+  for (const process::SharedStatus& words : said)
+    if (!words.valid()) return {{}, {false, "no memory"}};
+  std::cout.flush();
+  const pid_t child = process::fork_patiently();
+  if (child == 0) {
+    process::init_child();
+    if (process::is_apart()) {
+      if (const std::string why = process::confine_loading({"/"}); !why.empty()) ::_exit(1);
+    }
+    for (std::size_t i = 0; i < paths.size(); ++i) said[i].set("." + try_registering(paths[i]));
+    ::_exit(0);
+  }
+  Probed probed;
+  probed.end = child < 0 ? process::ChildEnd{false, "no process"}
+                         : process::wait_for_child(child, probe_seconds);
+  for (const process::SharedStatus& words : said) {
+    const std::string answer = words.get();
+    if (answer.empty()) break;
+    probed.refusals.push_back(answer.substr(1));
+  }
+  return probed;
+}
+
+/// Why each must be refused. All together, since a child takes longer than a plugin; one that the
+/// child did not survive is tried again alone, so that none pays for those before it.
+std::vector<std::string> probe(std::span<const fs::path> paths) {
+  std::vector<std::string> refusals;
+  while (refusals.size() < paths.size()) {
+    Probed together = probe_in_child(paths.subspan(refusals.size()));
+    for (std::string& r : together.refusals) refusals.push_back(std::move(r));
+    if (refusals.size() == paths.size()) break;
+    if (together.end.overdue) {  // its limit is spent
+      refusals.push_back("did not survive loading: " + together.end.words);
+      continue;
+    }
+    const Probed alone = probe_in_child(paths.subspan(refusals.size(), 1));
+    const std::string end = alone.end.well ? "ended the process" : alone.end.words;
+    refusals.push_back(alone.refusals.empty() ? "did not survive loading: " + end
+                                              : alone.refusals.front());
+  }
+  return refusals;
+}
+
+}  // namespace
+
+namespace {
+
+template <class Plugin>
+std::vector<Info> described(const std::vector<Plugin>& all) {
+  std::vector<Info> out;
+  for (const Plugin& plugin : all) out.push_back(plugin.info);
+  return out;
+}
+
+template <class Plugin>
+std::vector<Plugin> named(std::vector<Info> all) {
+  std::vector<Plugin> out;
+  for (Info& info : all) out.emplace_back().info = std::move(info);
+  return out;
+}
+
+}  // namespace
+
+namespace {
+
+/// What a file registers: it is taken whole or not at all.
+class Offered final : public Registry {
+ public:
+  void add(Reader reader) override { take("reader", std::move(reader)); }
+  void add(Effect effect) override { take("effect", std::move(effect)); }
+  void add(Analysis analysis) override { take("analysis", std::move(analysis)); }
+  void add(Output output) override { take("output", std::move(output)); }
+  void add(Controller c) override { take("controller", std::move(c)); }
+
+  /// The first of them without a function that it cannot do without; empty: none.
+  const std::string& incomplete() const { return incomplete_; }
+  void give_to(Registry& registry) {
+    for (auto& one : all_) std::visit([&](auto& plugin) { registry.add(std::move(plugin)); }, one);
+  }
+
+ private:
+  static const char* missing(const Reader& r) {
+    return !r.recognises ? "recognises" : !r.reads ? "reads" : !r.read ? "read" : "";
+  }
+  static const char* missing(const Effect& e) {
+    return !e.applies ? "applies" : !e.columns ? "columns" : "";
+  }
+  static const char* missing(const Analysis& a) {
+    if (a.analyse_campaign && !a.applies) return "";
+    return !a.applies ? "applies" : !a.analyse ? "analyse" : "";
+  }
+  static const char* missing(const Output& o) {
+    if (o.certificate && !o.certificate->missing_requirements) return "missing_requirements";
+    return !o.applies ? "applies" : !o.write ? "write" : "";
+  }
+  static const char* missing(const Controller& c) {
+    return !c.applies ? "applies" : !c.write ? "write" : !c.parse ? "parse" : "";
+  }
+
+  template <class Plugin>
+  void take(const char* kind, Plugin plugin) {
+    const std::string function = missing(plugin);
+    if (incomplete_.empty() && !function.empty())
+      incomplete_ = std::string("registers the ") + kind + " " + plugin.info.name + " without `" +
+                    function + "`, a function that every " + kind + " has";
+    all_.emplace_back(std::move(plugin));
+  }
+
+  std::vector<std::variant<Reader, Effect, Analysis, Output, Controller>> all_;
+  std::string incomplete_;
+};
+
+}  // namespace
+
+Plugins::Plugins(Catalogue c)
+    : files_(std::move(c.files)),
+      conflicts_(std::move(c.conflicts)),
+      names_(std::move(c.names)),
+      readers_(named<Reader>(std::move(c.readers))),
+      effects_(named<Effect>(std::move(c.effects))),
+      analyses_(named<Analysis>(std::move(c.analyses))),
+      outputs_(named<Output>(std::move(c.outputs))),
+      controllers_(named<Controller>(std::move(c.controllers))) {}
+
+Catalogue Plugins::catalogue() const {
+  return {files_,
+          conflicts_,
+          names_,
+          described(readers_),
+          described(effects_),
+          described(analyses_),
+          described(outputs_),
+          described(controllers_)};
+}
+
+std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
+  std::vector<fs::path> paths;
+  for (const fs::path& folder : folders) {
+    std::vector<fs::path> here;
+    std::error_code error;
+    const fs::path real = fs::canonical(folder, error);
+    error.clear();  // who lists a folder that is not there says so
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+      if (it->path().extension() == ".so" && it->is_regular_file()) {
+        const bool resolved = !real.empty() && !it->is_symlink(error);
+        const fs::path path =
+            resolved ? real / it->path().filename() : fs::canonical(it->path(), error);
+        if (error) break;
+        if (std::find(paths.begin(), paths.end(), path) == paths.end()) here.push_back(path);
+      }
+    if (error && error != std::errc::no_such_file_or_directory)
+      conflicts_.push_back("cannot read the folder of plugins " + folder.string() + ": " +
+                           error.message());
+    std::sort(here.begin(), here.end());
+    paths.insert(paths.end(), here.begin(), here.end());
+  }
+  return paths;
+}
+
+void Plugins::load(const std::vector<fs::path>& folders) {
+  process::step_aside();
+  const std::vector<fs::path> paths = files_in(folders);
+  std::vector<fs::path> strange;
+  std::copy_if(paths.begin(), paths.end(), std::back_inserter(strange), process::must_be_tried);
+  std::vector<std::string> refusals = probe(strange);
+  for (std::size_t i = 0; i < strange.size(); ++i)
+    if (!refusals[i].empty() && !refusals[i].starts_with("did not survive"))
+      refusals[i] = probe(std::span(strange).subspan(i, 1)).front();
+  const process::LoadingUntried loading;
+  const process::Muted muted;
+  std::size_t tried = 0;
+  for (const fs::path& path : paths) {
+    const bool is_strange = tried < strange.size() && strange[tried] == path;
+    load_file(path, is_strange ? refusals[tried++] : "");
+  }
+}
+
+void Plugins::load_file(const fs::path& path, const std::string& refusal) {
+  files_.push_back(PluginFile{.path = path, .refused = refusal, .brought = {}});
+  PluginFile& file = files_.back();
+  if (refusal == out_of_memory) conflicts_.push_back(path.string() + " " + refusal);
+  if (!file.refused.empty()) return;
+  const process::Muted muted;
+  try {
+    auto entry = open_entry(path);
+    if (!entry) entry = open_entry(path);  // what fails for a moment only would make another night
+    Offered offered;
+    if (entry) (*entry)->add_to(offered);
+    file.refused = entry ? offered.incomplete() : entry.error().message;
+    if (file.refused.empty()) offered.give_to(*this);
+  } catch (const std::bad_alloc&) {
+    file.refused = out_of_memory;
+  } catch (const std::exception& e) {
+    file.refused = std::string("threw while registering: ") + e.what();
+  } catch (...) {
+    file.refused = "threw while registering";
+  }
+  if (file.refused == out_of_memory) conflicts_.push_back(path.string() + " " + file.refused);
+}
+
+bool Plugins::all_from(const fs::path& folder) const {
+  std::error_code error;
+  const fs::path wanted = fs::canonical(folder, error);
+  return std::all_of(files_.begin(), files_.end(), [&](const PluginFile& f) {
+    return !f.refused.empty() || f.path.parent_path() == wanted;
+  });
+}
+
+Expected<std::string> Plugins::digest() const {
+  std::string all;
+  for (const PluginFile& file : files_) {
+    if (!file.refused.empty()) continue;
+    const auto bytes = storage::MappedFile::open(file.path);
+    if (!bytes) return fail(bytes.error());
+    all += file.path.filename().string() + " " + storage::sha256(bytes->bytes()) + "\n";
+  }
+  return storage::sha256(all);
+}
+
+namespace {
+
+/// The kind whose plugins a site names in the same list, `[run] outputs`: so no name is twice
+/// there.
+std::string_view named_with(std::string_view kind) {
+  return kind == "output" ? "controller" : kind == "controller" ? "output" : kind;
+}
+
+}  // namespace
+
+bool Plugins::accept(std::string_view kind, const Info& info) {
+  const std::string name = std::string(kind) + " " + info.name;
+  const fs::path path = files_.empty() ? fs::path() : files_.back().path;  // none: added by hand
+  const std::string other = std::string(named_with(kind)) + " " + info.name;
+  for (const auto& [known, where] : names_)
+    if (known == name || known == other) {
+      conflicts_.push_back("two plugins are the " + name + ": " + where.string() + " and " +
+                           path.string());
+      return false;
+    }
+  names_.emplace_back(name, path);
+  if (!files_.empty()) files_.back().brought.push_back(name + " " + info.version);
+  return true;
+}
+
+void Plugins::add(Reader reader) {
+  if (accept("reader", reader.info)) readers_.push_back(std::move(reader));
+}
+void Plugins::add(Effect effect) {
+  if (accept("effect", effect.info)) effects_.push_back(std::move(effect));
+}
+void Plugins::add(Analysis analysis) {
+  if (accept("analysis", analysis.info)) analyses_.push_back(std::move(analysis));
+}
+void Plugins::add(Output output) {
+  if (accept("output", output.info)) outputs_.push_back(std::move(output));
+}
+void Plugins::add(Controller controller) {
+  if (accept("controller", controller.info)) controllers_.push_back(std::move(controller));
+}
+
+std::string Plugins::absence(std::string_view kind, std::string_view name) const {
+  std::vector<std::string> candidates;
+  const std::string prefix = std::string(kind) + " ";
+  for (const std::string& of : {prefix, std::string(named_with(kind)) + " "})
+    for (const auto& [known, where] : names_)
+      if (known.starts_with(of)) candidates.push_back(known.substr(of.size()));
+  std::string words = "there is no " + prefix + "\"" + std::string(name) + "\"" +
+                      storage::suggestion(name, candidates);
+  for (const PluginFile& file : files_)
+    if (!file.refused.empty() && file.path.stem().string().find(name) != std::string::npos)
+      words += "; " + file.path.string() + " " + file.refused;
+  return words;
+}
+
+std::string Plugins::refusals() const {
+  std::string words;
+  for (const PluginFile& file : files_)
+    if (!file.refused.empty())
+      words += (words.empty() ? "" : "; ") + file.path.string() + " " + file.refused;
+  return words;
+}
+
+std::vector<std::string> Plugins::refusal_notes() const {
+  std::vector<std::pair<std::string, std::string>> files;  // by reason
+  for (const PluginFile& file : files_) {
+    if (file.refused.empty()) continue;
+    const std::string name = file.path.filename().string();
+    const auto known = std::find_if(files.begin(), files.end(),
+                                    [&](const auto& one) { return one.first == file.refused; });
+    if (known == files.end())
+      files.emplace_back(file.refused, name);
+    else
+      known->second += ", " + name;
+  }
+  std::vector<std::string> notes;
+  for (const auto& [reason, names] : files) notes.push_back("plugin " + names + " " + reason);
+  return notes;
+}
+
+}  // namespace nonio::loader

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/plugin.h"
+
+namespace nonio::loader {
+
+/// One file in a plugin folder: what it brought, or why it was refused.
+struct PluginFile {
+  std::filesystem::path path;
+  std::string refused;               ///< empty: loaded
+  std::vector<std::string> brought;  ///< "analysis iso230-2 1.0.0", ...
+};
+
+/// What plugins say of themselves, as data: how a process knows them that has none of their code.
+struct Catalogue {
+  std::vector<PluginFile> files;
+  std::vector<std::string> conflicts;
+  std::vector<std::pair<std::string, std::filesystem::path>> names;
+  std::vector<Info> readers, effects, analyses, outputs, controllers;
+};
+
+/// All plugins of this process. Loaded once, never unloaded.
+class Plugins final : public Registry {
+ public:
+  Plugins() = default;
+  /// Their descriptions; nothing of them can be called.
+  explicit Plugins(Catalogue catalogue);
+  Catalogue catalogue() const;
+
+  /// The shared libraries of the folders, in their order; a folder that cannot be read is a
+  /// conflict.
+  std::vector<std::filesystem::path> files_in(const std::vector<std::filesystem::path>& folders);
+  /// Loads and registers one; where `refusal` says something, it only remembers that. To be called
+  /// in a process that may come to harm.
+  void load_file(const std::filesystem::path& path, const std::string& refusal);
+
+  /// Loads every shared library of the folders, in their order. They are first loaded and
+  /// registered in a child process, so that one which crashes or hangs there is refused instead of
+  /// loaded; the ABI tag is compared before anything in it is called.
+  void load(const std::vector<std::filesystem::path>& folders);
+
+  const std::vector<PluginFile>& files() const { return files_; }
+  /// Two plugins of one kind with the same name, each with both paths; outputs and controllers are
+  /// one kind in this.
+  const std::vector<std::string>& conflicts() const { return conflicts_; }
+  /// Whether every plugin that was loaded lies in this folder.
+  bool all_from(const std::filesystem::path& folder) const;
+  /// One digest over the files of all that was loaded; reads them.
+  Expected<std::string> digest() const;
+
+  const std::vector<Reader>& readers() const { return readers_; }
+  const std::vector<Effect>& effects() const { return effects_; }
+  const std::vector<Analysis>& analyses() const { return analyses_; }
+  const std::vector<Output>& outputs() const { return outputs_; }
+  const std::vector<Controller>& controllers() const { return controllers_; }
+
+  /// Why a plugin of that name is not there, with the nearest name; of an output also among the
+  /// controllers, which `[run] outputs` names with them.
+  std::string absence(std::string_view kind, std::string_view name) const;
+  /// Every file that was refused, with the reason; empty if none was.
+  std::string refusals() const;
+  /// A note for each reason: after an update that may be all plugins for one.
+  std::vector<std::string> refusal_notes() const;
+
+  void add(Reader) override;
+  void add(Effect) override;
+  void add(Analysis) override;
+  void add(Output) override;
+  void add(Controller) override;
+
+ private:
+  bool accept(std::string_view kind, const Info& info);
+
+  std::vector<PluginFile> files_;
+  std::vector<std::string> conflicts_;
+  std::vector<std::pair<std::string, std::filesystem::path>> names_;  // "analysis iso230-2"
+  std::vector<Reader> readers_;
+  std::vector<Effect> effects_;
+  std::vector<Analysis> analyses_;
+  std::vector<Output> outputs_;
+  std::vector<Controller> controllers_;
+};
+
+}  // namespace nonio::loader

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/modelling/campaign_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "platform/process/guarded.h"
+#include "platform/storage/nearest.h"
+
+namespace nonio::modelling {
+
+namespace {
+
+std::pair<std::string, std::string> split(const std::string& effect) {
+  const std::size_t colon = effect.find(':');
+  if (colon == std::string::npos) return {effect, ""};
+  return {effect.substr(0, colon), effect.substr(colon + 1)};
+}
+
+std::vector<std::string> known_names(const reading::ReadCampaign& read) {
+  const Campaign& campaign = read.manifest->campaign;
+  std::vector<std::string> names;
+  for (const Effect& effect : read.effects)
+    for (const Axis& axis : campaign.machine.axes)
+      if (!effect.instances && !effect.is_nuisance)
+        names.push_back(effect.info.name + ":" + axis.name);
+  for (const model::Part& part : model::parts_of(campaign, read.observations))
+    for (const Effect& effect : read.effects)
+      if (effect.instances && !effect.is_nuisance)
+        for (std::string& name : model::names_of(part, effect)) names.push_back(std::move(name));
+  return names;
+}
+
+/// ISO 230-1 letters: "XY", "EYX", "X".
+bool can_be_in_space(const std::string& of) {
+  return !of.empty() && of.find_first_not_of("EXYZABC0123456789") == std::string::npos;
+}
+
+std::string mistake_of(const std::string& effect, const reading::ReadCampaign& read) {
+  const auto [kind, axis] = split(effect);
+  const auto is_kind = [&, &k = kind](const Effect& e) { return e.info.name == k; };
+  const auto known = std::find_if(read.effects.begin(), read.effects.end(), is_kind);
+  // All effects are asked whether they apply to all readings: only where it is said.
+  const auto nearest = [&] { return storage::suggestion(effect, known_names(read)); };
+  if (kind.empty() || axis.empty())
+    return "expected kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest();
+  if (known == read.effects.end()) return "there is no effect \"" + kind + "\"" + nearest();
+  if (known->is_nuisance)
+    return "\"" + effect + "\" belongs to the set-up: it is in every model, and not written";
+  if (known->instances)
+    return can_be_in_space(axis)
+               ? ""
+               : "\"" + effect +
+                     "\": expected what the effect can be of, such as straightness:EYX, " +
+                     "squareness:XY or yaw:X" + nearest();
+  if (read.manifest->campaign.machine.axis(axis) == nullptr)
+    return "\"" + effect + "\": the machine has no axis \"" + axis + "\"" + nearest();
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> PartModel::names() const {
+  std::vector<std::string> out;
+  for (const model::Term& t : terms)
+    if (!t.effect->is_nuisance) out.push_back(t.name());
+  return out;
+}
+
+bool PartModel::shows(const std::string& effect) const {
+  if (part.kind == model::Part::Kind::axis && split(effect).second == part.name) return true;
+  for (const auto* list : {&terms, &catalogue})
+    for (const model::Term& t : *list)
+      if (t.name() == effect) return true;
+  return false;
+}
+
+std::string kind_of(const model::Part& part) {
+  switch (part.kind) {
+    case model::Part::Kind::axis:
+      return "axis";
+    case model::Part::Kind::space:
+      return "space";
+    case model::Part::Kind::balls:
+      break;
+  }
+  return "balls";
+}
+
+ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size_t row) {
+  const Observations& o = part.part.table;
+  ReadingPlace place;
+  place.measurement = part.part.measurements[part.part.measurement[row]];
+  for (const Measurement& m : campaign.measurements)
+    if (m.id == place.measurement) place.file = m.file;
+  if (row < o.source_line.size()) place.line = o.source_line[row];
+  if (row < o.run.size()) place.run = o.run[row];
+  place.direction = part.part.way[row] > 0 ? 1 : part.part.way[row] < 0 ? -1 : 0;
+  place.target = part.part.along[row];
+  place.position = part.position();
+  return place;
+}
+
+std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
+                                        const reading::ReadCampaign& read) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const auto first = std::find(effects.begin(), effects.end(), effects[i]);
+    if (static_cast<std::size_t>(first - effects.begin()) != i)
+      out.push_back("\"" + effects[i] + "\" is there twice");
+    else if (std::string mistake = mistake_of(effects[i], read); !mistake.empty())
+      out.push_back(std::move(mistake));
+  }
+  return out;
+}
+
+RowsPlace place_of(const PartModel& part, const Campaign& campaign,
+                   const std::vector<std::uint32_t>& rows) {
+  constexpr std::size_t most = 8;
+  RowsPlace out{rows.size(), {}, {}};
+  for (std::size_t k = 0; k < rows.size() && k < most; ++k) {
+    const ReadingPlace at = place_of(part, campaign, rows[k]);
+    if (k == 0) out.file = at.file;
+    out.lines += (k == 0 ? "" : ", ") + std::to_string(at.line);
+  }
+  if (rows.size() > most) out.lines += ", ...";
+  return out;
+}
+
+Expected<void> without_mistakes(const std::vector<std::string>& effects,
+                                const reading::ReadCampaign& read) {
+  const auto mistakes = model_mistakes(effects, read);
+  if (mistakes.empty()) return {};
+  const auto line = read.manifest->lines.find("model.effects");
+  return fail(Error{"model.effects: " + mistakes.front(), config::manifest_name,
+                    line == read.manifest->lines.end() ? 0 : line->second});
+}
+
+void set_model(PartModel& part, const std::vector<std::string>& effects,
+               const reading::ReadCampaign& read) {
+  auto terms = model::terms_of(part.part, read.manifest->campaign.machine, effects, read.effects);
+  part.unfit = terms ? "" : terms.error().message;
+  part.terms = terms ? std::move(*terms) : std::vector<model::Term>{};
+}
+
+std::vector<PartModel> bare_parts(const reading::ReadCampaign& read) {
+  std::vector<PartModel> parts;
+  for (model::Part& part : model::parts_of(read.manifest->campaign, read.observations))
+    parts.push_back({std::move(part), {}, {}, {}});
+  return parts;
+}
+
+std::vector<std::string> kinds_measured(const reading::ReadCampaign& read) {
+  std::vector<std::string> kinds;
+  for (std::size_t m = 0; m < read.observations.size(); ++m) {
+    const std::string& kind = read.manifest->campaign.measurements[m].kind;
+    if (read.observations[m].size() > 0 &&
+        std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+      kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+Error nothing_to_compare(const reading::ReadCampaign& read) {
+  const auto kinds = kinds_measured(read);
+  if (kinds.empty()) return {"no measurement of this campaign has readings"};
+  return {
+      "effects explain runs of an axis, straightness, diagonals, circles and ball centres; this "
+      "campaign has readings of another kind: " +
+      storage::listed(kinds)};
+}
+
+void fill_catalogue(PartModel& part, const reading::ReadCampaign& read) {
+  part.catalogue = model::catalogue(part.part, read.effects);
+  part.left_out = model::not_applying(part.part, read.effects);
+  fill_interpolated(part, read);
+}
+
+void fill_interpolated(PartModel& part, const reading::ReadCampaign& read) {
+  part.interpolated =
+      place_of(part, read.manifest->campaign, model::interpolated_temperatures(part.part));
+}
+
+Expected<std::vector<PartModel>> part_models(const reading::ReadCampaign& read,
+                                             const std::vector<std::string>& effects) {
+  if (auto right = without_mistakes(effects, read); !right) return fail(right.error());
+  std::vector<PartModel> parts = bare_parts(read);
+  for (PartModel& part : parts) {
+    set_model(part, effects, read);
+    fill_catalogue(part, read);
+  }
+  return parts;
+}
+
+std::vector<std::string> unmeasured(const std::vector<std::string>& effects,
+                                    const std::vector<PartModel>& parts) {
+  std::vector<std::string> out;
+  for (const std::string& effect : effects)
+    if (std::none_of(parts.begin(), parts.end(),
+                     [&](const PartModel& p) { return p.shows(effect); }))
+      out.push_back(effect);
+  return out;
+}
+
+std::vector<std::string> below_uncertainty(const model::Fit& fit) {
+  std::vector<std::string> out;
+  for (const model::Term& term : fit.terms) {
+    if (term.effect->is_nuisance) continue;
+    bool any = false, small = true;
+    for (const model::Parameter& p : fit.parameters) {
+      if (p.effect != term.name() || p.shape) continue;
+      any = true;
+      small = small && std::fabs(p.value) < 2.0 * p.u;
+    }
+    if (any && small) out.push_back(term.name());
+  }
+  return out;
+}
+
+Expected<model::Comparison> compare_part(const PartModel& part, const model::Groundwork* known,
+                                         const model::Fitted& fitted) {
+  if (!part.unfit.empty()) return fail(part.unfit);
+  return process::guarded(kind_of(part.part) + " " + part.part.name,
+                          [&] { return model::compare(part.part, part.terms, known, fitted); });
+}
+
+Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
+                                          const model::Groundwork* known) {
+  if (!part.unfit.empty()) return fail(part.unfit);
+  return process::guarded(kind_of(part.part) + " " + part.part.name, [&] {
+    auto out = model::explain(part.part, part.terms, part.catalogue, seed, known);
+    // None vanishes in silence.
+    if (out)
+      out->candidates.insert(out->candidates.end(), part.left_out.begin(), part.left_out.end());
+    return out;
+  });
+}
+
+}  // namespace nonio::modelling

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/modelling/model_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "campaign/modelling/model_json.h"
+#include "campaign/modelling/thermal_tests.h"
+#include "campaign/reading/names.h"
+
+namespace nonio::modelling {
+
+namespace {
+
+using Kind = model::Verdict::Kind;
+
+Number count(const char* name, std::size_t n) {
+  return {name, static_cast<double>(n), Quantity::count};
+}
+
+void add(std::vector<Value>& values, std::string name, std::optional<double> value, Quantity q,
+         std::optional<double> u = std::nullopt) {
+  if (!value || !std::isfinite(*value)) return;
+  if (u && !std::isfinite(*u)) u.reset();
+  values.push_back({std::move(name), *value, q, u ? std::optional(2.0 * *u) : std::nullopt});
+}
+
+std::vector<Value> values_of(const model::Comparison& c, Quantity q) {
+  std::vector<Value> values;
+  add(values, "rms", c.fit.rms, q);
+  add(values, "cv_rms", c.cv_rms, q);
+  if (c.floor) add(values, "noise_floor", c.floor->s, q, c.floor->u);
+  if (c.largest != 0.0) add(values, "largest_residual", c.largest, q);
+  add(values, "redundancy", static_cast<double>(c.fit.redundancy), Quantity::count);
+  if (c.lack_of_fit) {
+    add(values, "lack_of_fit_F", c.lack_of_fit->F, Quantity::number);
+    add(values, "lack_of_fit_p", c.lack_of_fit->p, Quantity::probability);
+  }
+  for (const model::Parameter& p : c.fit.parameters)
+    add(values, p.effect + "." + p.name, p.value, p.quantity, p.u);
+  return values;
+}
+
+class Findings {
+ public:
+  Findings(const PartModel& part, const Campaign& campaign) : part_(part), campaign_(campaign) {}
+
+  std::vector<Finding> of(const model::Explanation& e) {
+    verdict(e);
+    fails(e.comparison);
+    suspects(e.comparison);
+    if (const auto small = below_uncertainty(e.comparison.fit); !small.empty())
+      out_.push_back({"model.below-uncertainty", false, {}, {{"effects", storage::listed(small)}}});
+    for (Finding& f : time_constant_findings(part_, e.comparison.fit)) out_.push_back(std::move(f));
+    for (Finding& f : out_)
+      std::erase_if(f.evidence, [](const Number& n) { return !std::isfinite(n.value); });
+    return std::move(out_);
+  }
+
+ private:
+  void verdict(const model::Explanation& e) {
+    if (e.verdict.kind == Kind::nothing) return;
+    Finding f = verdict_finding(e, part_);
+    f.id = "model." + std::string(to_text(e.verdict.kind));
+    out_.push_back(std::move(f));
+  }
+
+  void fails(const model::Comparison& c) {
+    const auto worst = std::find_if(c.places.begin(), c.places.end(),
+                                    [](const auto& place) { return place.p < model::place_p; });
+    if (worst == c.places.end()) return;
+    Finding f{
+        "model.fails", true, {}, {{"where", to_text(worst->where)}, {"line", on_line(*worst)}}};
+    f.evidence = {{"share", worst->share, Quantity::ratio},
+                  {"percent", std::round(100.0 * worst->share), Quantity::count},
+                  {"p", worst->p, Quantity::probability},
+                  {"rms", c.fit.rms, part_.deviation()}};
+    if (worst->at && std::isfinite(*worst->at))
+      f.evidence.push_back({"at", *worst->at, worst->at_quantity});
+    out_.push_back(std::move(f));
+  }
+
+  void suspects(const model::Comparison& c) {
+    if (c.suspects.empty()) return;
+    std::vector<std::string> which;
+    for (const model::Suspect& s : c.suspects) {
+      const ReadingPlace at = place_of(part_, campaign_, s.row);
+      which.push_back(at.file + ":" + std::to_string(at.line));
+    }
+    out_.push_back({"model.suspects",
+                    false,
+                    {count("readings", which.size())},
+                    {{"which", storage::listed(which)}}});
+  }
+
+  const PartModel& part_;
+  const Campaign& campaign_;
+  std::vector<Finding> out_;
+};
+
+Finding cannot_fit(const std::string& reason) {
+  return {"model.cannot-fit", true, {}, {{"reason", reason}}};
+}
+
+void put_readings(ModelFit& out, const model::Part& part) {
+  const Observations& o = part.table;
+  out.measurement = part.measurement;
+  out.source_line = o.source_line;
+  out.run = o.run;
+  out.target = part.along;
+  out.direction = part.way;
+  out.time = o.time;
+  out.temperature = o.material;
+  out.deviation = o.deviation;
+}
+
+void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
+  const model::Fit& fit = c.fit;
+  out.residual = fit.residual;
+  out.weight = fit.weight;
+  out.cv_residual = c.cv_residual;
+  for (std::size_t t = 0; t < fit.terms.size(); ++t)
+    out.effects.push_back({fit.terms[t].name(), fit.terms[t].effect->compensable, fit.part[t],
+                           curve_of(part, fit, t)});
+  for (const model::Parameter& p : fit.parameters)
+    out.parameters.push_back({p.effect, p.name, p.value,
+                              std::isfinite(p.u) ? std::optional(p.u) : std::nullopt, p.quantity,
+                              p.shape});
+  out.correlation = fit.correlation;
+  if (c.floor) {
+    out.floor = c.floor->s;
+    out.floor_u = c.floor->u;
+  }
+  for (const model::Suspect& s : c.suspects) out.suspects.push_back({s.row, s.minimal_detectable});
+}
+
+constexpr std::size_t most_refitted = 20000;  // readings: fits of more cost seconds
+
+/// Which of these terms are in, in the order of the model.
+std::vector<model::Term> chosen(const std::vector<model::Term>& terms,
+                                const std::vector<char>& in) {
+  std::vector<model::Term> out;
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    if (in[t] != 0) out.push_back(terms[t]);
+  return out;
+}
+
+/// The terms in the order in which each takes most away from what those before it leave, with the
+/// shapes of the whole model. Of long tables in the order of the model.
+std::vector<std::size_t> falling_order(const PartModel& part, const model::Fit& whole) {
+  std::vector<std::size_t> order;
+  std::vector<char> in(part.terms.size(), 0);
+  while (order.size() < part.terms.size()) {
+    std::size_t best = part.terms.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t t = 0; t < part.terms.size(); ++t) {
+      if (in[t] != 0) continue;
+      if (best == part.terms.size()) best = t;
+      if (part.part.table.size() > most_refitted) break;
+      in[t] = 1;
+      const auto fitted = model::fit(part.part.table, chosen(whole.terms, in), whole.weight);
+      in[t] = 0;
+      if (fitted && fitted->rms < least) least = fitted->rms, best = t;
+    }
+    in[best] = 1;
+    order.push_back(best);
+  }
+  return order;
+}
+
+/// The error as the model grows; a step that cannot be fitted alone is left out.
+void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& whole) {
+  const std::vector<std::size_t> order = falling_order(part, whole.fit);
+  PartModel grown = part;
+  std::vector<char> in(part.terms.size(), 0);
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    grown.terms = chosen(part.terms, in);
+    if (const auto c = compare_part(grown))
+      out.steps.push_back({n == 0 ? "" : part.terms[order[n - 1]].name(), c->fit.rms, c->cv_rms});
+    in[order[n]] = 1;
+  }
+  out.steps.push_back(
+      {order.empty() ? "" : part.terms[order.back()].name(), whole.fit.rms, whole.cv_rms});
+}
+
+void put_candidates(ModelFit& out, const PartModel& part, const model::Explanation& e) {
+  for (const model::Candidate& c : e.candidates) {
+    if (!is_ranked(c) || !(c.score > 0.0)) continue;
+    const bool certain =
+        std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end();
+    out.candidates.push_back(
+        {c.term.name(), c.score, c.rms, c.cv_rms, c.p, c.minimal_detectable, c.aliases, certain});
+  }
+  out.no_sign = no_sign_findings(e, part);
+  out.next = next_findings(e, part);
+}
+
+/// The axis that moved, if only one did in all the readings; a line has the phase of no other
+/// screw.
+const Axis* one_moved(const model::Part& part) {
+  const Axis* moved = nullptr;
+  for (const auto& column : part.table.axes) {
+    const auto [low, high] = std::minmax_element(column.position.begin(), column.position.end());
+    if (low == high || !(*low < *high)) continue;
+    const auto axis = std::find_if(part.axes.begin(), part.axes.end(),
+                                   [&](const Axis& a) { return a.name == column.axis; });
+    if (moved != nullptr || axis == part.axes.end()) return nullptr;
+    moved = &*axis;
+  }
+  return moved;
+}
+
+/// The value that documents draw.
+ModelFit value_of(const PartModel& part, const model::Explanation& e) {
+  ModelFit out = fitted_value(part, e.comparison);
+  put_steps(out, part, e.comparison);
+  out.without = without_each(part);
+  put_candidates(out, part, e);
+  out.diagnosis = {verdict_finding(e, part)};
+  if (e.comparison.lack_of_fit && std::isfinite(e.comparison.lack_of_fit->F))
+    out.diagnosis.push_back(left_finding(e.comparison, part.deviation()));
+  for (const model::Place& place : e.verdict.kind == Kind::unknown ? e.fails : e.comparison.seats)
+    out.diagnosis.push_back(place_finding(place, part.deviation()));
+  for (const model::Description& d : e.descriptions)
+    out.diagnosis.push_back(description_finding(d, part));
+  if (e.verdict.trials > 0) out.diagnosis.push_back(false_alarms_finding(e.verdict));
+  return out;
+}
+
+/// Rows of a measurement that give each place, once from each direction.
+std::vector<char> first_of_each(const Observations& o) {
+  std::set<std::vector<double>> seen;
+  std::vector<char> kept(o.size(), 0);
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    std::vector<double> place{static_cast<double>(o.line.empty() ? 0 : o.line[i])};
+    for (const auto& axis : o.axes) {
+      place.push_back(axis.position[i]);
+      if (!axis.approach.empty()) place.push_back(axis.approach[i]);
+    }
+    kept[i] = seen.insert(std::move(place)).second ? 1 : 0;
+  }
+  return kept;
+}
+
+/// Deviations of the part's readings, each replaced by what the compensable effects say.
+std::vector<double> compensable_part(const model::Fit& fit) {
+  std::vector<double> said(fit.residual.size(), 0.0);
+  for (std::size_t t = 0; t < fit.terms.size(); ++t) {
+    if (!fit.terms[t].effect->compensable) continue;
+    for (std::size_t i = 0; i < said.size(); ++i) said[i] += fit.part[t][i];
+  }
+  return said;
+}
+
+std::vector<std::string> compensable(const model::Fit& fit) {
+  std::vector<std::string> names;
+  for (const model::Term& t : fit.terms)
+    if (t.effect->compensable) names.push_back(t.name());
+  return names;
+}
+
+Remark compensated(const PartModel& part, const std::vector<std::string>& effects) {
+  Remark remark{effects.empty() ? "model.not-compensated" : "model.compensated",
+                {},
+                {{"axis", part.part.name}},
+                part.part.measurements.front()};
+  if (!effects.empty()) remark.texts.emplace_back("effects", storage::listed(effects));
+  return remark;
+}
+
+}  // namespace
+
+ModelFit measured_value(const PartModel& part) {
+  const bool balls = part.part.kind == model::Part::Kind::balls;
+  const Axis* const axis = balls ? nullptr : one_moved(part.part);
+  ModelFit out;
+  out.part = out.axis = part.part.name;
+  out.measurements = part.part.measurements;
+  out.rotary = part.position() == Quantity::angle;
+  out.angular = part.part.table.angular;
+  if (axis != nullptr && axis->rotary && axis->teeth)
+    out.period = 2.0 * std::numbers::pi / static_cast<double>(*axis->teeth);
+  else if (axis != nullptr)
+    out.period = axis->screw_pitch;
+  else if (!balls)
+    out.period = 0.0;
+  put_readings(out, part.part);
+  out.residual = out.deviation;
+  return out;
+}
+
+ModelFit fitted_value(const PartModel& part, const model::Comparison& comparison) {
+  ModelFit out = measured_value(part);
+  put_fit(out, part, comparison);
+  return out;
+}
+
+std::vector<ModelFit::Without> without_each(const PartModel& part) {
+  std::vector<ModelFit::Without> out;
+  if (part.part.table.size() > most_refitted) return out;
+  for (std::size_t t = 0; t < part.terms.size(); ++t) {
+    if (part.terms[t].effect->is_nuisance) continue;
+    PartModel rest = part;
+    rest.terms.erase(rest.terms.begin() + static_cast<std::ptrdiff_t>(t));
+    if (auto c = compare_part(rest))
+      out.push_back({part.terms[t].name(), c->fit.rms, c->cv_rms, std::move(c->fit.residual)});
+  }
+  return out;
+}
+
+Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::Context& context) {
+  const Campaign& campaign = read.manifest->campaign;
+  const auto parts = part_models(read, campaign.model);
+  if (!parts) return fail(parts.error());
+  ModelFits out;
+  for (const PartModel& part : *parts) {
+    Results::Analysed one{
+        reading::model_fit_name, context.version, part.part.measurements.front(), {}};
+    Evaluation& evaluation = one.evaluation;
+    if (part.part.measurements.size() > 1)
+      evaluation.notes.push_back({"model.joined",
+                                  {},
+                                  {{"measurements", storage::listed(part.part.measurements)},
+                                   {"part", kind_of(part.part)},
+                                   {"axis", part.part.name}}});
+    if (const auto e = explain_part(part, 1)) {
+      evaluation.values = values_of(e->comparison, part.deviation());
+      evaluation.findings = Findings(part, campaign).of(*e);
+      out.models.push_back(value_of(part, *e));
+    } else {
+      evaluation.findings = {cannot_fit(e.error().message)};
+    }
+    out.analyses.push_back(std::move(one));
+  }
+  return out;
+}
+
+Expected<std::vector<Observations>> compensable_readings(const reading::ReadCampaign& read,
+                                                         std::vector<Remark>& notes) {
+  const Campaign& campaign = read.manifest->campaign;
+  auto parts = part_models(read, campaign.model);
+  if (!parts) return fail(parts.error());
+  std::vector<Observations> out = read.observations;
+  std::set<std::size_t> done;  // a measurement that belongs to two states of the machine is in two
+  for (const PartModel& part : *parts) {
+    const auto compared = compare_part(part);
+    if (!compared)
+      return fail(Error{"model.compensate: " + compared.error().message +
+                            "; no table can be written from this model",
+                        config::manifest_name});
+    const std::vector<double> said = compensable_part(compared->fit);
+    const std::vector<std::string> names = compensable(compared->fit);
+    notes.push_back(compensated(part, names));
+    for (std::size_t k = 0; k < part.part.measurements.size(); ++k)
+      for (std::size_t m = 0; m < out.size(); ++m) {
+        if (campaign.measurements[m].id != part.part.measurements[k] || done.contains(m)) continue;
+        done.insert(m);
+        if (campaign.measurements[m].kind == "ball-centres") continue;
+        for (std::size_t i = 0; i < said.size(); ++i)
+          if (part.part.measurement[i] == k) out[m].deviation[part.part.row[i]] = said[i];
+        keep_rows(out[m],
+                  names.empty() ? std::vector<char>(out[m].size(), 0) : first_of_each(out[m]));
+        out[m].run.assign(out[m].size(), 1);
+      }
+  }
+  return out;
+}
+
+}  // namespace nonio::modelling

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/modelling/model_history.h"
+
+#include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
+
+namespace nonio::modelling {
+
+namespace {
+
+std::optional<double> get(const storage::Json& json, const char* name, Quantity q) {
+  const auto found = json.find(storage::key(name, q));
+  if (found == json.end()) return std::nullopt;
+  return found->get<double>() / unit_of(q).per_si;
+}
+
+ModelStep step_of(const storage::Json& json) {
+  ModelStep step;
+  step.why = json.value("why", "");
+  const auto action = json.at("action").get<std::string>();
+  if (action == "exclude") {
+    step.excluded = Exclusion{json.at("measurement").get<std::string>(),
+                              json.at("lines").get<std::vector<std::uint32_t>>(), step.why};
+    return step;
+  }
+  if (action == "period") {
+    step.period = Period{json.at("axis").get<std::string>(), json.at("period_mm").get<double>()};
+    return step;
+  }
+  step.effect = json.at("effect").get<std::string>();
+  step.added = action == "add";
+  if (json.contains("rms_before_arcsec") || json.contains("rms_after_arcsec"))
+    step.quantity = Quantity::angular_deviation;
+  const Quantity q = step.quantity;
+  step.rms_before = get(json, "rms_before", q);
+  step.rms_after = get(json, "rms_after", q);
+  step.cv_before = get(json, "cv_rms_before", q);
+  step.cv_after = get(json, "cv_rms_after", q);
+  step.floor = get(json, "noise_floor", q);
+  return step;
+}
+
+}  // namespace
+
+std::string history_line(const ModelStep& step) {
+  storage::Json json;
+  if (step.excluded)
+    json = {{"action", "exclude"},
+            {"measurement", step.excluded->measurement},
+            {"lines", step.excluded->lines}};
+  else if (step.period)
+    json = {{"action", "period"}, {"axis", step.period->axis}, {"period_mm", step.period->mm}};
+  else
+    json = {{"action", step.added ? "add" : "drop"}, {"effect", step.effect}};
+  storage::put(json, "rms_before", step.rms_before, step.quantity);
+  storage::put(json, "rms_after", step.rms_after, step.quantity);
+  storage::put(json, "cv_rms_before", step.cv_before, step.quantity);
+  storage::put(json, "cv_rms_after", step.cv_after, step.quantity);
+  storage::put(json, "noise_floor", step.floor, step.quantity);
+  if (!step.why.empty()) json["why"] = step.why;
+  return json.dump(-1, ' ', false, storage::Json::error_handler_t::replace) + "\n";
+}
+
+Expected<std::vector<ModelStep>> parse_history(std::string_view text) {
+  std::vector<ModelStep> steps;
+  std::uint64_t line = 0;
+  while (!text.empty()) {
+    ++line;
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view one = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (one.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    try {
+      steps.push_back(step_of(storage::Json::parse(one)));
+    } catch (const storage::Json::exception&) {
+      return fail(Error{"expected a change of the model as `nonio model` writes it; found \"" +
+                            std::string(one.substr(0, 60)) + "\" (the file may be deleted)",
+                        history_name, line});
+    }
+  }
+  return steps;
+}
+
+Expected<std::vector<ModelStep>> read_history(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::exists(folder / history_name, error)) return std::vector<ModelStep>{};
+  const auto text = storage::read_file(folder / history_name);
+  if (!text) return fail(text.error());
+  return parse_history(*text);
+}
+
+}  // namespace nonio::modelling

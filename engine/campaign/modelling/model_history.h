@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/error.h"
+#include "nonio/sdk/units.h"
+
+namespace nonio::modelling {
+
+/// Readings that do not count any more: lines of the file of one measurement.
+struct Exclusion {
+  std::string measurement;
+  std::vector<std::uint32_t> lines;
+  std::string why;
+};
+
+/// The period of an axis that was set.
+struct Period {
+  std::string axis;
+  double mm = 0.0;
+};
+
+/// One change of the model, as it was noted when it was made: of an effect, or of what its fit
+/// depends on.
+struct ModelStep {
+  std::string effect;
+  bool added = true;  ///< else dropped
+  Quantity quantity = Quantity::deviation;
+  /// m or rad; absent where that model could not be fitted.
+  std::optional<double> rms_before{}, rms_after{};
+  std::optional<double> cv_before{}, cv_after{}, floor{};  ///< left-out runs; noise floor
+  std::string why{};  ///< what a person said of it; mostly nothing
+  std::optional<Exclusion> excluded{};
+  std::optional<Period> period{};
+};
+
+/// Beside campaign.toml: a JSON object a line for each change of the model, oldest first. It holds
+/// no time, so that the same changes leave the same bytes. It is a record for people: nothing is
+/// computed from it, and a night does not look at it.
+inline constexpr const char* history_name = "model-history.jsonl";
+
+std::string history_line(const ModelStep& step);
+/// Errors carry the line.
+Expected<std::vector<ModelStep>> parse_history(std::string_view text);
+
+/// Of a campaign's folder; empty if there is none.
+Expected<std::vector<ModelStep>> read_history(const std::filesystem::path& folder);
+
+}  // namespace nonio::modelling

@@ -1,0 +1,486 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long: three documents that share their parts.
+#include "campaign/modelling/model_json.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "campaign/modelling/after_table.h"
+#include "campaign/modelling/model_history.h"
+#include "platform/storage/json_values.h"
+
+namespace nonio::modelling {
+
+namespace {
+
+constexpr double high_correlation = 0.9;
+
+storage::Json parameters_json(const std::vector<model::Parameter>& parameters, bool with_effect) {
+  storage::Json list = storage::Json::array();
+  for (const model::Parameter& p : parameters) {
+    storage::Json one = storage::Json::object();
+    if (with_effect) one["effect"] = p.effect;
+    one["name"] = p.name;
+    const double value = printed(p.value, p.quantity), u = printed(p.u, p.quantity);
+    if (std::isfinite(value)) one["value"] = value;
+    if (std::isfinite(u)) one["u"] = u;
+    one["unit"] = unit_of(p.quantity).symbol;
+    if (p.shape) one["searched"] = true;
+    if (!p.shape && std::fabs(p.value) < 2.0 * p.u) one["below_uncertainty"] = true;
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+storage::Json places_json(const std::vector<model::Place>& places, const ModelWords& words,
+                          Quantity deviation) {
+  storage::Json list = storage::Json::array();
+  for (const model::Place& place : places) {
+    storage::Json one = {{"where", to_text(place.where)}};
+    if (!place.line.empty()) one["line"] = place.line;
+    storage::put(one, "share", place.share, Quantity::ratio);
+    one["says"] = words.place(place, deviation);
+    storage::put(one, "p", place.p, Quantity::probability);
+    storage::put(one, "rms", place.rms, deviation);
+    if (place.at && place.at_quantity == Quantity::count)
+      one["at_run"] = std::llround(*place.at);
+    else
+      storage::put(one, "at", place.at, place.at_quantity);
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+std::vector<model::Place> failing(const std::vector<model::Place>& places) {
+  std::vector<model::Place> out;
+  for (const model::Place& place : places)
+    if (place.p < model::place_p) out.push_back(place);
+  return out;
+}
+
+storage::Json reading_json(const ReadingPlace& at) {
+  storage::Json json = {{"measurement", at.measurement}, {"file", at.file}};
+  if (at.line != 0) json["line"] = at.line;
+  if (at.run != 0) json["run"] = at.run;
+  if (at.direction != 0) json["direction"] = at.direction > 0 ? "+" : "-";
+  storage::put(json, "target", at.target, at.position);
+  return json;
+}
+
+storage::Json suspects_json(const std::vector<model::Suspect>& suspects, const PartModel& part,
+                            const Campaign& campaign, const ModelWords& words) {
+  const Quantity q = part.deviation();
+  storage::Json list = storage::Json::array();
+  for (const model::Suspect& s : suspects) {
+    const ReadingPlace at = place_of(part, campaign, s.row);
+    storage::Json one = reading_json(at);
+    storage::put(one, "residual", s.residual, q);
+    storage::put(one, "t", s.t, Quantity::number);
+    storage::put(one, "minimal_detectable", s.minimal_detectable, q);
+    one["says"] = words.suspect(s, at, q);
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+void put_floor(storage::Json& json, const model::Comparison& c, Quantity q) {
+  if (!c.floor) return;
+  storage::put(json, "noise_floor", c.floor->s, q);
+  storage::put(json, "noise_floor_u", c.floor->u, q);
+}
+
+const char* zero_text(model::Noise::Zero zero) {
+  switch (zero) {
+    case model::Noise::Zero::walks:
+      return "walks";
+    case model::Noise::Zero::of_run:
+      return "of-run";
+    case model::Noise::Zero::of_pass:
+      return "of-pass";
+    case model::Noise::Zero::steady:
+      break;
+  }
+  return "steady";
+}
+
+/// How the noise hangs together, and what the weights and u have of it.
+void put_noise(storage::Json& json, const model::Fit& fit, Quantity q) {
+  const model::Noise& noise = fit.noise;
+  storage::Json one = {{"zero", zero_text(noise.zero)}};
+  storage::put(one, "neighbours", noise.measured, Quantity::number);
+  if (std::isfinite(noise.measured))
+    storage::put(one, "neighbours_p", noise.p, Quantity::probability);
+  storage::put(one, "neighbours_used", noise.neighbours, Quantity::number);
+  if (noise.zero != model::Noise::Zero::steady)
+    storage::put(one, "zero_s", noise.zero_found * fit.s, q);
+  if (noise.digit > 0.0) storage::put(one, "last_digit", noise.digit, q);
+  if (noise.stretch) {
+    const Quantity at = q == Quantity::deviation ? Quantity::length : Quantity::angle;
+    storage::put(one, "stretch_from", noise.stretch->from, at);
+    storage::put(one, "stretch_to", noise.stretch->to, at);
+    storage::put(one, "stretch_s", noise.stretch->inside * fit.s, q);
+    storage::put(one, "elsewhere_s", noise.stretch->outside * fit.s, q);
+  }
+  json["noise"] = std::move(one);
+}
+
+void put_lack_of_fit(storage::Json& json, const model::Comparison& c) {
+  if (!c.lack_of_fit) return;
+  storage::Json one = storage::Json::object();
+  storage::put(one, "F", c.lack_of_fit->F, Quantity::number);
+  storage::put(one, "p", c.lack_of_fit->p, Quantity::probability);
+  storage::put(one, "dof1", c.lack_of_fit->dof1, Quantity::number);
+  storage::put(one, "dof2", c.lack_of_fit->dof2, Quantity::number);
+  json["lack_of_fit"] = std::move(one);
+}
+
+storage::Json model_json(const PartModel& part, const model::Comparison& c) {
+  storage::Json json = {{"effects", part.names()}};
+  storage::put(json, "rms", c.fit.rms, part.deviation());
+  storage::put(json, "cv_rms", c.cv_rms, part.deviation());
+  json["parameters"] = parameters_json(c.fit.parameters, true);
+  return json;
+}
+
+void put_part(storage::Json& json, const PartModel& part) {
+  json["axis"] = part.part.name;
+  json["measurements"] = part.part.measurements;
+  json["observations"] = part.part.table.size();
+}
+
+storage::Json positioning_json(const AfterTable::Positioning& p, Quantity q) {
+  storage::Json json = storage::Json::object();
+  storage::put(json, "E", p.E, q);
+  storage::put(json, "A", p.A, q);
+  storage::put(json, "R", p.R, q);
+  return json;
+}
+
+/// What a table in the control would leave; nothing where the model has nothing for a table.
+void put_after_table(storage::Json& json, const model::Part& part, const model::Fit& fit,
+                     Quantity q) {
+  const AfterTable predicted = after_table(part, fit);
+  if (predicted.effects.empty()) return;
+  storage::Json one = {{"takes", predicted.effects}};
+  storage::put(one, "rms_before", predicted.rms_before, q);
+  storage::put(one, "rms", predicted.rms, q);
+  storage::Json tests = storage::Json::array();
+  for (const AfterTable::Test& test : predicted.tests)
+    tests.push_back({{"measurement", test.measurement},
+                     {"before", positioning_json(test.before, q)},
+                     {"after", positioning_json(test.after, q)}});
+  one["tests"] = std::move(tests);
+  json["after_table"] = std::move(one);
+}
+
+storage::Json compared_json(const Compared& c, const Campaign& campaign, const ModelWords& words,
+                            Extent extent = Extent::whole) {
+  const Quantity q = c.part.deviation();
+  const model::Comparison& comparison = c.comparison;
+  storage::Json json = storage::Json::object();
+  put_part(json, c.part);
+  json["model"] = model_json(c.part, comparison);
+  storage::put(json, "rms", comparison.fit.rms, q);
+  storage::put(json, "cv_rms", comparison.cv_rms, q);
+  put_floor(json, comparison, q);
+  put_noise(json, comparison.fit, q);
+  storage::put(json, "s", comparison.fit.s, q);
+  json["redundancy"] = comparison.fit.redundancy;
+  put_lack_of_fit(json, comparison);
+  if (comparison.largest != 0.0) {
+    storage::Json largest = reading_json(place_of(c.part, campaign, comparison.largest_row));
+    storage::put(largest, "residual", comparison.largest, q);
+    json["largest"] = std::move(largest);
+  }
+  storage::Json pairs = storage::Json::array();
+  for (const Correlated& pair : correlated(comparison.fit))
+    pairs.push_back({{"one", pair.one->effect + " " + pair.one->name},
+                     {"other", pair.other->effect + " " + pair.other->name},
+                     {"r", printed(pair.r, Quantity::ratio)}});
+  json["correlations"] = std::move(pairs);
+  json["fails"] = places_json(failing(comparison.places), words, q);
+  json["places"] = places_json(comparison.places, words, q);
+  json["left"] = places_json(comparison.seats, words, q);
+  if (comparison.means > 0) json["means"] = comparison.means;
+  json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
+  json["warnings"] = warnings_of(c.part, comparison.fit, words);
+  if (extent == Extent::whole) put_after_table(json, c.part.part, comparison.fit, q);
+  return json;
+}
+
+storage::Json candidate_json(const model::Candidate& c, const PartModel& part, double rms_before,
+                             const ModelWords& words) {
+  const Quantity q = part.deviation();
+  storage::Json json = {{"effect", c.term.name()}};
+  storage::put(json, "rms", c.rms, q);
+  storage::put(json, "cv_rms", c.cv_rms, q);
+  storage::put(json, "p", c.p, Quantity::probability);
+  storage::put(json, "score", c.score, Quantity::number);
+  json["parameters"] = parameters_json(c.parameters, false);
+  json["aliases"] = c.aliases;
+  if (!c.beside.empty()) json["beside"] = c.beside;
+  json["says"] = words.candidate(c, part, rms_before);
+  storage::put(json, "minimum_detectable_rms", c.minimal_detectable, q);
+  if (c.bias > 1.0) storage::put(json, "bias", c.bias, Quantity::ratio);
+  return json;
+}
+
+/// Why an effect is no candidate, in which lines of the file, and what would help.
+storage::Json unseen_json(const model::Candidate& c, const PartModel& part,
+                          const Campaign& campaign, const ModelWords& words) {
+  const std::string says = words.unseen(c, place_of(part, campaign, c.rows));
+  storage::Json json = {{"effect", c.term.name()}, {"says", says}, {"why_not", c.why}};
+  if (c.rows.empty()) return json;
+  storage::Json lines = storage::Json::array();
+  for (const std::uint32_t row : c.rows) lines.push_back(place_of(part, campaign, row).line);
+  json["lines"] = std::move(lines);
+  return json;
+}
+
+storage::Json plans_json(const std::vector<model::Plan>& plans, const ModelWords& words) {
+  storage::Json list = storage::Json::array();
+  for (const model::Plan& plan : plans) {
+    storage::Json one = {
+        {"plan", plan.id}, {"readings", plan.readings}, {"separates", {plan.one, plan.other}}};
+    if (!plan.of.empty()) one["of"] = plan.of;
+    storage::put(one, "power", plan.power, Quantity::number);
+    one["says"] = words.plan(plan);
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+storage::Json verdict_json(const Explained& e, const ModelWords& words) {
+  const model::Verdict& v = e.explanation.verdict;
+  storage::Json json = {{"kind", to_text(v.kind)}};
+  if (!v.effect.empty()) json["effect"] = v.effect;
+  json["says"] = words.verdict(e.explanation, e.part);
+  storage::put(json, "suspects_share", v.suspects_share, Quantity::ratio);
+  return json;
+}
+
+storage::Json what_if_json(const std::vector<model::Foresight>& all) {
+  storage::Json list = storage::Json::array();
+  for (const model::Foresight& one : all) {
+    storage::Json parameters = storage::Json::array(), evidence = storage::Json::array();
+    for (const auto& f : one.parameters)
+      parameters.push_back({{"effect", f.effect},
+                            {"name", f.parameter},
+                            {"factor", printed(f.factor, Quantity::ratio)}});
+    for (const auto& x : one.evidence)
+      evidence.push_back({{"effect", x.effect},
+                          {"score", printed(x.now, Quantity::ratio)},
+                          {"then", printed(x.then, Quantity::ratio)}});
+    list.push_back({{"plan", one.id},
+                    {"readings", one.readings},
+                    {"parameters", std::move(parameters)},
+                    {"evidence", std::move(evidence)}});
+  }
+  return list;
+}
+
+void put_explained(storage::Json& json, const Explained& e, const Campaign& campaign,
+                   const ModelWords& words) {
+  const model::Explanation& x = e.explanation;
+  const Quantity q = e.part.deviation();
+  json["observations"] = e.part.part.table.size();
+  json["model"] = model_json(e.part, x.comparison);
+  put_floor(json, x.comparison, q);
+  put_noise(json, x.comparison.fit, q);
+  put_lack_of_fit(json, x.comparison);
+  json["fails"] = places_json(x.fails, words, q);
+  storage::Json candidates = storage::Json::array(), unseen = storage::Json::array();
+  for (const model::Candidate& c : x.candidates)
+    if (is_ranked(c))
+      candidates.push_back(candidate_json(c, e.part, x.comparison.fit.rms, words));
+    else
+      unseen.push_back(unseen_json(c, e.part, campaign, words));
+  json["candidates"] = std::move(candidates);
+  json["unseen"] = std::move(unseen);
+  json["together"] = x.together;
+  json["certain"] = x.certain;
+  storage::Json cancelling = storage::Json::array();
+  for (const auto& pair : x.cancelling) cancelling.push_back({pair.first, pair.second});
+  json["cancelling"] = std::move(cancelling);
+  storage::Json descriptions = storage::Json::array();
+  for (const model::Description& d : x.descriptions) {
+    storage::Json one = {{"effect", d.term.name()}};
+    storage::put(one, "rms", d.rms, q);
+    storage::put(one, "low", d.low, q);
+    storage::put(one, "high", d.high, q);
+    storage::put(one, "mean", d.mean, q);
+    one["says"] = words.description(d, e.part);
+    descriptions.push_back(std::move(one));
+  }
+  json["descriptions"] = std::move(descriptions);
+  json["verdict"] = verdict_json(e, words);
+  json["plans"] = plans_json(x.plans, words);
+  json["next"] = words.next(x, e.part);
+  if (const std::string text = words.no_sign(x, e.part); !text.empty()) json["no_sign"] = text;
+  if (x.verdict.trials > 0) {
+    storage::put(json, "false_alarm_rate", x.verdict.false_alarms, Quantity::ratio);
+    json["false_alarm_trials"] = x.verdict.trials;
+  }
+  json["suspects"] = suspects_json(x.comparison.suspects, e.part, campaign, words);
+  json["warnings"] = warnings_of(e.part, x.comparison.fit, words);
+  if (e.what_if) json["what_if"] = what_if_json(*e.what_if);
+}
+
+storage::Json steps_json(const std::vector<ModelStep>& steps) {
+  storage::Json list = storage::Json::array();
+  for (const ModelStep& step : steps) list.push_back(storage::Json::parse(history_line(step)));
+  return list;
+}
+
+void put_trouble(storage::Json& json, const std::vector<std::string>& warnings,
+                 const std::vector<Error>& errors) {
+  if (!warnings.empty()) json["campaign_warnings"] = warnings;
+  storage::Json list = storage::Json::array();
+  for (const Error& e : errors) list.push_back(storage::to_json(e));
+  json["errors"] = std::move(list);
+}
+
+}  // namespace
+
+const char* to_text(model::Verdict::Kind kind) {
+  switch (kind) {
+    case model::Verdict::Kind::missing:
+      return "missing";
+    case model::Verdict::Kind::nothing:
+      return "nothing";
+    case model::Verdict::Kind::unknown:
+      return "unknown";
+    case model::Verdict::Kind::unrepeatable:
+      break;
+  }
+  return "unrepeatable";
+}
+
+bool is_ranked(const model::Candidate& c) {
+  return c.visible && std::isfinite(c.score) && (c.rms > 0.0 || !c.parameters.empty());
+}
+
+std::vector<Correlated> correlated(const model::Fit& fit) {
+  std::vector<Correlated> out;
+  for (std::size_t i = 0; i < fit.correlation.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (const double r = fit.correlation[i][j]; std::fabs(r) > high_correlation)
+        out.push_back({&fit.parameters[j], &fit.parameters[i], r});
+  return out;
+}
+
+namespace {
+
+std::size_t most_severe_of(const std::vector<Told>& parts) {
+  using Verdict = model::Verdict::Kind;
+  for (const Verdict kind : {Verdict::missing, Verdict::unrepeatable, Verdict::unknown})
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (parts[i].kind == to_text(kind)) return i;
+  return 0;
+}
+
+}  // namespace
+
+std::vector<Told> told_of(const std::vector<Explained>& all) {
+  std::vector<Told> told;
+  for (const Explained& e : all)
+    told.push_back(
+        {to_text(e.explanation.verdict.kind), e.explanation.verdict.effect, e.explanation.certain});
+  return told;
+}
+
+std::size_t most_severe(const std::vector<Explained>& all) { return most_severe_of(told_of(all)); }
+
+std::string next_effect(const std::vector<Told>& parts) {
+  using Verdict = model::Verdict::Kind;
+  if (parts.empty()) return {};
+  const Told& worst = parts[most_severe_of(parts)];
+  if (worst.kind == to_text(Verdict::missing)) return worst.effect;
+  if (worst.kind == to_text(Verdict::unknown) && !worst.certain.empty())
+    return worst.certain.front();
+  return {};
+}
+
+std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
+                                     const ModelWords& words) {
+  std::vector<std::string> out;
+  for (const std::string& effect : below_uncertainty(fit))
+    out.push_back(words.below_uncertainty(effect));
+  for (std::size_t t = 0; t < fit.lost.size(); ++t)
+    if (fit.lost[t] > 0) out.push_back(words.not_told(fit.terms[t].name(), fit.lost[t]));
+  if (part.part.kind == model::Part::Kind::space && model::stood_somewhere(part.part))
+    out.push_back(words.stood_somewhere());
+  for (const std::string& measurement : part.part.order_assumed)
+    out.push_back(words.order_assumed(measurement));
+  if (!part.part.table.order_known) out.push_back(words.order_unknown());
+  if (part.interpolated.count > 0) out.push_back(words.temperature_interpolated(part.interpolated));
+  for (std::string& said : words.time_constants(part, fit)) out.push_back(std::move(said));
+  for (std::string& said : words.noise(fit, part)) out.push_back(std::move(said));
+  return out;
+}
+
+std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words,
+                      Extent extent) {
+  return storage::dump(compared_json(compared, campaign, words, extent));
+}
+
+std::string part_json(const Explained& explained, const Campaign& campaign,
+                      const ModelWords& words) {
+  storage::Json one = storage::Json::object();
+  put_part(one, explained.part);
+  put_explained(one, explained, campaign, words);
+  return storage::dump(one);
+}
+
+std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
+                         const ModelWords& words, const std::vector<std::string>& warnings,
+                         const std::vector<Error>& errors) {
+  storage::Json json = {{"schema", "nonio-compare/1"}, {"campaign", campaign.id}};
+  json["model"] = {{"effects", campaign.model}};
+  storage::Json parts = storage::Json::array();
+  for (const Compared& c : all) parts.push_back(compared_json(c, campaign, words));
+  json["parts"] = std::move(parts);
+  put_trouble(json, warnings, errors);
+  return storage::dump(json);
+}
+
+std::string foresight_json(const std::vector<model::Foresight>& all) {
+  return storage::dump(what_if_json(all));
+}
+
+std::string explain_json(const std::vector<Explained>& all, const Campaign& campaign,
+                         const ModelWords& words, std::uint64_t seed,
+                         const std::vector<ModelStep>& steps,
+                         const std::vector<std::string>& warnings,
+                         const std::vector<Error>& errors) {
+  storage::Json json = {{"schema", "nonio-explain/1"}, {"campaign", campaign.id}};
+  if (!all.empty()) {
+    put_explained(json, all[most_severe(all)], campaign, words);
+    json["axis"] = all[most_severe(all)].part.part.name;
+  }
+  if (all.size() != 1) {
+    storage::Json parts = storage::Json::array();
+    for (const Explained& e : all) {
+      storage::Json one = storage::Json::object();
+      put_part(one, e.part);
+      put_explained(one, e, campaign, words);
+      parts.push_back(std::move(one));
+    }
+    json["parts"] = std::move(parts);
+  }
+  json["seed"] = seed;
+  if (!steps.empty()) json["steps"] = steps_json(steps);
+  put_trouble(json, warnings, errors);
+  return storage::dump(json);
+}
+
+std::string change_json(const Change& change, const Campaign& campaign, const ModelWords& words) {
+  storage::Json json = {{"schema", "nonio-model/1"}, {"campaign", campaign.id}};
+  json["step"] = storage::Json::parse(history_line(change.step));
+  json["effects"] = change.effects;
+  if (change.before) json["before"] = compared_json(*change.before, campaign, words);
+  if (change.after) json["after"] = compared_json(*change.after, campaign, words);
+  return storage::dump(json);
+}
+
+}  // namespace nonio::modelling

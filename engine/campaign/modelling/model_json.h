@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "campaign/modelling/model_change.h"
+#include "campaign/modelling/model_words.h"
+
+namespace nonio::modelling {
+
+struct Explained {
+  PartModel part;
+  model::Explanation explanation;
+  std::optional<std::vector<model::Foresight>> what_if{};  ///< if it was asked for
+};
+
+/// The part whose verdict asks most: missing, unrepeatable, unknown, nothing.
+std::size_t most_severe(const std::vector<Explained>& all);
+
+/// Sentences about values below their uncertainty and effects that nothing here measures.
+std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
+                                     const ModelWords& words);
+
+/// What the page shows first goes without what a table would leave: that comes with the whole.
+enum class Extent { whole, first };
+
+/// One entry of "parts" in nonio-compare/1 and nonio-explain/1.
+std::string part_json(const Compared& compared, const Campaign& campaign, const ModelWords& words,
+                      Extent = Extent::whole);
+std::string part_json(const Explained& explained, const Campaign& campaign,
+                      const ModelWords& words);
+
+/// What belongs into the model beyond doubt, by the verdict that asks most; "": nothing more. This
+/// is one step of `nonio explain --auto`.
+struct Told {
+  std::string kind, effect;          ///< of the verdict of one part
+  std::vector<std::string> certain;  ///< most evidence first
+};
+std::vector<Told> told_of(const std::vector<Explained>& all);
+std::string next_effect(const std::vector<Told>& parts);
+
+/// docs/json.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. Where `all` is empty, `errors`
+/// say why; they and `warnings` are those of the campaign.
+std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
+                         const ModelWords& words, const std::vector<std::string>& warnings,
+                         const std::vector<Error>& errors);
+/// What one run more would do: `what_if` of nonio-explain/1.
+std::string foresight_json(const std::vector<model::Foresight>& all);
+std::string explain_json(const std::vector<Explained>& all, const Campaign& campaign,
+                         const ModelWords& words, std::uint64_t seed,
+                         const std::vector<ModelStep>& steps,
+                         const std::vector<std::string>& warnings,
+                         const std::vector<Error>& errors);
+std::string change_json(const Change& change, const Campaign& campaign, const ModelWords& words);
+
+const char* to_text(model::Verdict::Kind kind);
+
+/// Pairs of parameters with |r| beyond 0.9.
+struct Correlated {
+  const model::Parameter *one, *other;
+  double r;
+};
+std::vector<Correlated> correlated(const model::Fit& fit);
+
+/// Candidates that have a score, best first; the others are what these readings cannot show.
+bool is_ranked(const model::Candidate& candidate);
+
+}  // namespace nonio::modelling

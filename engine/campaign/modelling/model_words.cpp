@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long: one finding after the other, from the numbers of the model to its words.
+#include "campaign/modelling/model_words.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "campaign/modelling/model_json.h"
+#include "campaign/modelling/thermal_tests.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::modelling {
+
+namespace {
+
+using Kind = model::Verdict::Kind;
+using model::Factor;
+
+Number percent(const char* name, double share) {
+  return {name, std::round(100.0 * share), Quantity::count};
+}
+
+std::string id_of(Kind kind) {
+  switch (kind) {
+    case Kind::missing:
+      return "missing";
+    case Kind::nothing:
+      return "nothing";
+    case Kind::unknown:
+      return "unknown";
+    case Kind::unrepeatable:
+      break;
+  }
+  return "unrepeatable";
+}
+
+std::string kind_of(const std::string& effect) { return effect.substr(0, effect.find(':')); }
+
+}  // namespace
+
+std::string where_largest(const model::Place& place, const std::string& language) {
+  if (!place.at || !std::isfinite(*place.at)) return {};
+  const std::string number =
+      localised(evidence_text({"at", *place.at, place.at_quantity}), language);
+  const std::string_view unit = unit_of(place.at_quantity).symbol;
+  return unit.empty() ? number : number + " " + std::string(unit);
+}
+
+std::string ModelWords::says(const std::string& id, std::vector<Number> numbers,
+                             std::vector<std::pair<std::string, std::string>> texts) const {
+  return finding_text(templates_, language_,
+                      {.id = id, .evidence = std::move(numbers), .texts = std::move(texts)},
+                      "says");
+}
+
+std::string on_line(const model::Place& place) {
+  return place.line.empty() ? "" : " (" + place.line + ")";
+}
+
+Finding place_finding(const model::Place& place, Quantity deviation) {
+  const std::string of = place.together ? "together" : to_text(place.where);
+  return {.id = (place.line.empty() ? "place." : "place.line.") + of,
+          .evidence = {percent("share", place.share),
+                       {"rms", place.rms, deviation},
+                       {"p", place.p, Quantity::probability}},
+          .texts = {{"where", to_text(place.where)}, {"line", place.line}}};
+}
+
+Finding plan_finding(const model::Plan& plan) {
+  return {.id = "plan." + plan.id,
+          .evidence = {{"readings", static_cast<double>(plan.readings), Quantity::count},
+                       {"power", plan.power, Quantity::number}},
+          .texts = {{"one", plan.one}, {"other", plan.other}, {"of", plan.of}}};
+}
+
+Finding description_finding(const model::Description& d, const PartModel& part) {
+  using What = model::Description::What;
+  const Quantity q = part.deviation();
+  const char* of = d.what == What::reversal_at_targets ? "reversal"
+                   : d.what == What::value_at_targets  ? "place"
+                                                       : "course";
+  return {.id = std::string("description.") + of,
+          .evidence = {{"after", d.rms, q},
+                       {"low", d.low, q},
+                       {"high", d.high, q},
+                       {"mean", d.mean, q}},
+          .texts = {{"effect", d.term.name()}}};
+}
+
+Finding false_alarms_finding(const model::Verdict& v) {
+  // Of none in n the upper end of Wilson's 95 % interval is told: z^2/(n + z^2).
+  const double n = static_cast<double>(v.trials), z2 = 1.959964 * 1.959964;
+  const bool any = v.false_alarms > 0.0;
+  const double share = any ? v.false_alarms : z2 / (n + z2);
+  return {.id = any ? "false-alarms" : "false-alarms.none",
+          .evidence = {{"times", std::round(1.0 / share), Quantity::count}}};
+}
+
+std::vector<Finding> no_sign_findings(const model::Explanation& e, const PartModel& part) {
+  std::vector<Finding> out;
+  for (const model::Candidate& c : e.candidates) {
+    if (!is_ranked(c) || c.score > 0.0) continue;
+    out.push_back({.id = out.empty() ? "no-sign.first" : "no-sign.other",
+                   .evidence = {{"size", c.minimal_detectable, part.deviation()}},
+                   .texts = {{"effect", c.term.name()}}});
+  }
+  return out;
+}
+
+namespace {
+
+// docs/constants.md, M24.
+constexpr double told_apart = 4.0;         // standard deviations
+constexpr std::size_t enough_targets = 9;  // a wave and a bend need as many columns as 5 targets
+
+class Next {
+ public:
+  Next(const model::Explanation& e, const PartModel& part) : e_(e), part_(part) {}
+
+  std::vector<Finding> all() {
+    plan();
+    if (e_.verdict.kind == Kind::unknown)
+      for (const model::Place& place : e_.fails) at(place);
+    return std::move(out_);
+  }
+
+ private:
+  void add(const char* id, std::vector<Number> numbers = {},
+           std::vector<std::pair<std::string, std::string>> texts = {}) {
+    const std::string name = std::string("next.") + id;
+    if (std::none_of(out_.begin(), out_.end(), [&](const Finding& f) { return f.id == name; }))
+      out_.push_back({.id = name, .evidence = std::move(numbers), .texts = std::move(texts)});
+  }
+
+  /// The cheapest that tells them apart.
+  void plan() {
+    if (e_.plans.empty()) return;
+    const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
+                                   [](const model::Plan& p) { return p.power >= told_apart; });
+    if (good != e_.plans.end()) return out_.push_back(plan_finding(*good));
+    const auto [low, high] = std::minmax_element(part_.part.along.begin(), part_.part.along.end());
+    add("wider",
+        {{"from", *low, part_.position()},
+         {"to", *high, part_.position()},
+         {"power", e_.plans.front().power, Quantity::number}},
+        {{"one", e_.plans.front().one}, {"other", e_.plans.front().other}});
+  }
+
+  void at(const model::Place& place) {
+    if (place.where.has(Factor::time) || place.where.has(Factor::run)) {
+      time(place);
+    } else if (place.where.has(Factor::temperature)) {
+      add("settle");
+    } else if (place.where.has(Factor::position) || place.where.has(Factor::screw_phase) ||
+               place.where.has(Factor::angle)) {
+      position(place);
+    } else {
+      add("both-sides");
+    }
+  }
+
+  void time(const model::Place& place) {
+    const Observations& o = part_.part.table;
+    const auto known = [&](const std::vector<double>& column) {
+      return column.size() == o.size() &&
+             std::any_of(column.begin(), column.end(), [](double v) { return std::isfinite(v); });
+    };
+    if (place.where.has(Factor::run) && place.at && std::isfinite(*place.at))
+      add("run", {{"at", *place.at, Quantity::count}});
+    if (!known(o.time))
+      add("times");
+    else if (!known(o.material))
+      add("temperatures");
+    add("settle");
+  }
+
+  void position(const model::Place& place) {
+    std::set<double> targets(part_.part.along.begin(), part_.part.along.end());
+    const auto count = static_cast<double>(targets.size());
+    if (part_.part.kind == model::Part::Kind::axis && targets.size() < enough_targets)
+      add("more-targets", {{"targets", count, Quantity::count},
+                           {"wanted", static_cast<double>(enough_targets), Quantity::count}});
+    else if (place.at && std::isfinite(*place.at))
+      add("around", {{"at", *place.at, place.at_quantity}});
+    else
+      add("between");
+  }
+
+  const model::Explanation& e_;
+  const PartModel& part_;
+  std::vector<Finding> out_;
+};
+
+}  // namespace
+
+std::vector<Finding> next_findings(const model::Explanation& e, const PartModel& part) {
+  return Next(e, part).all();
+}
+
+std::optional<ModelFit::Curve> curve_of(const PartModel& part, const model::Fit& fit,
+                                        std::size_t term) {
+  if (!fit.terms[term].effect->curve) return std::nullopt;
+  const std::vector<double>& says = fit.part[term];
+  ModelFit::Curve out;
+  double squares = 0.0, weight = 0.0;
+  for (std::size_t i = 0; i < says.size(); ++i) {
+    squares += fit.weight[i] * says[i] * says[i];
+    weight += fit.weight[i];
+  }
+  const auto [low, high] = std::minmax_element(says.begin(), says.end());
+  if (low == says.end() || !(weight > 0.0)) return std::nullopt;
+  out.rms = std::sqrt(squares / weight);
+  out.low = *low;
+  out.high = *high;
+  if (part.part.kind == model::Part::Kind::space) return out;
+  const auto place = [&](double value) -> std::optional<double> {
+    std::optional<double> at;
+    for (std::size_t i = 0; i < says.size(); ++i) {
+      if (!(std::fabs(says[i] - value) <= 1e-9 * (out.high - out.low))) continue;
+      if (at && !(std::fabs(part.part.along[i] - *at) <= 1e-9)) return std::nullopt;
+      at = part.part.along[i];
+    }
+    return at;
+  };
+  out.low_at = place(out.low);
+  out.high_at = place(out.high);
+  return out;
+}
+
+Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
+  const model::Verdict& v = e.verdict;
+  const Quantity q = part.deviation();
+  Finding f{.id = "verdict." + id_of(v.kind), .attention = v.kind != Kind::nothing};
+  f.evidence = {{"rms", e.comparison.fit.rms, q}, percent("suspects", v.suspects_share)};
+  if (e.comparison.floor) f.evidence.push_back({"floor", e.comparison.floor->s, q});
+  f.texts = {{"part", kind_of(part.part)}, {"axis", part.part.name}, {"effect", v.effect}};
+  f.measurement = part.part.measurements.front();
+  if (v.kind == Kind::unrepeatable) {
+    const auto count = [](std::size_t n) { return static_cast<double>(n); };
+    f.evidence.push_back({"count", count(e.comparison.suspects.size()), Quantity::count});
+    f.evidence.push_back({"readings", count(part.part.table.size()), Quantity::count});
+    if (!e.fails.empty() && e.fails.front().where == model::Where{Factor::run})
+      f.id += "-run";
+    else if (e.comparison.suspects.size() <= 2)
+      f.id += "-two";
+  }
+  if (v.kind == Kind::missing && !e.candidates.empty()) {
+    const model::Candidate& c = e.candidates.front();
+    f.evidence.push_back({"after", c.rms, q});
+    if (!c.aliases.empty()) {
+      f.id = "verdict.missing-or-alias";
+      f.texts.emplace_back("aliases", storage::listed(c.aliases));
+    }
+  }
+  if ((v.kind == Kind::nothing || v.kind == Kind::unknown) && !e.comparison.floor)
+    f.id += "-without-floor";
+  if (v.kind == Kind::unknown && !e.certain.empty()) {
+    f.id = "verdict.certain";
+    f.texts.emplace_back("effects", storage::listed(e.certain));
+    f.evidence.push_back({"after", e.certain_rms, q});
+  }
+  return f;
+}
+
+std::string ModelWords::place(const model::Place& place, Quantity deviation) const {
+  Finding f = place_finding(place, deviation);
+  std::string text = finding_text(templates_, language_, f, "says");
+  if (text.empty()) {
+    f.id = "place.other";
+    text = finding_text(templates_, language_, f, "says");
+  }
+  const std::string at = where_largest(place, language_);
+  if (at.empty()) return text;
+  const std::string largest = says("place.largest." + to_text(place.where), {}, {{"at", at}});
+  return largest.empty() ? text : text + " " + largest;
+}
+
+std::string ModelWords::verdict(const model::Explanation& e, const PartModel& part) const {
+  std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
+  if (e.one_growth && e.verdict.kind == Kind::missing)
+    text += " " + says("one-growth", {{"at", *e.one_growth, Quantity::length}}, {});
+  if (e.verdict.kind != Kind::unknown) return text;
+  for (const auto& [one, other] : e.cancelling) text += " " + cancelling(one, other);
+  if (!e.fails.empty()) text += " " + place(e.fails.front(), part.deviation());
+  return text;
+}
+
+std::string ModelWords::description(const model::Description& d, const PartModel& part) const {
+  return finding_text(templates_, language_, description_finding(d, part), "says");
+}
+
+std::string ModelWords::candidate(const model::Candidate& c, const PartModel& part,
+                                  double rms_before) const {
+  const Quantity q = part.deviation();
+  const std::vector<Number> numbers = {{"before", rms_before, q},
+                                       {"after", c.rms, q},
+                                       {"p", c.p, Quantity::probability},
+                                       {"detectable", c.minimal_detectable, q}};
+  constexpr double worth_saying = 1.05;
+  const char* id = !(c.score > 0.0)     ? "candidate.none"
+                   : !c.beside.empty()  ? "candidate.beside"
+                   : !c.aliases.empty() ? "candidate.alias"
+                                        : "candidate.evidence";
+  std::string text = says(id, numbers,
+                          {{"effect", c.term.name()},
+                           {"aliases", storage::listed(c.aliases)},
+                           {"beside", storage::listed(c.beside)}});
+  if (c.score > 0.0 && c.bias > worth_saying)
+    text += " " + says("candidate.near",
+                       {{"detectable", c.minimal_detectable, q}, {"bias", c.bias, Quantity::ratio}},
+                       {});
+  return text;
+}
+
+std::string ModelWords::unseen(const model::Candidate& c, const RowsPlace& rows) const {
+  const std::string text =
+      says("unseen." + c.why, {{"count", static_cast<double>(rows.count), Quantity::count}},
+           {{"effect", c.term.name()}, {"file", rows.file}, {"lines", rows.lines}});
+  return text.empty() ? says("unseen.other", {}, {{"effect", c.term.name()}, {"why", c.why}})
+                      : text;
+}
+
+std::string ModelWords::temperature_interpolated(const RowsPlace& rows) const {
+  return says("temperature-interpolated",
+              {{"count", static_cast<double>(rows.count), Quantity::count}},
+              {{"file", rows.file}, {"lines", rows.lines}});
+}
+
+std::string ModelWords::cancelling(const std::string& one, const std::string& other) const {
+  return says("cancelling", {}, {{"one", one}, {"other", other}});
+}
+
+std::string ModelWords::plan(const model::Plan& plan) const {
+  std::string text = finding_text(templates_, language_, plan_finding(plan), "says");
+  return text.empty() ? plan.id : text;
+}
+
+std::string ModelWords::no_sign(const model::Explanation& e, const PartModel& part) const {
+  std::string text;
+  for (const Finding& f : no_sign_findings(e, part))
+    text += (text.empty() ? "" : ", ") + finding_text(templates_, language_, f, "says");
+  return text.empty() ? text : text + ".";
+}
+
+std::vector<std::string> ModelWords::next(const model::Explanation& e,
+                                          const PartModel& part) const {
+  std::vector<std::string> out;
+  for (const Finding& f : next_findings(e, part))
+    out.push_back(finding_text(templates_, language_, f, "says"));
+  return out;
+}
+
+std::string ModelWords::false_alarms(const model::Verdict& v) const {
+  return finding_text(templates_, language_, false_alarms_finding(v), "says");
+}
+
+Finding left_finding(const model::Comparison& c, Quantity q) {
+  const double s = c.floor ? c.floor->s : 0.0;
+  const double beyond = std::sqrt(std::max(0.0, c.fit.rms * c.fit.rms - s * s));
+  const char* id = !(c.lack_of_fit->p < model::place_p) || !(beyond > 0.0) ? "left.noise"
+                   : beyond > s                                            ? "left.far-more"
+                                                                           : "left.more";
+  return {.id = id, .evidence = {{"beyond", beyond, q}}};
+}
+
+std::string ModelWords::lack_of_fit(const model::Comparison& c, Quantity q) const {
+  return finding_text(templates_, language_, left_finding(c, q), "says");
+}
+
+std::string ModelWords::curve(const ModelFit::Curve& c, const PartModel& part) const {
+  const Quantity q = part.deviation();
+  std::vector<Number> numbers{{"rms", c.rms, q}, {"low", c.low, q}, {"high", c.high, q}};
+  const bool placed = c.low_at && c.high_at;
+  if (placed) {
+    numbers.push_back({"low_at", *c.low_at, part.position()});
+    numbers.push_back({"high_at", *c.high_at, part.position()});
+  }
+  return says(placed ? "curve.placed" : "curve", std::move(numbers), {});
+}
+
+std::string ModelWords::suspect(const model::Suspect& s, const ReadingPlace& at, Quantity q) const {
+  return says("suspect",
+              {{"residual", s.residual, q},
+               {"detectable", s.minimal_detectable, q},
+               {"target", at.target, at.position},
+               {"run", static_cast<double>(at.run), Quantity::count},
+               {"line", static_cast<double>(at.line), Quantity::count}},
+              {{"direction", at.direction > 0 ? "+" : "-"},
+               {"measurement", at.measurement},
+               {"file", at.file}});
+}
+
+std::string ModelWords::below_uncertainty(const std::string& effect) const {
+  return says("below-uncertainty", {}, {{"effect", effect}});
+}
+
+std::string ModelWords::not_told(const std::string& effect, std::size_t parameters) const {
+  return says("not-told", {{"parameters", static_cast<double>(parameters), Quantity::count}},
+              {{"effect", effect}});
+}
+
+std::string ModelWords::stood_somewhere() const { return says("stood-somewhere", {}, {}); }
+
+std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartModel& part) const {
+  using Zero = model::Noise::Zero;
+  constexpr double told_below = 0.01;
+  const model::Noise& noise = fit.noise;
+  const Quantity q = part.deviation();
+  std::vector<std::string> out;
+  if (noise.neighbours > 0.0 && noise.p < told_below)
+    out.push_back(says("noise.neighbours",
+                       {{"r", std::round(100.0 * noise.measured) / 100.0, Quantity::number},
+                        {"p", noise.p, Quantity::probability}},
+                       {}));
+  if (noise.zero != Zero::steady)
+    out.push_back(says(noise.zero == Zero::walks    ? "noise.walks"
+                       : noise.zero == Zero::of_run ? "noise.of-run"
+                                                    : "noise.of-pass",
+                       {{"s", noise.zero_found * fit.s, q}}, {}));
+  std::string open;
+  for (const model::Parameter& p : fit.parameters)
+    if (noise.zero_open && !p.shape && !std::isfinite(p.u))
+      open += (open.empty() ? "" : ", ") + p.effect + " " + p.name;
+  if (!open.empty()) out.push_back(says("noise.open", {}, {{"parameters", open}}));
+  if (const auto& stretch = noise.stretch) {
+    const Quantity at = part.position();
+    out.push_back(says("noise.stretch",
+                       {{"from", stretch->from, at},
+                        {"to", stretch->to, at},
+                        {"inside", stretch->inside * fit.s, q},
+                        {"outside", stretch->outside * fit.s, q}},
+                       {}));
+  }
+  if (noise.digit / std::sqrt(12.0) > fit.s)
+    out.push_back(says("noise.digit", {{"q", noise.digit, q}}, {}));
+  return out;
+}
+
+std::string ModelWords::order_assumed(const std::string& measurement) const {
+  return says("order-assumed", {}, {{"measurement", measurement}});
+}
+
+std::vector<std::string> ModelWords::time_constants(const PartModel& part,
+                                                    const model::Fit& fit) const {
+  std::vector<std::string> out;
+  for (const Finding& f : time_constant_findings(part, fit))
+    out.push_back(finding_text(templates_, language_, f, "says"));
+  return out;
+}
+
+std::string ModelWords::order_unknown() const { return says("order-unknown", {}, {}); }
+
+std::string ModelWords::unmeasured(const std::string& effect) const {
+  return says("unmeasured", {}, {{"effect", effect}});
+}
+
+std::string ModelWords::card(const std::string& effect, const std::string& what) const {
+  return words(templates_, language_, "effect." + kind_of(effect) + "." + what);
+}
+
+}  // namespace nonio::modelling

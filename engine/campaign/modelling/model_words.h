@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "campaign/config/terminal_words.h"
+#include "campaign/modelling/campaign_model.h"
+#include "nonio/sdk/results.h"
+#include "nonio/sdk/settings.h"
+#include "platform/storage/nearest.h"
+
+/// Sentences about a model, from templates/words/<language>/model.toml.
+namespace nonio::modelling {
+
+class ModelWords {
+ public:
+  ModelWords(const Templates& templates, std::string language)
+      : templates_(templates), language_(std::move(language)) {}
+
+  /// Labels and phrases of the terminal in the same language.
+  config::TerminalWords terminal() const { return {templates_, language_}; }
+
+  std::string place(const model::Place& place, Quantity deviation) const;
+  std::string verdict(const model::Explanation& explanation, const PartModel& part) const;
+  std::string candidate(const model::Candidate& candidate, const PartModel& part,
+                        double rms_before) const;
+  /// Why these readings cannot show it.
+  std::string unseen(const model::Candidate& candidate, const RowsPlace& rows) const;
+  std::string temperature_interpolated(const RowsPlace& rows) const;
+  /// Two effects that cancel each other: neither is shown.
+  std::string cancelling(const std::string& one, const std::string& other) const;
+  std::string plan(const model::Plan& plan) const;
+  /// The candidates without evidence in one sentence, with the smallest that would be seen; "" if
+  /// there is none.
+  std::string no_sign(const model::Explanation& explanation, const PartModel& part) const;
+  /// What to measure next, a sentence each.
+  std::vector<std::string> next(const model::Explanation& explanation, const PartModel& part) const;
+  std::string false_alarms(const model::Verdict& verdict) const;
+  std::string lack_of_fit(const model::Comparison& comparison, Quantity deviation) const;
+  /// "RMS 0.7 um, from -1.1 um at 210 mm to 0.9 um at 640 mm"
+  std::string curve(const ModelFit::Curve& curve, const PartModel& part) const;
+  std::string suspect(const model::Suspect& suspect, const ReadingPlace& place,
+                      Quantity deviation) const;
+  std::string below_uncertainty(const std::string& effect) const;
+  /// A curve in space some of whose parameters are counted to other effects.
+  std::string not_told(const std::string& effect, std::size_t parameters) const;
+  /// Measurements that do not say where the other axes stood.
+  std::string description(const model::Description&, const PartModel&) const;
+  std::string order_assumed(const std::string& measurement) const;
+  /// How the noise of a fit is other than independent readings of one scatter; mostly nothing.
+  std::vector<std::string> noise(const model::Fit& fit, const PartModel& part) const;
+  /// What thermal tests of the campaign state for this part, a sentence an axis.
+  std::vector<std::string> time_constants(const PartModel& part, const model::Fit& fit) const;
+  std::string order_unknown() const;
+  std::string stood_somewhere() const;
+  std::string unmeasured(const std::string& effect) const;
+  /// What the catalogue says of an effect by its kind: "is", "size", "looks", "cure"; "" if
+  /// nothing.
+  std::string card(const std::string& effect, const std::string& what) const;
+
+ private:
+  std::string says(const std::string& id, std::vector<Number> numbers,
+                   std::vector<std::pair<std::string, std::string>> texts) const;
+
+  const Templates& templates_;
+  std::string language_;
+};
+
+/// The same as findings, for documents in any language: ids "verdict.*" and "place.*".
+Finding verdict_finding(const model::Explanation& explanation, const PartModel& part);
+Finding place_finding(const model::Place& place, Quantity deviation);
+Finding plan_finding(const model::Plan& plan);
+Finding description_finding(const model::Description& description, const PartModel& part);
+Finding false_alarms_finding(const model::Verdict& verdict);
+/// How far what is left goes beyond the noise.
+Finding left_finding(const model::Comparison& comparison, Quantity deviation);
+std::vector<Finding> no_sign_findings(const model::Explanation& explanation, const PartModel& part);
+std::vector<Finding> next_findings(const model::Explanation& explanation, const PartModel& part);
+
+/// Of a curve in the fit what its parameters come to; nothing of other effects.
+std::optional<ModelFit::Curve> curve_of(const PartModel& part, const model::Fit& fit,
+                                        std::size_t term);
+
+/// " (D1)" of a place on one line, else nothing.
+std::string on_line(const model::Place& place);
+
+/// "12.5 mm", "run 3": where a place is largest; "" if it is not at one place.
+std::string where_largest(const model::Place& place, const std::string& language);
+
+}  // namespace nonio::modelling

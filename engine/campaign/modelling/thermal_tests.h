@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "campaign/modelling/campaign_model.h"
+#include "nonio/sdk/results.h"
+
+namespace nonio::modelling {
+
+/// What became of the time constants that the thermal tests of the campaign state for the axes of
+/// this part: who uses them, or why nobody does. Nothing where no effect asks for one.
+std::vector<Finding> time_constant_findings(const PartModel& part, const model::Fit& fit);
+
+}  // namespace nonio::modelling

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/reading/campaign_reader.h"
+
+#include <algorithm>
+
+#include "campaign/config/certificate_reader.h"
+#include "campaign/config/formula.h"
+#include "campaign/config/table_files.h"
+#include "campaign/reading/formula_copy.h"
+#include "campaign/reading/measurement_reader.h"
+#include "campaign/reading/names.h"
+#include "nonio/model/explain.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+
+namespace nonio::reading {
+namespace fs = std::filesystem;
+
+void report_in(ReadCampaign& out, Error error) {
+  if (error.line == 0 && !error.file.empty()) error.line = 1;
+  out.errors.push_back(std::move(error));
+}
+
+Error key_error(const CampaignSource& from, const ReadCampaign& out, std::string key,
+                const std::string& message) {
+  Error error{key + ": " + message};
+  error.key = std::move(key);
+  locate(error, out.manifest->lines, from.context.site.lines);
+  return error;
+}
+
+void note_input(ReadCampaign& out, const std::string& name, const std::string& digest_now) {
+  for (const auto& [known, digest] : out.inputs)
+    if (known == input_name(name)) return;
+  out.inputs.emplace_back(input_name(name), digest_now);
+}
+
+namespace {
+
+const Campaign& campaign_in(const ReadCampaign& out) { return out.manifest->campaign; }
+
+/// False if it cannot be read.
+bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
+  from.stage("reading campaign.toml");
+  const auto text = storage::read_small_file(from.folder / config::manifest_name);
+  if (!text) {
+    report_in(out, Error{text.error().message, config::manifest_name});
+    return false;
+  }
+  out.inputs.emplace_back(config::manifest_name, storage::sha256(*text));
+  auto manifest = config::parse_manifest(*text, config::manifest_name);
+  if (!manifest) {
+    for (Error& error : manifest.error()) report_in(out, std::move(error));
+    return false;
+  }
+  out.manifest = std::move(*manifest);
+  Campaign& campaign = out.manifest->campaign;
+  campaign.laboratory = from.context.site.laboratory;
+  campaign.certificate =
+      config::certificate_of(from.context.site.certificate, campaign.certificate);
+  return true;
+}
+
+/// What the record says is in the control counts for measurements of later days, where the
+/// manifest does not say what was on.
+void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign& out) {
+  const auto found = file.record->axes.find(axis.name);
+  if (found == file.record->axes.end()) return;
+  const config::RecordedAxis& recorded = found->second;
+  if (recorded.since.empty() || !(campaign_in(out).date > recorded.since)) return;
+  if (!axis.table_on && recorded.table) {
+    axis.table_on = recorded.table;
+    if (const auto files = file.tables.find(axis.name); files != file.tables.end())
+      out.tables_on[axis.name] = files->second;
+  }
+  if (!axis.backlash_on) axis.backlash_on = recorded.backlash;
+}
+
+/// What the site's record of the machine says counts where the manifest says nothing.
+void look_up_machine(const CampaignSource& from, ReadCampaign& out) {
+  Machine& machine = out.manifest->campaign.machine;
+  const std::string input = config::machine_input(machine);
+  if (input.empty()) return;
+  out.inputs.emplace_back(input, config::machine_digest(from.context.machines, input));
+  const auto found = config::record_of(from.context.machines, machine);
+  if (!found) return report_in(out, key_error(from, out, "machine", found.error().message));
+  if (*found == nullptr) return;
+  const config::RecordFile& file = **found;
+  if (!file.record) {
+    for (const Error& e : file.record.error()) report_in(out, e);
+    if (machine.asset.empty() && file.serial.empty())
+      report_in(out, key_error(from, out, "machine",
+                               "the record machines/" + file.asset +
+                                   ".toml cannot be read, and may be that of this machine; "
+                                   "correct it, or state asset in [machine]"));
+    return;
+  }
+  for (Error& e : config::contradictions(*out.manifest, *file.record)) report_in(out, std::move(e));
+  out.machine = *file.record;
+  if (machine.control.empty()) machine.control = file.record->control;
+  for (Axis& axis : machine.axes) take_present_state(file, axis, out);
+}
+
+/// In the order of the list.
+void note_tables(ReadCampaign& out, const std::string& list, const std::vector<Artifact>& files) {
+  std::size_t from = 0;
+  for (const Artifact& f : files) {
+    const std::size_t comma = std::min(list.find(',', from), list.size());
+    note_input(out, list.substr(from, comma - from), storage::sha256(f.bytes));
+    from = comma + 1;
+  }
+}
+
+/// The tables that were on while it was measured.
+void look_up_what_was_on(const CampaignSource& from, ReadCampaign& out) {
+  for (const Axis& axis : campaign_in(out).machine.axes) {
+    if (!axis.table_on || axis.table_on->empty() || out.tables_on.contains(axis.name)) continue;
+    const std::string key = "machine.axes." + axis.name + ".table_on";
+    auto files = config::read_table_files(*axis.table_on, from.folder);
+    if (files) {
+      note_tables(out, *axis.table_on, *files);
+      out.tables_on[axis.name] = std::move(*files);
+    } else {
+      report_in(out, key_error(from, out, key, files.error().message));
+    }
+  }
+  for (const Measurement& m : campaign_in(out).measurements)
+    if (m.compensation == "off" && out.tables_on.contains(m.axis))
+      report_in(out, key_error(from, out, "measurement." + m.id + ".compensation",
+                               "\"off\" contradicts table_on of axis " + m.axis));
+}
+
+/// What the effect says that is said already; empty if nothing.
+std::string copied(const ReadCampaign& out, const std::vector<model::Part>& parts, const Axis& axis,
+                   const Effect& effect) {
+  for (const model::Part& part : parts) {
+    if (std::none_of(part.axes.begin(), part.axes.end(),
+                     [&](const Axis& a) { return a.name == axis.name; }) ||
+        !effect.applies(part.table, axis))
+      continue;
+    const auto same = copy_of(part.table, axis, effect, out.effects);
+    if (!same) return same.error().message;
+    if (*same == "zero") return "it says no more than the zero of a measurement";
+    if (!same->empty()) return "it says the same as " + *same + " on these readings";
+  }
+  return {};
+}
+
+/// The campaign's own effects join those of the plugins.
+void add_own_effects(ReadCampaign& out) {
+  if (campaign_in(out).formulas.empty()) return;
+  const auto parts = model::parts_of(campaign_in(out), out.observations);
+  for (const Formula& formula : campaign_in(out).formulas) {
+    const auto blame = [&](const std::string& why) {
+      report_in(out, Error{"model.formula \"" + formula.name + "\": " + why, config::manifest_name,
+                           formula.line});
+    };
+    const auto same_name = [&](const Effect& e) { return e.info.name == formula.name; };
+    if (std::any_of(out.effects.begin(), out.effects.end(), same_name)) {
+      blame("an effect of the catalogue has this name");
+      continue;
+    }
+    const Axis& axis = *campaign_in(out).machine.axis(formula.axis);  // the manifest was checked
+    auto effect = config::formula_effect(formula, axis);
+    if (!effect) {
+      blame(effect.error().message);
+      continue;
+    }
+    if (const std::string why = copied(out, parts, axis, *effect); !why.empty())
+      blame(why);
+    else
+      out.effects.push_back(std::move(*effect));
+  }
+}
+
+}  // namespace
+
+ReadCampaign read_campaign(const fs::path& folder, const Context& context, const Stage& stage) {
+  const CampaignSource from{folder, context, stage};
+  ReadCampaign out;
+  out.effects = context.plugins->effects();
+  if (!read_manifest(from, out)) return out;
+  look_up_machine(from, out);
+  look_up_what_was_on(from, out);
+  read_measurements(from, out);
+  add_own_effects(out);
+  return out;
+}
+
+}  // namespace nonio::reading

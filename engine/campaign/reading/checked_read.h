@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "nonio/sdk/check.h"
+#include "nonio/sdk/plugin.h"
+#include "platform/process/guarded.h"
+
+namespace nonio::reading {
+
+/// The first bytes of a file, by which readers recognise it.
+inline std::string_view head_of(std::string_view bytes) { return bytes.substr(0, 4096); }
+
+/// What a reader makes of a file, if all that comes later may rely on it.
+inline Expected<Observations> checked_read(const Reader& reader, const ReadInput& input) {
+  const std::string who = "reader " + reader.info.name;
+  auto observations = process::guarded(who, [&] { return reader.read(input); });
+  if (observations)
+    if (auto sound = check(*observations); !sound)
+      return fail(who + " gave " + sound.error().message);
+  return observations;
+}
+
+}  // namespace nonio::reading

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/reading/measurement_reader.h"
+
+#include <algorithm>
+#include <set>
+
+#include "campaign/reading/checked_read.h"
+#include "campaign/reading/plausibility/plausibility.h"
+#include "campaign/reading/targets.h"
+#include "campaign/reading/unknown_format.h"
+#include "nonio/sdk/text.h"
+#include "platform/process/guarded.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+
+namespace nonio::reading {
+
+namespace {
+
+/// The reader that is named, or the first that knows the content; none if no plugin reads this
+/// kind of measurement at all, which is noted and leaves the others to be evaluated. Where a
+/// plugin was refused, it may be the one that is wanted, and the measurement was not read.
+Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurement& m,
+                                      std::string_view bytes, ReadCampaign& out) {
+  const auto& readers = from.context.plugins->readers();
+  if (!m.reader.empty()) {
+    for (const Reader& r : readers)
+      if (r.info.name == m.reader) return &r;
+    return fail(key_error(from, out, "measurement." + m.id + ".reader",
+                          from.context.plugins->absence("reader", m.reader)));
+  }
+  bool any = false;
+  if (bytes.find_first_not_of(" \t\r\n") == bytes.npos)
+    return fail(Error{"expected readings, found an empty file", m.file});
+  for (const Reader& r : readers) {
+    const std::string who = "reader " + r.info.name;
+    from.stage(who + " (measurement " + m.id + "), asked whether it reads this file");
+    const auto reads = process::guarded_answer(who, [&] { return r.reads(m.kind); });
+    if (!reads) return fail(reads.error());
+    any = any || *reads;
+    const auto recognised =
+        process::guarded_answer(who, [&] { return *reads && r.recognises(head_of(bytes)); });
+    if (!recognised) return fail(recognised.error());
+    if (*recognised) return &r;
+  }
+  const std::string refused = from.context.plugins->refusals();
+  if (any)
+    return fail(Error{"no reader knows the format of this file: " + what_is_wrong(bytes, m.file) +
+                          "; or the format of an installed reader (`nonio plugins`)" +
+                          (refused.empty() ? "" : "; of the plugins " + refused),
+                      m.file, first_content_line(bytes)});
+  if (!refused.empty())
+    return fail(key_error(
+        from, out, "measurement." + m.id + ".kind",
+        "no reader takes measurements of kind \"" + m.kind + "\", and of the plugins " + refused));
+  out.unread.push_back(m.id);
+  out.notes.push_back({"measurement.unread", {}, {{"kind", m.kind}}, m.id});
+  return nullptr;
+}
+
+/// Takes the readings out that the manifest excludes, and says so.
+Expected<void> exclude(const CampaignSource& from, const ReadCampaign& out, const Measurement& m,
+                       Observations& o) {
+  if (m.exclude.empty()) return {};
+  const std::set<std::uint32_t> lines(m.exclude.begin(), m.exclude.end());
+  for (const std::uint32_t line : lines)
+    if (std::find(o.source_line.begin(), o.source_line.end(), line) == o.source_line.end())
+      return fail(
+          key_error(from, out, "measurement." + m.id + ".exclude",
+                    "line " + std::to_string(line) + " of " + m.file + " holds no reading"));
+  std::vector<char> kept(o.size(), 1);
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    if (!lines.contains(o.source_line[i])) continue;
+    kept[i] = 0;
+    const Quantity q = o.angular ? Quantity::angular_deviation : Quantity::deviation;
+    Remark note{"reading.excluded",
+                {{"line", static_cast<double>(o.source_line[i]), Quantity::count},
+                 {"deviation", o.deviation[i], q}},
+                {{"file", m.file}}};
+    if (!m.exclude_reason.empty()) {
+      note.id = "reading.excluded-why";
+      note.texts.emplace_back("reason", m.exclude_reason);
+    }
+    o.notes.push_back(std::move(note));
+  }
+  keep_rows(o, kept);
+  return {};
+}
+
+std::optional<Settings> settle_reader(const CampaignSource& from, const Info& info,
+                                      ReadCampaign& out) {
+  auto options = config::settle_options(info, from.context.site.options, out.manifest->options);
+  if (options) return std::move(*options);
+  for (Error& e : options.error()) report_in(out, std::move(e));
+  return std::nullopt;
+}
+
+/// What makes the file itself implausible, and what was changed or is missing in it.
+void note_oddities(const Measurement& m, std::string_view bytes, Observations& o,
+                   ReadCampaign& out) {
+  auto ends = implausible_end(bytes, m.file);
+  for (auto* doubts : {&ends, &o.doubts})
+    for (Finding& doubt : *doubts) {
+      doubt.measurement = m.id;
+      out.doubts.push_back(std::move(doubt));
+    }
+  if (o.missing > 0 && m.kind != "axis")  // of an axis its analyses say it
+    o.notes.push_back(
+        {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
+  // A path, a time and an angle have no targets to come back to; lengths are those of the artefact.
+  if (m.kind == "circle" || m.kind == "thermal" || m.kind == "spindle" || m.kind == "lengths" ||
+      m.kind.starts_with("artefact"))
+    return;
+  if (const std::size_t moved = join_targets(o); moved > 0)
+    o.notes.push_back(
+        {"targets.joined", {{"readings", static_cast<double>(moved), Quantity::count}}});
+}
+
+/// What it notes and doubts goes into `out`; `into` stays empty where no plugin reads this kind.
+Expected<void> read_one_measurement(const CampaignSource& from, const Measurement& m,
+                                    Observations& into, ReadCampaign& out) {
+  const auto path = storage::path_inside(from.folder, m.file);
+  auto file = path ? storage::ReadFile::open(*path) : fail(path.error());
+  note_input(out, m.file, file ? storage::sha256(file->bytes()) : config::absent);
+  if (!path)
+    return fail(key_error(from, out, "measurement." + m.id + ".file", path.error().message));
+  if (!file)
+    return fail(key_error(from, out, "measurement." + m.id + ".file", file.error().message));
+  const auto converted = utf8_of_utf16(file->bytes());
+  if (!converted) return fail(converted.error());
+  const std::string_view bytes = *converted ? std::string_view(**converted) : file->bytes();
+  const auto reader = choose_reader(from, m, bytes, out);
+  if (!reader) return fail(reader.error());
+  if (*reader == nullptr) return {};
+  const Info& info = (*reader)->info;
+  const auto options = settle_reader(from, info, out);
+  if (!options) return {};
+  const std::string who = "reader " + info.name;
+  from.stage(who + " (measurement " + m.id + ")");
+  auto observations =
+      checked_read(**reader, {bytes, out.manifest->campaign, m, *options, [&](std::size_t offset) {
+                                if (!*converted) file->release(offset);
+                              }});
+  if (!observations) {
+    Error error = observations.error();
+    if (error.message.starts_with(who + ": ")) error.message.erase(0, who.size() + 2);
+    return fail(std::move(error));
+  }
+  if (auto possible = possible_air(*observations, m.file); !possible) return possible;
+  if (auto excluded = exclude(from, out, m, *observations); !excluded) return excluded;
+  note_oddities(m, bytes, *observations, out);
+  into = std::move(*observations);
+  for (Remark note : into.notes) {
+    note.measurement = m.id;
+    out.notes.push_back(std::move(note));
+  }
+  return {};
+}
+
+}  // namespace
+
+void read_measurements(const CampaignSource& from, ReadCampaign& out) {
+  out.observations.resize(out.manifest->campaign.measurements.size());
+  for (std::size_t i = 0; i < out.observations.size(); ++i) {
+    const Measurement& m = out.manifest->campaign.measurements[i];
+    auto read = read_one_measurement(from, m, out.observations[i], out);
+    if (read) continue;
+    if (read.error().file.empty()) read.error().file = m.file;
+    report_in(out, std::move(read.error()));
+  }
+}
+
+}  // namespace nonio::reading

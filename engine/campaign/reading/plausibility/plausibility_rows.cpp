@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pass whose readings were copied one row too high or too low.
+#include <cmath>
+#include <map>
+
+#include "campaign/reading/plausibility/plausibility_strokes.h"
+
+namespace nonio::reading {
+namespace {
+
+/// Mean of the other passes of a direction at each target of one pass, with the variance of a
+/// reading about that mean.
+struct OtherPasses {
+  std::vector<double> mean;  ///< NaN where no two others have this target
+  double variance = 0.0;
+};
+
+OtherPasses other_passes_of(const Stroke& own, const std::vector<Stroke>& all) {
+  std::map<double, std::vector<double>> at;
+  for (const Stroke& s : all)
+    if (&s != &own && s.line == own.line && s.direction == own.direction)
+      for (std::size_t i = 0; i < s.target.size(); ++i) at[s.target[i]].push_back(s.deviation[i]);
+  OtherPasses out;
+  double squares = 0.0, freedom = 0.0, count = 0.0, places = 0.0;
+  for (const double target : own.target) {
+    const auto& v = at[target];
+    double mean = 0.0;
+    for (const double x : v) mean += x / static_cast<double>(v.size());
+    for (const double x : v) squares += (x - mean) * (x - mean);
+    out.mean.push_back(v.size() < 2 ? std::nan("") : mean);
+    if (v.size() < 2) continue;
+    freedom += static_cast<double>(v.size()) - 1.0;
+    count += static_cast<double>(v.size()), ++places;
+  }
+  if (freedom > 0.0) out.variance = squares / freedom * (1.0 + places / count);
+  return out;
+}
+
+/// Variance of a pass about the others, its own zero taken out, where both its own and the moved
+/// row exist: as listed, and with each reading taken for the target `by` rows further.
+std::pair<double, double> variances(const Stroke& own, const OtherPasses& others, int by,
+                                    std::size_t& used) {
+  std::vector<double> listed, moved;
+  for (std::size_t i = 0; i < own.target.size(); ++i) {
+    const auto k = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + by);
+    if (k >= own.target.size()) continue;
+    const double a = own.deviation[i] - others.mean[i], b = own.deviation[i] - others.mean[k];
+    if (std::isfinite(a) && std::isfinite(b)) listed.push_back(a), moved.push_back(b);
+  }
+  used = listed.size();
+  const auto variance = [&](const std::vector<double>& r) {
+    double mean = 0.0, squares = 0.0;
+    for (const double x : r) mean += x / static_cast<double>(r.size());
+    for (const double x : r) squares += (x - mean) * (x - mean);
+    return squares / (static_cast<double>(r.size()) - 1.0);
+  };
+  return used < 2 ? std::pair{0.0, 0.0} : std::pair{variance(listed), variance(moved)};
+}
+
+}  // namespace
+
+void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>& out) {
+  // Noise gives such a likelihood ratio once in e^9 passes at the most.
+  constexpr double evidence = 9.0;
+  constexpr std::size_t fewest = 7;
+  for (const Stroke& own : passes.strokes) {
+    const OtherPasses others = other_passes_of(own, passes.strokes);
+    if (!(others.variance > 0.0)) continue;
+    for (const int by : {1, -1}) {
+      std::size_t used = 0;
+      const auto [listed, moved] = variances(own, others, by, used);
+      // As listed it is not one of these passes; moved it is.
+      if (used < fewest || !(listed > 2.0 * others.variance) || !(moved < 2.0 * others.variance))
+        continue;
+      const double ratio = listed / std::max(moved, 1e-3 * others.variance);
+      if (!(0.5 * static_cast<double>(used) * std::log(ratio) > evidence)) continue;
+      out.push_back({.id = "plausibility.rows-shifted",
+                     .attention = true,
+                     .evidence = {{"listed", std::sqrt(listed), deviation},
+                                  {"moved", std::sqrt(moved), deviation}},
+                     .texts = {{"which", name_of(own)}}});
+      break;
+    }
+  }
+}
+
+}  // namespace nonio::reading

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A pass, or all passes of a direction, written with the other sign or from the other end.
+//   one pass      compared with the others of its direction; it fits them turned, and not as it is. Once
+//                 without the line of each (which drift changes), once without the mean of each only
+//                 (a pitch error is mostly a line), with the scatter of both directions
+//   a direction   u: half of the reversal, v: the mean of both directions, each without the shapes that
+//                 a drive that winds up gives the reversal. In a right file the pitch error is in v. A
+//                 wrong sign exchanges u and v; the other end exchanges their odd parts. So u (its odd
+//                 part) exceeds the scatter and three times v, whichever of the shapes is taken out
+// What only the shapes themselves show is a drive that winds up as well: information.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "campaign/reading/plausibility/plausibility.h"
+#include "campaign/reading/plausibility/plausibility_strokes.h"
+#include "nonio/math/distributions.h"
+
+namespace nonio::reading {
+namespace {
+
+/// Means over targets, and how the readings scatter about them.
+class Curve {
+ public:
+  void add(const Stroke& s, double weight = 1.0) {
+    for (std::size_t i = 0; i < s.target.size(); ++i) {
+      Cell& cell = cells_[s.target[i]];
+      cell.count += weight;
+      cell.sum += weight * s.deviation[i];
+      cell.squares += weight * s.deviation[i] * s.deviation[i];
+    }
+  }
+  Curve without(const Stroke& s) const {
+    Curve rest = *this;
+    rest.add(s, -1.0);
+    std::erase_if(rest.cells_, [](const auto& one) { return one.second.count < 0.5; });
+    return rest;
+  }
+  template <class Visit>
+  void each(const Visit& visit) const {
+    for (const auto& [target, cell] : cells_) visit(target, cell.sum / cell.count);
+  }
+  std::optional<double> mean(double target) const {
+    const auto at = cells_.find(target);
+    if (at == cells_.end()) return std::nullopt;
+    return at->second.sum / at->second.count;
+  }
+  /// Readings behind a mean, at most targets.
+  double depth() const {
+    double count = 0.0;
+    for (const auto& one : cells_) count += one.second.count;
+    return cells_.empty() ? 1.0 : count / static_cast<double>(cells_.size());
+  }
+  /// Sum of squares about the means, and its degrees of freedom.
+  std::pair<double, double> scatter() const {
+    double sum = 0.0, freedom = 0.0;
+    for (const auto& [target, cell] : cells_) {
+      if (cell.count < 1.5) continue;
+      sum += std::max(0.0, cell.squares - cell.sum * cell.sum / cell.count);
+      freedom += cell.count - 1.0;
+    }
+    return {sum, freedom};
+  }
+
+ private:
+  struct Cell {
+    double count = 0.0, sum = 0.0, squares = 0.0;
+  };
+  std::map<double, Cell> cells_;
+};
+
+/// What makes `one` the same curve as `other`: nothing, its other end first, its other sign.
+enum class Turned { not_at_all, order, sign };
+
+/// Sums of squares of what is left between two curves: as they are, turned round, turned over.
+struct Likeness {
+  double same = 0.0, order = 0.0, sign = 0.0;
+};
+
+Likeness likeness(const std::vector<double>& a, const std::vector<double>& b,
+                  const std::vector<double>& from_the_end) {
+  Likeness out;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    out.same += (a[i] - b[i]) * (a[i] - b[i]);
+    out.order += (from_the_end[i] - b[i]) * (from_the_end[i] - b[i]);
+    out.sign += (a[i] + b[i]) * (a[i] + b[i]);
+  }
+  return out;
+}
+
+/// Squares about means and their degrees of freedom.
+struct Scatter {
+  double squares = 0.0, freedom = 0.0;
+  void take(const std::pair<double, double>& one) { squares += one.first, freedom += one.second; }
+};
+
+void take_mean_out(std::vector<double>& values) {
+  double mean = 0.0;
+  for (const double v : values) mean += v / static_cast<double>(values.size());
+  for (double& v : values) v -= mean;
+}
+
+/// Two curves at the targets that they have in common.
+struct Pair {
+  std::vector<double> at, a, b;
+};
+
+Pair in_common(const Curve& one, const Curve& other) {
+  Pair p;
+  one.each([&](double target, double mean) {
+    const auto there = other.mean(target);
+    if (!there) return;
+    p.at.push_back(target);
+    p.a.push_back(mean);
+    p.b.push_back(*there);
+  });
+  return p;
+}
+
+/// with_line: what is compared is without the line of each curve, else without its mean.
+Turned turned_as(Pair p, double noise, bool with_line) {
+  std::vector<double> from_the_end(p.a.rbegin(), p.a.rend());
+  const auto bare = [&](std::vector<double>& v) {
+    with_line ? take_line_out(p.at, v) : take_mean_out(v);
+  };
+  bare(p.a), bare(p.b), bare(from_the_end);
+  const Likeness whole = likeness(p.a, p.b, from_the_end);
+  // What the first reading of each pass alone has (a slide that sticks) is at both ends too.
+  const auto n = static_cast<double>(p.at.size());
+  const auto inner = [](std::vector<double>& v) { v.erase(v.begin()), v.pop_back(); };
+  inner(p.at), inner(p.a), inner(p.b), inner(from_the_end);
+  bare(p.a), bare(p.b), bare(from_the_end);
+  const Likeness within = likeness(p.a, p.b, from_the_end);
+  const auto fits = [&](double sum_of_squares, double sum_within) {
+    return whole.same > 12.0 * sum_of_squares && sum_of_squares < 6.0 * noise * n &&
+           whole.same > 20.0 * noise * n && within.same > 3.0 * sum_within;
+  };
+  const bool order = fits(whole.order, within.order), sign = fits(whole.sign, within.sign);
+  // A line from its other end has the other sign as well: the nearer one.
+  if (order && !(sign && whole.sign < whole.order)) return Turned::order;
+  return sign ? Turned::sign : Turned::not_at_all;
+}
+
+constexpr std::size_t fewest_compared = 7;
+
+/// scatter: of the readings about the means of their target, pass and direction alike.
+Turned turned(const Curve& one, const Curve& other, const Scatter& scatter, double step,
+              bool without_line_only) {
+  const Pair pair = in_common(one, other);
+  if (pair.at.size() < fewest_compared || scatter.freedom <= 0.0) return Turned::not_at_all;
+  const double s = std::max(std::sqrt(scatter.squares / scatter.freedom), step);
+  const double noise = s * s * (1.0 / one.depth() + 1.0 / other.depth());
+  const Turned how = turned_as(pair, noise, true);
+  return how != Turned::not_at_all || without_line_only ? how : turned_as(pair, noise, false);
+}
+
+void push_turned(Turned how, const std::string& which, std::vector<Finding>& out) {
+  if (how == Turned::not_at_all) return;
+  out.push_back({.id = how == Turned::order ? "plausibility.pass-order-turned"
+                                            : "plausibility.pass-sign-turned",
+                 .attention = true,
+                 .texts = {{"which", which}}});
+}
+
+/// What is left of the values without these shapes, each of which is made orthogonal to those before.
+std::vector<double> without(std::vector<double> values, std::vector<std::vector<double>> shapes) {
+  const auto product = [](const std::vector<double>& x, const std::vector<double>& y) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
+    return sum;
+  };
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    const double whole = product(shapes[k], shapes[k]);
+    for (std::size_t j = 0; j < k; ++j) {
+      const double of = product(shapes[j], shapes[j]);
+      const double share = of > 0.0 ? product(shapes[k], shapes[j]) / of : 0.0;
+      for (std::size_t i = 0; i < values.size(); ++i) shapes[k][i] -= share * shapes[j][i];
+    }
+    const double own = product(shapes[k], shapes[k]);
+    if (!(own > 1e-9 * whole)) {
+      shapes[k].assign(values.size(), 0.0);
+      continue;
+    }
+    const double share = product(values, shapes[k]) / own;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] -= share * shapes[k][i];
+  }
+  return values;
+}
+
+using Shapes = std::vector<std::vector<double>>;
+
+/// What a drive that winds up gives the reversal along the axis: a screw held at one end (a line) or at both
+/// (a parabola), a load that turns with the table or comes back once along the travel (a wave).
+std::vector<Shapes> elastic_shapes(const std::vector<double>& at, bool rotary) {
+  const double length = at.back() - at.front();
+  Shapes powers(3), wave(3);
+  for (const double x : at) {
+    const double share = (x - at.front()) / length;
+    const double angle = rotary ? x : 2.0 * std::numbers::pi * share;
+    powers[0].push_back(1.0), powers[1].push_back(share), powers[2].push_back(share * share);
+    wave[0].push_back(1.0), wave[1].push_back(std::sin(angle)), wave[2].push_back(std::cos(angle));
+  }
+  if (rotary) return {wave};
+  return {powers, wave};
+}
+
+/// The odd part about the middle of the targets, one value for each pair of them; of the same variance.
+std::vector<double> odd(const std::vector<double>& values) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < values.size() / 2; ++i)
+    out.push_back((values[i] - values[values.size() - 1 - i]) / std::numbers::sqrt2);
+  return out;
+}
+
+double square_sum(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v * v;
+  return sum;
+}
+
+/// All passes of one direction against those of the other.
+Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& scatter, double step,
+                        bool rotary) {
+  constexpr double least_travel = 1e-3;  // m
+  constexpr double ratio = 9.0, ratio_of_odd = 5.0, chance = 1e-5;
+  const Pair p = in_common(minus, plus);
+  const std::size_t n = p.at.size();
+  if (n < fewest_compared || scatter.freedom <= 0.0) return Turned::not_at_all;
+  // Over small steps the reversal is what the targets are made to show, not the pitch.
+  if (!rotary && !(p.at.back() - p.at.front() > least_travel)) return Turned::not_at_all;
+  const double s = std::max(std::sqrt(scatter.squares / scatter.freedom), step);
+  const double variance = s * s * (1.0 / minus.depth() + 1.0 / plus.depth()) / 4.0;
+  std::vector<double> u, v;
+  for (std::size_t i = 0; i < n; ++i)
+    u.push_back((p.b[i] - p.a[i]) / 2.0), v.push_back((p.b[i] + p.a[i]) / 2.0);
+  bool sign = true, order = true, even_in_reversal = true;
+  for (const Shapes& shapes : elastic_shapes(p.at, rotary)) {
+    const auto left_u = without(u, shapes), left_v = without(v, shapes);
+    const auto in_u = [&](const std::vector<double>& of_u, const std::vector<double>& of_v,
+                          double least, double freedom) {
+      const double squares = square_sum(of_u);
+      return squares > least * square_sum(of_v) &&
+             math::f_upper(squares / freedom / variance, freedom, scatter.freedom) < chance;
+    };
+    sign = sign && in_u(left_u, left_v, ratio, static_cast<double>(n - shapes.size()));
+    const auto odd_u = odd(left_u), odd_v = odd(left_v);
+    order = order && in_u(odd_u, odd_v, ratio_of_odd, static_cast<double>(odd_u.size() - 1));
+    even_in_reversal = even_in_reversal && square_sum(left_u) - square_sum(odd_u) >
+                                               square_sum(left_v) - square_sum(odd_v);
+  }
+  if (order && !(sign && even_in_reversal)) return Turned::order;
+  return sign ? Turned::sign : Turned::not_at_all;
+}
+
+/// Of two passes of a direction that are opposed the one that is farther from the other direction.
+bool the_farther(const Curve& own, const Curve& other, const Curve& opposite) {
+  const auto apart = [&](const Curve& one) {
+    Pair p = in_common(one, opposite);
+    double sum = 0.0;
+    take_mean_out(p.a), take_mean_out(p.b);
+    for (std::size_t i = 0; i < p.a.size(); ++i) sum += (p.a[i] - p.b[i]) * (p.a[i] - p.b[i]);
+    return sum;
+  };
+  return apart(own) >= apart(other);
+}
+
+/// The curves of both directions are opposed, slope included: a slope in common refutes a mistake.
+bool opposed(const Pair& p, Turned how, double noise) {
+  const auto n = static_cast<double>(p.a.size());
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < p.a.size(); ++i) {
+    const double left = (how == Turned::order ? p.a[p.a.size() - 1 - i] : -p.a[i]) - p.b[i];
+    sum += left, squares += left * left;
+  }
+  return squares - sum * sum / n <= 6.0 * noise * n;
+}
+
+}  // namespace
+
+void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out) {
+  const auto& [strokes, step] = passes;
+  std::map<int, Curve> by_direction;
+  std::map<int, std::size_t> count;
+  for (const Stroke& s : strokes) by_direction[s.direction].add(s), ++count[s.direction];
+  for (const Stroke& own : strokes) {
+    Curve one;
+    one.add(own);
+    const Curve others = by_direction[own.direction].without(own);
+    Scatter scatter;
+    scatter.take(others.scatter());
+    // The other direction only where these passes do not show it: its own pass of this run may be wrong too.
+    if (scatter.freedom < static_cast<double>(fewest_compared))
+      for (const auto& [direction, curve] : by_direction)
+        if (direction != own.direction) scatter.take(curve.scatter());
+    const Turned how = turned(one, others, scatter, step, false);
+    if (how == Turned::not_at_all) continue;
+    if (count[own.direction] == 2 && count.size() == 2 &&
+        !the_farther(one, others, by_direction[-own.direction]))
+      continue;
+    return push_turned(how, name_of(own), out);
+  }
+  if (count.size() != 2) return;
+  const Curve &minus = by_direction[-1], &plus = by_direction[1];
+  Scatter scatter;
+  scatter.take(minus.scatter());
+  scatter.take(plus.scatter());
+  if (const Turned all = turned_direction(minus, plus, scatter, step, rotary);
+      all != Turned::not_at_all)
+    return push_turned(all, "-", out);
+  const Turned how = turned(minus, plus, scatter, step, true);
+  if (how == Turned::not_at_all) return;
+  const double s = std::max(std::sqrt(scatter.squares / scatter.freedom), step);
+  if (opposed(in_common(minus, plus), how, s * s * (1.0 / minus.depth() + 1.0 / plus.depth())))
+    out.push_back({.id = "plausibility.directions-opposed"});
+}
+
+}  // namespace nonio::reading

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "campaign/reading/plausibility/plausibility.h"
+#include "campaign/reading/plausibility/plausibility_strokes.h"
+
+namespace nonio::reading {
+namespace {
+
+/// Readings by run and target, as far as every run has them all: the mean of both directions, and
+/// their difference.
+struct Grid {
+  std::vector<std::uint32_t> runs;            ///< in the order in which they were begun
+  std::vector<double> targets;                ///< rising
+  std::vector<std::vector<double>> mean;      ///< [run][target]
+  std::vector<std::vector<double>> reversal;  ///< [run][target]; empty with one direction
+};
+
+Grid grid_of(const std::vector<Stroke>& strokes) {
+  std::map<std::uint32_t, std::map<double, std::map<int, double>>> by_run;
+  std::set<int> directions;
+  Grid grid;
+  for (const Stroke& s : strokes) {
+    if (!by_run.contains(s.run)) grid.runs.push_back(s.run);
+    directions.insert(s.direction);
+    for (std::size_t i = 0; i < s.target.size(); ++i)
+      by_run[s.run][s.target[i]][s.direction] = s.deviation[i];
+  }
+  for (const auto& [target, cell] : by_run[grid.runs.front()])
+    if (std::all_of(by_run.begin(), by_run.end(), [&, at = target](const auto& run) {
+          const auto found = run.second.find(at);
+          return found != run.second.end() && found->second.size() == directions.size();
+        }))
+      grid.targets.push_back(target);
+  const bool both = directions.size() == 2;
+  for (const std::uint32_t run : grid.runs) {
+    grid.mean.emplace_back();
+    if (both) grid.reversal.emplace_back();
+    for (const double target : grid.targets) {
+      const auto& cell = by_run[run][target];
+      const double first = cell.begin()->second, last = cell.rbegin()->second;
+      grid.mean.back().push_back((first + last) / 2.0);
+      if (both) grid.reversal.back().push_back(last - first);
+    }
+  }
+  return grid;
+}
+
+double square_mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v * v;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+/// Mean over some runs, and the squares about it.
+struct Group {
+  std::vector<double> mean;
+  double squares = 0.0, freedom = 0.0;
+
+  Group(const std::vector<std::vector<double>>& curves, std::size_t from, std::size_t to)
+      : mean(curves.front().size()) {
+    const auto n = static_cast<double>(to - from);
+    for (std::size_t r = from; r < to; ++r)
+      for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += curves[r][i] / n;
+    for (std::size_t r = from; r < to; ++r)
+      for (std::size_t i = 0; i < mean.size(); ++i)
+        squares += (curves[r][i] - mean[i]) * (curves[r][i] - mean[i]);
+    freedom = (n - 1.0) * (static_cast<double>(mean.size()) - 2.0);  // a line of each run is out
+  }
+};
+
+/// Runs after which the curve is another one: two groups that agree each within itself, and not
+/// with one another. What drifts along one line does not count, nor does what changes little by
+/// little: then the groups scatter too (12 is the most that even steps of change give).
+void two_curves(const Grid& grid, double step, Quantity deviation, std::vector<Finding>& out) {
+  constexpr std::size_t fewest_targets = 6, fewest_runs = 4;
+  constexpr double squares = 25.0, of_curve = 0.1;
+  if (grid.targets.size() < fewest_targets || grid.runs.size() < fewest_runs) return;
+  std::vector<std::vector<double>> curves = grid.mean;
+  for (auto& curve : curves) take_line_out(grid.targets, curve);
+  const std::size_t n = curves.size();
+  // A run whose rows are of both belongs to neither.
+  for (const std::size_t gap : {0U, 1U})
+    for (std::size_t k = 2; k + gap + 2 <= n; ++k) {
+      const Group first(curves, 0, k), rest(curves, k + gap, n);
+      const double scatter = std::max(
+          (first.squares + rest.squares) / (first.freedom + rest.freedom), step * step / 4.0);
+      std::vector<double> apart = first.mean;
+      for (std::size_t i = 0; i < apart.size(); ++i) apart[i] -= rest.mean[i];
+      const double size = std::max(square_mean(first.mean), square_mean(rest.mean));
+      const double d = square_mean(apart);
+      if (d < squares * scatter || d < of_curve * size) continue;
+      return out.push_back({.id = "plausibility.two-curves",
+                            .attention = true,
+                            .evidence = {{"apart", std::sqrt(d), deviation},
+                                         {"scatter", std::sqrt(scatter), deviation}},
+                            .texts = {{"which", std::to_string(grid.runs[k + gap])}}});
+    }
+}
+
+/// Squares that are left of the values from..to about their mean.
+double about_mean(const std::vector<double>& values, std::size_t from, std::size_t to) {
+  double mean = 0.0, sum = 0.0;
+  for (std::size_t i = from; i < to; ++i) mean += values[i] / static_cast<double>(to - from);
+  for (std::size_t i = from; i < to; ++i) sum += (values[i] - mean) * (values[i] - mean);
+  return sum;
+}
+
+double mean_of(const std::vector<double>& values, std::size_t from, std::size_t to) {
+  double mean = 0.0;
+  for (std::size_t i = from; i < to; ++i) mean += values[i] / static_cast<double>(to - from);
+  return mean;
+}
+
+/// How far the curve jumps between two targets beside the slopes on both sides of it.
+double jump(const Grid& grid, const std::vector<double>& curve, std::size_t at) {
+  const auto slope = [&](std::size_t i) {
+    return (curve[i] - curve[i - 1]) / (grid.targets[i] - grid.targets[i - 1]);
+  };
+  const double around = (slope(at - 1) + slope(at + 1)) / 2.0;
+  return std::fabs(curve[at] - curve[at - 1] - around * (grid.targets[at] - grid.targets[at - 1]));
+}
+
+/// A target from which on the reversal is another one, constant before it and behind it, and where
+/// the curve jumps as nowhere else.
+void two_reversals(const Grid& grid, double step, Quantity deviation, std::vector<Finding>& out) {
+  constexpr std::size_t fewest_side = 3, fewest_targets = 8, fewest_runs = 3;
+  constexpr double sigmas = 8.0, of_reversal = 0.15, jumps = 2.5, line = 3.0;
+  const std::size_t n = grid.targets.size(), runs = grid.runs.size();
+  if (grid.reversal.empty() || n < fewest_targets || runs < fewest_runs) return;
+  std::vector<double> reversal(n), curve(n);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t r = 0; r < runs; ++r) {
+      reversal[i] += grid.reversal[r][i] / static_cast<double>(runs);
+      curve[i] += grid.mean[r][i] / static_cast<double>(runs);
+    }
+    for (std::size_t r = 0; r < runs; ++r)
+      squares += (grid.reversal[r][i] - reversal[i]) * (grid.reversal[r][i] - reversal[i]);
+  }
+  const double of_mean =
+      std::max(squares / static_cast<double>(n * (runs - 1)), step * step / 4.0) /
+      static_cast<double>(runs);
+  std::vector<double> straight = reversal, jumping(n);
+  take_line_out(grid.targets, straight);
+  for (std::size_t i = 2; i + 1 < n; ++i) jumping[i] = jump(grid, curve, i);
+  for (std::size_t at = fewest_side; at + fewest_side <= n; ++at) {
+    const double before = mean_of(reversal, 0, at), behind = mean_of(reversal, at, n);
+    const double rest = about_mean(reversal, 0, at) + about_mean(reversal, at, n);
+    const auto left = static_cast<double>(at), right = static_cast<double>(n - at);
+    const double sigma = std::sqrt(of_mean * (1.0 / left + 1.0 / right));
+    const double change = std::fabs(before - behind);
+    const double largest = std::max(std::fabs(before), std::fabs(behind));
+    double elsewhere = 0.0;
+    for (std::size_t i = 2; i + 1 < n; ++i)
+      if (i + 1 < at || i > at + 1) elsewhere = std::max(elsewhere, jumping[i]);
+    if (change < sigmas * sigma || change < of_reversal * largest ||
+        rest > 2.5 * of_mean * (static_cast<double>(n) - 2.0) ||
+        square_mean(straight) * static_cast<double>(n) < line * rest ||
+        jumping[at] < jumps * elsewhere)
+      continue;
+    const Quantity position =
+        deviation == Quantity::angular_deviation ? Quantity::angle : Quantity::length;
+    return out.push_back({.id = "plausibility.two-reversals",
+                          .attention = true,
+                          .evidence = {{"from", grid.targets[at], position},
+                                       {"before", before, deviation},
+                                       {"behind", behind, deviation},
+                                       {"jump", jumping[at], deviation}}});
+  }
+}
+
+}  // namespace
+
+void implausible_halves(const Passes& passes, bool angular, std::vector<Finding>& out) {
+  const auto& [strokes, step] = passes;
+  if (strokes.empty()) return;
+  const Quantity deviation = angular ? Quantity::angular_deviation : Quantity::deviation;
+  const Grid grid = grid_of(strokes);
+  if (grid.targets.empty() || step <= 0.0) return;
+  const std::size_t before = out.size();
+  two_curves(grid, step, deviation, out);
+  if (out.size() == before) two_reversals(grid, step, deviation, out);
+}
+
+}  // namespace nonio::reading

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
+#include "campaign/config/secret_files.h"
+#include "campaign/config/site_files.h"
+#include "campaign/config/template_files.h"
+#include "campaign/reading/campaign_reader.h"
+#include "platform/process/apart.h"
+#include "platform/storage/files.h"
+
+namespace nonio::reading {
+namespace fs = std::filesystem;
+
+Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
+                                                    const std::vector<fs::path>& plugin_folders,
+                                                    const std::vector<fs::path>& template_folders,
+                                                    const std::string& version, TemplatesFor what) {
+  std::error_code error;
+  if (!fs::is_directory(campaign, error))
+    return fail("there is no folder " + campaign.string() + "; expected the folder of a campaign");
+  if (!fs::exists(campaign / config::manifest_name, error))
+    return fail("there is no " + std::string(config::manifest_name) + " in " + campaign.string() +
+                ": it is not the folder of a campaign");
+  auto place = std::make_unique<Workplace>();
+  Context& context = place->context;
+  context.version = version;
+  const fs::path site = config::site_of(campaign);
+  auto read = config::read_site(site, context.site_sha256);
+  if (!read) return fail(read.error().front());
+  context.site = std::move(*read);
+  auto machines = config::read_machines(site);
+  if (!machines) return fail(machines.error());
+  context.machines = std::move(*machines);
+  process::hide_from_plugins(config::secret_files(context.site, site));
+  place->plugins.load(plugin_folders);
+  if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
+  place->notes = place->plugins.refusal_notes();
+  context.plugins = &place->plugins;
+  // After the process for the plugins was forked: it would copy each page of them when it frees them.
+  const auto folders = config::with_site_templates(template_folders, site);
+  if (!folders) return fail(folders.error());
+  std::vector<std::string> below;
+  if (what == TemplatesFor::terminal) below = {"words/en/", "words/" + context.site.language + "/"};
+  auto templates = config::read_templates(*folders, context.templates_sha256, nullptr, {}, below);
+  if (!templates) return fail(templates.error());
+  context.templates = std::move(*templates);
+  return place;
+}
+
+}  // namespace nonio::reading

@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/tables/table_check.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "nonio/math/loaded_table.h"
+#include "nonio/sdk/format.h"
+#include "platform/process/guarded.h"
+#include "platform/storage/files.h"
+#include "platform/storage/nearest.h"
+
+namespace nonio::tables {
+namespace {
+
+using Tables = std::vector<LoadedTable>;
+
+bool same_axes(const LoadedTable& a, const LoadedTable& b) {
+  return a.output == b.output && a.input == b.input;
+}
+
+/// All tables of the same axes in one: what they add together.
+double sum_at(const std::vector<const LoadedTable*>& tables, const std::vector<double>& x,
+              int dir) {
+  double sum = 0.0;
+  for (const LoadedTable* t : tables) sum += math::added(*t, x, dir);
+  return sum;
+}
+
+using Knots = std::vector<std::vector<double>>;  // of each input
+
+void merge(Knots& knots, const std::vector<const LoadedTable*>& tables) {
+  for (const LoadedTable* t : tables)
+    for (std::size_t k = 0; k < knots.size(); ++k)
+      knots[k].insert(knots[k].end(), t->position[k].begin(), t->position[k].end());
+  for (auto& k : knots) {
+    std::sort(k.begin(), k.end());
+    k.erase(std::unique(k.begin(), k.end(), [](double a, double b) { return b - a < 1e-9; }),
+            k.end());
+  }
+}
+
+/// Every point of the grid, the last input fastest.
+std::vector<std::vector<double>> points_of(const Knots& knots) {
+  std::vector<std::vector<double>> points{{}};
+  for (const auto& k : knots) {
+    std::vector<std::vector<double>> next;
+    for (const auto& p : points)
+      for (const double x : k) {
+        next.push_back(p);
+        next.back().push_back(x);
+      }
+    points = std::move(next);
+  }
+  return points;
+}
+
+TableShape shape_of(const std::vector<const LoadedTable*>& tables) {
+  TableShape s;
+  Knots knots(tables.front()->input.size());
+  merge(knots, tables);
+  for (const LoadedTable* t : tables)
+    if (t->backlash) s.backlash = t->backlash;
+  const auto points = points_of(knots);
+  for (const int dir : {1, -1})
+    for (std::size_t k = 0, stride = points.size(); k < knots.size(); ++k) {
+      stride /= knots[k].size();
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const double c = sum_at(tables, points[i], dir);
+        s.largest = std::max(s.largest, std::fabs(c));
+        if (i + stride >= points.size() || points[i + stride][k] <= points[i][k]) continue;
+        const double step = std::fabs(sum_at(tables, points[i + stride], dir) - c);
+        if (step > s.step) s.step = step, s.step_at = points[i].front();
+        s.slope = std::max(s.slope, step / (points[i + stride][k] - points[i][k]));
+      }
+    }
+  return s;
+}
+
+void compare(TableDifference& d, const std::vector<const LoadedTable*>& was,
+             const std::vector<const LoadedTable*>& will) {
+  Knots knots(d.input.size());
+  merge(knots, was);
+  merge(knots, will);
+  double low = 0.0, high = 0.0;
+  bool any = false;
+  for (const auto& p : points_of(knots))
+    for (const int dir : {1, -1}) {
+      const double v = sum_at(will, p, dir) - sum_at(was, p, dir);
+      low = any ? std::min(low, v) : v;
+      high = any ? std::max(high, v) : v;
+      any = true;
+      if (std::fabs(v) > d.largest) d.largest = std::fabs(v), d.at = p.front();
+    }
+  d.range = high - low;
+  if (!was.empty()) d.present = shape_of(was);
+  if (!will.empty()) d.next = shape_of(will);
+}
+
+double present_backlash(const Settings& options, const std::string& axis, bool rotary) {
+  return stated_backlash(options, axis, rotary).value_or(0.0);
+}
+
+TableForecast forecast_of(const std::string& measurement, const std::string& axis,
+                          const math::ErrorCurve& measured, const math::ErrorCurve& raw,
+                          bool rotary, const Tables& tables, double present) {
+  TableForecast f{measurement, axis, rotary};
+  const auto was = math::before(measured);
+  f.E[0] = was.E(), f.B[0] = was.B(), f.M[0] = was.M();
+  const auto whole = math::correction_of(tables, axis, present);
+  const math::Correction c = [&](double x, int dir) {
+    return whole ? (*whole)(x, dir) - (dir > 0 ? present / 2.0 : -present / 2.0) : 0.0;
+  };
+  const auto will = math::after(raw, c);
+  f.E[1] = will.E(), f.B[1] = will.B(), f.M[1] = will.M();
+  return f;
+}
+
+/// Whether one table of these is of this axis by itself.
+bool corrects(const Tables& tables, const std::string& axis) {
+  return std::any_of(tables.begin(), tables.end(), [&](const LoadedTable& t) {
+    return t.output == axis && t.input.size() == 1 && t.input.front() == axis;
+  });
+}
+
+/// The readings as they would be without these tables; the backlash parameter stays.
+Observations without(const Observations& o, const std::string& axis, const Tables& tables) {
+  Observations raw = o;
+  if (raw.axes.empty()) return raw;
+  const auto& a = raw.axes.front();
+  for (std::size_t i = 0; i < raw.size(); ++i)
+    for (const LoadedTable& t : tables)
+      if (t.output == axis && t.input.size() == 1 && t.input.front() == axis)
+        raw.deviation[i] -= math::added(t, std::span(&a.position[i], 1), a.approach[i]);
+  return raw;
+}
+
+/// Of the files themselves, where nobody says another.
+void state_backlash_of(Settings& options, const Tables& tables) {
+  for (const LoadedTable& t : tables)
+    if (t.backlash.value_or(0.0) != 0.0 && present_backlash(options, t.output, t.rotary) == 0.0)
+      state_backlash(options, t.output, t.rotary, *t.backlash);
+}
+
+/// In the words of the new table.
+void say_what_was_on(Campaign& campaign, const Settings& options, const Tables& present) {
+  for (Axis& axis : campaign.machine.axes) {
+    if (!corrects(present, axis.name)) continue;
+    axis.table_on = "nonio apply --was-on";
+    axis.backlash_on = present_backlash(options, axis.name, axis.rotary);
+  }
+}
+
+}  // namespace
+
+Expected<Tables> tables_in(const Controller& o, const std::vector<Artifact>& files,
+                           const Campaign& c, const Settings& options) {
+  return process::guarded("controller " + o.info.name, [&] {
+    return o.parse({files, c, options});
+  });
+}
+
+Expected<const Controller*> control_of(const loader::Plugins& plugins, const std::string& name,
+                                       const std::vector<Artifact>& files, const Campaign& campaign,
+                                       const std::map<std::string, std::string>& options) {
+  std::vector<const Controller*> all, named, able;
+  std::vector<std::string> names;
+  for (const Controller& o : plugins.controllers()) {
+    all.push_back(&o);
+    names.push_back(o.info.name);
+    if (o.info.name == name) return &o;
+    if (files.front().name.rfind(o.info.name + "-", 0) == 0) named.push_back(&o);
+  }
+  if (!name.empty())
+    return fail("no control \"" + name + "\"" + storage::suggestion(name, names) + "; there are " +
+                storage::listed(names));
+  if (named.size() == 1) return named.front();
+  for (const Controller* o : all) {
+    const auto settled = config::options_from(o->info, options);
+    if (settled && tables_in(*o, files, campaign, *settled)) able.push_back(o);
+  }
+  if (able.size() == 1) return able.front();
+  return fail(files.front().name + ": " +
+              (able.empty() ? "no control" : std::to_string(able.size()) + " controls") +
+              " could have written it; say --control, one of " + storage::listed(names));
+}
+
+std::vector<TableDifference> differences(const Tables& present, const Tables& next) {
+  std::vector<TableDifference> out;
+  for (const Tables* tables : {&present, &next})
+    for (const LoadedTable& t : *tables) {
+      if (std::any_of(out.begin(), out.end(), [&](const TableDifference& d) {
+            return d.output == t.output && d.input == t.input;
+          }))
+        continue;
+      TableDifference d{.output = t.output, .input = t.input, .rotary = t.rotary};
+      std::vector<const LoadedTable*> was, will;
+      for (const LoadedTable& o : present)
+        if (same_axes(o, t)) was.push_back(&o);
+      for (const LoadedTable& o : next)
+        if (same_axes(o, t)) will.push_back(&o);
+      compare(d, was, will);
+      out.push_back(std::move(d));
+    }
+  return out;
+}
+
+namespace {
+const char* backlash_key(bool rotary) { return rotary ? "backlash_deg" : "backlash_mm"; }
+}  // namespace
+
+std::optional<double> stated_backlash(const Settings& options, const std::string& axis,
+                                      bool rotary) {
+  const NumberTables axes = options.tables("axes");
+  const auto table = axes.find(axis);
+  if (table == axes.end()) return std::nullopt;
+  const auto number = table->second.find(backlash_key(rotary));
+  if (number == table->second.end()) return std::nullopt;
+  return number->second / (rotary ? deg_per_rad : 1e3);
+}
+
+void state_backlash(Settings& options, const std::string& axis, bool rotary, double value) {
+  NumberTables axes = options.tables("axes");
+  axes[axis][backlash_key(rotary)] = rounded_to_places(value * (rotary ? deg_per_rad : 1e3), 9);
+  options.values["axes"] = std::move(axes);
+}
+
+std::vector<Observations> without_tables(const Campaign& campaign,
+                                         const std::vector<Observations>& readings,
+                                         const Tables& tables) {
+  std::vector<Observations> raw;
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    raw.push_back(
+        without(readings[i], control_axis(campaign.machine, campaign.measurements[i]), tables));
+  return raw;
+}
+
+Campaign with_one(Campaign campaign, Measurement m) {
+  m.axis = control_axis(campaign.machine, m);
+  m.side.clear();
+  for (Axis& axis : campaign.machine.axes) axis.slave.clear();
+  campaign.measurements = {std::move(m)};
+  return campaign;
+}
+
+Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign& read,
+                                              const Controller& controller,
+                                              const Settings& options) {
+  if (read.tables_on.empty()) return std::optional<Underlay>();
+  const Campaign& campaign = read.manifest->campaign;
+  Underlay on{{}, options, {}};
+  for (const auto& [axis, files] : read.tables_on) {
+    const std::string who = "what was on while axis " + axis + " was measured: ";
+    auto tables = tables_in(controller, files, campaign, options);
+    if (!tables) return fail(who + tables.error().message);
+    if (!corrects(*tables, axis))
+      return fail(who + "its files hold no table of " + axis +
+                  (tables->empty() ? "" : ", but of " + tables->front().output) +
+                  "; which number has the axis in the control?");
+    for (const LoadedTable& t : *tables) {  // a file may hold those of other axes too
+      if (t.output != axis) continue;
+      const auto stated = stated_backlash(options, axis, t.rotary);
+      if (stated && t.backlash.value_or(0.0) != 0.0 && std::fabs(*stated - *t.backlash) > 5e-10)
+        return fail(who + "its files hold another backlash than backlash_on says");
+      on.tables.push_back(t);
+    }
+  }
+  state_backlash_of(on.options, on.tables);
+  on.readings = without_tables(campaign, read.observations, on.tables);
+  return std::optional(std::move(on));
+}
+
+void compare_with_measured(const reading::ReadCampaign& read, OutputResult& result) {
+  const auto& measurements = read.manifest->campaign.measurements;
+  std::erase_if(result.findings, [](const Finding& f) { return f.id == "table.no-gain"; });
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const Measurement& m = measurements[i];
+    if (m.kind != "axis" || read.observations[i].size() == 0) continue;
+    const auto test = math::AxisTest::arrange(read.observations[i]);
+    const auto was = math::before(math::error_curve(test));
+    for (Prediction& p : result.predictions) {
+      if (p.measurement != m.id) continue;
+      p.before = p.name == "B" ? was.B() : p.name == "M" ? was.M() : was.E();
+      if (!p.name.starts_with("E") || p.after < p.before) continue;
+      const Quantity q = deviation_of(test.rotary);
+      result.findings.push_back({"table.no-gain",
+                                 true,
+                                 {{"before", p.before, q}, {"after", p.after, q}},
+                                 {{"axis", m.axis}},
+                                 m.id,
+                                 "This table would not make the axis better."});
+    }
+  }
+}
+
+std::vector<TableForecast> forecast(const reading::ReadCampaign& read, const Tables& tables,
+                                    const Settings& options, const std::optional<Underlay>& on) {
+  std::vector<TableForecast> out;
+  const auto& measurements = read.manifest->campaign.measurements;
+  for (std::size_t i = 0; i < read.observations.size(); ++i) {
+    const Measurement& m = measurements[i];
+    const std::string axis = control_axis(read.manifest->campaign.machine, m);
+    if (m.kind != "axis" || read.observations[i].size() == 0 || !corrects(tables, axis)) continue;
+    const auto test = math::AxisTest::arrange(read.observations[i]);
+    const auto curve = math::error_curve(test);
+    if (curve.position.size() < 2) continue;
+    const auto raw = on ? math::error_curve(math::AxisTest::arrange(on->readings[i])) : curve;
+    out.push_back(forecast_of(m.id, axis, curve, raw, test.rotary, tables,
+                              present_backlash(on ? on->options : options, axis, test.rotary)));
+  }
+  return out;
+}
+
+Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controller& controller,
+                              Settings options, const Tables& present) {
+  Campaign campaign = read.manifest->campaign;
+  state_backlash_of(options, present);
+  say_what_was_on(campaign, options, present);
+  const std::vector<Observations> raw = without_tables(campaign, read.observations, present);
+  const Results none;
+  const auto write = [&](const Campaign& c, const std::vector<Observations>& o) {
+    return process::guarded("controller " + controller.info.name, [&] {
+      return controller.write({c, o, none, options});
+    });
+  };
+  auto whole = write(campaign, raw);
+  if (!whole) return tl::unexpected<Error>(whole.error());
+  RenewedTables out{std::move(whole->artifacts), {}, {}, std::move(whole->findings)};
+  for (std::size_t i = 0; i < raw.size(); ++i) {  // one at a time: an axis may be there twice
+    const Measurement& m = campaign.measurements[i];
+    if (m.kind != "axis" || raw[i].size() == 0) continue;
+    const Campaign one = with_one(campaign, m);
+    const auto files = write(one, {raw[i]});
+    if (!files) return tl::unexpected<Error>(files.error());
+    if (files->artifacts.empty()) continue;  // refused; the finding says why
+    const auto tables = tables_in(controller, files->artifacts, one, options);
+    if (!tables) return tl::unexpected<Error>(tables.error());
+    const auto test = math::AxisTest::arrange(read.observations[i]);
+    const std::string axis = control_axis(campaign.machine, m);
+    out.forecast.push_back(forecast_of(
+        m.id, axis, math::error_curve(test), math::error_curve(math::AxisTest::arrange(raw[i])),
+        test.rotary, *tables, present_backlash(options, axis, test.rotary)));
+    out.tables.insert(out.tables.end(), tables->begin(), tables->end());
+  }
+  return out;
+}
+
+Expected<SignProbe> sign_probe(const Measurement& m, const Observations& o) {
+  const auto test = math::AxisTest::arrange(o);
+  const auto curve = math::error_curve(test);
+  const auto& e = curve.plus;
+  if (e.size() < 3)
+    return fail("measurement " + m.id +
+                ": expected 3 targets or more that were reached moving "
+                "towards plus, found " +
+                std::to_string(e.size()));
+  SignProbe probe{m.id, m.axis, test.rotary, curve.position.front()};
+  for (std::size_t i = 1; i < e.size(); ++i)  // the first target is where the move begins
+    for (std::size_t k = i + 1; k < e.size(); ++k)
+      if (std::fabs(e[k] - e[i]) > std::fabs(probe.difference)) {
+        probe.difference = e[k] - e[i];
+        probe.from = curve.position[i];
+        probe.to = curve.position[k];
+      }
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < test.targets.size(); ++i) {
+    const auto readings = test.plus(i);
+    double mean = 0.0;
+    for (const auto& r : readings) mean += r.deviation / static_cast<double>(readings.size());
+    for (const auto& r : readings) sum += (r.deviation - mean) * (r.deviation - mean);
+    n += readings.empty() ? 0 : readings.size() - 1;
+  }
+  probe.scatter = n == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(n));
+  return probe;
+}
+
+}  // namespace nonio::tables

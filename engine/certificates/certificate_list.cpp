@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certificates/certificate_list.h"
+
+#include <algorithm>
+
+#include "campaign/config/site_files.h"
+#include "certificates/person_name.h"
+#include "certificates/register_place.h"
+#include "nonio/sdk/statement.h"
+#include "platform/storage/files.h"
+
+namespace nonio::certificates {
+namespace fs = std::filesystem;
+
+Expected<config::Numbering> numbering_of(const fs::path& site) {
+  std::string digest;
+  auto read = config::read_site(site, digest);
+  if (!read) return fail(read.error().front());
+  return std::move(read->numbering);
+}
+
+Expected<std::vector<RegisterEntry>> certificates_of(const fs::path& site,
+                                                     const config::Numbering& numbering) {
+  auto entries = Register::entries(site, numbering);
+  if (!entries || entries->empty()) return entries;
+  auto opened = Register::open(site, numbering);
+  if (!opened) return fail(opened.error());
+  if (auto noted = opened->note_persons(*entries); !noted) return fail(noted.error());
+  return entries;
+}
+
+Expected<void> withdraw(const fs::path& site, const config::Numbering& numbering,
+                        const std::string& number, const std::string& why, const std::string& by) {
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+  if (!by.empty())
+    if (const std::string mistake = mistake_in_name(by); !mistake.empty()) return fail(mistake);
+  if (!says_something(why)) return fail("the reason says nothing; expected why it is withdrawn");
+  if (std::any_of(why.begin(), why.end(), control))
+    return fail("the reason has a control character; expected one line of text");
+  const auto entries = Register::entries(site, numbering);
+  if (!entries) return fail(entries.error());
+  if (entries->empty()) return fail("no number " + number + " was ever drawn");
+  auto opened = Register::open(site, numbering);
+  if (!opened) return fail(opened.error());
+  return opened->withdraw(number, why, by);
+}
+
+Expected<Audit> audit(const fs::path& site, const config::Numbering& numbering) {
+  const auto place = register_place(site, numbering);
+  if (!place) return fail(place.error());
+  const auto there = has_register(*place, storage::Database::usual_patience);
+  if (!there) return fail(there.error());
+  if (!*there)
+    return fail("there is no register " + place->name + ": nothing was issued or drafted yet");
+  auto opened = Register::open_to_audit(site, numbering);
+  if (!opened) return fail(opened.error());
+  return opened->audit();
+}
+
+namespace {
+
+/// What its own output made is named by the number alone; what was signed with it has its name too.
+std::string export_name(const std::string& number, const evaluation::IssuedFile& file,
+                        const std::string& own) {
+  if (file.output == own && file.name.ends_with(".pdf")) return number + ".pdf";
+  if (file.output == own && file.name.ends_with(".xml")) return number + "-dcc.xml";
+  return number + "-" + file.output + "-" + file.name;
+}
+
+}  // namespace
+
+Expected<void> export_certificates(const fs::path& site, const config::Numbering& numbering,
+                                   const fs::path& folder) {
+  const auto entries = Register::entries(site, numbering);
+  if (!entries) return fail(entries.error());
+  if (entries->empty()) return {};
+  auto opened = Register::open(site, numbering);
+  if (!opened) return fail(opened.error());
+  for (const RegisterEntry& e : *entries) {
+    if (e.order == 0) continue;
+    const auto files = opened->files(e.number);
+    if (!files) return fail(files.error());
+    std::vector<Artifact> out;
+    for (const evaluation::IssuedFile& f : *files)
+      out.push_back({export_name(e.number, f, files->front().output), f.bytes});
+    if (auto written = storage::publish(folder, out); !written) return written;
+  }
+  return {};
+}
+
+}  // namespace nonio::certificates

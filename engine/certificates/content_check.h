@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "campaign/evaluation/evaluate.h"
+#include "nonio/sign/verify.h"
+
+namespace nonio::certificates {
+
+/// What is attached to a signed PDF evaluated again by the installed plugins: `content.values`,
+/// whether the readings give the attached results; `content.attachments`, whether all that is
+/// attached belongs there; `content.templates`, whether its words are those that results.json names;
+/// `content.words`, whether these are the installed ones;
+/// `content.printed`, whether the readings give this very file, object by object, when it is put
+/// together again as the night did.
+std::vector<sign::Check> check_content(const sign::Verified& verified, std::string_view pdf,
+                                       const reading::Context& context);
+
+inline constexpr const char* words_check = "content.words";
+
+/// Whether an attachment is a DCC.
+bool is_document(const pdf::Attachment& attachment);
+const pdf::Attachment* find_attachment(const sign::Verified& verified, std::string_view name);
+
+}  // namespace nonio::certificates

@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long: one protocol, draw to issue; its steps are only right in their order.
+#include "certificates/numbering.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "campaign/evaluation/results_json.h"
+#include "campaign/reading/plausibility/plausibility.h"
+#include "campaign/reading/plausibility/traceability.h"
+#include "certificates/amendment.h"
+#include "certificates/certificates.h"
+#include "certificates/journal.h"
+#include "certificates/recomputed.h"
+#include "certificates/register_place.h"
+#include "nonio/sdk/statement.h"
+#include "nonio/sign/verify.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+
+namespace nonio::certificates {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Of other campaigns, or of the machine's record: no file of the campaign, and no data of its
+/// certificate. What other campaigns do makes no other data of these, and what is in the control by
+/// now neither.
+bool is_foreign(const std::string& input) {
+  return input.starts_with(reading::shared_name("")) || input.starts_with(config::machine_prefix);
+}
+
+/// What a certificate is made from: the campaign's own files, and what of site.toml has a say in
+/// the results.
+reading::Inputs data_of(const evaluation::Evaluated& evaluated, const reading::Context& context) {
+  reading::Inputs data = evaluated.inputs;
+  std::erase_if(data, [](const auto& one) { return is_foreign(one.first); });
+  data.emplace_back(config::site_name, storage::sha256(context.site.evaluation));
+  return data;
+}
+
+/// A worker does not wait long for others: its campaign is done again when the register is free.
+double short_wait(const config::Numbering& numbering) {
+  constexpr double seconds = 5.0;
+  return std::min(seconds, numbering.patience);
+}
+
+using Files = std::vector<std::pair<std::string, std::string>>;  // name, bytes
+
+const std::string* find_file(const Files& files, const std::string& name) {
+  for (const auto& [known, bytes] : files)
+    if (known == name) return &bytes;
+  return nullptr;
+}
+
+/// From what a certificate was made: manifest, readings, settings of the site.
+Expected<Files> attached_files(const std::vector<evaluation::IssuedFile>& issued) {
+  Files files;
+  for (const evaluation::IssuedFile& f : issued) {
+    if (!f.bytes.starts_with("%PDF-")) continue;
+    auto attached = sign::unverified_attachments(f.bytes);
+    if (!attached) return fail(f.name + " in the register: " + attached.error().message);
+    for (pdf::Attachment& a : *attached)
+      if (a.relation == source_relation && a.name != templates_name &&
+          a.name != config::machine_record_name)
+        files.emplace_back(a.name == settings_name ? config::site_name : std::move(a.name),
+                           std::move(a.bytes));
+    break;
+  }
+  return files;
+}
+
+Expected<Files> current_files(const evaluation::Evaluated& evaluated,
+                              const reading::Context& context, CampaignFiles& of_campaign) {
+  Files files;
+  for (const auto& [input, digest] : evaluated.inputs) {
+    const std::string name = file_of_input(input);
+    if (name.empty()) continue;
+    const auto bytes = of_campaign.bytes(name, digest);
+    if (!bytes) return fail(bytes.error());
+    files.emplace_back(name, *bytes);
+  }
+  if (!context.site.settings.empty()) files.emplace_back(config::site_name, context.site.settings);
+  return files;
+}
+
+/// In the order of `now`; then what is gone.
+std::vector<FileChange> changes_of(const Files& then, const Files& now) {
+  std::vector<FileChange> all;
+  for (const auto& [name, bytes] : now) {
+    const std::string* before = find_file(then, name);
+    if (before != nullptr && *before == bytes) continue;
+    FileChange change = change_of(name, before, &bytes);
+    // Comments, or nothing but the reason for the amendment.
+    if (before != nullptr && name.ends_with(".toml") && change.changes.empty()) continue;
+    all.push_back(std::move(change));
+  }
+  for (const auto& [name, bytes] : then)
+    if (find_file(now, name) == nullptr) all.push_back(change_of(name, &bytes, nullptr));
+  return all;
+}
+
+/// The register's files in place of what has been made now.
+void take_issued(evaluation::Evaluated& evaluated) {
+  for (Results::Written& w : evaluated.results.outputs)
+    for (const evaluation::IssuedFile& f : evaluated.certificate->files) {
+      auto& artifacts = w.result.artifacts;
+      const auto same = std::find_if(artifacts.begin(), artifacts.end(),
+                                     [&](const Artifact& a) { return a.name == f.name; });
+      if (w.plugin == f.output && same != artifacts.end()) *same = {f.name, f.bytes};
+    }
+  remove_unsigned(evaluated);
+}
+
+/// Those that the certificate states. If two persons gave one for the same finding, each is stated.
+void put_reasons(const Releasing& releasing, Issue& issue) {
+  for (const evaluation::KnownFinding& f : releasing.draft.findings) {
+    if (!reading::is_expired_calibration(f.id)) continue;
+    const auto& author = releasing.draft.author;
+    for (const Approval* one : {author ? &*author : nullptr, &releasing.by}) {
+      if (one == nullptr) continue;
+      const auto given = one->reasons.find(finding_key(f));
+      if (given == one->reasons.end()) continue;
+      const bool known =
+          std::any_of(issue.reasons.begin(), issue.reasons.end(), [&](const Issue::Reason& r) {
+            return r.finding == f.id && r.text == given->second && r.by == one->by;
+          });
+      if (!known) issue.reasons.push_back({f.id, given->second, one->by});
+    }
+  }
+}
+
+}  // namespace
+
+const config::StandingRule* rule_for(const config::Numbering& numbering,
+                                     const evaluation::KnownFinding& finding) {
+  if (finding.id.starts_with(reading::plausibility_prefix))
+    return nullptr;  // a person says why, each time
+  for (const config::StandingRule& rule : numbering.may_stand) {
+    const bool all_of_a_kind = rule.finding.ends_with(".*");
+    if (all_of_a_kind ? finding.id.starts_with(rule.finding.substr(0, rule.finding.size() - 1))
+                      : finding.id == rule.finding)
+      return &rule;
+  }
+  return nullptr;
+}
+
+Expected<bool> Numbers::has_register() const {
+  const auto place = register_place(where_.site, context_.site.numbering);
+  if (!place) return fail(place.error());
+  return certificates::has_register(*place, short_wait(context_.site.numbering));
+}
+
+Expected<Register> Numbers::open() const {
+  return Register::open(where_.site, context_.site.numbering, short_wait(context_.site.numbering));
+}
+
+namespace {
+
+/// Whether an open finding asks for somebody to look at it whom the rules cannot stand for.
+bool any_unruled(const std::vector<evaluation::KnownFinding>& findings,
+                 const config::Numbering& numbering) {
+  return std::any_of(findings.begin(), findings.end(), [&](const evaluation::KnownFinding& f) {
+    return f.attention && rule_for(numbering, f) == nullptr;
+  });
+}
+
+/// Everything that the pages of a draft depend on.
+reading::Inputs made_from(const evaluation::Evaluated& evaluated, const reading::Context& context) {
+  reading::Inputs all = data_of(evaluated, context);
+  for (const auto& [name, digest] : evaluated.inputs)
+    if (name.starts_with(config::machine_prefix)) all.emplace_back(name, digest);
+  for (const auto& [name, digest] : reading::shared_inputs(context))
+    if (name != config::site_name) all.emplace_back(name, digest);
+  return all;
+}
+
+}  // namespace
+
+/// By the rules, or because a person releases it.
+bool Numbers::may_issue(const evaluation::Evaluated& evaluated) const {
+  if (releasing_ != nullptr) return true;
+  const config::Numbering& numbering = context_.site.numbering;
+  return numbering.automatic &&
+         !any_unruled(evaluation::known_findings(evaluated.results, context_.templates), numbering);
+}
+
+void Numbers::hold_unreleased(evaluation::Evaluated& evaluated) const {
+  if (evaluated.certificate || may_issue(evaluated)) return;
+  for (Results::Written& w : evaluated.results.outputs) {
+    std::string files;
+    for (const Artifact& a : w.result.artifacts)
+      if (a.sign) files += (files.empty() ? "" : ", ") + a.name;
+    if (files.empty()) continue;
+    std::erase_if(w.result.artifacts, [](const Artifact& a) { return a.sign; });
+    note_finding(evaluated, w.plugin,
+                 {.id = "signature.not-released",
+                  .attention = true,
+                  .texts = {{"file", files}, {"output", w.plugin}}});
+  }
+}
+
+bool Numbers::held_up(const evaluation::Evaluated& evaluated) const {
+  const auto& certificate = evaluated.certificate;
+  return certificate && !certificate->issued && !certificate->draft && !may_issue(evaluated);
+}
+
+/// What a person releases is what he has seen.
+Expected<void> Numbers::check_release(const reading::Inputs& now) const {
+  if (releasing_ == nullptr) return {};
+  std::string other;
+  for (const auto& one : now)
+    if (std::find(releasing_->draft.made_from.begin(), releasing_->draft.made_from.end(), one) ==
+        releasing_->draft.made_from.end())
+      other += (other.empty() ? "" : ", ") + one.first;
+  if (other.empty() && now.size() == releasing_->draft.made_from.size()) return {};
+  return fail("not the draft any more that is to be released; changed since: " +
+              (other.empty() ? "files that are gone" : other) +
+              ". Run the night again, and look at the new draft");
+}
+
+Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
+                              const evaluation::Evaluated& evaluated, CampaignFiles& files,
+                              Issue& issue, std::vector<std::string>& missing) const {
+  const auto old_files = opened.files(before.number);
+  if (!old_files) return fail(old_files.error());
+  auto attached = attached_files(*old_files);
+  if (!attached) return fail(attached.error());
+  const Files then = std::move(*attached);
+  const auto now = current_files(evaluated, context_, files);
+  if (!now) return fail(now.error());
+  issue.replaces = before.number;
+  issue.replaces_date = before.date;
+  issue.changes = changes_of(then, *now);
+  const std::string& stated = evaluated.campaign.certificate.amendment;
+  const std::string* manifest = find_file(then, config::manifest_name);
+  const bool is_old = says_something(stated) && manifest != nullptr &&
+                      flat_toml(*manifest)[amendment_key] == stated;
+  issue.why = before.state == "withdrawn" ? before.reason : "";
+  if (says_something(stated) && !is_old && stated != issue.why)
+    issue.why += (issue.why.empty() ? "" : "; ") + stated;
+  if (issue.why.empty())
+    missing.push_back(std::string(amendment_key) + " (why " + before.number + " is replaced" +
+                      (is_old ? "; what it says was there for " + before.number + " already" : "") +
+                      ")");
+  return {};
+}
+
+evaluation::AssignedNumber Numbers::assign(const evaluation::Evaluated& evaluated,
+                                           CampaignFiles& files, std::vector<std::string> missing,
+                                           bool as_draft) const {
+  auto certificate = find_or_draw(evaluated, files, missing, as_draft);
+  evaluation::AssignedNumber assigned;
+  assigned.missing = std::move(missing);
+  if (!certificate)
+    assigned.error = certificate.error();
+  else if (certificate->draft || !certificate->issue.number.empty())
+    assigned.certificate = std::move(*certificate);
+  return assigned;
+}
+
+Expected<evaluation::Certificate> Numbers::find_or_draw(const evaluation::Evaluated& evaluated,
+                                                        CampaignFiles& files,
+                                                        std::vector<std::string>& missing,
+                                                        bool as_draft) const {
+  for (std::string& key : reading::days_to_come(evaluated.campaign, where_.today))
+    missing.push_back(std::move(key));
+  if (!missing.empty()) {
+    const auto there = has_register();
+    if (!there) return fail(there.error());
+    if (!*there) return evaluation::Certificate{};
+  }
+  auto opened = open();
+  if (!opened) return fail(opened.error());
+  const std::string& campaign = evaluated.campaign.id;
+  const reading::Inputs data = data_of(evaluated, context_);
+  auto found = opened->find(campaign, data);
+  if (!found) return fail(found.error());
+  if (*found && releasing_ != nullptr) {
+    const auto first = opened->note_second((*found)->issue.number, campaign, releasing_->by);
+    return fail(first ? *first : first.error().message);
+  }
+  if (*found) return std::move(**found);
+  if (auto same = check_release(made_from(evaluated, context_)); !same) return fail(same.error());
+  const auto before = opened->last_number(campaign);
+  if (!before) return fail(before.error());
+  // Of the same data, by a night beside this one, since they were looked for? Then nothing is
+  // amended.
+  if (*before) found = opened->find(campaign, data);
+  if (!found) return fail(found.error());
+  if (*found) return std::move(**found);
+  evaluation::Certificate certificate;
+  Issue& issue = certificate.issue;
+  if (*before)
+    if (auto done = amend(*opened, **before, evaluated, files, issue, missing); !done)
+      return fail(done.error());
+  if (!missing.empty()) return evaluation::Certificate{};
+  if (!where_.can_sign) return fail(no_key);
+  auto readings = files.readings_sha256(evaluated.inputs);
+  if (!readings) return fail(readings.error());
+  issue.readings_sha256 = *readings;
+  certificate.templates_sha256 = context_.templates_sha256;
+  certificate.draft = as_draft || !may_issue(evaluated);
+  if (certificate.draft) return certificate;
+  auto drawn = opened->draw(campaign, data, where_.today);
+  if (!drawn || drawn->issued) return drawn;
+  if (drawn->issue.replaces != issue.replaces)
+    return fail("another run has issued " + drawn->issue.replaces + " meanwhile");
+  issue.number = drawn->issue.number;
+  issue.date = drawn->issue.date;
+  issue.register_id = drawn->issue.register_id;
+  issue.register_entry = drawn->issue.register_entry;
+  issue.register_sha256 = drawn->issue.register_sha256;
+  if (releasing_ != nullptr) {
+    issue.released_by = releasing_->by.by;
+    if (releasing_->draft.author) issue.author = releasing_->draft.author->by;
+    put_reasons(*releasing_, issue);
+  }
+  return certificate;
+}
+
+namespace {
+
+storage::Json approval_json(const Approval& approval) {
+  return {{"by", approval.by},
+          {"role", approval.role},
+          {"at", approval.at.empty() ? utc_now() : approval.at},
+          {"reasons", approval.reasons}};
+}
+
+}  // namespace
+
+std::string Numbers::released_json(const std::vector<evaluation::KnownFinding>& findings) const {
+  storage::Json json = storage::Json::object();
+  storage::Json open = storage::Json::object(), rules = storage::Json::object();
+  for (const evaluation::KnownFinding& f : findings) {
+    open[finding_key(f)] = f.attention ? "attention" : "info";
+    const config::StandingRule* rule = rule_for(context_.site.numbering, f);
+    if (f.attention && rule != nullptr) rules[finding_key(f)] = rule->reason;
+  }
+  json["findings"] = std::move(open);
+  if (releasing_ == nullptr) {
+    json["rules"] = std::move(rules);
+  } else {
+    if (releasing_->draft.author) json["author"] = approval_json(*releasing_->draft.author);
+    json["released"] = approval_json(releasing_->by);
+  }
+  return json.dump();
+}
+
+Expected<void> Numbers::enter_draft(const evaluation::Evaluated& evaluated,
+                                    const std::string& folder) const {
+  const evaluation::Certificate& certificate = *evaluated.certificate;
+  WaitingDraft draft;
+  draft.campaign = evaluated.campaign.id;
+  draft.folder = folder;
+  draft.out = where_.out.string();
+  draft.replaces = certificate.issue.replaces;
+  draft.made_from = made_from(evaluated, context_);
+  draft.findings =
+      evaluation::known_findings(evaluated.results, context_.templates, context_.site.language);
+  for (const Results::Written& w : evaluated.results.outputs)
+    if (w.plugin == certificate.output && !w.result.artifacts.empty()) {
+      draft.file = w.result.artifacts.front().name;
+      draft.sha256 = storage::sha256(w.result.artifacts.front().bytes);
+    }
+  if (draft.file.empty())
+    return fail("output " + certificate.output + " makes no PDF that could be released");
+  auto opened = open();
+  if (!opened) return fail(opened.error());
+  return opened->enter_draft(draft);
+}
+
+Expected<void> Numbers::issue_new(evaluation::Evaluated& evaluated) const {
+  const auto findings = evaluation::known_findings(evaluated.results, context_.templates);
+  if (releasing_ != nullptr) {
+    const auto& seen = releasing_->draft.findings;
+    for (const evaluation::KnownFinding& f : findings)
+      if (f.attention && std::none_of(seen.begin(), seen.end(),
+                                      [&](const evaluation::KnownFinding& k) { return k.same(f); }))
+        return fail("the finding " + finding_key(f) +
+                    " was not there when the draft was made: run the night again");
+  }
+  evaluated.certificate->released = released_json(findings);
+  auto opened = open();
+  if (!opened) return fail(opened.error());
+  std::optional<Approved> approved;
+  if (releasing_ != nullptr) approved.emplace(Approved{releasing_->draft, releasing_->by});
+  auto issued = opened->issue(*evaluated.certificate, evaluated.campaign.id,
+                              data_of(evaluated, context_), approved ? &*approved : nullptr);
+  if (!issued) return fail(issued.error());
+  evaluated.certificate = std::move(*issued);
+  take_issued(evaluated);
+  return {};
+}
+
+Expected<void> Numbers::issue(evaluation::Evaluated& evaluated, const std::string& folder) const {
+  if (!evaluated.certificate || evaluated.status == evaluation::Status::failed) return {};
+  if (evaluated.certificate->draft) return enter_draft(evaluated, folder);
+  if (evaluated.certificate->issued) {
+    take_issued(evaluated);
+    note_differences(evaluated);
+  } else if (auto done = issue_new(evaluated); !done) {
+    return done;
+  }
+  for (const evaluation::IssuedFile& file : evaluated.certificate->files)
+    note_time_stamp(evaluated, file);
+  return {};
+}
+
+/// A certificate does not change; that another version would print other numbers is said.
+void Numbers::note_differences(evaluation::Evaluated& evaluated) const {
+  auto outputs = std::exchange(evaluated.results.outputs, {});
+  const auto same = same_values(evaluated.certificate->results,
+                                evaluation::results_json(evaluated, context_, {}));
+  evaluated.results.outputs = std::move(outputs);
+  if (same) return;
+  note_finding(
+      evaluated, evaluated.certificate->output,
+      {.id = "certificate.differs",
+       .attention = true,
+       .texts = {{"number", evaluated.certificate->issue.number}, {"why", same.error().message}}});
+}
+
+void Numbers::note_failure(const std::string& campaign, const std::string& why) const {
+  if (!has_register().value_or(false)) return;
+  auto opened = open();
+  if (!opened) return;
+  [[maybe_unused]] const auto noted = opened->note_failure(campaign, why);
+}
+
+}  // namespace nonio::certificates

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "campaign/evaluation/evaluate.h"
+#include "certificates/campaign_files.h"
+#include "certificates/register.h"
+
+namespace nonio::certificates {
+
+/// Whether a rule of the site lets this finding stand.
+const config::StandingRule* rule_for(const config::Numbering& numbering,
+                                     const evaluation::KnownFinding& finding);
+
+/// A draft, and the one who releases it.
+struct Releasing {
+  WaitingDraft draft;
+  Approval by;
+  reading::Twins twins{};  ///< what the night knew of other campaigns
+};
+
+/// What a night, or the release of one campaign, does with the site's register. Every call opens it
+/// by itself: no process inherits it from another.
+class Numbers {
+ public:
+  struct Where {
+    std::filesystem::path site, out;
+    std::string today;  ///< YYYY-MM-DD
+    bool can_sign;      ///< there is a key, or there are neither drafts nor numbers
+  };
+  /// `releasing` is null in a night.
+  Numbers(Where where, const reading::Context& context, const Releasing* releasing)
+      : where_(std::move(where)), context_(context), releasing_(releasing) {}
+
+  /// What was issued for what is evaluated here, whatever is `missing` for it today; else, if
+  /// nothing is, a draft or a number; else neither. `as_draft`: no number, whatever the rules say.
+  evaluation::AssignedNumber assign(const evaluation::Evaluated& evaluated, CampaignFiles& files,
+                                    std::vector<std::string> missing, bool as_draft) const;
+  /// Whether a finding that no rule lets stand came after a number was drawn by the rules.
+  bool held_up(const evaluation::Evaluated& evaluated) const;
+  /// After signing: enters what is issued into the register, and gives the campaign what the
+  /// register holds. Of what was issued before it is said if its numbers are others now. A draft is
+  /// entered as one that waits for `folder`'s release (relative to the site).
+  Expected<void> issue(evaluation::Evaluated& evaluated, const std::string& folder) const;
+  /// Nothing is signed that neither a person nor the site's rules have released. What is not part
+  /// of a certificate nobody releases: by the rules it is signed, else it is left out and a finding
+  /// says so.
+  void hold_unreleased(evaluation::Evaluated& evaluated) const;
+  /// A number that was drawn for a campaign keeps the reason why it is not issued. Silent: there is
+  /// nobody left to tell.
+  void note_failure(const std::string& campaign, const std::string& why) const;
+
+ private:
+  Expected<Register> open() const;
+  Expected<bool> has_register() const;
+  bool may_issue(const evaluation::Evaluated& evaluated) const;
+  /// No number: `missing` says what for.
+  Expected<evaluation::Certificate> find_or_draw(const evaluation::Evaluated& evaluated,
+                                                 CampaignFiles& files,
+                                                 std::vector<std::string>& missing,
+                                                 bool as_draft) const;
+  Expected<void> amend(Register& opened, const RegisterEntry& before,
+                       const evaluation::Evaluated& evaluated, CampaignFiles& files, Issue& issue,
+                       std::vector<std::string>& missing) const;
+  Expected<void> check_release(const reading::Inputs& now) const;
+  Expected<void> enter_draft(const evaluation::Evaluated& evaluated,
+                             const std::string& folder) const;
+  Expected<void> issue_new(evaluation::Evaluated& evaluated) const;
+  std::string released_json(const std::vector<evaluation::KnownFinding>& findings) const;
+  void note_differences(evaluation::Evaluated& evaluated) const;
+
+  const Where where_;
+  const reading::Context& context_;
+  const Releasing* const releasing_;
+};
+
+}  // namespace nonio::certificates

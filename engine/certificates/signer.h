@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "campaign/config/manifest.h"
+#include "nonio/sign/sign.h"
+
+namespace nonio::certificates {
+
+/// The one process that holds the key of a night. Workers send it finished bytes and get them back
+/// signed. It is made before plugins are loaded, so that nothing of theirs is in it, and opens the
+/// key once; if that does not succeed, it says why to everyone who asks.
+class Signer {
+ public:
+  /// A disk or share without an answer for `disk_seconds` is none.
+  Signer(const config::Signing& signing, std::filesystem::path site, double disk_seconds);
+  Signer(const Signer&) = delete;
+  Signer& operator=(const Signer&) = delete;
+  ~Signer();
+
+  /// Starts the process; whose key it has, or why it has none.
+  Expected<sign::Identity> start();
+  /// Starts it again if it has died; what was asked meanwhile is not lost.
+  void revive();
+  /// To be called first in a worker: it cannot listen to others.
+  void leave_to_worker() const;
+  Expected<sign::Signed> sign(const std::string& bytes) const;
+
+ private:
+  Expected<void> fork_process();
+  void end_process();
+  [[noreturn]] void serve() const noexcept;
+
+  const config::Signing& signing_;
+  const std::filesystem::path site_;
+  pid_t pid_ = -1;
+  const double disk_seconds_;
+  std::string given_up_{};  ///< why nobody signs any more
+  int deaths_ = 0;
+  int to_ = -1, from_ = -1;  ///< the two ends of the channel on which requests come
+};
+
+}  // namespace nonio::certificates

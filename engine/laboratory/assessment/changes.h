@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "laboratory/assessment/fits.h"
+#include "laboratory/assessment/series.h"
+
+/// What changed, over all machines of a site.
+namespace nonio::assessment {
+
+/// False news in this share of nights: for a list that somebody reads, for a mail that wakes him.
+inline constexpr double told_below = 0.05, mailed_below = 0.01;
+/// A step at a place where something is known to have happened.
+inline constexpr double declared_below = 0.01;
+
+/// What all series of one quantity say together; of which no series can say it alone.
+struct OfQuantity {
+  double excess = 1.0;  ///< by how much campaigns scatter more than each says
+  double spread = 0.0;  ///< standard deviation of slopes, per year, in the printed unit
+};
+
+/// What is learned from one series.
+struct Lesson {
+  std::string quantity;  ///< and its unit
+  std::uint64_t points = 0;
+  std::vector<double> ratios{};  ///< see `kernel::Scatter`
+  std::optional<nonio::statistics::Slope> slope{};
+};
+/// From how many of the first evaluations a laboratory is learned: from all, and of 10,000 and more
+/// from the first ones, in two digits of their number. So a new campaign seldom moves what was said
+/// of all other machines.
+std::uint64_t learned_from(std::uint64_t evaluations);
+/// From the first `evaluations`: of the points before the first one that came later.
+Lesson lesson_of(const FollowedSeries& series, Fits& fits,
+                 std::uint64_t evaluations = std::numeric_limits<std::uint64_t>::max());
+
+/// By quantity and unit, for all machines of a site, in coarse steps.
+struct Learned {
+  std::map<std::string, OfQuantity> of;
+  double drift_below = 1.0;  ///< share of series
+};
+Learned learn(const std::vector<const Lesson*>& lessons);
+
+/// How a series is fitted.
+struct Manner {
+  double excess = 1.0, spread = 0.0, drift_below = 0.0;
+  bool operator==(const Manner&) const = default;
+};
+Manner manner_of(const std::string& quantity, const Learned& learned);
+/// With the trend.
+void fit(FollowedSeries& series, const Manner& manner, Fits& fits);
+
+/// What one series asks in the night of its last point.
+struct SeriesTests {
+  std::uint64_t night = 0;
+  bool has_model = false;
+  struct Of {
+    double p = 1.0;
+    bool declared = false, shows_instrument = false;
+  };
+  std::vector<Of> changes;
+};
+SeriesTests tests_of(const FollowedSeries& series);
+
+/// p of a change, adjusted for all that its night has asked.
+struct Adjusted {
+  double news = 1.0;  ///< Benjamini and Hochberg: of what is told, few are false
+  double any = 1.0;   ///< Holm: the chance that the night tells any that is false
+};
+
+/// Of each change of each series. `asked`: how many each night asked.
+std::vector<std::vector<Adjusted>> adjusted_by_night(
+    const std::vector<const SeriesTests*>& tests,
+    const std::map<std::uint64_t, std::uint64_t>& asked);
+
+/// Whether a change is told, whether it is surely more than its instrument, and whether it is sure
+/// enough for a mail.
+struct Verdict {
+  bool told = false, surely = false, mailed = false;
+};
+Verdict verdict_of(const SeriesTests::Of& test, const Adjusted& adjusted);
+/// Puts the verdicts into a series that was fitted.
+void tell(FollowedSeries& series, const std::vector<Adjusted>& adjusted);
+/// A step that no test of the night confirmed is no part of what is said of the series: one of a
+/// hundred level series has one by chance, and it would bend slope and forecast.
+void drop_untold(FollowedSeries& series, Fits& fits);
+/// What is news in one quantity of an axis is asked of the others at that place.
+void ask_others(AssessedMachine& machine, Fits& fits);
+
+/// All of the above for all machines of a site: `learn`, put into their series.
+std::map<std::string, OfQuantity> learn(std::vector<AssessedMachine>& machines, Fits& fits);
+
+/// And then: fits the trends and says which of their changes are news. A test belongs to the night in
+/// which its series got its last point.
+void find_changes(std::vector<AssessedMachine>& machines,
+                  const std::map<std::uint64_t, std::uint64_t>& asked, Fits& fits,
+                  const std::function<void()>& alive);
+
+}  // namespace nonio::assessment

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "laboratory/statistics/series.h"
+#include "laboratory/statistics/trend.h"
+
+namespace nonio::assessment {
+
+/// Trends and slopes of series, kept by the digest of all that goes into them: a night computes
+/// those of its new campaigns. What is kept changes no result: what is damaged is none.
+class Fits {
+ public:
+  /// Nothing is known.
+  Fits() = default;
+  /// With what `kept` returned.
+  static Fits of(std::string_view kept);
+
+  nonio::statistics::Trend trend(const nonio::statistics::Series& series);
+  std::optional<nonio::statistics::Slope> slope(const nonio::statistics::Series& series);
+
+  /// All that was asked for, in the order of the keys.
+  std::string kept() const;
+  /// Whether that is other than what was known before.
+  bool is_new() const;
+  std::size_t computed() const { return computed_; }
+
+ private:
+  struct Kept {
+    std::string bytes;
+    bool used = false;
+  };
+  Kept* find(const std::string& key);
+  std::map<std::string, Kept> kept_;
+  std::size_t computed_ = 0;
+};
+
+}  // namespace nonio::assessment

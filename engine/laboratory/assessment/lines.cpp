@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "laboratory/assessment/lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "campaign/config/manifest.h"
+#include "laboratory/assessment/lines_of_machine.h"
+
+namespace nonio::assessment {
+
+using reports::MorningLine;
+using Kind = MorningLine::Kind;
+
+namespace {
+
+constexpr std::size_t most_alike = 3;     // failures with one message, told one by one
+constexpr std::size_t most_machines = 5;  // that vanish, told one by one
+
+void put_count(MorningLine& line, const char* name, std::size_t n) {
+  line.finding.evidence.push_back({name, static_cast<double>(n), Quantity::count});
+}
+
+/// What vanished, by machine; where many did, by the folder that they had in common.
+std::vector<MorningLine> lost(const Known& known) {
+  std::map<std::string, std::vector<const Tonight::Vanished*>> by_machine, by_folder;
+  std::vector<MorningLine> out;
+  for (const Tonight::Vanished& v : known.tonight.vanished) {
+    if (!config::is_campaign_id(v.campaign)) {
+      out.push_back(line_of(Kind::lost, "morning.lost-part", v.campaign));
+      put_text(out.back(), "part", v.campaign);
+      put_text(out.back(), "why", v.why);
+      continue;
+    }
+    const auto machine = known.machine_of_campaign.find(v.campaign);
+    by_machine[machine == known.machine_of_campaign.end() ? "" : machine->second].push_back(&v);
+    by_folder[v.folder.substr(0, v.folder.find('/'))].push_back(&v);
+  }
+  const bool many = by_machine.size() > most_machines;
+  for (const auto& [name, gone] : many ? by_folder : by_machine) {
+    if (gone.size() == 1 || (!many && name.empty())) {
+      for (const Tonight::Vanished* v : gone) {
+        MorningLine line = line_of(Kind::lost, "morning.lost", v->campaign);
+        line.machine = many ? "" : name;
+        line.campaign = v->campaign;
+        put_count(line, "night", v->last_seen_night);
+        put_text(line, "folder", v->folder);
+        put_text(line, "why", v->why);
+        out.push_back(std::move(line));
+      }
+      continue;
+    }
+    MorningLine line = line_of(Kind::lost, "morning.lost-several", name);
+    line.machine = many ? "" : name;
+    line.campaign = gone.front()->campaign;
+    std::uint64_t night = 0;
+    for (const Tonight::Vanished* v : gone) night = std::max(night, v->last_seen_night);
+    put_count(line, "night", night);
+    put_count(line, "count", gone.size());
+    put_text(line, "of", name);
+    for (const Tonight::Vanished* v : gone) line.campaigns.push_back(v->campaign);
+    out.push_back(std::move(line));
+  }
+  return out;
+}
+
+/// One mistake in site.toml fails every campaign, and is one line.
+std::vector<MorningLine> failed(const Known& known) {
+  std::map<std::string, std::vector<const Tonight::Failed*>> by_message;
+  for (const Tonight::Failed& f : known.tonight.failed) by_message[f.message].push_back(&f);
+  std::vector<MorningLine> out;
+  if (!known.tonight.history_error.empty()) {
+    out.push_back(line_of(Kind::failed, "morning.history", "history"));
+    put_text(out.back(), "message", known.tonight.history_error);
+  }
+  for (const auto& [message, alike] : by_message) {
+    if (alike.size() > most_alike) {
+      MorningLine line = line_of(Kind::failed, "morning.failed-several", alike.front()->campaign);
+      line.campaign = alike.front()->campaign;
+      line.since = alike.front()->since;
+      put_count(line, "count", alike.size());
+      put_text(line, "message", message);
+      for (const Tonight::Failed* f : alike) line.campaigns.push_back(f->campaign);
+      out.push_back(std::move(line));
+      continue;
+    }
+    for (const Tonight::Failed* f : alike) {
+      MorningLine line = line_of(Kind::failed, "morning.failed", f->campaign);
+      const auto machine = known.machine_of_campaign.find(f->campaign);
+      if (machine != known.machine_of_campaign.end()) line.machine = machine->second;
+      line.campaign = f->campaign;
+      line.since = f->since;
+      put_text(line, "message", message);
+      out.push_back(std::move(line));
+    }
+  }
+  return out;
+}
+
+/// Machines of which nobody has said a limit: what they have is no conformity.
+void not_judged(const Known& known, std::vector<MorningLine>& out) {
+  std::string names;
+  std::size_t count = 0;
+  for (const Standing* m : known.machines) {
+    if (m->judged || !m->has_results) continue;
+    if (++count <= most_machines) names += (names.empty() ? "" : ", ") + m->name;
+  }
+  if (count == 0) return;
+  out.push_back(line_of(Kind::information, "morning.not-judged", "site"));
+  put_count(out.back(), "count", count);
+  put_text(out.back(), "machines", names + (count > most_machines ? ", ..." : ""));
+}
+
+/// Campaigns that state neither an asset nor maker and serial: nothing joins them to others.
+void without_machine(const Known& known, std::vector<MorningLine>& out) {
+  MorningLine line = line_of(Kind::information, "morning.no-machine", "site");
+  for (const Standing* m : known.machines)
+    if (m->alone && !m->name.empty()) line.campaigns.push_back(m->name);
+  if (line.campaigns.empty()) return;
+  put_count(line, "count", line.campaigns.size());
+  line.campaign = line.campaigns.front();
+  out.push_back(std::move(line));
+}
+
+/// Drafts of certificates, which a person issues.
+void drafts(const Known& known, std::vector<MorningLine>& out) {
+  if (known.tonight.waiting.empty()) return;
+  out.push_back(line_of(Kind::information, "morning.draft", "site"));
+  out.back().campaigns = known.tonight.waiting;
+  out.back().campaign = known.tonight.waiting.front();
+  put_count(out.back(), "count", known.tonight.waiting.size());
+}
+
+/// Findings that ask for attention in last campaigns of which every judged value conforms.
+void conforming(const Known& known, std::vector<MorningLine>& out) {
+  std::size_t machines = 0, lost_motion = 0;
+  for (const Standing* m : known.machines) {
+    if (!m->judged || !m->conforms) continue;
+    machines += m->attention;
+    lost_motion += m->reversal;
+  }
+  if (machines == 0) return;
+  out.push_back(line_of(Kind::information, "morning.conforms", "site"));
+  put_count(out.back(), "count", machines);
+  put_count(out.back(), "reversal", lost_motion);
+}
+
+/// What is said of a machine that nobody has measured is said of no machine: a slip of a letter.
+void unknown(const Known& known, std::vector<MorningLine>& out) {
+  const std::size_t count = known.unknown.size();
+  if (count == 0) return;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(count, most_machines); ++i)
+    names += (names.empty() ? "" : ", ") + known.unknown[i];
+  out.push_back(line_of(Kind::information, "morning.unknown-machine", "site"));
+  put_count(out.back(), "count", count);
+  put_text(out.back(), "where", names + (count > most_machines ? ", ..." : ""));
+}
+
+std::vector<MorningLine> of_site(const Known& known) {
+  std::vector<MorningLine> out;
+  without_machine(known, out);
+  drafts(known, out);
+  not_judged(known, out);
+  conforming(known, out);
+  unknown(known, out);
+  for (const store::Spelling& s : known.spellings) {
+    out.push_back(line_of(Kind::information, "morning.spelling", s.one + "|" + s.other));
+    out.back().machine = s.one;
+    put_text(out.back(), "one", s.one);
+    put_text(out.back(), "other", s.other);
+    put_text(out.back(), "alike", s.why == "spelled alike" ? "alike" : "numbered");
+  }
+  std::string scatter;
+  double most = 1.0;
+  for (const auto& [quantity, of] : known.learned)
+    if (of.excess > 1.2) {
+      const std::string name = quantity.substr(0, quantity.find(' '));
+      scatter += (scatter.empty() ? "" : ", ") + name;
+      most = std::max(most, of.excess);
+    }
+  if (!scatter.empty()) {
+    out.push_back(line_of(Kind::information, "morning.scatter", "site"));
+    out.back().finding.evidence.push_back({"factor", most, Quantity::ratio});
+    put_text(out.back(), "quantities", scatter);
+  }
+  return out;
+}
+
+/// Where many days lie ahead of the night, its own is wrong.
+void fold(std::vector<MorningLine>& lines, const char* finding, const char* several) {
+  const auto is_one = [&](const MorningLine& l) {
+    return l.finding.id == finding && l.state == MorningLine::State::fresh;
+  };
+  const auto count = static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), is_one));
+  if (count <= most_alike) return;
+  MorningLine all = line_of(Kind::undecided, several, "site");
+  std::string names;
+  std::size_t named = 0;
+  for (const MorningLine& l : lines)
+    if (is_one(l)) all.campaigns.push_back(l.campaign);
+  for (const MorningLine& l : lines)
+    if (is_one(l) && named++ < most_machines)
+      names +=
+          (names.empty() ? "" : ", ") + l.machine + " " + (l.axis.empty() ? l.campaign : l.axis);
+  put_count(all, "count", count);
+  put_text(all, "where", names + (count > most_machines ? ", ..." : ""));
+  std::erase_if(lines, is_one);
+  lines.push_back(std::move(all));
+}
+
+/// How much there is of it: of what is as grave, the largest comes first.
+double size_of(const MorningLine& l) {
+  if (l.value && l.limit && *l.limit > 0.0) return std::fabs(*l.value) / *l.limit;
+  if (l.value && l.u && *l.u > 0.0) return std::fabs(*l.value) / *l.u;
+  return 0.0;
+}
+
+/// What wears out of its limit has been coming; what was hit is news.
+bool wears(const MorningLine& l) {
+  return l.kind == Kind::out && !l.finding.id.starts_with("morning.out-changed");
+}
+
+bool comes_before(const MorningLine& a, const MorningLine& b) {
+  return std::tuple(a.kind, a.state, wears(a), -size_of(a), std::tie(a.machine, a.axis, a.id)) <
+         std::tuple(b.kind, b.state, wears(b), -size_of(b), std::tie(b.machine, b.axis, b.id));
+}
+
+}  // namespace
+
+std::string kind_of(const std::string& quantity) {
+  const auto is = [&](const char* begin) { return quantity.starts_with(begin); };
+  if (is("B_mean") || is("backlash")) return "reversal";
+  for (const char* of_circle :
+       {"B_circle", "bow:", "lateral", "radius:", "scale_mismatch", "servo_mismatch"})
+    if (is(of_circle)) return "circle";
+  if (is("scale")) return "scale";
+  if (is("curve") || is("pitch-curve")) return "curve";
+  if (is("turn")) return "turn";
+  if (is("cyclic")) return "cyclic";
+  if (is("ln_s")) return "scatter";
+  if (is("squareness")) return "squareness";
+  if (is("straightness")) return "straightness";
+  if (is("centre") || is("direction") || is("chain_")) return "centre";
+  return "parameter";
+}
+
+std::string axis_of(const std::string& axis, const std::string& quantity) {
+  const auto colon = quantity.find(':');
+  if (!axis.empty() || colon == std::string::npos) return axis;
+  return quantity.substr(colon + 1, quantity.find('.', colon) - colon - 1);
+}
+
+std::vector<MorningLine> lines_of(const Known& known) {
+  std::vector<MorningLine> out;
+  const auto add = [&](std::vector<MorningLine> lines) {
+    for (MorningLine& l : lines) out.push_back(std::move(l));
+  };
+  add(lost(known));
+  add(failed(known));
+  for (const Standing* m : known.machines) add(m->lines);
+  fold(out, "morning.later", "morning.later-several");
+  add(of_site(known));
+  std::stable_sort(out.begin(), out.end(), comes_before);
+  return out;
+}
+
+}  // namespace nonio::assessment

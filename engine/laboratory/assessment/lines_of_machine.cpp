@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long: all lines of one machine, which share what is known of its changes.
+#include "laboratory/assessment/lines_of_machine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "laboratory/assessment/describe.h"
+#include "laboratory/assessment/lines.h"
+#include "laboratory/assessment/open_values.h"
+#include "laboratory/statistics/forecast.h"
+
+namespace nonio::assessment {
+
+using reports::HistoryChange;
+using reports::HistorySeries;
+using reports::MorningLine;
+using Kind = MorningLine::Kind;
+
+namespace {
+
+/// A change of one axis, with all quantities in which it is seen.
+struct AxisChange {
+  std::string after, before;  ///< days
+  struct Seen {
+    const HistorySeries* series = nullptr;
+    const HistoryChange* change = nullptr;
+    double size() const { return std::fabs(change->size) / change->u; }
+  };
+  std::vector<Seen> seen;  ///< the largest first
+  bool told = false;       ///< in the line of what does not conform
+};
+
+bool is_mended(const HistoryChange& c) {
+  return c.cause == "table" || c.event.starts_with("repair") || c.event.starts_with("compensation");
+}
+
+class OfMachine {
+ public:
+  OfMachine(const AssessedMachine& m, const reports::MachineHistory& d, const Tonight& tonight)
+      : m_(m), d_(d), tonight_(tonight) {}
+
+  std::vector<MorningLine> lines() {
+    causes_by_axis();
+    judged();
+    for (const auto& [axis, all] : causes_)
+      for (const AxisChange& cause : all)
+        if (!cause.told) add(changed(axis, cause));
+    tables();
+    held_back();
+    soon();
+    overdue();
+    later();
+    instruments();
+    return std::move(out_);
+  }
+
+ private:
+  MorningLine line(Kind kind, const char* finding, const std::string& of) const {
+    MorningLine l = line_of(kind, finding, name() + (of.empty() ? "" : ":" + of));
+    l.machine = d_.id;
+    l.customer = d_.customer;
+    if (!d_.file.empty()) l.link = "machines/" + d_.file;
+    return l;
+  }
+
+  /// Of a campaign that belongs to no machine: its own.
+  const std::string& name() const {
+    return d_.id.empty() && !m_.stored.campaigns.empty() ? m_.stored.campaigns.back().id : d_.id;
+  }
+
+  void add(MorningLine l) { out_.push_back(std::move(l)); }
+
+  // ---- what changed
+
+  /// The changes of each axis that nobody has mended since.
+  void causes_by_axis() {
+    for (const HistorySeries& s : d_.series) {
+      std::string mended;
+      for (const HistoryChange& c : s.changes)
+        if (is_mended(c)) mended = std::max(mended, c.before);
+      for (const HistoryChange& c : s.changes)
+        if (c.cause != "instrument" && !is_mended(c) && c.before > mended &&
+            !is_repaired(s.axis, c.before))
+          put_change(axis_of(s.axis, s.quantity), s, c);
+    }
+    for (auto& [axis, all] : causes_)
+      for (AxisChange& cause : all)
+        std::stable_sort(cause.seen.begin(), cause.seen.end(),
+                         [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  }
+
+  /// Somebody has said that this axis was repaired or compensated after that campaign. What is
+  /// planned has mended nothing yet.
+  bool is_repaired(const std::string& axis, const std::string& after) const {
+    return std::any_of(m_.events.begin(), m_.events.end(), [&](const config::Event& e) {
+      return (e.kind == "repair" || e.kind == "compensation") && e.date > after &&
+             e.date <= tonight_.date && (e.axis.empty() || axis.empty() || e.axis == axis);
+    });
+  }
+
+  void put_change(const std::string& axis, const HistorySeries& s, const HistoryChange& c) {
+    // Not all quantities are in all campaigns: what overlaps is one cause.
+    for (AxisChange& cause : causes_[axis])
+      if (c.after < cause.before && c.before > cause.after) {
+        cause.after = std::max(cause.after, c.after);
+        cause.before = std::min(cause.before, c.before);
+        cause.seen.push_back({&s, &c});
+        return;
+      }
+    causes_[axis].push_back({c.after, c.before, {{&s, &c}}});
+  }
+
+  /// Size, days, what it is and where to look.
+  void describe(MorningLine& l, const AxisChange& cause) const {
+    const AxisChange::Seen& first = cause.seen.front();
+    const Quantity q = first.series->unit;
+    l.finding.evidence.push_back({"size", first.change->size, q});
+    l.finding.evidence.push_back({"U", 2.0 * first.change->u, q});
+    l.finding.evidence.push_back({"p", first.change->p, Quantity::probability});
+    put_text(l, "after", cause.after);
+    put_text(l, "before", cause.before);
+    put_text(l, "what", kind_of(first.series->quantity));
+    put_text(l, "look", kind_of(first.series->quantity));
+    std::string event;
+    for (const AxisChange::Seen& s : cause.seen)
+      if (event.empty()) event = s.change->event;
+    if (!event.empty()) put_text(l, "event", event);
+    std::string also;
+    for (std::size_t i = 1; i < cause.seen.size(); ++i)
+      also += (also.empty() ? "" : ", ") + cause.seen[i].series->quantity;
+    if (!also.empty()) put_text(l, "also", also);
+  }
+
+  static bool has_event(const AxisChange& cause) {
+    return std::any_of(cause.seen.begin(), cause.seen.end(),
+                       [](const AxisChange::Seen& s) { return !s.change->event.empty(); });
+  }
+
+  MorningLine changed(const std::string& axis, const AxisChange& cause) const {
+    const AxisChange::Seen& first = cause.seen.front();
+    MorningLine l =
+        line(Kind::changed, has_event(cause) ? "morning.changed-event" : "morning.changed", "");
+    l.id = "morning.changed:" + d_.id + ":" + axis + ":" + cause.before;
+    l.axis = axis;
+    l.quantity = first.series->quantity;
+    l.unit = first.series->unit;
+    l.campaign = first.change->before_campaign;
+    l.since = cause.before;
+    if (!first.series->points.empty()) {
+      l.value = first.series->points.back().value;
+      l.u = reports::u_of_value(first.series->points.back());
+      l.limit = first.series->limit;
+    }
+    l.sure = std::any_of(cause.seen.begin(), cause.seen.end(),
+                         [](const AxisChange::Seen& s) { return s.change->mailed; });
+    describe(l, cause);
+    return l;
+  }
+
+  // ---- limits
+
+  /// What was not measured along one axis is one matter for each analysis: a circle, a spindle.
+  const std::string& place_of(const store::StoredResult& r) const {
+    return r.axis.empty() ? r.source : r.axis;
+  }
+
+  /// Of each axis one line with all that does not conform or cannot be decided.
+  void judged() {
+    std::map<std::string, std::vector<Judged>> out, open, good, anew;
+    std::map<std::string, std::vector<reports::OpenValue>> missing;
+    for (const ShownSeries& s : m_.shown) {
+      if (s.ended) continue;
+      const std::vector<Judged> all = open_results(m_.stored, s);
+      for (const Judged& j : all) {
+        const store::StoredResult& r = m_.stored.results[j.result];
+        (r.decision == does_not_conform ? out : open)[place_of(r)].push_back(j);
+        open_.emplace(s.axis, s.quantity);
+      }
+      if (!all.empty() || !is_fixed(s)) continue;
+      const store::StoredResult& last = m_.stored.results[s.judged.back()];
+      (is_judged_alike(s) ? good : anew)[place_of(last)].push_back({&s, s.judged.back()});
+    }
+    for (const auto* limit : open_limits(m_.stored))
+      missing[limit->axis.empty() ? limit->measurement : limit->axis].push_back(
+          open_value(m_.stored, *limit));
+    for (auto& [place, all] : out) {
+      add(beyond(place, all));
+      also(out_.back(), open[place], missing[place]);
+    }
+    for (auto& [place, all] : open) {
+      if (out.contains(place) || all.empty()) continue;
+      worst_first(all);
+      const bool has_u = m_.stored.results[all.front().result].expanded.value_or(0.0) > 0.0;
+      add(limit_line(Kind::undecided, has_u ? "morning.undecided" : "morning.no-uncertainty", all));
+      also(out_.back(), {}, missing[place]);
+    }
+    for (auto& [place, all] : missing)
+      if (!out.contains(place) && !open.contains(place) && !all.empty()) add(no_value(place, all));
+    for (auto& [axis, all] : good)
+      if (!out.contains(axis)) add_fixed("morning.fixed", all);
+    for (auto& [axis, all] : anew)
+      if (!out.contains(axis) && !good.contains(axis)) add_fixed("morning.judged-anew", all);
+  }
+
+  /// What is open beside the values of the line.
+  void also(MorningLine& l, std::vector<Judged> open,
+            const std::vector<reports::OpenValue>& missing) const {
+    worst_first(open);
+    for (const Judged& j : open) l.also.push_back(open_value(m_.stored, j.result));
+    l.also.insert(l.also.end(), missing.begin(), missing.end());
+  }
+
+  /// A limit, and nothing to compare with it.
+  MorningLine no_value(const std::string& place, const std::vector<reports::OpenValue>& all) const {
+    MorningLine l = line(Kind::undecided, "morning.no-value", place);
+    const reports::OpenValue& first = all.front();
+    l.axis = first.axis, l.quantity = first.quantity, l.campaign = first.campaign;
+    l.measurement = first.measurement, l.unit = first.unit, l.limit = first.limit;
+    for (const store::StoredCampaign& c : m_.stored.campaigns)
+      if (c.id == first.campaign) l.since = c.day;
+    l.finding.evidence.push_back({"limit", first.limit, first.unit});
+    l.also.assign(all.begin() + 1, all.end());
+    return l;
+  }
+
+  void add_fixed(const char* finding, std::vector<Judged>& all) {
+    add(limit_line(Kind::out, finding, all));
+    out_.back().state = MorningLine::State::fixed;
+    out_.back().also.clear();  // nothing is open
+  }
+
+  /// By the same definition, against no wider limit: then it is the machine that is better.
+  bool is_judged_alike(const ShownSeries& s) const {
+    const auto& last = m_.stored.results[s.judged.back()];
+    const auto& before = m_.stored.results[s.judged[s.judged.size() - 2]];
+    return last.source == before.source && last.conditions == before.conditions &&
+           last.tolerance <= before.tolerance;
+  }
+
+  bool is_fixed(const ShownSeries& s) const {
+    if (s.judged.size() < 2) return false;
+    const auto& last = m_.stored.results[s.judged.back()];
+    const auto& before = m_.stored.results[s.judged[s.judged.size() - 2]];
+    return last.decision == conforms && before.decision == does_not_conform &&
+           m_.stored.campaigns[last.campaign].night == tonight_.night &&
+           m_.stored.campaigns[before.campaign].night < tonight_.night;
+  }
+
+  double share(const Judged& j) const {
+    const auto& r = m_.stored.results[j.result];
+    return r.tolerance && *r.tolerance > 0.0 ? std::fabs(r.value) / *r.tolerance : 0.0;
+  }
+  void worst_first(std::vector<Judged>& all) const {
+    std::stable_sort(all.begin(), all.end(),
+                     [&](const Judged& a, const Judged& b) { return share(a) > share(b); });
+  }
+
+  /// The day from which on it was judged as it is.
+  std::string since(const ShownSeries& s, const store::StoredResult& r) const {
+    std::size_t first = s.judged.size() - 1;
+    while (first > 0 && m_.stored.results[s.judged[first]].campaign > r.campaign) --first;
+    while (first > 0 && m_.stored.results[s.judged[first - 1]].decision == r.decision) --first;
+    return m_.stored.campaigns[m_.stored.results[s.judged[first]].campaign].day;
+  }
+
+  MorningLine limit_line(Kind kind, const char* finding, std::vector<Judged>& all) const {
+    worst_first(all);
+    const Judged& worst = all.front();
+    const store::StoredResult& last = m_.stored.results[worst.result];
+    const reports::OpenValue first = open_value(m_.stored, worst.result);
+    MorningLine l = line(kind, finding, place_of(last));
+    l.axis = first.axis, l.quantity = first.quantity, l.measurement = first.measurement;
+    l.unit = first.unit, l.value = first.value, l.u = first.u, l.limit = first.limit;
+    l.campaign = first.campaign;
+    l.since = since(*worst.series, last);
+    l.finding.evidence.push_back({"value", *l.value, l.unit});
+    l.finding.evidence.push_back({"limit", *l.limit, l.unit});
+    for (std::size_t i = 1; i < all.size(); ++i)
+      l.also.push_back(open_value(m_.stored, all[i].result));
+    return l;
+  }
+
+  /// Beyond its limit; with the change that made it so, if there is one.
+  MorningLine beyond(const std::string& axis, std::vector<Judged>& all) {
+    MorningLine l = limit_line(Kind::out, "morning.out", all);
+    l.id = "morning.out:" + name() + ":" + axis;
+    told_[axis] = true;
+    std::string first = l.since;
+    for (const Judged& j : all)
+      first = std::min(first, since(*j.series, m_.stored.results[j.result]));
+    AxisChange* explains = nullptr;  // it came with it, or since
+    for (AxisChange& cause : causes_[axis]) {
+      if (cause.before < first) continue;
+      cause.told = true;
+      if (explains == nullptr || cause.seen.front().size() > explains->seen.front().size())
+        explains = &cause;
+    }
+    if (explains != nullptr) {
+      l.finding.id = has_event(*explains) ? "morning.out-changed-event" : "morning.out-changed";
+      describe(l, *explains);
+    }
+    return l;
+  }
+
+  // ---- what a table promised
+
+  void tables() {
+    for (const reports::TableKept& t : d_.tables) {
+      if (t.good || is_measured_since(t.axis, t.date)) continue;
+      MorningLine l = line(Kind::changed, "morning.table", t.axis + ":" + t.campaign);
+      l.axis = t.axis;
+      l.quantity = t.quantity;
+      l.unit = t.unit;
+      l.value = t.left;
+      l.campaign = t.campaign;
+      l.since = t.date;
+      l.finding.evidence = {
+          {"left", t.left, t.unit}, {"promised", t.promised, t.unit}, {"found", t.found, t.unit}};
+      put_text(l, "what", t.quantity);
+      add(std::move(l));
+    }
+  }
+
+  bool is_measured_since(const std::string& axis, const std::string& day) const {
+    return std::any_of(m_.stored.results.begin(), m_.stored.results.end(), [&](const auto& r) {
+      return r.axis == axis && m_.stored.campaigns[r.campaign].day > day;
+    });
+  }
+
+  /// Tables, results and certificates that were not made: one line for each axis of a campaign.
+  void held_back() {
+    std::map<std::string, MorningLine> all;
+    for (const Withheld& w : withheld(m_.stored)) {
+      const store::StoredCampaign& c = m_.stored.campaigns[w.campaign];
+      const bool table = w.finding.starts_with("table.");
+      MorningLine l = line(Kind::withheld,
+                           table                          ? "morning.no-table"
+                           : is_calibration(w.finding)    ? "morning.calibration"
+                           : store::is_refusal(w.finding) ? "morning.no-result"
+                                                          : "morning.certificate",
+                           c.id + (w.axis.empty() ? "" : ":" + w.axis));
+      l.axis = w.axis, l.campaign = c.id, l.since = c.day;
+      put_text(l, "campaign", c.id);
+      auto& to = all.emplace(l.id, std::move(l)).first->second;
+      add_to_list(to, "withheld", {w.finding});
+      if (table || store::is_refusal(w.finding)) add_to_list(to, "outputs", w.outputs);
+    }
+    for (auto& [id, l] : all) add(std::move(l));
+  }
+
+  static void add_to_list(MorningLine& l, const char* name, const std::vector<std::string>& more) {
+    auto at = std::find_if(l.finding.texts.begin(), l.finding.texts.end(),
+                           [&](const auto& t) { return t.first == name; });
+    if (at == l.finding.texts.end()) at = l.finding.texts.insert(at, {name, ""});
+    for (const std::string& one : more)
+      if ((", " + at->second + ", ").find(", " + one + ", ") == std::string::npos)
+        at->second += (at->second.empty() ? "" : ", ") + one;
+  }
+
+  // ---- what comes
+
+  void soon() {
+    for (const HistorySeries& s : d_.series) {
+      const std::string axis = axis_of(s.axis, s.quantity);
+      if (!s.forecast || !s.limit || told_.contains(axis) || s.points.empty()) continue;
+      if (open_.contains({s.axis, s.quantity}) || s.forecast->answer == "cannot-say" ||
+          !(s.forecast->p_out >= nonio::statistics::keep_below))
+        continue;
+      const std::string leaves = s.forecast->leaves.empty() ? s.forecast->date : s.forecast->leaves;
+      const bool may_be_now = leaves <= tonight_.date || s.forecast->date < tonight_.date;
+      MorningLine l = line(Kind::soon, may_be_now ? "morning.soon-now" : "morning.soon",
+                           axis + ":" + s.quantity);
+      l.id = "morning.soon:" + d_.id + ":" + axis + ":" + s.quantity;
+      l.axis = axis;
+      l.quantity = s.quantity;
+      l.unit = s.unit;
+      l.value = s.points.back().value;
+      l.u = reports::u_of_value(s.points.back());
+      l.limit = s.limit;
+      l.campaign = s.points.back().campaign;
+      l.since = s.points.back().date;
+      l.finding.evidence.push_back({"expected", s.forecast->value, s.unit});
+      l.finding.evidence.push_back({"U", 2.0 * s.forecast->u, s.unit});
+      l.finding.evidence.push_back({"percent", 100.0 * s.forecast->p_out, Quantity::number});
+      put_text(l, "date", s.forecast->date);
+      if (!may_be_now) put_text(l, "leaves", leaves);
+      told_[axis] = true;
+      add(std::move(l));
+    }
+  }
+
+  void overdue() {
+    if (d_.due.empty() || d_.due >= tonight_.date) return;
+    MorningLine l = line(Kind::overdue, "morning.overdue", "");
+    l.since = d_.due;
+    put_text(l, "due", d_.due);
+    put_text(l, "rule", d_.why_due);
+    add(std::move(l));
+  }
+
+  /// Nobody has measured yet what is dated after the night.
+  void later() {
+    for (const store::StoredMachine::Later& c : m_.stored.later) {
+      MorningLine l = line(Kind::undecided, "morning.later", c.campaign);
+      l.campaign = c.campaign;
+      l.since = c.day;
+      put_text(l, "campaign", c.campaign);
+      put_text(l, "day", c.day);
+      add(std::move(l));
+    }
+  }
+
+  /// What moved with another instrument and came tonight.
+  void instruments() {
+    for (std::size_t i = 0; i < m_.followed.size(); ++i) {
+      if (m_.followed[i].night != tonight_.night) continue;
+      const HistorySeries& s = d_.series[i];
+      for (const HistoryChange& c : s.changes) {
+        if (c.cause != "instrument") continue;
+        MorningLine l = line(Kind::information, "morning.instrument",
+                             s.axis + ":" + s.quantity + ":" + c.before);
+        l.axis = s.axis;
+        l.quantity = s.quantity;
+        l.unit = s.unit;
+        l.campaign = c.before_campaign;
+        l.since = c.before;
+        describe(l, {c.after, c.before, {{&s, &c}}});
+        add(std::move(l));
+      }
+    }
+  }
+
+  const AssessedMachine& m_;
+  const reports::MachineHistory& d_;
+  const Tonight& tonight_;
+  std::map<std::string, std::vector<AxisChange>> causes_;
+  std::map<std::string, bool> told_;  ///< axes with a line that says all of a change
+  std::set<std::pair<std::string, std::string>> open_;  ///< axis and quantity of what has a line
+  std::vector<MorningLine> out_;
+};
+
+}  // namespace
+
+MorningLine line_of(Kind kind, const char* finding, const std::string& of) {
+  MorningLine line;
+  line.kind = kind;
+  line.id = std::string(finding) + ":" + of;
+  line.finding.id = finding;
+  line.finding.attention = kind != Kind::information;
+  return line;
+}
+
+void put_text(MorningLine& line, const char* name, std::string text) {
+  line.finding.texts.emplace_back(name, std::move(text));
+}
+
+std::vector<MorningLine> lines_of_machine(const AssessedMachine& machine,
+                                          const reports::MachineHistory& described,
+                                          const Tonight& tonight) {
+  return OfMachine(machine, described, tonight).lines();
+}
+
+}  // namespace nonio::assessment

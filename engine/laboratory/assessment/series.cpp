@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "laboratory/assessment/series.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "laboratory/assessment/conditions.h"
+#include "laboratory/assessment/days.h"
+#include "platform/storage/json_values.h"
+
+namespace nonio::assessment {
+
+namespace {
+
+using storage::Json;
+using store::StoredMachine;
+using store::StoredResult;
+namespace kernel = nonio::statistics;
+
+/// Campaigns that have at least this share of the longer span in common are compared over it.
+constexpr double least_in_common = 0.5;
+
+/// Sources of a point that are an instrument under one certificate.
+std::string instrument_in(const StoredResult& r) {
+  for (const store::CommonPart& c : r.common)
+    if (c.source.starts_with("instrument")) return c.source;
+  return {};
+}
+
+/// FNV-1a, up to each of the results.
+std::vector<std::uint64_t> seeds_of(const StoredMachine& m,
+                                    const std::vector<std::size_t>& results) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  std::vector<std::uint64_t> out;
+  for (const std::size_t i : results) {
+    for (const std::string* text : {&m.campaigns[m.results[i].campaign].id, &m.results[i].quantity})
+      for (const char c : *text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+    out.push_back(hash);
+  }
+  return out;
+}
+
+/// A campaign's u is itself an estimate, of few runs: one that is small by chance would make a
+/// step of its noise. So half of each variance is the median of those of the series.
+void pool(std::vector<kernel::Point>& points) {
+  std::vector<double> variances;
+  for (const kernel::Point& p : points) variances.push_back(p.u * p.u);
+  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+  std::nth_element(variances.begin(), middle, variances.end());
+  for (kernel::Point& p : points) p.u = std::sqrt((p.u * p.u + *middle) / 2.0);
+}
+
+/// As found before as left, on one day; within a campaign in the order of its manifest.
+bool before(const StoredMachine& m, std::size_t a, std::size_t b) {
+  const auto key = [&](std::size_t i) {
+    const StoredResult& r = m.results[i];
+    const store::StoredCampaign& c = m.campaigns[r.campaign];
+    return std::tuple<const std::string&, bool, const std::string&, std::size_t>(
+        c.day, r.state == "as-left", c.id, i);
+  };
+  return key(a) < key(b);
+}
+
+bool concerns(const config::Event& e, const FollowedSeries& s) {
+  if (e.axis.empty() || s.axis.empty() || e.axis == s.axis) return true;
+  const auto colon = s.quantity.find(':');  // squareness:XY concerns X and Y
+  return colon != std::string::npos &&
+         s.quantity.substr(colon + 1).substr(0, s.quantity.find('.', colon)).find(e.axis) !=
+             std::string::npos;
+}
+
+/// What is known to have happened between the points of a series.
+class Happenings {
+ public:
+  Happenings(const StoredMachine& m, const std::vector<config::Event>& events, FollowedSeries& s)
+      : m_(m), events_(events), s_(s) {}
+
+  void declare() {
+    const std::size_t gaps = s_.results.size() - 1;
+    std::vector<bool> table(gaps, false);
+    for (std::size_t k = 0; k < gaps; ++k)
+      if (const std::string what = table_between(k); !what.empty()) {
+        table[k] = true;
+        put(k, kernel::Declared::Kind::table, "table", what);
+      }
+    for (std::size_t k = 0; k < gaps; ++k)
+      for (const config::Event& e : events_)
+        if (!table[k] && is_between(e, k) && !on_day_of_table(e, table)) put_event(k, e);
+    for (std::size_t k = 0; k < gaps; ++k) {
+      const std::string one = instrument_in(result(k)), other = instrument_in(result(k + 1));
+      if (!one.empty() && !other.empty() && one != other)
+        put(k, kernel::Declared::Kind::instrument, "instrument", other);
+    }
+  }
+
+ private:
+  const StoredResult& result(std::size_t k) const { return m_.results[s_.results[k]]; }
+  const std::string& day(std::size_t k) const { return m_.campaigns[result(k).campaign].day; }
+
+  /// An adjustment lies between a reading as found and one as left; a table that was on and is off.
+  /// What changed between two measurements of one campaign is the work of those who made it.
+  std::string table_between(std::size_t k) const {
+    const StoredResult &a = result(k), &b = result(k + 1);
+    if (b.state == "as-left") return "as-left";
+    if (a.campaign == b.campaign) return "within the campaign";
+    if (a.conditions == b.conditions) return {};
+    const std::string one = compensation(parsed(a.conditions)),
+                      other = compensation(parsed(b.conditions));
+    return stepped_by_table(one, other) ? "compensation " + other : "";
+  }
+
+  bool is_between(const config::Event& e, std::size_t k) const {
+    return concerns(e, s_) && day(k) <= e.date && e.date <= day(k + 1);
+  }
+
+  /// What somebody entered for the day of an adjustment is that adjustment.
+  bool on_day_of_table(const config::Event& e, const std::vector<bool>& table) const {
+    for (std::size_t k = 0; k < table.size(); ++k)
+      if (table[k] && (day(k) == e.date || day(k + 1) == e.date)) return true;
+    return false;
+  }
+
+  void put_event(std::size_t k, const config::Event& e) {
+    put(k,
+        e.kind == "compensation" ? kernel::Declared::Kind::table
+        : e.kind == "instrument" ? kernel::Declared::Kind::instrument
+                                 : kernel::Declared::Kind::event,
+        e.kind, e.text);
+  }
+
+  void put(std::size_t k, kernel::Declared::Kind kind, std::string name, std::string said) {
+    s_.series.declared.push_back({k, kind});
+    s_.kinds.push_back(std::move(name));
+    s_.said.push_back(std::move(said));
+  }
+
+  const StoredMachine& m_;
+  const std::vector<config::Event>& events_;
+  FollowedSeries& s_;
+};
+
+/// Points of one quantity, group by group of what can be joined.
+class Joining {
+ public:
+  Joining(const StoredMachine& m, const std::vector<std::optional<StoredTargets>>& targets,
+          std::vector<std::size_t> results)
+      : m_(m), targets_(targets) {
+    std::sort(results.begin(), results.end(),
+              [&](std::size_t a, std::size_t b) { return before(m_, a, b); });
+    for (const std::size_t i : results) put(i);
+  }
+
+  std::vector<FollowedSeries> take(const std::vector<config::Event>& events) {
+    std::vector<FollowedSeries> out;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      FollowedSeries s = series(groups_[g].results);
+      for (std::size_t h = 0; h < groups_.size(); ++h) {
+        if (h == g) continue;
+        const bool earlier = last_day(groups_[h]) < first_day(groups_[g]);
+        if (earlier && m_.results[groups_[h].results.front()].unit == s.unit)
+          for (const std::size_t i : groups_[h].results)
+            s.apart.push_back({i, difference(groups_[g].conditions, groups_[h].conditions,
+                                             have_in_common(groups_[g], groups_[h]))});
+        if (first_day(groups_[h]) > last_day(groups_[g])) s.ended = true;
+      }
+      for (FollowedSeries::Apart& a : s.apart)
+        if (a.why.empty()) a.why = "other";
+      if (s.results.size() > 1) Happenings(m_, events, s).declare();
+      out.push_back(std::move(s));
+    }
+    return out;
+  }
+
+ private:
+  struct Group {
+    Json conditions;
+    std::vector<std::size_t> results;
+    /// What all have in common, and the longest span; none: targets of some are not known.
+    std::optional<kernel::Stretch> common{};
+    double longest = 0.0;
+  };
+
+  const StoredTargets* targets(std::size_t result) const {
+    const StoredResult& r = m_.results[result];
+    return r.targets && targets_[*r.targets] ? &*targets_[*r.targets] : nullptr;
+  }
+
+  Group group_of(std::size_t result, Json conditions) const {
+    Group out{std::move(conditions), {result}};
+    if (const StoredTargets* own = targets(result))
+      out.common = own->span, out.longest = own->span.length();
+    return out;
+  }
+
+  static bool have_in_common(const Group& a, const Group& b) {
+    return a.common && b.common &&
+           kernel::common_stretch(*a.common, *b.common).length() >=
+               least_in_common * std::max(a.longest, b.longest);
+  }
+
+  static void join(Group& to, const Group& other) {
+    to.results.insert(to.results.end(), other.results.begin(), other.results.end());
+    if (to.common && other.common)
+      to.common = kernel::common_stretch(*to.common, *other.common);
+    else
+      to.common.reset();
+    to.longest = std::max(to.longest, other.longest);
+  }
+
+  void put(std::size_t i) {
+    const StoredResult& r = m_.results[i];
+    if (!(r.u_repeat.value_or(0.0) > 0.0) || !std::isfinite(r.value) ||
+        !day_number(m_.campaigns[r.campaign].day))
+      return;
+    // Most campaigns state the same, to the letter.
+    for (Group& g : groups_) {
+      const StoredResult& first = m_.results[g.results.front()];
+      if (first.unit == r.unit && first.conditions == r.conditions) {
+        g.results.push_back(i);
+        if (targets(i) == nullptr) g.common.reset();
+        return;
+      }
+    }
+    Group alone = group_of(i, parsed(r.conditions));
+    for (Group& g : groups_)
+      if (m_.results[g.results.front()].unit == r.unit &&
+          difference(g.conditions, alone.conditions, have_in_common(g, alone)).empty()) {
+        join(g, alone);
+        return;
+      }
+    groups_.push_back(std::move(alone));
+  }
+
+  const std::string& first_day(const Group& g) const {
+    return m_.campaigns[m_.results[g.results.front()].campaign].day;
+  }
+  const std::string& last_day(const Group& g) const {
+    return m_.campaigns[m_.results[g.results.back()].campaign].day;
+  }
+
+  FollowedSeries series(const std::vector<std::size_t>& results) const {
+    const StoredResult& any = m_.results[results.front()];
+    FollowedSeries s{.axis = any.axis,
+                     .quantity = any.quantity,
+                     .unit = any.unit,
+                     .results = results,
+                     .series = {}};
+    for (const std::size_t i : results) {
+      const StoredResult& r = m_.results[i];
+      const store::StoredCampaign& c = m_.campaigns[r.campaign];
+      kernel::Point p{static_cast<double>(*day_number(c.day)) / days_a_year, r.value, *r.u_repeat};
+      for (const store::CommonPart& part : r.common) p.common.push_back({part.source, part.u});
+      s.stated.push_back(std::move(p));
+      if (const StoredTargets* own = targets(i))
+        s.targets.push_back(targets_of(*own, s.quantity, r.place));
+      s.night = std::max(s.night, c.night);
+      s.evaluations.push_back(static_cast<std::uint64_t>(c.evaluation));
+    }
+    if (s.targets.size() < s.stated.size()) s.targets.clear();
+    Compared points = compared(s.stated, s.targets, s.quantity);
+    s.series.points = std::move(points.points), s.over = points.over;
+    pool(s.series.points);
+    s.seeds = seeds_of(m_, results);
+    s.series.seed = s.seeds.back();
+    s.series.own_slope = true;
+    return s;
+  }
+
+  const StoredMachine& m_;
+  const std::vector<std::optional<StoredTargets>>& targets_;
+  std::vector<Group> groups_;
+};
+
+/// What is followed is no second series under the same name.
+bool is_shown(const StoredResult& r) {
+  return r.tolerance || !(r.quantity == "B_mean" || r.quantity.starts_with("centre_") ||
+                          r.quantity.starts_with("direction_"));
+}
+
+std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> by_quantity(
+    const StoredMachine& m, bool followed) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> out;
+  for (std::size_t i = 0; i < m.results.size(); ++i)
+    if (m.results[i].followed == followed && (followed || is_shown(m.results[i])))
+      out[{m.results[i].axis, m.results[i].quantity}].push_back(i);
+  return out;
+}
+
+}  // namespace
+
+std::vector<FollowedSeries> followed_series(const StoredMachine& machine,
+                                            const std::vector<config::Event>& events) {
+  std::vector<FollowedSeries> out;
+  const auto targets = read_targets(machine.other_targets);
+  for (auto& [key, results] : by_quantity(machine, true))
+    for (FollowedSeries& s : Joining(machine, targets, std::move(results)).take(events))
+      out.push_back(std::move(s));
+  return out;
+}
+
+namespace {
+
+/// 0 conforms or is not judged, 1 cannot be decided, 2 does not conform.
+int gravity(const StoredResult& r) {
+  if (r.decision.empty() || r.decision == "conforms") return 0;
+  return r.decision == "does not conform" ? 2 : 1;
+}
+
+double share_of_limit(const StoredResult& r) {
+  return r.tolerance && *r.tolerance > 0.0 ? std::fabs(r.value) / *r.tolerance : 0.0;
+}
+
+/// `results`: by campaign, as found before as left.
+std::vector<std::size_t> deciding(const StoredMachine& m, const std::vector<std::size_t>& results) {
+  const auto decides = [&](const StoredResult& a, const StoredResult& b) {
+    const auto key = [](const StoredResult& r) {
+      return std::tuple(r.state == "as-left", gravity(r), share_of_limit(r));
+    };
+    return key(a) > key(b);
+  };
+  std::vector<std::size_t> out;
+  for (const std::size_t i : results) {
+    if (m.results[i].decision.empty()) continue;
+    if (out.empty() || m.results[out.back()].campaign != m.results[i].campaign)
+      out.push_back(i);
+    else if (decides(m.results[i], m.results[out.back()]))
+      out.back() = i;
+  }
+  return out;
+}
+
+}  // namespace
+
+kernel::Series first_points(const FollowedSeries& s, std::size_t count) {
+  kernel::Series known = s.series;
+  if (count >= known.points.size()) return known;
+  known.points.clear();
+  std::erase_if(known.declared, [&](const kernel::Declared& d) { return d.after + 1 >= count; });
+  if (count == 0) return known;
+  const std::vector<kernel::Point> first(s.stated.begin(),
+                                         s.stated.begin() + static_cast<std::ptrdiff_t>(count));
+  known.points = compared(first, s.targets, s.quantity).points;
+  pool(known.points);
+  known.seed = s.seeds[count - 1];
+  return known;
+}
+
+std::vector<kernel::Point> compared_points(const FollowedSeries& s) {
+  return compared(s.stated, s.targets, s.quantity).points;
+}
+
+std::vector<ShownSeries> shown_series(const StoredMachine& machine) {
+  std::vector<ShownSeries> out;
+  for (auto& [key, results] : by_quantity(machine, false)) {
+    std::sort(results.begin(), results.end(),
+              [&](std::size_t a, std::size_t b) { return before(machine, a, b); });
+    // An axis that turned and is linear now: um and arcsec are no values of one series.
+    std::map<std::string, std::vector<std::size_t>> of_unit;
+    for (const std::size_t i : results) of_unit[machine.results[i].unit].push_back(i);
+    const std::string& last = machine.results[results.back()].unit;
+    for (auto& [unit, own] : of_unit) {
+      ShownSeries s{key.first, key.second, unit, own, deciding(machine, own)};
+      s.ended = unit != last;
+      out.push_back(std::move(s));
+    }
+  }
+  return out;
+}
+
+}  // namespace nonio::assessment

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "nonio/sdk/error.h"
+
+namespace nonio::assessment {
+
+/// What a night itself knows and the history does not.
+struct Tonight {
+  struct Failed {
+    std::string campaign, folder;  ///< folder: relative to the site, as text
+    std::string message;           ///< with file and line
+    std::string since;             ///< day of the first night of this failure; empty: tonight
+  };
+  struct Vanished {
+    std::string campaign, folder;
+    std::uint64_t last_seen_night = 0;
+    std::string why;  ///< what is there instead
+  };
+  std::uint64_t night = 0;
+  std::string date;  ///< of the night, YYYY-MM-DD: the only clock
+  std::uint64_t campaigns = 0, done = 0, unchanged = 0;
+  std::vector<Failed> failed{};        ///< by campaign
+  std::vector<Vanished> vanished{};    ///< by campaign; none that somebody has said to be gone
+  std::vector<std::string> issued{};   ///< numbers of certificates
+  std::vector<std::string> waiting{};  ///< campaigns whose drafts wait for a release
+  std::string language = "en";         ///< of the site
+  std::string history_error{};         ///< the store does not know this night
+};
+
+/// Of the last complete night, out of OUT/summary.json. An error if there is none.
+Expected<Tonight> tonight_in(const std::filesystem::path& out);
+
+}  // namespace nonio::assessment

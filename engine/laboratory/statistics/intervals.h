@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "laboratory/statistics/forecast.h"
+
+/// When to measure next: proposals, never a change by itself. Nothing numerical is prescribed by
+/// ILAC-G24:2022 / OIML D 10:2022, which names the kinds: staircase (its method 1), control chart
+/// (2), and statistics of many like devices (5).
+namespace nonio::statistics {
+
+struct Proposal {
+  enum class Method { staircase, control_chart, fleet, reliability, drift };
+  Method method = Method::staircase;
+  std::optional<double> months{};  ///< none: this history cannot tell
+  /// Why: id of a word, and the numbers that belong to it, by name.
+  std::string why{};
+  std::vector<std::pair<std::string, double>> numbers{};
+};
+
+/// Decision of the last campaign as found.
+enum class Found { conforms, undecided, fails };
+
+/// Half the interval after a failure; after a success so much longer that both balance at the
+/// target: (1 + a)^R (1/2)^(1-R) = 1, so 1 + a = 2^((1-R)/R) (3.7 % at 95 %). Undecided: as it is.
+/// Why: "passed", "failed", "undecided"; none for "no-interval", "no-target".
+Proposal staircase(double months, Found, double target = 0.95);
+
+/// From the machine's own readings: the day on which the one-sided 95 % bound of the forecast meets
+/// the limit ("meets-limit"), but not farther than the forecast may look, half the observed span
+/// ("as-far-as-seen"). None: "few-campaigns" (three), "out-already", "change-not-explained" (the
+/// last change that was told, behind the point `changed_after`, has fewer than two campaigns behind
+/// it).
+Proposal control_chart(const Series&, const Trend&, double limit,
+                       std::optional<std::size_t> changed_after = {}, Beyond beyond = {});
+
+/// Method A3 of NCSL RP-1 for machines of one kind with one interval: `passed` of `machines` were
+/// in tolerance. Observed reliability R0 = passed/machines. Below the target: Q = 1 - 2 B(passed;
+/// machines, R), I' = I 10^((R0-R) Q), not below I/2. All passed: Q = 1 - R^n, I' =
+/// I 10^((R0-R)/(1-Q)). Above the target, not all: Q = 1 - 2 P(passed or more), I' = I 10^((R0-R)
+/// Q) (derived by symmetry: RP-1 itself was not readable). Not above 2 I. A change only where Q >
+/// 0.5 and by more than 5 days. Why: "fleet-shorter", "fleet-longer", "fleet-as-it-is"; none:
+/// "no-interval", "no-target", "no-machines".
+Proposal fleet(double months, int passed, int machines, double target = 0.95);
+
+/// Machines of one kind that were in tolerance after intervals of unlike length.
+struct Tried {
+  double months = 0.0;
+  int machines = 0, passed = 0;
+};
+
+/// Probability of being in tolerance after a time.
+struct Reliability {
+  /// exp(-a t); exp(-(a t)^b); 2 Phi(1/sqrt(a + b t)) - 1
+  enum class Model { exponential, weibull, random_walk };
+  Model model = Model::exponential;
+  double a = 0.0, b = 0.0;
+  double log_likelihood = 0.0;  ///< binomial, without its coefficients
+
+  double at(double months) const;
+};
+
+/// By maximum likelihood (method S2). None if all or none passed, or of fewer than two times.
+std::optional<Reliability> likeliest(Reliability::Model, const std::vector<Tried>&);
+
+/// The time at which the likeliest of the three models (by AIC) comes to the target. Why:
+/// "reliability"; none: "no-target", "all-passed", "few-machines" (20), "few-times" (3),
+/// "beyond-tried" (longer than every time that was tried).
+Proposal reliability(const std::vector<Tried>&, double target);
+
+/// Drift since the last adjustment, of many like machines: d = b1 t + b2 t^2 + ..., through 0.
+/// Source: H. Castrup, Calibration intervals from variables data; NASA-HDBK-8739.19-5, 7.
+struct Drift {
+  std::vector<double> b, C;  ///< coefficients; covariance row by row
+  double s = 0.0, dof = 0.0;
+
+  double at(double t) const;
+  double u_prediction(double t) const;  ///< of one value there
+};
+
+/// None if degree + 1 or fewer values, or they cannot tell the coefficients apart.
+std::optional<Drift> drift_since_adjustment(const std::vector<double>& t,
+                                            const std::vector<double>& d, int degree);
+
+/// Time at which u0 and the prediction's together come to `most`; none within `longest`.
+std::optional<double> until_uncertainty(const Drift&, double u0, double most, double longest);
+
+struct Limits {
+  std::optional<double> lower{}, upper{};
+};
+/// Time at which the prediction's bound of this confidence (two-sided with two limits) meets a
+/// limit; 0 if it is beyond at once; none within `longest`, or without a limit.
+std::optional<double> until_limit(const Drift&, double value, double u0, Limits, double confidence,
+                                  double longest);
+
+/// until_limit for t in months since the adjustment, but not farther than half beyond the longest
+/// time in `t`. Why: "drift-meets-limit", "as-far-as-seen"; none: "few-readings", "no-limit",
+/// "out-already".
+Proposal drift_interval(const std::vector<double>& t, const std::vector<double>& d, int degree,
+                        double value, double u0, Limits, double confidence = 0.95);
+
+}  // namespace nonio::statistics

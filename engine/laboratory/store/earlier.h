@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "campaign/evaluation/record.h"
+#include "laboratory/store/entry.h"
+
+/// What was known of a campaign before its results were replaced: OUT/<campaign>/earlier.json,
+/// which is there where something else was known.
+namespace nonio::store {
+
+inline constexpr const char* earlier_name = "earlier.json";
+
+/// One evaluation in the chain of a campaign, oldest first.
+struct Known {
+  evaluation::IndexedSince since;
+  Entry entry;
+};
+
+/// What the output folder of a campaign says.
+struct FolderHistory {
+  std::vector<Known> evaluations;            ///< each supersedes the one before
+  std::vector<CertificateRow> certificates;  ///< all numbers that it was issued
+};
+
+/// The results that count: those of the record, or the last good ones where it failed for a reason
+/// that may pass. Empty if nothing was evaluated yet. An error names the file that is damaged.
+Expected<FolderHistory> history_of(const std::filesystem::path& folder, const std::string& id);
+
+/// The nights of those evaluations, without a look at the results.
+Expected<std::vector<std::uint64_t>> nights_of(const std::filesystem::path& folder);
+
+/// What is to be stored beside new results, so that nothing that was known before is lost.
+struct Carried {
+  std::optional<evaluation::IndexedSince> indexed{};
+  std::string earlier{};  ///< bytes of earlier.json; empty: none
+};
+
+/// Before `fresh`, the record of these new results, takes the place of what is in the folder.
+Expected<Carried> carry_over(const std::filesystem::path& folder, const evaluation::Record& fresh,
+                             std::string_view results, const std::string& id);
+
+}  // namespace nonio::store

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <simdjson.h>
+
+#include "laboratory/store/entry.h"
+
+namespace nonio::store {
+
+/// As `entry_of`, of results.json that stands in another document. Throws simdjson_error and
+/// std::runtime_error.
+Entry read_entry(simdjson::dom::object results, const reading::Inputs& inputs);
+
+}  // namespace nonio::store

@@ -1,0 +1,479 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long: one function for each request, on the same few values.
+#include "live/calculation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "campaign/modelling/model_fit.h"
+#include "campaign/modelling/model_json.h"
+#include "live/columns.h"
+#include "live/documents.h"
+#include "nonio/reports/residuals.h"
+#include "nonio/reports/wording.h"
+#include "nonio/workbench/data.h"
+#include "platform/process/keep_apart.h"
+#include "platform/process/watched.h"
+
+namespace nonio::live {
+using modelling::PartModel;
+using storage::Json;
+
+namespace {
+
+modelling::ModelWords words_of(const Bench& bench) {
+  return {bench.place->context.templates, bench.language()};
+}
+
+std::string kind_of(const PartModel& part) {
+  const std::string kind = modelling::kind_of(part.part);
+  return kind == "axis" && part.part.axes.front().rotary ? "rotary" : kind;
+}
+
+Json axis_json(const Axis& axis) {
+  Json one = {{"name", axis.name}, {"rotary", axis.rotary}};
+  if (axis.travel) {
+    const Quantity q = position_of(axis.rotary);
+    storage::put(one, "from", axis.travel->first, q);
+    storage::put(one, "to", axis.travel->second, q);
+  }
+  storage::put(one, "screw_pitch", axis.screw_pitch, Quantity::length);
+  return one;
+}
+
+Json machine_json(const Machine& machine) {
+  Json json = {{"maker", machine.maker},         {"model", machine.model},
+               {"serial", machine.serial},       {"asset", machine.asset},
+               {"structure", machine.structure}, {"axes", Json::array()}};
+  for (const Axis& axis : machine.axes) json["axes"].push_back(axis_json(axis));
+  return json;
+}
+
+/// Ends of each line in the volume, mm: the readings that lie farthest apart along it.
+Json lines_in_space(const model::Part& part) {
+  struct Ends {
+    std::size_t low = 0, high = 0;
+    bool any = false;
+  };
+  std::vector<Ends> ends(part.measurements.size());
+  for (std::size_t i = 0; i < part.along.size(); ++i) {
+    Ends& e = ends[part.measurement[i]];
+    if (!e.any) e = {i, i, true};
+    if (part.along[i] < part.along[e.low]) e.low = i;
+    if (part.along[i] > part.along[e.high]) e.high = i;
+  }
+  const auto point = [&](std::size_t row) {
+    Json at = Json::array();
+    for (const char* axis : {"X", "Y", "Z"}) {
+      const auto* column = part.table.axis(axis);
+      const double x = column == nullptr ? 0.0 : column->position[row];
+      at.push_back(std::isfinite(x) ? printed(x, Quantity::length) : 0.0);
+    }
+    return at;
+  };
+  Json lines = Json::array();
+  for (std::size_t k = 0; k < ends.size(); ++k)
+    if (ends[k].any)
+      lines.push_back({{"id", part.measurements[k]},
+                       {"from", point(ends[k].low)},
+                       {"to", point(ends[k].high)}});
+  return {{"lines", std::move(lines)}};
+}
+
+Json card_of(const modelling::ModelWords& words, const std::string& effect) {
+  Json card = Json::object();
+  for (const char* what : {"title", "is", "size", "looks", "alike", "cure"})
+    if (std::string text = words.card(effect, what); !text.empty()) card[what] = std::move(text);
+  return card;
+}
+
+Json catalogue_json(const Bench& bench) {
+  const modelling::ModelWords words = words_of(bench);
+  Json list = Json::array();
+  for (const PartModel& part : bench.parts) {
+    for (const model::Term& term : part.catalogue)
+      list.push_back({{"effect", term.name()},
+                      {"part", part.part.name},
+                      {"card", card_of(words, term.name())},
+                      {"compensable", term.effect->compensable},
+                      {"why_not", nullptr}});
+    for (const model::Candidate& c : part.left_out)
+      list.push_back(
+          {{"effect", c.term.name()},
+           {"part", part.part.name},
+           {"card", card_of(words, c.term.name())},
+           {"compensable", c.term.effect->compensable},
+           {"why_not", words.unseen(c, modelling::place_of(part, bench.campaign(), c.rows))}});
+  }
+  return list;
+}
+
+/// Which rows of each measurement's table are left; empty: all.
+using Kept = std::vector<std::vector<std::uint32_t>>;
+
+Expected<Kept> exclude(Bench& bench, const Json& request) {
+  const auto& measurements = bench.campaign().measurements;
+  Kept kept(measurements.size());
+  std::map<std::size_t, std::vector<char>> masks;
+  for (const Json& one : request.value("excluded", Json::array())) {
+    const auto id = one.at("measurement").get<std::string>();
+    const auto row = one.at("row").get<std::size_t>();
+    const auto m = std::find_if(measurements.begin(), measurements.end(),
+                                [&](const Measurement& x) { return x.id == id; });
+    const auto at = static_cast<std::size_t>(m - measurements.begin());
+    if (m == measurements.end() || row >= bench.read.observations[at].size())
+      return fail("there is no reading " + std::to_string(row) + " of measurement " + id);
+    auto& mask = masks[at];
+    mask.resize(bench.read.observations[at].size(), 1);
+    mask[row] = 0;
+  }
+  for (const auto& [at, mask] : masks) {
+    for (std::uint32_t row = 0; row < mask.size(); ++row)
+      if (mask[row] != 0) kept[at].push_back(row);
+    keep_rows(bench.read.observations[at], mask);
+  }
+  return kept;
+}
+
+Expected<void> try_periods(Bench& bench, const Json& request) {
+  const Json periods = request.value("period_mm", Json::object());
+  for (const auto& [name, mm] : periods.items()) {
+    auto& axes = bench.read.manifest->campaign.machine.axes;
+    const auto axis = std::find_if(axes.begin(), axes.end(),
+                                   [&, &n = name](const Axis& a) { return a.name == n; });
+    if (axis == axes.end() || axis->rotary)
+      return fail("period_mm: the machine has no linear axis \"" + name + "\"");
+    axis->screw_pitch = mm.get<double>() * 1e-3;
+  }
+  return {};
+}
+
+/// A part with the model that is tried: one of the bench, or of its own where readings or periods
+/// are others.
+struct Tried {
+  std::unique_ptr<PartModel> own;
+  PartModel* of_bench = nullptr;
+  std::vector<std::size_t> row;  ///< of each of its readings: that of the part with all readings
+  const PartModel& part() const { return own ? *own : *of_bench; }
+};
+
+std::vector<std::size_t> rows_of(const PartModel& part, const PartModel& whole, const Bench& bench,
+                                 const Kept& kept) {
+  std::map<std::string, std::size_t> measurement;
+  for (std::size_t m = 0; m < bench.campaign().measurements.size(); ++m)
+    measurement[bench.campaign().measurements[m].id] = m;
+  std::map<std::pair<std::size_t, std::uint32_t>, std::size_t> place;
+  for (std::size_t i = 0; i < whole.part.row.size(); ++i)
+    place[{measurement[whole.part.measurements[whole.part.measurement[i]]], whole.part.row[i]}] = i;
+  std::vector<std::size_t> out(part.part.row.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::size_t m = measurement[part.part.measurements[part.part.measurement[i]]];
+    const std::uint32_t row = kept[m].empty() ? part.part.row[i] : kept[m].at(part.part.row[i]);
+    out[i] = place[{m, row}];
+  }
+  return out;
+}
+
+Expected<Tried> tried(Bench& bench, const Json& request) {
+  const auto name = request.at("part").get<std::string>();
+  const auto model = request.at("model").get<std::vector<std::string>>();
+  PartModel* const whole = bench.part(name);
+  if (whole == nullptr) return fail("there is no part \"" + name + "\"");
+  Tried out;
+  const bool all = request.value("excluded", Json::array()).empty();
+  if (all && request.value("period_mm", Json::object()).empty()) {
+    if (auto right = modelling::without_mistakes(model, bench.read); !right)
+      return fail(right.error());
+    modelling::set_model(*whole, model, bench.read);
+    if (!bench.has_catalogue) modelling::fill_interpolated(*whole, bench.read);
+    out.of_bench = whole;
+  } else {
+    const auto kept = exclude(bench, request);
+    if (!kept) return fail(kept.error());
+    if (auto done = try_periods(bench, request); !done) return fail(done.error());
+    auto parts = modelling::part_models(bench.read, model);
+    if (!parts) return fail(parts.error());
+    const auto found = std::find_if(parts->begin(), parts->end(),
+                                    [&](const PartModel& p) { return p.part.name == name; });
+    if (found == parts->end()) return fail("no reading of part " + name + " is left");
+    out.own = std::make_unique<PartModel>(std::move(*found));
+    if (!all) out.row = rows_of(*out.own, *whole, bench, *kept);
+  }
+  if (all) {
+    out.row.resize(out.part().part.table.size());
+    std::iota(out.row.begin(), out.row.end(), std::size_t{0});
+  }
+  return out;
+}
+
+/// What the page holds: the same readings whatever the model is. Of very many it draws columns of
+/// pixels, and needs a sample for quantiles and tables only.
+workbench::Kept kept_of(const PartModel& part) {
+  constexpr std::size_t sample = 5000;
+  const std::vector<double>& measured = part.part.table.deviation;
+  const bool is_drawn = measured.size() <= workbench::most_readings;
+  return workbench::kept_readings(measured, is_drawn ? workbench::most_readings : sample);
+}
+
+/// What model-html embeds, with the rows as the files have them.
+Expected<std::string> page_data(const Bench& bench, const PartModel& part, const ModelFit& fit,
+                                const std::vector<std::size_t>& rows) {
+  const reports::Wording words(bench.place->context.templates, bench.language(), {"pictures"});
+  const workbench::Drawn drawn{bench.campaign(), fit, words, reports::picture_words(fit, words)};
+  workbench::Kept kept = kept_of(part);
+  for (std::size_t i = 0; i < rows.size() && kept.row_in_files.empty(); ++i)
+    if (rows[i] != i) kept.row_in_files = rows;
+  std::string data = workbench::data_of(drawn, kept);
+  if (const auto complete = words.complete(); !complete) return fail(complete.error());
+  return data;
+}
+
+Json text_of(const Bench& bench, const PartModel& part, const model::Comparison& c) {
+  const modelling::ModelWords words = words_of(bench);
+  Json text = Json::object();
+  if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))
+    text["left"] = words.lack_of_fit(c, part.deviation());
+  Json places = Json::array();
+  for (const model::Place& place : c.seats) places.push_back(words.place(place, part.deviation()));
+  text["places"] = std::move(places);
+  return text;
+}
+
+/// None where it is of other readings.
+const model::Groundwork* groundwork_of(const Bench& bench, const Tried& tried) {
+  if (tried.own) return nullptr;
+  const auto found = bench.groundwork.find(tried.part().part.name);
+  return found == bench.groundwork.end() ? nullptr : &found->second;
+}
+
+/// All of a fit but the page.
+std::string head_of(const Bench& bench, const PartModel& part, const model::Comparison& c,
+                    modelling::Extent extent) {
+  const modelling::Compared both{part, c};
+  return "\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench), extent) +
+         ",\"text\":" + storage::dump(text_of(bench, part, c));
+}
+
+Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> residual,
+                          const First& first) {
+  const auto one = tried(bench, request);
+  if (!one) return fail(one.error());
+  const auto page_of = [&](const model::Comparison& c) {
+    std::fill(residual.begin(), residual.end(), std::nan(""));
+    for (std::size_t i = 0; i < one->row.size(); ++i) residual[one->row[i]] = c.fit.residual[i];
+    return page_data(bench, one->part(), modelling::fitted_value(one->part(), c), one->row);
+  };
+  bool is_begun = false;
+  const auto begin = [&](const model::Comparison& c) {
+    const auto page = page_of(c);
+    if (!page || !first) return;
+    process::Parcel parcel;
+    parcel.add(head_of(bench, one->part(), c, modelling::Extent::first)).add(*page);
+    first(parcel.bytes());
+    is_begun = true;
+  };
+  const auto compared = modelling::compare_part(one->part(), groundwork_of(bench, *one), begin);
+  if (!compared) return fail(compared.error());
+  auto page = is_begun ? Expected<std::string>("") : page_of(*compared);
+  if (!page) return page;
+  process::Parcel parcel;
+  parcel.add(head_of(bench, one->part(), *compared, modelling::Extent::whole)).add(*page);
+  return parcel.bytes();
+}
+
+/// The readings as they were measured: what the page draws until there is a fit.
+Expected<std::string> look(Bench& bench, const PartModel& part) {
+  const auto data = page_data(bench, part, modelling::measured_value(part), {});
+  if (!data) return data;
+  return "{\"page\":" + *data + "}";
+}
+
+/// A column over the readings that the page has.
+Json column(const std::vector<double>& values, const std::vector<std::size_t>& rows, Quantity q) {
+  Json list = Json::array();
+  for (const std::size_t row : rows) {
+    const double shown = printed(values[row], q);
+    list.push_back(std::isfinite(shown) ? Json(shown) : Json(nullptr));
+  }
+  return list;
+}
+
+/// What each candidate would take away, beside the model, on these readings.
+Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
+  constexpr std::size_t most = 40;
+  const std::vector<std::size_t> rows = kept_of(part).rows;
+  Json list = Json::array();
+  for (const model::Candidate& c : e.candidates) {
+    if (!modelling::is_ranked(c) || list.size() == most) continue;
+    std::vector<model::Term> terms = e.comparison.fit.terms;
+    terms.push_back(c.term);
+    const auto with = model::fit(part.part.table, terms, e.comparison.fit.weight);
+    if (!with) continue;
+    Json one = {{"effect", c.term.name()},
+                {"unit", unit_of(part.deviation()).symbol},
+                {"says", column(with->part.back(), rows, part.deviation())}};
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+Expected<std::string> explain(Bench& bench, const Json& request, const First& first) {
+  const auto one = tried(bench, request);
+  if (!one) return fail(one.error());
+  if (!one->own && !bench.has_catalogue) modelling::fill_catalogue(*one->of_bench, bench.read);
+  auto explained = modelling::explain_part(one->part(), request.value("seed", std::uint64_t{1}),
+                                           groundwork_of(bench, *one));
+  if (!explained) return fail(explained.error());
+  const modelling::Explained both{one->part(), std::move(*explained)};
+  first("{\"explain\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) + "}");
+  return "{\"fingerprints\":" + storage::dump_line(fingerprints_of(one->part(), both.explanation)) +
+         ",\"what_if\":" +
+         modelling::foresight_json(model::foresee(one->part().part, both.explanation)) + "}";
+}
+
+Expected<std::string> without(Bench& bench, const Json& request) {
+  const auto one = tried(bench, request);
+  if (!one) return fail(one.error());
+  const auto rows = kept_of(one->part()).rows;
+  const Quantity q = one->part().deviation();
+  Json list = Json::array();
+  for (const ModelFit::Without& w : modelling::without_each(one->part())) {
+    Json item = {{"effect", w.effect}};
+    storage::put(item, "rms", w.rms, q);
+    storage::put(item, "cv_rms", w.cv_rms, q);
+    item["residual"] = column(w.residual, rows, q);
+    list.push_back(std::move(item));
+  }
+  Json out = {{"without", std::move(list)}};
+  if (one->part().part.table.size() > 0 && !one->part().names().empty() && out["without"].empty())
+    out["why_not"] = "more than 20000 readings: each fit takes seconds";
+  return storage::dump_line(out);
+}
+
+}  // namespace
+
+PartModel* Bench::part(const std::string& name) {
+  const auto found = std::find_if(parts.begin(), parts.end(),
+                                  [&](const PartModel& p) { return p.part.name == name; });
+  return found == parts.end() ? nullptr : &*found;
+}
+
+Expected<Bench> open_bench(const BenchWish& wish) {
+  process::keep_plugins_apart(wish.own_plugins);
+  Bench bench{wish.folder, nullptr, {}, {}, false, {}};
+  auto place = reading::open_workplace(wish.folder, wish.plugin_folders, wish.template_folders,
+                                       wish.version);
+  if (!place) return fail(place.error());
+  bench.place = std::move(*place);
+  bench.read = reading::read_campaign(wish.folder, bench.place->context, [](const std::string&) {});
+  if (!bench.read.manifest) return fail(bench.read.errors.front());
+  bench.parts = modelling::bare_parts(bench.read);
+  std::size_t readings = 0;
+  for (PartModel& part : bench.parts) {
+    modelling::set_model(part, {}, bench.read);
+    readings += part.part.table.size();
+  }
+  constexpr std::size_t many = 50000;  // below, it takes less than a tenth of a second
+  if (readings <= many) fill_catalogue(bench);
+  return bench;
+}
+
+Json fill_catalogue(Bench& bench) {
+  for (PartModel& part : bench.parts) modelling::fill_catalogue(part, bench.read);
+  bench.has_catalogue = true;
+  return catalogue_json(bench);
+}
+
+Json described(const Bench& bench) {
+  const Campaign& campaign = bench.campaign();
+  Json json = {{"id", campaign.id},
+               {"machine", machine_json(campaign.machine)},
+               {"customer", campaign.customer},
+               {"date", campaign.date},
+               {"language", bench.language()},
+               {"kinds", modelling::kinds_measured(bench.read)},
+               {"model", campaign.model},
+               {"parts", Json::array()},
+               {"catalogue", bench.has_catalogue ? catalogue_json(bench) : Json(nullptr)},
+               {"inputs", Json::object()},
+               {"mistakes", modelling::model_mistakes(campaign.model, bench.read)},
+               {"errors", Json::array()},
+               {"notes", bench.place->notes}};
+  for (const PartModel& part : bench.parts) {
+    json["parts"].push_back({{"name", part.part.name},
+                             {"kind", kind_of(part)},
+                             {"measurements", part.part.measurements},
+                             {"readings", part.part.table.size()}});
+    if (part.part.kind == model::Part::Kind::space)
+      json["parts"].back()["space"] = lines_in_space(part.part);
+  }
+  json["manifest_sha256"] = bench.read.inputs.front().second;
+  for (const auto& [name, digest] : bench.read.inputs) {
+    if (name == config::manifest_name) json["inputs"][name] = digest;
+    for (const Measurement& m : campaign.measurements)
+      if (name == reading::input_name(m.file)) json["inputs"][m.file] = digest;
+  }
+  for (const Error& e : bench.read.errors) json["errors"].push_back(storage::to_json(e));
+  json["seconds"] = bench.place->context.site.limits.seconds;
+  return json;
+}
+
+bool needs_files(const std::string& kind) { return kind == "save" || kind == "difference"; }
+
+std::string trial_key(const Json& request) {
+  Json key = Json::object();
+  for (const char* name : {"part", "model", "excluded", "period_mm"})
+    if (request.contains(name)) key[name] = request[name];
+  return key.dump();
+}
+
+bool needs_residual(const Json& request) {
+  const auto kind = request.value("kind", "");
+  return kind == "readings" || (kind == "series" && is_of_fit(request));
+}
+
+const PartModel* without_groundwork(const Bench& bench) {
+  // Of fewer readings it takes milliseconds; of more it would keep others waiting.
+  constexpr std::size_t fewest = 5000, most = 200000;
+  for (const PartModel& part : bench.parts)
+    if (part.part.table.size() >= fewest && part.part.table.size() <= most &&
+        !bench.groundwork.contains(part.part.name) &&
+        std::none_of(part.terms.begin(), part.terms.end(),
+                     [](const model::Term& t) { return t.effect->is_nuisance; }))
+      return &part;
+  return nullptr;
+}
+
+void do_groundwork(Bench& bench, const PartModel& part) {
+  bench.groundwork.emplace(part.part.name, model::Groundwork(part.part, {}));
+}
+
+Expected<std::string> calculate(Bench& bench, const Json& request, std::span<double> residual,
+                                bool fitted, const First& first) {
+  const auto kind = request.at("kind").get<std::string>();
+  if (kind == "fit") return fit(bench, request, residual, first);
+  if (kind == "explain") return explain(bench, request, first);
+  if (kind == "without") return without(bench, request);
+  if (kind == "catalogue") return storage::dump_line(fill_catalogue(bench));
+  if (kind == "save") return save(bench, request);
+  if (kind == "difference") return difference(bench, request);
+  if (kind == "page" || kind == "report") {
+    if (auto kept = exclude(bench, request); !kept) return fail(kept.error());
+    if (auto done = try_periods(bench, request); !done) return fail(done.error());
+    return document(bench, request);
+  }
+  const PartModel* const part = bench.part(request.at("part").get<std::string>());
+  if (part == nullptr) return fail("there is no such part");
+  if (kind == "look") return look(bench, *part);
+  if (kind == "places") return readings(*part, bench.campaign(), request, {});
+  if (needs_residual(request) && !fitted)
+    if (auto done = fit(bench, request, residual, {}); !done) return fail(done.error());
+  if (kind == "series") return series(*part, request, residual);
+  if (kind == "readings") return readings(*part, bench.campaign(), request, residual);
+  return fail("there is no request \"" + kind + "\"");
+}
+
+}  // namespace nonio::live

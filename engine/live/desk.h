@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include "live/bench_client.h"
+#include "live/service.h"
+#include "live/session.h"
+#include "live/watch.h"
+
+namespace nonio::live {
+
+/// What a part shows for the present trial.
+struct PartState {
+  struct Work {
+    std::string state = "none";  ///< none, queued, running, done, failed
+    std::uint64_t job = 0;
+    std::string error;
+    int seconds = 0;
+    /// fit: members "compare" and "text", value of "page"; without places before it is done.
+    /// explain: {"explain": ...}, {"fingerprints": ...}; the second may come later.
+    std::string head, rest;
+  };
+  std::string key;  ///< of the trial that this belongs to
+  Work fit, explain;
+};
+
+/// Answers that were calculated, by what they depend on; the newest 64 MB.
+class Remembered {
+ public:
+  struct Text {
+    std::string head, rest;
+    storage::Json figures = storage::Json::object();  ///< of a fit: RMS and the like, with units
+    std::size_t size() const { return head.size() + rest.size(); }
+  };
+  void put(const std::string& key, Text text);
+  const Text* find(const std::string& key) const;
+  void clear();
+
+ private:
+  static constexpr std::size_t most_bytes = 64 << 20;
+  std::map<std::string, Text> texts_;
+  std::deque<std::string> order_;
+  std::size_t bytes_ = 0;
+};
+
+/// Effects that are added one after the other, as `nonio explain --auto` adds them.
+struct Searching {
+  std::uint64_t job = 0;
+  std::string kind;  ///< suggest, finish
+  std::vector<std::string> added;
+  std::vector<std::string> failed_before;  ///< parts that could not be explained at the start
+};
+
+/// One campaign with its page: session, bench process, events. Its functions are called by the
+/// threads of the server; `tell` by that of the bench.
+class Desk {
+ public:
+  /// `name`: the folder as a person wrote it, for commands.
+  Desk(Launcher& launcher, const std::filesystem::path& folder, std::string name, bool edit,
+       std::string engine);
+  ~Desk();
+
+  /// `what`: the path behind "/api/", names replaced: "state", "parts/{part}/fit".
+  Answer answer(const std::string& what, const std::string& part, const Request& request);
+  void close();
+
+  static std::vector<Route> routes(const std::string& base);
+
+ private:
+  using Json = storage::Json;
+  static constexpr const char* newer_words = "a newer request has taken the place of this one";
+  struct Waiting {
+    bool done = false, well = false;
+    std::string text;
+  };
+
+  // answers to GET
+  Answer state();
+  Answer fit(const std::string& part, const Request& request, bool picture);
+  Answer explain(const std::string& part, bool fingerprints);
+  Answer asked(const std::string& kind, const std::string& part, const Request& request);
+  Answer document(const std::string& kind, const std::string& part);
+  Answer difference();
+  Answer events(const Request& request);
+
+  // answers to POST
+  Answer post(const std::string& what, const Json& body, const Request& request);
+  Answer exclude(const Json& body);
+  Answer search(const std::string& kind);
+  Answer cancel(const Json& body);
+  Answer save(const Request& request);
+  Answer reload();
+  Answer changed(const Done& done, const std::string& command);
+  Done change(const std::string& what, const Json& body, std::string& command);
+  Done change_model(const Json& body);
+  Done known(const std::vector<std::string>& effects) const;
+
+  // what the bench says
+  void tell(std::uint64_t job, const std::string& state, std::string text);
+  void take_campaign(const std::string& state, const std::string& text);
+  void take_work(const std::string& part, PartState::Work& work, bool is_fit,
+                 const std::string& state, std::string text);
+  void take_fit(const std::string& part, PartState::Work& work, const std::string& text,
+                bool is_done);
+  void take_explanation(const std::string& part, PartState::Work& work, const std::string& text,
+                        bool is_done);
+  bool take_waiting(std::uint64_t job, const std::string& state, std::string& text);
+
+  // work
+  Json request_for(const std::string& kind, const std::string& part) const;
+  void refresh();
+  void forget_parts();
+  static std::string replaced_by(const Json& request);
+  void cancel_waiting(const std::string& replaces);
+  void ask_explanation(const std::string& part, PartState& state);
+  void search_on();
+  bool is_explained() const;
+  void search_ended(const std::string& state, const std::string& says);
+  /// In the program's own words, or by the name of a sentence of the page.
+  void fail_search(const std::string& words, const std::string& name = "");
+  void end_search();
+  /// The answer to a request, waited for with `lock` released.
+  Waiting wait_for(std::unique_lock<std::mutex>& lock, const Json& request,
+                   const std::string& replaces);
+  void publish(const char* type, const std::string& about, Json data);
+  void files_changed(bool changed);
+  Json parts_state() const;
+  Json part_state(const PartState& state) const;
+  Json steps() const;
+  Json save_request(const std::string& kind) const;
+  void read_again();
+  std::string command() const;
+  bool has_part(const std::string& part) const { return parts_.contains(part); }
+
+  std::filesystem::path folder_;
+  std::string name_, engine_;
+  bool edit_;
+  mutable std::mutex mutex_;
+  std::condition_variable answered_;
+  Events events_;
+  Session session_;
+  std::string bench_state_ = "opening", bench_error_, read_at_;
+  Json campaign_ = Json::object();  ///< `described`
+  bool read_again_ = false, changed_on_disk_ = false, over_ = false;
+  std::vector<std::string> order_;  ///< of the parts
+  std::map<std::string, PartState> parts_;
+  Remembered fits_, explanations_;
+  std::map<std::uint64_t, Waiting> waiting_;
+  std::map<std::string, std::uint64_t> replaceable_;
+  std::optional<Searching> searching_;
+  std::uint64_t searches_ = 0;
+  std::unique_ptr<Watch> watch_;
+  std::unique_ptr<BenchClient> bench_;  ///< last: its thread uses all of the above
+};
+
+}  // namespace nonio::live

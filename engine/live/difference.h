@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace nonio::live {
+
+/// A unified difference of two texts that differ in one place; "" if they are the same.
+std::string unified_difference(const std::string& name, std::string_view before,
+                               std::string_view after);
+
+}  // namespace nonio::live

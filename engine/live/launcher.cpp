@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/launcher.h"
+
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <iostream>
+
+#include "live/bench.h"
+#include "live/tool.h"
+#include "platform/process/child.h"
+
+namespace nonio::live {
+
+namespace {
+
+/// This program, also where it was replaced meanwhile.
+constexpr const char* own_program = "/proc/self/exe";
+
+/// One process for a campaign or a verb; false if the server has gone.
+bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
+  auto ends = process::channel_pair(SOCK_STREAM, "a process of its own");
+  if (!ends) return process::send_descriptors(to_server, '-', {});
+  const pid_t parent = ::getpid();
+  const pid_t child = process::fork_patiently();
+  if (child < 0) return process::send_descriptors(to_server, '-', {});
+  if (child == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(2);
+    ::setpgid(0, 0);
+    ::signal(SIGCHLD, SIG_DFL);
+    ::close(to_server);
+    (*ends)[0] = process::Handle();
+    if (what.contains("arguments"))
+      run_tool(own_program, what["arguments"].get<std::vector<std::string>>(),
+               std::move((*ends)[1]));
+    BenchWish wish = common;
+    wish.folder = what.at("campaign").get<std::string>();
+    run_bench(wish, std::move((*ends)[1]));
+  }
+  return process::send_descriptors(to_server, '+', {(*ends)[0].get()});
+}
+
+[[noreturn]] void serve_launches(const BenchWish& common, int server) {
+  process::init_child();
+  ::signal(SIGINT, SIG_IGN);   // the server ends it
+  ::signal(SIGCHLD, SIG_IGN);  // bench processes leave nothing behind
+  for (std::string what; process::read_text(server, what);)
+    if (!launch(common, storage::Json::parse(what), server)) break;
+  ::_exit(0);
+}
+
+}  // namespace
+
+Expected<Launcher> Launcher::start(const BenchWish& common) {
+  auto ends = process::channel_pair(SOCK_STREAM, "the process that starts others");
+  if (!ends) return fail(ends.error());
+  std::cout.flush();
+  std::cerr.flush();
+  const pid_t child = process::fork_patiently();
+  if (child < 0) return fail("no process could be started");
+  if (child == 0) {
+    (*ends)[0] = process::Handle();
+    serve_launches(common, (*ends)[1].get());
+  }
+  return Launcher(std::move((*ends)[0]));
+}
+
+Expected<process::Handle> Launcher::open(const std::filesystem::path& campaign) {
+  return ask({{"campaign", campaign.string()}});
+}
+
+Expected<process::Handle> Launcher::run(const std::vector<std::string>& arguments) {
+  return ask({{"arguments", arguments}});
+}
+
+Expected<process::Handle> Launcher::ask(const storage::Json& what) {
+  const std::lock_guard lock(*mutex_);
+  if (!process::write_text(channel_.get(), what.dump()))
+    return fail("the process that starts others has ended; start nonio live again");
+  auto answer = process::receive_descriptors(channel_.get());
+  if (!answer) return fail("the process that starts others has ended; start nonio live again");
+  if (answer->word != '+' || answer->descriptors.size() != 1)
+    return fail("no process could be started");
+  return std::move(answer->descriptors.front());
+}
+
+}  // namespace nonio::live

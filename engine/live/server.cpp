@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/server.h"
+
+#include <Poco/Net/HTTPRequestHandler.h>
+#include <Poco/Net/HTTPRequestHandlerFactory.h>
+#include <Poco/Net/HTTPServerConnection.h>
+#include <Poco/Net/HTTPServerParams.h>
+#include <Poco/Net/HTTPServerRequest.h>
+#include <Poco/Net/HTTPServerResponse.h>
+#include <Poco/Net/StreamSocket.h>
+#include <Poco/Net/StreamSocketImpl.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <iostream>
+#include <mutex>
+#include <thread>
+
+#include "live/campaign_service.h"
+#include "live/front.h"
+#include "live/token.h"
+#include "platform/storage/late_library.h"
+
+namespace nonio::live {
+namespace net = Poco::Net;
+
+namespace {
+
+constexpr std::size_t threads = 16, most_queued = 64;
+constexpr auto heartbeat = std::chrono::seconds(15);
+constexpr auto between_events = std::chrono::milliseconds(100);  // 10 a second
+constexpr auto body_patience = std::chrono::seconds(30);
+
+/// What all connections share.
+struct House {
+  const Post& post;
+  Service& service;
+  std::atomic<bool> over = false;
+};
+
+Head head_of(const net::HTTPServerRequest& request) {
+  Head head{request.getMethod(), request.getURI(), {}};
+  for (const auto& [name, value] : request) head.fields.emplace_back(name, value);
+  return head;
+}
+
+class Handler : public net::HTTPRequestHandler {
+ public:
+  explicit Handler(House& house) : house_(house) {}
+
+  void handleRequest(net::HTTPServerRequest& request, net::HTTPServerResponse& response) override {
+    const Head head = head_of(request);
+    try {
+      send(answer_to(head, request), response);
+    } catch (const std::exception& e) {
+      std::cerr << "nonio live: " << head.method << " "
+                << head.target.substr(0, head.target.find('?')) << ": " << e.what() << "\n";
+      if (!response.sent()) send(refused(500, "mistake"), response);
+    }
+  }
+
+ private:
+  Answer answer_to(const Head& head, net::HTTPServerRequest& request) {
+    const Verdict verdict = judge(head, house_.post, house_.service.routes());
+    if (verdict.status != 200) {
+      Answer no;
+      no.status = verdict.status;
+      no.said = verdict.said;
+      return no;
+    }
+    Request one{head, *verdict.route, verdict.names, ""};
+    if (verdict.route->method == Method::post) {
+      const std::size_t most = verdict.route->most;
+      if (!read_body(request.stream(), most, one.body))
+        return refused(413, "body_or_slow", {{"most", std::to_string(most)}});
+    }
+    return house_.service.answer(one);
+  }
+
+  /// False if it is larger, or does not come.
+  static bool read_body(std::istream& from, std::size_t most, std::string& body) {
+    const auto deadline = std::chrono::steady_clock::now() + body_patience;
+    std::array<char, 1 << 14> part;
+    while (from.good()) {
+      from.read(part.data(), part.size());
+      body.append(part.data(), static_cast<std::size_t>(from.gcount()));
+      if (body.size() > most || std::chrono::steady_clock::now() > deadline) return false;
+    }
+    return true;
+  }
+
+  void send(Answer plain, net::HTTPServerResponse& response) {
+    const Answer answer = house_.service.sentences().spelled(std::move(plain));
+    response.setStatus(static_cast<net::HTTPResponse::HTTPStatus>(answer.status));
+    response.setReason(net::HTTPResponse::getReasonForStatus(response.getStatus()));
+    response.setKeepAlive(false);
+    for (const auto& [name, value] : security_headers()) response.set(name, value);
+    for (const auto& [name, value] : answer.headers) response.set(name, value);
+    if (answer.status == 405) response.set("Allow", "GET, POST");
+    response.setContentType(answer.type);
+    if (answer.stream) return stream(answer, response);
+    response.setContentLength64(static_cast<Poco::Int64>(answer.body.size()));
+    std::ostream& out = response.send();
+    out << answer.body << std::flush;
+  }
+
+  /// Events until the page or the server goes.
+  void stream(const Answer& answer, net::HTTPServerResponse& response) {
+    response.setChunkedTransferEncoding(true);
+    std::ostream& out = response.send();
+    out << ":\n\n" << std::flush;
+    auto last = std::chrono::steady_clock::now();
+    while (out.good() && !answer.stream->closed() && !house_.over) {
+      const auto events = answer.stream->wait(std::chrono::seconds(1));
+      const auto now = std::chrono::steady_clock::now();
+      if (events.empty() && now - last < heartbeat) continue;
+      last = now;
+      if (events.empty()) out << ":\n\n";
+      for (const Event& event : events) out << event_text(event);
+      out << std::flush;
+      std::this_thread::sleep_for(between_events);
+    }
+    answer.events->leave(answer.stream);
+  }
+
+  House& house_;
+};
+
+class Handlers : public net::HTTPRequestHandlerFactory {
+ public:
+  explicit Handlers(House& house) : house_(house) {}
+  net::HTTPRequestHandler* createRequestHandler(const net::HTTPServerRequest&) override {
+    return new Handler(house_);  // Poco deletes it
+  }
+
+ private:
+  House& house_;
+};
+
+void set_timeout(int socket, int option, long seconds, long microseconds) {
+  const timeval time{seconds, microseconds};
+  ::setsockopt(socket, SOL_SOCKET, option, &time, sizeof time);
+}
+
+/// Takes what the other side still sends, so that it reads the answer before the end.
+void part_from(int socket) {
+  constexpr int most = 64;
+  constexpr long soon = 200'000;  // us
+  ::shutdown(socket, SHUT_WR);
+  set_timeout(socket, SO_RCVTIMEO, 0, soon);
+  std::array<char, 1 << 16> rest;
+  for (int i = 0; i<most&& ::recv(socket, rest.data(), rest.size(), 0)> 0; ++i)
+    ;
+}
+
+/// An answer to what is no request, or comes too slowly.
+void refuse(int socket, int status, const Sentences& sentences) {
+  const Answer answer = sentences.spelled(
+      status == 431
+          ? refused(status, "head",
+                    {{"fields", std::to_string(most_fields)}, {"bytes", std::to_string(most_head)}})
+      : status == 414 ? refused(status, "target", {{"most", std::to_string(most_target)}})
+                      : refused(status, status == 408 ? "slow" : "no_request"));
+  std::string text =
+      "HTTP/1.1 " + std::to_string(status) + " " +
+      net::HTTPResponse::getReasonForStatus(static_cast<net::HTTPResponse::HTTPStatus>(status)) +
+      "\r\nConnection: close\r\nContent-Type: application/json\r\nContent-Length: " +
+      std::to_string(answer.body.size()) + "\r\n";
+  for (const auto& [name, value] : security_headers()) text += name + ": " + value + "\r\n";
+  text += "\r\n" + answer.body;
+  set_timeout(socket, SO_SNDTIMEO, 1, 0);
+  [[maybe_unused]] const ssize_t n = ::send(socket, text.data(), text.size(), MSG_NOSIGNAL);
+}
+
+/// A fixed number of threads that answer connections.
+class Pool {
+ public:
+  explicit Pool(House& house) : house_(house), params_(new net::HTTPServerParams) {
+    params_->setKeepAlive(false);  // a connection without a request keeps no thread
+    params_->setTimeout(Poco::Timespan(5, 0));
+    handlers_ = new Handlers(house);
+    for (std::size_t i = 0; i < threads; ++i) all_.emplace_back([this] { work(); });
+  }
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+  ~Pool() {
+    house_.over = true;
+    {
+      const std::lock_guard lock(mutex_);
+      for (const int fd : busy_) ::shutdown(fd, SHUT_RDWR);
+    }
+    arrived_.notify_all();
+    for (std::thread& one : all_) one.join();
+  }
+
+  void take(process::Handle socket, int refused) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (queue_.size() >= most_queued) queue_.pop_front();
+      queue_.emplace_back(std::move(socket), refused);
+    }
+    arrived_.notify_one();
+  }
+
+ private:
+  void work() {
+    while (true) {
+      std::pair<process::Handle, int> next;
+      {
+        std::unique_lock lock(mutex_);
+        arrived_.wait(lock, [&] { return house_.over || !queue_.empty(); });
+        if (house_.over) return;
+        next = std::move(queue_.front());
+        queue_.pop_front();
+        busy_.push_back(next.first.get());
+      }
+      const int fd = next.first.get();
+      try {
+        serve_one(next.first, next.second);
+      } catch (const std::exception& e) {
+        if (!house_.over) std::cerr << "nonio live: " << e.what() << "\n";
+      }
+      if (!house_.over) part_from(fd);
+      const std::lock_guard lock(mutex_);
+      std::erase(busy_, fd);
+      next.first = process::Handle();
+    }
+  }
+
+  void serve_one(const process::Handle& socket, int refused) {
+    const int fd = socket.get();
+    ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) & ~O_NONBLOCK);
+    if (refused != 0) return refuse(fd, refused, house_.service.sentences());
+    // Poco closes its own descriptor at the end, with bytes that nobody has read.
+    const int copy = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
+    if (copy < 0) return;
+    try {
+      net::HTTPServerConnection(net::StreamSocket(new Socket(copy)), params_, handlers_).run();
+    } catch (const Poco::Exception&) {
+      // A handler catches what it throws: this is a head that nobody can read.
+      if (!house_.over) refuse(fd, 400, house_.service.sentences());
+    }
+  }
+
+  /// A connection that was accepted elsewhere.
+  class Socket : public net::StreamSocketImpl {
+   public:
+    explicit Socket(int fd) : net::StreamSocketImpl(fd) {}
+  };
+
+  House& house_;
+  net::HTTPServerParams::Ptr params_;
+  net::HTTPRequestHandlerFactory::Ptr handlers_;
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::deque<std::pair<process::Handle, int>> queue_;
+  std::vector<int> busy_;
+  std::vector<std::thread> all_;
+};
+
+/// SIGINT and SIGTERM are waited for, by one thread; SIGPIPE is nothing.
+sigset_t block_signals() {
+  sigset_t ends;
+  ::sigemptyset(&ends);
+  ::sigaddset(&ends, SIGINT);
+  ::sigaddset(&ends, SIGTERM);
+  ::sigaddset(&ends, SIGHUP);
+  ::pthread_sigmask(SIG_BLOCK, &ends, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+  return ends;
+}
+
+Expected<void> serve_here(const LiveWish& wish) {
+  auto token = wish.token_file.empty() ? new_token() : token_in(wish.token_file);
+  if (!token) return fail(token.error());
+  auto front = Front::open(wish.port);
+  if (!front) return fail(front.error());
+  auto service = service_of(wish);  // makes processes: before the first thread
+  if (!service) return fail(service.error());
+  const sigset_t ends = block_signals();
+  const Post post{front->port(), *token, wish.hosts, false, wish.edit};
+  if (auto begun = (*service)->begin(); !begun) return fail(begun.error());
+  House house{post, **service};
+  {
+    Pool pool(house);
+    std::thread taker([&] {
+      front->serve(
+          [&](process::Handle socket, int refused) { pool.take(std::move(socket), refused); },
+          [&] { return house.over.load(); });
+    });
+    std::cout << address_of(post) << "#t=" << *token << std::endl;
+    if (!wish.quiet)
+      std::cerr << "nonio live: open the address above in a browser on this computer; it is the "
+                   "key, do not pass it on. End with Ctrl-C.\n";
+    int signal = 0;
+    ::sigwait(&ends, &signal);
+    house.over = true;
+    (*service)->close();
+    taker.join();
+  }
+  return {};
+}
+
+}  // namespace
+}  // namespace nonio::live
+
+NONIO_EXPORTED const nonio::live::Serve nonio_serve;
+const nonio::live::Serve nonio_serve = nonio::live::serve_here;

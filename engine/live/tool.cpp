@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/tool.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+
+#include "platform/process/child.h"
+#include "platform/process/watched.h"
+
+namespace nonio::live {
+
+namespace {
+
+constexpr std::size_t most_printed = 64 << 20, most_errors = 1 << 16;
+
+[[noreturn]] void become(const std::string& program, const std::vector<std::string>& arguments,
+                         int out, int errors) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::setpgid(0, 0);
+  const int nothing = ::open("/dev/null", O_RDONLY);
+  ::dup2(nothing, STDIN_FILENO);
+  ::dup2(out, STDOUT_FILENO);
+  ::dup2(errors, STDERR_FILENO);
+  std::vector<char*> all{const_cast<char*>(program.c_str())};
+  for (const std::string& one : arguments) all.push_back(const_cast<char*>(one.c_str()));
+  all.push_back(nullptr);
+  ::execv(program.c_str(), all.data());
+  constexpr int cannot_run = 127;
+  ::_exit(cannot_run);
+}
+
+/// False at the end.
+bool take_from(int fd, std::string& into) {
+  std::array<char, 1 << 16> bytes;
+  const ssize_t n = ::read(fd, bytes.data(), bytes.size());
+  if (n < 0 && errno == EINTR) return true;
+  if (n <= 0) return false;
+  into.append(bytes.data(), static_cast<std::size_t>(n));
+  return true;
+}
+
+/// Whole lines of `text` from `told` on.
+void tell_lines(const std::string& text, std::size_t& told, int channel) {
+  for (std::size_t end; (end = text.find('\n', told)) != std::string::npos; told = end + 1) {
+    process::Parcel parcel;
+    parcel.add("line").add(text.substr(told, end - told));
+    process::write_text(channel, parcel.bytes());
+  }
+}
+
+}  // namespace
+
+void run_tool(const std::string& program, const std::vector<std::string>& arguments,
+              process::Handle channel) {
+  int out[2], errors[2];
+  if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(errors, O_CLOEXEC) != 0) ::_exit(1);
+  const pid_t child = process::fork_patiently();
+  if (child < 0) ::_exit(1);
+  if (child == 0) become(program, arguments, out[1], errors[1]);
+  ::close(out[1]);
+  ::close(errors[1]);
+  // What a run prints are events; what others print is one answer.
+  const bool tells = !arguments.empty() && arguments.front() == "run";
+  std::string printed, said;
+  std::size_t told_out = 0, told = 0;
+  std::array<pollfd, 3> all{
+      {{out[0], POLLIN, 0}, {errors[0], POLLIN, 0}, {channel.get(), POLLIN, 0}}};
+  while (all[0].fd >= 0 || all[1].fd >= 0) {
+    if (::poll(all.data(), all.size(), -1) < 0) continue;
+    std::string word;
+    const bool asked = all[2].revents == POLLIN && process::read_text(channel.get(), word);
+    if (asked) ::kill(child, SIGTERM);
+    if ((all[2].revents != 0 && !asked) || printed.size() > most_printed) {
+      process::end_child(child);
+      ::_exit(1);
+    }
+    if (all[0].revents != 0 && !take_from(out[0], printed)) all[0].fd = -1;
+    if (all[1].revents != 0 && !take_from(errors[0], said)) all[1].fd = -1;
+    if (tells) tell_lines(printed, told_out, channel.get());
+    tell_lines(said, told, channel.get());
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
+    ;
+  process::Parcel parcel;
+  parcel.add("end")
+      .add(static_cast<std::uint64_t>(WIFEXITED(status) ? WEXITSTATUS(status) : 255))
+      .add(printed)
+      .add(std::string_view(said).substr(said.size() - std::min(said.size(), most_errors)));
+  process::write_text(channel.get(), parcel.bytes());
+  ::_exit(0);
+}
+
+void stop_tool(const process::Handle& channel) {
+  [[maybe_unused]] const bool told = process::write_text(channel.get(), "stop");
+}
+
+ToolEnd hear_tool(const process::Handle& channel,
+                  const std::function<void(const std::string&)>& line) {
+  ToolEnd end;
+  for (std::string bytes; process::read_text(channel.get(), bytes);) {
+    process::Parcel parcel(std::move(bytes));
+    if (parcel.text() == "line") {
+      line(parcel.text());
+      continue;
+    }
+    end.status = static_cast<int>(parcel.number());
+    end.out = parcel.text();
+    end.errors = parcel.text();
+    break;
+  }
+  return end;
+}
+
+}  // namespace nonio::live

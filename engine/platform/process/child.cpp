@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/process/child.h"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <thread>
+
+namespace nonio::process {
+
+ChildEnd child_end(int status) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {true, {}};
+  if (WIFEXITED(status)) return {false, "exit status " + std::to_string(WEXITSTATUS(status))};
+  const int number = WTERMSIG(status);
+  if (number == SIGSYS)
+    return {false,
+            "tried what no plugin may do (start a program or a process, open a connection, signal "
+            "another process, memory beyond the limit): ended by the kernel"};
+  return {false, "signal " + std::to_string(number) + " (" + ::strsignal(number) + ")"};
+}
+
+ChildEnd end_child(pid_t child) {
+  using Clock = std::chrono::steady_clock;
+  ::kill(-child, SIGKILL);
+  ::kill(child, SIGKILL);
+  const auto patience = Clock::now() + std::chrono::seconds(2);
+  int status = 0;
+  pid_t gone = 0;
+  while ((gone = ::waitpid(child, &status, WNOHANG)) == 0 && Clock::now() < patience)
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  return gone > 0 ? child_end(status) : ChildEnd{false, "hangs in the kernel"};
+}
+
+ChildEnd wait_for_child(pid_t child, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+  auto pause = std::chrono::microseconds(100);
+  int status = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (Clock::now() > deadline) {
+      end_child(child);
+      return {false, "no answer within " + std::to_string(static_cast<int>(seconds)) + " s", true};
+    }
+    std::this_thread::sleep_for(pause);
+    pause = std::min(pause * 2, std::chrono::microseconds(5000));
+  }
+  return child_end(status);
+}
+
+std::vector<pid_t> own_children() {
+  std::vector<pid_t> all;
+  std::ifstream list("/proc/self/task/" + std::to_string(::gettid()) + "/children");
+  for (pid_t pid; list >> pid;) all.push_back(pid);
+  return all;
+}
+
+void end_children(const std::vector<pid_t>& kept) {
+  using Clock = std::chrono::steady_clock;
+  const auto patience = Clock::now() + std::chrono::seconds(2);
+  for (bool any = true; any && Clock::now() < patience;) {
+    any = false;
+    for (const pid_t pid : own_children()) {
+      if (std::find(kept.begin(), kept.end(), pid) != kept.end()) continue;
+      any = true;
+      ::kill(pid, SIGKILL);
+      ::waitpid(pid, nullptr, WNOHANG);
+    }
+    if (any) std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+}
+
+void init_child() {
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::signal(SIGINT, SIG_DFL);
+  ::signal(SIGTERM, SIG_DFL);
+  struct sigaction hang_up {};
+  ::sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) ::signal(SIGHUP, SIG_DFL);  // else it is under nohup
+  const rlimit none{0, 0};
+  ::setrlimit(RLIMIT_CORE, &none);
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+void keep_silent() {
+  const int nothing = ::open("/dev/null", O_RDWR);
+  if (nothing < 0) return;
+  ::dup2(nothing, STDIN_FILENO);
+  ::dup2(nothing, STDOUT_FILENO);
+#ifndef NONIO_SANITIZED
+  ::dup2(nothing, STDERR_FILENO);
+#endif
+  if (nothing > STDERR_FILENO) ::close(nothing);
+}
+
+pid_t fork_patiently() {
+  constexpr int most = 20;
+  for (int i = 0;; ++i) {
+    const pid_t pid = ::fork();
+    if (pid >= 0 || i == most || (errno != EAGAIN && errno != ENOMEM)) return pid;
+    ::usleep(100'000);
+  }
+}
+
+std::size_t memory_held() {
+  const auto info = ::mallinfo2();
+  return info.arena + info.hblkhd;
+}
+
+void keep_freed_memory() {
+  constexpr int megabyte = 1 << 20;
+  ::mallopt(M_MMAP_THRESHOLD, 32 * megabyte);
+  ::mallopt(M_TRIM_THRESHOLD, 64 * megabyte);
+  ::mallopt(M_TOP_PAD, megabyte);
+}
+
+bool has_grown(std::size_t at_start) {
+  constexpr std::size_t allowed = 64 << 20;
+  return memory_held() > at_start + allowed;
+}
+
+void limit_memory(double megabytes) {
+#ifndef NONIO_SANITIZED
+  const auto bytes = static_cast<rlim_t>(megabytes * 1e6);
+  const rlimit limit{bytes, bytes};
+  ::setrlimit(RLIMIT_DATA, &limit);
+#else
+  (void)megabytes;
+#endif
+}
+
+}  // namespace nonio::process

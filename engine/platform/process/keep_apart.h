@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+namespace nonio::process {
+
+/// For a program that does one thing and ends: when it first loads plugins, all that is still to do
+/// goes on in a child, which can start no program and talk to nobody, and the process that was
+/// started only waits for it and ends as it does. What plugins print goes to the standard error.
+/// `own_plugins`: the folder beside the program, whose plugins were tested with it.
+void keep_plugins_apart(std::filesystem::path own_plugins);
+
+}  // namespace nonio::process

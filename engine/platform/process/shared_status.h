@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace nonio::process {
+
+/// What a worker is doing, readable by its parent after its death.
+class SharedStatus {
+ public:
+  SharedStatus();
+  /// Those behind the descriptor of others.
+  explicit SharedStatus(int descriptor);
+  SharedStatus(const SharedStatus&) = delete;
+  SharedStatus(SharedStatus&& other) noexcept;
+  SharedStatus& operator=(SharedStatus&& other) noexcept;
+  ~SharedStatus();
+  bool valid() const { return data_ != nullptr; }
+  void set(const std::string& words_now);
+  std::string get() const;
+  int descriptor() const { return descriptor_; }
+
+ private:
+  static constexpr std::size_t size = 4096;
+  int descriptor_;
+  char* data_ = nullptr;
+};
+
+}  // namespace nonio::process

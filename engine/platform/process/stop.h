@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace nonio::process {
+
+/// Ends a night, or a verb that waits, soon. Safe in a signal handler.
+void request_stop();
+bool is_stop_requested();
+
+}  // namespace nonio::process

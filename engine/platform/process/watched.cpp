@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/process/watched.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+#include <new>
+#include <utility>
+
+namespace nonio::process {
+
+namespace {
+
+using Length = std::uint64_t;
+
+void append_length(std::string& out, Length n) {
+  char bytes[sizeof n];
+  std::memcpy(bytes, &n, sizeof n);
+  out.append(bytes, sizeof n);
+}
+
+Length length_at(std::string_view bytes, std::size_t at) {
+  Length n = 0;
+  std::memcpy(&n, bytes.data() + at, sizeof n);
+  return n;
+}
+
+/// In the child: parcels in a buffer, sent when there are many, and at the end.
+class Outbox {
+ public:
+  explicit Outbox(int channel) : channel_(channel) {}
+  void put(const Parcel& parcel) {
+    append_length(buffer_, parcel.bytes().size());
+    buffer_ += parcel.bytes();
+    if (buffer_.size() > (1U << 15)) send();
+  }
+  void send() {
+    for (std::string_view rest = buffer_; !rest.empty();) {
+      const ssize_t n = ::write(channel_, rest.data(), rest.size());
+      if (n < 0 && errno != EINTR) ::_exit(1);  // nobody listens
+      if (n > 0) rest.remove_prefix(static_cast<std::size_t>(n));
+    }
+    buffer_.clear();
+  }
+
+ private:
+  int channel_;
+  std::string buffer_;
+};
+
+[[noreturn]] void do_task(const Watched::Task& task, int channel, double memory_MB,
+                          SignsOfLife& signs) noexcept {
+  init_child();
+  keep_silent();
+  if (memory_MB > 0.0) limit_memory(memory_MB);
+  Outbox outbox(channel);
+  try {
+    task(signs, [&](const Parcel& parcel) { outbox.put(parcel); });
+    outbox.send();
+  } catch (...) {
+    ::_exit(3);
+  }
+  ::_exit(0);
+}
+
+}  // namespace
+
+Parcel& Parcel::add(std::string_view text) {
+  append_length(bytes_, text.size());
+  bytes_ += text;
+  return *this;
+}
+
+Parcel& Parcel::add(std::uint64_t number) {
+  append_length(bytes_, number);
+  return *this;
+}
+
+std::uint64_t Parcel::number() {
+  if (bytes_.size() - at_ < sizeof(Length)) return 0;
+  const Length n = length_at(bytes_, at_);
+  at_ += sizeof n;
+  return n;
+}
+
+std::string Parcel::text() {
+  const std::size_t size = std::min<std::size_t>(number(), bytes_.size() - at_);
+  std::string out = bytes_.substr(at_, size);
+  at_ += size;
+  return out;
+}
+
+void SignsOfLife::reading(std::string_view path) {
+  const std::size_t n = std::min(path.size(), place.size() - 1);
+  std::memcpy(place.data(), path.data(), n);
+  place[n] = '\0';
+  reads = true;
+  beat();
+}
+
+Expected<Watched> Watched::start(const Task& task, double memory_MB) {
+  void* shared = ::mmap(nullptr, sizeof(SignsOfLife), PROT_READ | PROT_WRITE,
+                        MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) return fail("no memory for a process that reads the site");
+  auto* signs = new (shared) SignsOfLife();
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) {
+    const std::string why = std::strerror(errno);
+    ::munmap(shared, sizeof(SignsOfLife));
+    return fail("no channel to a process that reads the site: " + why);
+  }
+  std::cout.flush();
+  std::cerr.flush();
+  const pid_t pid = fork_patiently();
+  if (pid == 0) {
+    ::close(ends[0]);
+    do_task(task, ends[1], memory_MB, *signs);
+  }
+  const int code = errno;
+  ::close(ends[1]);
+  Watched child(pid, ends[0], signs);
+  if (pid < 0) return fail(std::string("no process to read the site: ") + std::strerror(code));
+  ::setpgid(pid, pid);
+  ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  return child;
+}
+
+Watched::Watched(pid_t pid, int channel, SignsOfLife* signs)
+    : pid_(pid), channel_(channel), signs_(signs) {}
+
+Watched::Watched(Watched&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)),
+      channel_(std::exchange(other.channel_, -1)),
+      signs_(std::exchange(other.signs_, nullptr)),
+      received_(std::move(other.received_)),
+      ended_(other.ended_),
+      beats_(other.beats_),
+      last_beat_(other.last_beat_) {}
+
+Watched& Watched::operator=(Watched&& other) noexcept {
+  std::swap(pid_, other.pid_);
+  std::swap(channel_, other.channel_);
+  std::swap(signs_, other.signs_);
+  std::swap(received_, other.received_);
+  std::swap(ended_, other.ended_);
+  std::swap(beats_, other.beats_);
+  std::swap(last_beat_, other.last_beat_);
+  return *this;
+}
+
+Watched::~Watched() {
+  end();
+  if (channel_ >= 0) ::close(channel_);
+  if (signs_ != nullptr) ::munmap(signs_, sizeof(SignsOfLife));
+}
+
+std::vector<Parcel> Watched::take() {
+  std::array<char, 1 << 16> part;
+  while (!ended_) {
+    const ssize_t n = ::read(channel_, part.data(), part.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EAGAIN) break;
+    if (n <= 0)
+      ended_ = true;
+    else
+      received_.append(part.data(), static_cast<std::size_t>(n));
+  }
+  std::vector<Parcel> parcels;
+  std::size_t at = 0;
+  while (received_.size() - at >= sizeof(Length)) {
+    const Length size = length_at(received_, at);
+    if (received_.size() - at - sizeof size < size) break;
+    parcels.emplace_back(received_.substr(at + sizeof size, size));
+    at += sizeof size + size;
+  }
+  received_.erase(0, at);
+  return parcels;
+}
+
+bool Watched::is_silent(double seconds) {
+  if (const std::uint64_t beats = signs_->beats; beats != beats_) {
+    beats_ = beats;
+    last_beat_ = Clock::now();
+  }
+  return std::chrono::duration<double>(Clock::now() - last_beat_).count() > seconds;
+}
+
+ChildEnd Watched::end() {
+  if (pid_ < 0) return {};
+  return end_child(std::exchange(pid_, -1));
+}
+
+std::string no_answer(double seconds) {
+  std::string text = std::to_string(seconds);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return "no answer within " + text + " s: the disk or share hangs";
+}
+
+void wait_for_parcels(const std::vector<Watched>& children) {
+  std::vector<pollfd> channels;
+  for (const Watched& child : children) channels.push_back({child.channel(), POLLIN, 0});
+  ::poll(channels.data(), channels.size(), 100);
+}
+
+}  // namespace nonio::process

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/error.h"
+#include "platform/process/child.h"
+
+namespace nonio::process {
+
+/// Fields one behind the other, to be read in the order in which they were added.
+class Parcel {
+ public:
+  Parcel() = default;
+  explicit Parcel(std::string bytes) : bytes_(std::move(bytes)) {}
+  Parcel& add(std::string_view text);
+  Parcel& add(std::uint64_t number);
+  std::string text();
+  std::uint64_t number();
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+/// Signs of life of a child, readable by its parent while it hangs and after its death.
+struct SignsOfLife {
+  std::atomic<std::uint64_t> beats;
+  std::atomic<std::uint64_t> index;  ///< of what it does
+  std::atomic<bool> reads;           ///< it may wait for a disk; else it computes
+  std::array<char, 8192> place;      ///< path that it reads
+
+  void beat() { ++beats; }
+  /// Before each step that may hang.
+  void reading(std::string_view path);
+  std::string reads_from() const { return {place.data(), ::strnlen(place.data(), place.size())}; }
+};
+
+/// A child process for what may hang (a disk, a share) or crash (a parser). What it sends arrives
+/// as parcels; the parent waits for it no longer than it shows signs of life. Moved, not copied.
+class Watched {
+ public:
+  /// Sends a parcel to the parent, not at once.
+  using Send = std::function<void(const Parcel&)>;
+  using Task = std::function<void(SignsOfLife&, const Send&)>;
+
+  /// `memory_MB`: none if 0.
+  static Expected<Watched> start(const Task& task, double memory_MB = 0.0);
+  Watched(Watched&& other) noexcept;
+  Watched& operator=(Watched&& other) noexcept;
+  ~Watched();  ///< kills the process
+
+  int channel() const { return channel_; }
+  const SignsOfLife& signs() const { return *signs_; }
+  /// What has come since the last call.
+  std::vector<Parcel> take();
+  /// Nothing more can come: the process has ended.
+  bool ended() const { return ended_; }
+  /// No sign of life for so long.
+  bool is_silent(double seconds);
+  /// What became of the process. One that hangs is killed, and left behind if the kernel does not
+  /// let it go at once.
+  ChildEnd end();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Watched(pid_t pid, int channel, SignsOfLife* signs);
+
+  pid_t pid_;
+  int channel_;
+  SignsOfLife* signs_;
+  std::string received_{};
+  bool ended_ = false;
+  std::uint64_t beats_ = 0;
+  Clock::time_point last_beat_ = Clock::now();
+};
+
+/// What is said of a place that hangs.
+std::string no_answer(double seconds);
+
+/// Returns when one of them may have sent something, or soon.
+void wait_for_parcels(const std::vector<Watched>& children);
+
+}  // namespace nonio::process

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/storage/digest.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <memory>
+#include <new>
+#include <string_view>
+
+#include "platform/storage/files.h"
+
+namespace nonio::storage {
+
+/// Poco's engine goes on where OpenSSL has no memory, and then reads what is not there.
+struct RunningDigest::State {
+  std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context{::EVP_MD_CTX_new(),
+                                                             &::EVP_MD_CTX_free};
+};
+
+namespace {
+
+/// Looked up once: with EVP_sha256() OpenSSL 3 compares names of algorithms for every digest, which
+/// takes as long as hashing a kilobyte.
+const EVP_MD* method() {
+  static const EVP_MD* const found = ::EVP_MD_fetch(nullptr, "SHA256", nullptr);
+  return found != nullptr ? found : ::EVP_sha256();
+}
+
+}  // namespace
+
+RunningDigest::RunningDigest() : state_(std::make_unique<State>()) {
+  if (!state_->context || ::EVP_DigestInit_ex(state_->context.get(), method(), nullptr) != 1)
+    throw std::bad_alloc();
+}
+
+RunningDigest::~RunningDigest() = default;
+
+void RunningDigest::add(std::string_view bytes) {
+  if (::EVP_DigestUpdate(state_->context.get(), bytes.data(), bytes.size()) != 1)
+    throw std::bad_alloc();
+}
+
+std::string RunningDigest::hex() {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::array<unsigned char, 32> digest{};
+  if (::EVP_DigestFinal_ex(state_->context.get(), digest.data(), nullptr) != 1)
+    throw std::bad_alloc();
+  std::string text;
+  for (const unsigned char byte : digest) text += {digits[byte >> 4U], digits[byte & 15U]};
+  return text;
+}
+
+std::string sha256(std::string_view bytes) {
+  RunningDigest digest;
+  digest.add(bytes);
+  return digest.hex();
+}
+
+Expected<std::string> sha256_of_file(const std::filesystem::path& path,
+                                     const std::function<void()>& after_each_part) {
+  RunningDigest digest;
+  const auto read = read_parts(path, [&](std::string_view part) {
+    digest.add(part);
+    if (after_each_part) after_each_part();
+  });
+  if (!read) return fail(read.error());
+  return digest.hex();
+}
+
+std::uint64_t short_digest(std::string_view sha256) {
+  constexpr std::size_t digits = 16;
+  std::uint64_t value = 0;
+  std::from_chars(sha256.data(), sha256.data() + std::min(sha256.size(), digits), value, 16);
+  return value;
+}
+
+}  // namespace nonio::storage

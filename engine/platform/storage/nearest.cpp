@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "platform/storage/nearest.h"
+
+#include <algorithm>
+
+#include "nonio/sdk/fields.h"
+
+namespace nonio::storage {
+
+std::string suggestion(std::string_view found, const std::vector<std::string>& candidates) {
+  if (found.size() > 100) return {};
+  const std::string* best = nullptr;
+  std::size_t least = std::max<std::size_t>(2, found.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = readers::edit_distance(found, candidate);
+    if (distance < least) {
+      least = distance;
+      best = &candidate;
+    }
+  }
+  return best == nullptr ? "" : " (nearest: \"" + *best + "\")";
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+}  // namespace nonio::storage

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nonio/sdk/error.h"
+
+/// Where the results of a campaign lie: in a folder of their own, or in a pack (pack.h).
+namespace nonio::storage {
+
+/// OUT/<id>, or OUT/ab/<id> in an output folder whose campaigns lie by the first two digits of the SHA-256 of their
+/// ids: where a night writes the results of a campaign, and where links lead.
+std::filesystem::path own_folder(const std::filesystem::path& out, const std::string& id);
+/// Beside the night's own files; there in such an output folder.
+inline constexpr const char* hashed_mark = ".nonio/hashed";
+/// Where they are to be read: its own folder, if there is a record; else the pack that the catalogue names for it, as
+/// an address that the functions of files.h take (OUT/.nonio/packs/NAME.sqlar/<id>); else its own folder. A pack that
+/// is missing or damaged is an error where it is read, never a campaign without results.
+std::filesystem::path results_folder(const std::filesystem::path& out, const std::string& id);
+/// Every place in which results of a campaign may lie, in no order: folders, and addresses in packs. The id is its
+/// last part. An output folder that is not there has none.
+Expected<void> each_results_folder(const std::filesystem::path& out,
+                                   const std::function<void(const std::filesystem::path&)>& take);
+
+struct PackFile {
+  std::string name;  ///< in OUT/.nonio/packs
+  std::uint64_t size = 0;
+  std::string sha256;
+};
+
+/// Which campaign lies in which pack: OUT/.nonio/packs/catalogue, a text that appears whole or not at all. A campaign
+/// with a record in its own folder is none of a pack, whatever the catalogue says.
+class Catalogue {
+ public:
+  /// Without an entry if there is none.
+  static Expected<Catalogue> read(const std::filesystem::path& out);
+  /// Null: in none.
+  const PackFile* find(std::string_view id) const;
+  void each(const std::function<void(std::string_view id, const PackFile& pack)>& take) const;
+
+  /// `more`, in order of the ids, takes the place of entries of the same campaigns.
+  struct Entry {
+    std::string id;
+    const PackFile* pack;
+  };
+  Expected<void> publish_with(const std::filesystem::path& out,
+                              const std::vector<Entry>& more) const;
+
+ private:
+  static Expected<Catalogue> parse(const std::string& text);
+  const PackFile* pack_in(std::string_view row) const;
+  std::vector<PackFile> packs_{};
+  std::string rows_{};  ///< "id\tnumber of the pack\n", in order
+};
+
+/// A plain name that ends as packs do.
+bool is_pack_name(std::string_view name);
+inline constexpr const char* catalogue_name = "catalogue";
+Expected<void> check_catalogue(const std::filesystem::path& out);
+
+/// Removes the packs in which no campaign lies, and what a copy left half-written.
+Expected<void> sweep_packs(const std::filesystem::path& out);
+
+/// Size of a file of results, and when it was written; in a pack: when that was. None: it is not there.
+struct Written {
+  std::uint64_t size = 0;
+  std::int64_t seconds = 0, nanoseconds = 0;
+};
+Expected<std::optional<Written>> written_at(const std::filesystem::path& file);
+/// When the record was written; in a pack: when the catalogue that names it was.
+Expected<std::optional<Written>> record_written_at(const std::filesystem::path& folder);
+
+}  // namespace nonio::storage

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+
+#include "nonio/sdk/splitmix64.h"
+
+namespace nonio::storage {
+
+/// The same numbers with every standard library: the distributions of <random> are not specified.
+class Random {
+ public:
+  /// Each stream of a seed is independent of the others.
+  Random(std::uint64_t seed, std::uint64_t stream)
+      : engine_(SplitMix64::mixed(SplitMix64::mixed(seed) + stream)) {}
+
+  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }  ///< in [0, 1)
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// Standard normal, by Box and Muller.
+  double normal() {
+    const double r = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return r * std::cos(2.0 * std::numbers::pi * uniform());
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace nonio::storage

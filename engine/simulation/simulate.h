@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "campaign/config/manifest.h"
+#include "nonio/sdk/plugin.h"
+#include "nonio/sdk/results.h"
+
+namespace nonio::simulation {
+
+struct Simulated {
+  std::vector<Artifact> campaign;  ///< readings, then campaign.toml
+  std::string truth;               ///< JSON: what was put in; for beside the campaign, not into it
+};
+
+/// First line of a simulated campaign.toml; a folder whose manifest has another is not overwritten.
+inline constexpr std::string_view simulated_mark =
+    "# Simulated by nonio: nobody measured this machine.";
+
+/// A campaign whose effects are known, from a specification (docs/simulate.md): a manifest with
+/// [simulation], a [[cycle]] for each measurement and an [[effect]] for each cause. Same text, same
+/// bytes. `file` is the specification's name in errors.
+config::Checked<Simulated> simulate(std::string_view specification, const std::string& file,
+                                    const std::vector<Effect>& effects);
+
+}  // namespace nonio::simulation

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Balls on rotary axes that turn exactly.
+#include <cmath>
+
+#include "simulation/simulate_rows.h"
+
+namespace nonio::simulation {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+Vector sum(const Vector& a, double f, const Vector& b) {
+  return {a[0] + f * b[0], a[1] + f * b[1], a[2] + f * b[2]};
+}
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// v turned about n (Rodrigues).
+Vector rotated(const Vector& v, const Vector& n, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const Vector across = cross(n, v);
+  Vector out{};
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = c * v[k] + s * across[k] + (1.0 - c) * dot(n, v) * n[k];
+  return out;
+}
+
+/// Axes and lines of the table, and its rows one after the other.
+class Rows {
+ public:
+  explicit Rows(const CycleSpec& c) : c_(c), clock_(c) {
+    o_.measurement = c.measurement.id;
+    o_.axes.push_back({c.axis.name, true, {}, {}});
+    for (const char* axis : {"X", "Y", "Z"}) o_.axes.push_back({axis, false, {}, {}});
+    if (!c.carrier.empty()) o_.axes.push_back({c.carrier, true, {}, {}});
+  }
+  void line(std::string name, const Vector& sense) { o_.lines.push_back({std::move(name), sense}); }
+
+  /// Reads at each angle: put(angle) adds the readings of one place with `add`. Of a carrier: at its
+  /// positions, one after the other, in each run.
+  template <class Put>
+  void sweep(Put put) {
+    last_ = c_.targets.front();
+    const std::vector<double> carrier = c_.carrier.empty() ? std::vector{0.0} : c_.carrier_at;
+    for (std::uint32_t run = 1; run <= c_.runs; ++run) {
+      if (run > 1) clock_.pause();
+      run_ = run;
+      for (const double at : carrier) {
+        turned_ = std::fabs(at - carrier_);
+        carrier_ = at;
+        passes(put);
+      }
+    }
+  }
+  double carrier() const { return carrier_; }
+  void add(std::size_t line, const Vector& at, const Vector& sense, double deviation, bool first) {
+    o_.axes[0].position.push_back(angle_);
+    o_.axes[0].approach.push_back(direction_);
+    for (std::size_t k = 0; k < 3; ++k) o_.axes[1 + k].position.push_back(at[k]);
+    if (!c_.carrier.empty()) o_.axes[4].position.push_back(carrier_);
+    o_.deviation.push_back(deviation);
+    o_.sense.push_back(sense);
+    o_.line.push_back(static_cast<std::uint32_t>(line));
+    o_.run.push_back(run_);
+    if (first) {
+      clock_.reading(o_, way_);
+    } else {  // of one place
+      o_.time.push_back(o_.time.back());
+      o_.material.push_back(o_.material.back());
+    }
+  }
+  Observations done() { return std::move(o_); }
+
+ private:
+  template <class Put>
+  void passes(Put put) {
+    for (int pass = 0; pass < (c_.pendulum ? 2 : 1); ++pass) {
+      direction_ = static_cast<std::int8_t>(pass == 0 ? c_.direction : -c_.direction);
+      for (std::size_t i = 0; i < c_.targets.size(); ++i) {
+        angle_ = c_.targets[direction_ > 0 ? i : c_.targets.size() - 1 - i];
+        way_ = std::max(std::fabs(angle_ - last_), turned_);
+        last_ = angle_;
+        turned_ = 0.0;
+        put(angle_);
+      }
+    }
+  }
+
+  const CycleSpec& c_;
+  Clock clock_;
+  Observations o_;
+  double angle_ = 0.0, way_ = 0.0, last_ = 0.0;
+  double carrier_ = 0.0, turned_ = 0.0;
+  std::int8_t direction_ = 1;
+  std::uint32_t run_ = 1;
+};
+
+constexpr std::array<Vector, 3> units{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+/// Where the linear axes stand when the probe is at the ball. A table takes the ball along, and its
+/// carrier table and ball. A head takes the stylus along, which is at the ball with the heads at 0,
+/// and its carrier head and stylus; the linear axes go back by as much.
+Observations centres(const RotarySpec& r, const RotarySpec* carrier, const CycleSpec& c) {
+  Rows rows(c);
+  for (std::size_t k = 0; k < 3; ++k) rows.line(c.measurement.id + " " + "xyz"[k], units[k]);
+  const Vector& start = c.balls.front();
+  rows.sweep([&](double angle) {
+    Vector ball = start, tip = start;
+    (r.carries == "head" ? tip : ball) = turned(start, r.centre, r.direction, angle);
+    if (carrier != nullptr) {
+      Vector& moved = carrier->carries == "head" ? tip : ball;
+      moved = turned(moved, carrier->centre, carrier->direction, rows.carrier());
+    }
+    const Vector at = sum(sum(ball, 1.0, start), -1.0, tip);
+    for (std::size_t k = 0; k < 3; ++k) rows.add(k, at, units[k], at[k], k == 0);
+  });
+  return rows.done();
+}
+
+/// The tool against the workpiece, less what the control means, while the axis turns. A table: the
+/// ball of the workpiece goes where the axis takes it, the tool where the control takes it to be.
+/// A head: the ball of the tool goes where the axis takes it, and the linear axes back by what the
+/// control means of it.
+Observations with_tool_centre(const RotarySpec& r, const CycleSpec& c) {
+  const Vector centre = r.control_centre.value_or(r.centre),
+               direction = r.control_direction.value_or(r.direction);
+  const bool head = r.carries == "head", probe = c.sensor == "probe";
+  const std::size_t senses = probe ? 3 : c.senses.size();
+  Rows rows(c);
+  for (std::size_t b = 0; b < c.balls.size(); ++b)
+    for (std::size_t k = 0; k < senses; ++k) {
+      const std::string ball = c.balls.size() > 1 ? "ball " + std::to_string(b + 1) : "ball";
+      rows.line(probe ? ball + " " + "xyz"[k] : ball + " gauge " + std::to_string(k + 1),
+                probe ? units[k] : c.senses[k]);
+    }
+  for (std::size_t b = 0; b < c.balls.size(); ++b)
+    rows.sweep([&](double angle) {
+      const Vector meant = turned(c.balls[b], centre, direction, angle),
+                   is = turned(sum(c.balls[b], 1.0, c.ball_offset), r.centre, r.direction, angle);
+      const Vector moved = sum(is, -1.0, meant);
+      // Where the linear axes stand: at the ball, or back by the way from the pivot to it.
+      const Vector at = head ? sum(sum(c.balls[b], 1.0, centre), -1.0, meant) : meant;
+      for (std::size_t k = 0; k < senses; ++k) {
+        const Vector sense = probe                 ? units[k]
+                             : c.sensor == "turns" ? rotated(c.senses[k], direction, angle)
+                                                   : c.senses[k];
+        rows.add(b * senses + k, at, sense, (head ? 1.0 : -1.0) * dot(sense, moved), k == 0);
+      }
+    });
+  return rows.done();
+}
+
+}  // namespace
+
+std::array<double, 3> turned(const std::array<double, 3>& ball, const std::array<double, 3>& centre,
+                             const std::array<double, 3>& direction, double angle) {
+  return sum(centre, 1.0, rotated(sum(ball, -1.0, centre), direction, angle));
+}
+
+Expected<Observations> rotary_rows(const Specification& s, const CycleSpec& c) {
+  const RotarySpec* r = s.rotary(c.axis.name);
+  if (r == nullptr)
+    return fail("measurement \"" + c.measurement.id + "\": expected a [[simulation.rotary]] of " +
+                "axis " + c.axis.name + ", which says where it is");
+  const RotarySpec* carrier = c.carrier.empty() ? nullptr : s.rotary(c.carrier);
+  if (carrier == nullptr && !c.carrier.empty())
+    return fail("measurement \"" + c.measurement.id + "\": expected a [[simulation.rotary]] of " +
+                "axis " + c.carrier + ", which turned too");
+  if (c.is("ball-centres")) return centres(*r, carrier, c);
+  if (r->carries.empty())
+    return fail("[[simulation.rotary]] of axis " + c.axis.name +
+                ": carries is missing: table or head");
+  return with_tool_centre(*r, c);
+}
+
+}  // namespace nonio::simulation

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/config/keys.h"
+
+#include <gtest/gtest.h>
+
+#include <cctype>
+#include <functional>
+#include <set>
+#include <stdexcept>
+
+#include "campaign/config/manifest.h"
+#include "campaign/config/toml_reader.h"
+
+namespace nonio::keys_test {
+namespace {
+
+using Holds = config::Key::Holds;
+
+constexpr std::string_view turning[] = {"rotary"};
+constexpr config::Choice kinds[] = {{"linear"}, {"rotary"}};
+constexpr config::Key some_keys[] = {
+    {.name = "kind", .holds = Holds::text, .help = "", .choices = kinds},
+    {.name = "teeth", .holds = Holds::whole, .help = "", .only = {"kind", turning}},
+};
+constexpr config::Key some = {
+    .name = "some.toml", .holds = Holds::table, .help = "", .keys = some_keys};
+
+/// What reading a text with these keys says; "threw: ..." if the reader holds it for a mistake of
+/// the program.
+std::string read(const std::string& text, const std::function<void(config::TableReader&)>& how) {
+  const auto root = config::parse_toml(text, "some.toml");
+  if (!root) return root.error().message;
+  const std::string file = "some.toml";
+  std::vector<Error> errors;
+  config::TableReader reader(*root, some, file, errors);
+  try {
+    how(reader);
+    reader.finish();
+  } catch (const std::logic_error& e) {
+    return std::string("threw: ") + e.what();
+  }
+  std::string all;
+  for (const Error& e : errors) all += std::to_string(e.line) + ": " + e.message + "\n";
+  return all;
+}
+
+void every_key(const config::Key& table, const std::string& place,
+               const std::function<void(const config::Key&, const std::string&)>& look) {
+  for (const config::Key& key : table.keys) {
+    const std::string here = place + "." + std::string(key.name);
+    look(key, here);
+    every_key(key, here, look);
+  }
+}
+
+}  // namespace
+
+TEST(Keys, WhatIsReadIsDeclaredAndTheReverse) {
+  const auto kind = [](config::TableReader& r) { r.text("kind"); };
+  const auto both = [](config::TableReader& r) {
+    r.text("kind");
+    r.integer("teeth");
+  };
+  EXPECT_EQ(read("kind = \"linear\"", kind), "");
+  EXPECT_EQ(read("kind = \"rotary\"\nteeth = 3", both), "");
+  EXPECT_EQ(read("", [](config::TableReader& r) { r.text("kinds"); }),
+            "threw: some.toml (kinds): read and not declared");
+  EXPECT_EQ(read("", [](config::TableReader& r) { r.number("kind"); }),
+            "threw: some.toml (kind): read not as declared");
+  EXPECT_EQ(read("", [](config::TableReader&) {}),
+            "threw: some.toml (kind): declared and not read");
+  EXPECT_EQ(read("kind = \"rotary\"", kind), "threw: some.toml (teeth): declared and not read");
+}
+
+TEST(Keys, KnownOnlyUnderACondition) {
+  const auto kind = [](config::TableReader& r) { r.text("kind"); };
+  EXPECT_EQ(read("kind = \"linear\"\nteeth = 3", kind), "2: unknown key teeth\n");
+  EXPECT_EQ(read("teeth = 3", kind), "1: unknown key teeth\n");
+  const auto settled = [](config::TableReader& r) {
+    r.text("kind");
+    r.settle("kind", "rotary");
+    r.integer("teeth");
+  };
+  EXPECT_EQ(read("teeth = 3", settled), "");
+}
+
+TEST(Keys, DeclarationsAreSound) {
+  std::size_t seen = 0;
+  const auto look = [&](const config::Key& key, const std::string& place) {
+    ++seen;
+    ASSERT_FALSE(key.help.empty()) << place;
+    EXPECT_TRUE(std::isupper(static_cast<unsigned char>(key.help.front()))) << place;
+    const bool restricted = key.least || key.most || key.longest_list != 0 || key.distinct ||
+                            key.holds == Holds::span || key.text.longest != 0 ||
+                            !key.text.letters.empty() || !key.text.begins.empty();
+    EXPECT_EQ(restricted, !key.wanted.empty()) << place << ": a rule needs its words";
+    EXPECT_EQ(
+        key.holds == Holds::table || key.holds == Holds::tables || key.holds == Holds::named_tables,
+        !key.keys.empty())
+        << place;
+    std::set<std::string_view> names;
+    for (const config::Key& inner : key.keys)
+      EXPECT_TRUE(names.insert(inner.name).second) << place << "." << inner.name;
+    for (const config::Key& inner : key.keys)
+      for (const config::When* when : {&inner.only, &inner.needed})
+        EXPECT_TRUE(when->key.empty() || when->key == config::cycle_axis ||
+                    names.contains(when->key))
+            << place << "." << inner.name;
+    // A unit is a part of the name, unless it depends on something else or needs no telling.
+    const bool has_suffix =
+        key.unit == "um" || key.unit == "arcsec" || key.unit == "K" || key.unit == "MB";
+    EXPECT_TRUE(!has_suffix || key.name.find(key.unit) != std::string_view::npos) << place;
+  };
+  for (const config::Key* file : {&config::campaign_file(), &config::site_file(),
+                                  &config::machine_file(), &config::specification_file()})
+    every_key(*file, std::string(file->name), look);
+  EXPECT_GT(seen, 120U);
+}
+
+TEST(Keys, DefaultsAreThoseOfAnEmptyFile) {
+  const auto site = config::parse_site("[limits]\n[certificate]\n", "site.toml");
+  ASSERT_TRUE(site);
+  const config::Signing signing;
+  const auto otherwise = [](const config::Key& file, const char* table, const char* key) {
+    return std::string(config::find_key(config::find_key(file.keys, table)->keys, key)->otherwise);
+  };
+  EXPECT_EQ(std::stod(otherwise(config::site_file(), "limits", "seconds")), site->limits.seconds);
+  EXPECT_EQ(std::stod(otherwise(config::site_file(), "limits", "memory_MB")),
+            site->limits.memory_MB);
+  EXPECT_EQ(std::stod(otherwise(config::site_file(), "limits", "disk_seconds")),
+            site->limits.disk_seconds);
+  EXPECT_EQ(otherwise(config::site_file(), "certificate", "numbering"), site->numbering.pattern);
+  EXPECT_EQ(otherwise(config::site_file(), "certificate", "register"),
+            site->numbering.register_file);
+  EXPECT_EQ(std::stoi(otherwise(config::site_file(), "signing", "time_stamp_seconds")),
+            signing.time_stamp_seconds);
+  EXPECT_EQ(otherwise(config::site_file(), "signing", "time_stamp_missing") == "fail",
+            signing.time_stamp_required);
+  EXPECT_EQ(otherwise(config::campaign_file(), "model", "compensate") == "model",
+            Campaign().compensate_model);
+}
+
+TEST(Keys, RulesOfTexts) {
+  EXPECT_TRUE(config::obeys("a-1_b.c", config::campaign_id_rule));
+  for (const char* bad : {"A", ".a", "a/b", "summary.json", "a b", "\xC3\xA8"})
+    EXPECT_FALSE(config::obeys(bad, config::campaign_id_rule)) << bad;
+  EXPECT_TRUE(config::obeys(std::string(100, 'a'), config::campaign_id_rule));
+  EXPECT_FALSE(config::obeys(std::string(101, 'a'), config::campaign_id_rule));
+  EXPECT_TRUE(config::obeys("b-c", {.letters = "a-c-"}));
+  EXPECT_FALSE(config::obeys("https://x", {.begins = "http://"}));
+  EXPECT_FALSE(config::obeys("a\\b", {.not_letters = "/\\"}));
+}
+
+}  // namespace nonio::keys_test

@@ -1,0 +1,806 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long: a test a kind of line, over one made laboratory.
+#include "laboratory/assessment/lines.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <random>
+#include <sstream>
+
+#include "batch/close/mail.h"
+#include "campaign/config/manifest.h"
+#include "laboratory/assessment/describe.h"
+#include "laboratory/assessment/lines_of_machine.h"
+#include "laboratory/assessment/tables_kept.h"
+#include "made.h"
+#include "nonio/reports/history_value.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::test::lines_test {
+namespace {
+
+using reports::MorningLine;
+using Kind = MorningLine::Kind;
+using State = MorningLine::State;
+
+struct Laboratory {
+  assessment::Tonight tonight{.night = 5, .date = "2024-06-01"};
+  store::StoredLogs logs{};
+  std::vector<MadeMachine> machines{};
+  std::map<std::string, std::string> machine_of_campaign{};
+  std::vector<store::Spelling> spellings{};
+  std::vector<std::string> unknown{};
+  std::string due{};
+  std::map<std::uint64_t, std::uint64_t> asked{};
+
+  std::vector<MorningLine> lines() const {
+    std::vector<assessment::AssessedMachine> assessed;
+    for (const MadeMachine& m : machines) assessed.push_back(m.assessed());
+    assessment::Fits fits;
+    const auto learned = assessment::learn(assessed, fits);
+    assessment::find_changes(assessed, asked, fits, not_asked);
+    std::vector<assessment::Standing> standings;
+    for (const auto& m : assessed)
+      standings.push_back(assessment::standing_of(
+          m, assessment::describe(m, "out", due, "12 months", tonight.date), logs, tonight, "out"));
+    std::vector<const assessment::Standing*> all;
+    for (const auto& s : standings) all.push_back(&s);
+    return assessment::lines_of({tonight, all, machine_of_campaign, spellings, learned, unknown});
+  }
+};
+
+std::vector<double> flat(double level, double last) {
+  std::vector<double> out{level,       level + 0.1, level - 0.1, level,
+                          level + 0.1, level - 0.1, level,       level};
+  for (std::size_t i = 5; i < 8; ++i) out[i] += last - level;
+  return out;
+}
+
+/// Hit between 2022-01 and 2022-07: reversal, curve, B and R.
+MadeMachine hit(double B = 10.0, double mean = -9.0) {
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-4.0, mean), 0.1);
+  m.follow("X", "curve_2", flat(0.0, 1.0), 0.1);
+  m.judge("X", "B", flat(6.0, B));
+  m.judge("X", "R", flat(6.5, B - 0.5));
+  return m;
+}
+
+std::string text_of(const MorningLine& l, const std::string& name) {
+  for (const auto& [key, text] : l.finding.texts)
+    if (key == name) return text;
+  return "";
+}
+
+config::Acknowledgement acknowledged(const std::string& finding, const std::string& date) {
+  return {date, finding, "S-42", "X", "", "2024-12-31", {}, {}, "B. Sample", "nut is ordered", 1};
+}
+
+TEST(MorningLines, OneCauseIsToldOnce) {
+  Laboratory lab;
+  lab.machines.push_back(hit());
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);  // B and R out, reversal and curve changed: one crash
+  const MorningLine& l = lines[0];
+  EXPECT_EQ(l.kind, Kind::out);
+  EXPECT_EQ(l.state, State::fresh);
+  EXPECT_EQ(l.id, "morning.out:S-42:X");
+  EXPECT_EQ(l.machine + " " + l.axis + " " + l.quantity, "S-42 X B");
+  EXPECT_EQ(l.finding.id, "morning.out-changed");
+  EXPECT_EQ(l.since, "2022-07-15");
+  EXPECT_EQ(text_of(l, "after"), "2022-01-15");
+  EXPECT_EQ(text_of(l, "before"), "2022-07-15");
+  EXPECT_EQ(text_of(l, "look"), "reversal");
+  EXPECT_NEAR(*l.value, 10.0e-6, 0.2e-6);
+  EXPECT_NEAR(*l.u, 0.25e-6, 1e-9);
+  EXPECT_NEAR(*l.limit, 8e-6, 1e-12);
+}
+
+TEST(MorningLines, WhatHasNoAxisIsOneLineForEachAnalysis) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("", "G_ccw", flat(9.0, 9.0), "circle");
+  m.judge("", "G_cw", flat(10.0, 10.0), "circle");
+  m.judge("", "sync_X", flat(9.5, 9.5), "spindle");
+  lab.machines.push_back(std::move(m));
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].id + " " + lines[0].quantity, "morning.out:S-42:circle G_cw");
+  EXPECT_EQ(lines[1].id + " " + lines[1].quantity, "morning.out:S-42:spindle sync_X");
+  EXPECT_EQ(lines[0].axis + lines[1].axis, "");
+}
+
+TEST(MorningLines, WhatConformsAndChangedIsAChange) {
+  Laboratory lab;
+  lab.machines.push_back(hit(6.0, -5.5));
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].kind, Kind::changed);
+  EXPECT_EQ(lines[0].id, "morning.changed:S-42:X:2022-07-15");
+  EXPECT_EQ(text_of(lines[0], "also"), "curve_2");
+}
+
+TEST(MorningLines, AChangeThatIsNotSureIsNotMailed) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-4.0, -4.35), 0.1);
+  m.judge("X", "B", flat(6.0, 6.0));
+  lab.machines.push_back(std::move(m));
+  ASSERT_EQ(lab.lines().size(), 1U);
+  ASSERT_EQ(lab.lines()[0].kind, Kind::changed);
+  const auto evidence = lab.lines()[0].finding.evidence;
+  const auto p =
+      std::find_if(evidence.begin(), evidence.end(), [](const Number& n) { return n.name == "p"; });
+  ASSERT_NE(p, evidence.end());
+  for (const double level : {0.008, 0.03}) {
+    lab.asked = {{1, static_cast<std::uint64_t>(level / p->value)}};
+    const auto lines = lab.lines();
+    ASSERT_EQ(lines.size(), 1U) << level;
+    EXPECT_TRUE(reports::asks(lines[0]));
+    EXPECT_EQ(reports::asks_by_mail(lines[0]), level < 0.01);
+    for (const auto on : {config::Mail::On::lost, config::Mail::On::out})
+      EXPECT_FALSE(batch::is_reason_for_mail(lines[0], on));
+    EXPECT_EQ(batch::is_reason_for_mail(lines[0], config::Mail::On::decision), level < 0.01);
+  }
+  MorningLine lost = assessment::line_of(Kind::lost, "morning.lost", "c");
+  EXPECT_TRUE(batch::is_reason_for_mail(lost, config::Mail::On::lost));
+}
+
+TEST(MorningLines, OutNamesTheEventOfItsChange) {
+  Laboratory lab;
+  lab.machines.push_back(hit());
+  lab.machines[0].events() = {{"2022-03-01", "S-42", "X", "crash", "hit the vice", "", 1}};
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "morning.out-changed-event");
+  EXPECT_EQ(text_of(lines[0], "event"), "crash: hit the vice");
+}
+
+TEST(MorningLines, ARepairEndsAChange) {
+  Laboratory lab;
+  lab.machines.push_back(hit(6.0, -5.5));
+  lab.machines[0].events() = {{"2022-09-01", "S-42", "X", "repair", "new nut", "", 1}};
+  EXPECT_TRUE(lab.lines().empty());
+}
+
+TEST(MorningLines, ALimitThatIsExceededWithoutAChangeSaysNoChange) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("X", "A", {8.6, 8.7, 8.8, 8.9, 9.0, 9.1, 9.2, 9.3});
+  lab.machines.push_back(std::move(m));
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "morning.out");
+  EXPECT_EQ(lines[0].since, "2020-01-15");
+}
+
+TEST(MorningLines, AcknowledgedIsKnownUntilItMoves) {
+  Laboratory lab;
+  lab.machines.push_back(hit());
+  for (const char* finding : {"morning.out:S-42:X", "morning.out-changed", "morning.out"}) {
+    lab.logs.acknowledged = {acknowledged(finding, "2024-01-01")};
+    EXPECT_EQ(lab.lines()[0].state, State::known) << finding;
+  }
+  EXPECT_EQ(lab.lines()[0].by, "B. Sample");
+  EXPECT_EQ(lab.lines()[0].until, "2024-12-31");
+  lab.logs.acknowledged[0].until = "2024-05-31";
+  EXPECT_EQ(lab.lines()[0].state, State::fresh) << "past its day";
+  lab.logs.acknowledged = {acknowledged("morning.out", "2024-01-01")};
+  lab.logs.acknowledged[0].axis = "Y";
+  EXPECT_EQ(lab.lines()[0].state, State::fresh) << "another axis";
+  // Before it happened: of another cause.
+  lab.logs.acknowledged = {acknowledged("morning.out", "2022-03-01")};
+  EXPECT_EQ(lab.lines()[0].state, State::fresh) << "later change";
+  // Moved by more than its U of 0.5 um since.
+  lab.logs.acknowledged = {acknowledged("morning.out", "2023-08-01")};
+  auto& results = lab.machines[0].stored().results;
+  const auto last = std::find_if(results.rbegin(), results.rend(),
+                                 [](const auto& r) { return r.quantity == "B"; });
+  last->campaign = 7;
+  lab.machines[0].stored().campaigns[7].day = "2024-01-15";
+  last->value = 10.4;
+  EXPECT_EQ(lab.lines()[0].state, State::known);
+  last->value = 10.7;
+  EXPECT_EQ(lab.lines()[0].state, State::fresh) << "moved";
+  lab.logs.acknowledged[0].value = 10.6;
+  EXPECT_EQ(lab.lines()[0].state, State::known) << "from what was acknowledged";
+}
+
+TEST(MorningLines, WhatConformsAgainTonightIsFixed) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("X", "B", {9, 9, 9, 9, 9, 9, 9, 5});
+  m.stored().campaigns[7].night = 5;
+  lab.machines.push_back(std::move(m));
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].state, State::fixed);
+  lab.tonight.night = 6;  // told once
+  EXPECT_TRUE(lab.lines().empty());
+}
+
+TEST(MorningLines, ARepairThatIsPlannedHasMendedNothing) {
+  Laboratory lab;
+  lab.machines.push_back(hit(6.0, -5.5));
+  lab.machines[0].events() = {{"2024-06-02", "S-42", "X", "repair", "nut is ordered", "", 1}};
+  ASSERT_EQ(lab.lines().size(), 1U);
+  EXPECT_EQ(lab.lines()[0].kind, Kind::changed);
+  lab.tonight.date = "2024-06-02";
+  EXPECT_TRUE(lab.lines().empty());
+}
+
+TEST(MorningLines, ACampaignDatedAfterTheNightIsNamed) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("X", "B", {5, 5, 5, 5, 5, 5, 5, 5});
+  m.stored().later = {{"S-42-9", "2042-06-01"}};  // meant is 2024
+  lab.machines.push_back(m);
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].id, "morning.later:S-42:S-42-9");
+  EXPECT_EQ(lines[0].kind, Kind::undecided);
+  EXPECT_EQ(text_of(lines[0], "day"), "2042-06-01");
+  for (int k = 0; k < 3; ++k) lab.machines.push_back(m);  // the clock was set back
+  lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "morning.later-several");
+}
+
+TEST(MorningLines, AnotherDefinitionOrAWiderLimitMendsNothing) {
+  const auto told = [](auto change) {
+    Laboratory lab;
+    MadeMachine m("S-42");
+    m.judge("X", "A", {9, 9, 9, 9, 9, 9, 9, 5});
+    m.stored().campaigns[7].night = 5;
+    change(m.stored().results);
+    lab.machines.push_back(std::move(m));
+    const auto lines = lab.lines();
+    return lines.size() == 1 ? lines[0].finding.id : std::to_string(lines.size()) + " lines";
+  };
+  EXPECT_EQ(told([](auto&) {}), "morning.fixed");
+  EXPECT_EQ(told([](auto& r) { r[7].tolerance = 7.0; }), "morning.fixed");
+  EXPECT_EQ(told([](auto& r) { r[7].tolerance = 12.0; }), "morning.judged-anew");
+  EXPECT_EQ(told([](auto& r) {
+              for (std::size_t i = 0; i < 7; ++i) r[i].conditions = R"({"edition":1988})";
+            }),
+            "morning.judged-anew");
+}
+
+TEST(MorningLines, MicrometresAreNoArcseconds) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("C", "B", {9, 9, 9, 9, 9, 9, 5, 5});  // as a linear axis it did not conform
+  m.follow("C", "B_mean", {-9, -9.1, -9, -8.9, -9, -9, -5, -5.1}, 0.1);
+  for (auto& r : m.stored().results)
+    if (r.campaign > 5) r.unit = "arcsec";
+  lab.machines.push_back(std::move(m));
+  EXPECT_TRUE(lab.lines().empty());
+  const auto shown = assessment::describe(lab.machines[0].assessed(), "out", "", "");
+  ASSERT_EQ(shown.series.size(), 4U);
+  for (const reports::HistorySeries& s : shown.series) {
+    const bool turns = s.unit == Quantity::angular_deviation;
+    EXPECT_EQ(s.ended, !turns) << s.quantity;
+    EXPECT_EQ(s.points.size(), turns ? 2U : 6U) << s.quantity;
+  }
+  // What was said of the one is nothing of the other.
+  auto& results = lab.machines[0].stored().results;
+  for (std::size_t i = 6; i < 8; ++i)
+    results[i].value = 9.1, results[i].decision = "does not conform";
+  lab.logs.acknowledged = {acknowledged("morning.out", "2022-08-01")};
+  lab.logs.acknowledged[0].axis = "C";
+  ASSERT_EQ(lab.lines().size(), 1U);
+  EXPECT_EQ(lab.lines()[0].unit, Quantity::angular_deviation);
+  EXPECT_EQ(lab.lines()[0].state, State::known);
+}
+
+TEST(MorningLines, NamesThatNoCampaignHasAreSaid) {
+  Laboratory lab;
+  EXPECT_TRUE(lab.lines().empty());
+  lab.unknown = {"S-4Z (events.toml:7)"};
+  ASSERT_EQ(lab.lines().size(), 1U);
+  EXPECT_EQ(lab.lines()[0].finding.id, "morning.unknown-machine");
+  EXPECT_EQ(text_of(lab.lines()[0], "where"), "S-4Z (events.toml:7)");
+  EXPECT_FALSE(reports::asks(lab.lines()[0]));
+}
+
+/// As found and as left on 2023-07-15 with a table between them, which promised E = 0.8 um.
+MadeMachine with_table(double E_left, std::size_t campaign = 7) {
+  MadeMachine m("S-42");
+  const auto result = [&](const char* quantity, const char* state, double value) {
+    m.stored().results.push_back({.campaign = campaign,
+                                  .measurement = std::string("X ") + state,
+                                  .axis = "X",
+                                  .quantity = quantity,
+                                  .source = "iso230-2",
+                                  .unit = "um",
+                                  .state = state,
+                                  .decision = "",
+                                  .conditions = "",
+                                  .value = value,
+                                  .u_repeat = 0.1,
+                                  .common = {{"instrument", 2.0}}});
+  };
+  result("E", "as-found", 13.7);
+  result("E", "as-left", E_left);
+  result("ln_s", "as-left", std::log(0.4));
+  m.stored().results.back().followed = true;
+  m.stored().predicted.push_back(m.stored().results[0]);
+  m.stored().predicted[0].value = 0.8;
+  return m;
+}
+
+TEST(MorningLines, ATableThatDidNotDoWhatItPromisedIsADecision) {
+  const auto table_lines = [](const MadeMachine& m) {
+    Laboratory lab;
+    lab.machines.push_back(m);
+    auto lines = lab.lines();
+    std::erase_if(lines, [](const MorningLine& l) { return l.finding.id != "morning.table"; });
+    return lines;
+  };
+  EXPECT_TRUE(table_lines(with_table(1.4)).empty()) << "within what its readings scatter";
+  for (const double wrong : {27.0, 13.7}) {  // wrong sign; never loaded
+    const auto lines = table_lines(with_table(wrong));
+    ASSERT_EQ(lines.size(), 1U) << wrong;
+    EXPECT_EQ(lines[0].kind, Kind::changed);
+    EXPECT_EQ(lines[0].id, "morning.table:S-42:X:S-42-8");
+    EXPECT_NEAR(*lines[0].value, wrong * 1e-6, 1e-12);
+    EXPECT_EQ(lines[0].finding.evidence.size(), 3U);
+  }
+  MadeMachine later = with_table(27.0);  // measured again since: what matters now is that
+  later.add_campaign("2023-09-01", 1);
+  later.stored().results.push_back(later.stored().results[0]);
+  later.stored().results.back().campaign = 8;
+  EXPECT_TRUE(table_lines(later).empty());
+  MadeMachine old = with_table(27.0);  // promised half a year before
+  old.stored().predicted[0].campaign = 6;
+  EXPECT_TRUE(table_lines(old).empty());
+}
+
+TEST(MorningLines, OfGoodTablesOneInAHundredIsDoubtedAtMost) {
+  std::cout << "seed 20261123\n";
+  std::mt19937_64 random(20261123);
+  for (const int runs : {2, 5})
+    for (const int targets : {5, 21, 41}) {
+      // Nothing but scatter is left, and the table had promised exactly nothing.
+      std::normal_distribution<double> mean(0.0, 1.0 / std::sqrt(runs));
+      std::chi_squared_distribution<double> squares(2.0 * targets * (runs - 1));
+      constexpr int trials = 2000;
+      int doubted = 0;
+      for (int i = 0; i < trials; ++i) {
+        double low = 0.0, high = 0.0;
+        for (int k = 0; k < 2 * targets; ++k) {
+          const double x = mean(random);
+          low = std::min(low, x), high = std::max(high, x);
+        }
+        MadeMachine m = with_table(high - low);
+        m.stored().predicted[0].value = 0.0;
+        for (auto& r : m.stored().results)
+          if (r.followed)
+            r.value = std::log(squares(random) / (2.0 * targets * (runs - 1))) / 2.0;
+          else
+            r.u_repeat = 1e-6;
+        const auto kept = assessment::tables_kept(m.assessed());
+        ASSERT_EQ(kept.size(), 1U);
+        doubted += kept[0].good ? 0 : 1;
+      }
+      EXPECT_LE(doubted, trials / 100 + 14) << runs << " runs, " << targets << " targets";
+    }
+}
+
+TEST(MorningLines, LostMotionThatConformsIsInformation) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("X", "B", {5, 5, 5, 5, 5, 5, 5, 5});
+  m.stored().findings.back() = {{"reversal.lost-motion", "attention"}};
+  lab.machines.push_back(m);
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].kind, Kind::information);
+  EXPECT_FALSE(lines[0].finding.attention);
+  // Where nobody stated a limit nothing was judged, and that is said.
+  for (auto& r : lab.machines[0].stored().results) r.tolerance.reset(), r.decision.clear();
+  lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "morning.not-judged");
+  EXPECT_EQ(text_of(lines[0], "machines"), "S-42");
+}
+
+TEST(MorningLines, StandInTheirOrder) {
+  Laboratory lab;
+  lab.tonight.vanished = {{"gone", "gone", 4, "not there"}};
+  lab.tonight.failed = {{"bad", "bad", "x.csv:17: \"1O8.9\" is no number", ""}};
+  lab.machines = {hit(), MadeMachine("S-43"), MadeMachine("S-44"), MadeMachine("S-45")};
+  lab.machines[1].follow("X", "B_mean", flat(-1.0, -3.0), 0.1);
+  lab.machines[2].judge("X", "B", {7, 7, 7, 7, 7, 7, 7, 7.9});
+  lab.machines[3].follow("X", "B_mean", {-1, -1.9, -3.1, -4, -5.1, -6, -7, -7.9}, 0.1);
+  lab.machines[3].judge("X", "B", {1, 2, 3, 4, 5, 6, 7, 7.4});
+  lab.due = "2024-03-01";
+  std::vector<Kind> kinds;
+  for (const MorningLine& l : lab.lines())
+    if (kinds.empty() || kinds.back() != l.kind) kinds.push_back(l.kind);
+  EXPECT_EQ(kinds,
+            (std::vector<Kind>{Kind::lost, Kind::failed, Kind::out, Kind::changed, Kind::soon,
+                               Kind::overdue, Kind::undecided, Kind::information}));
+}
+
+TEST(MorningLines, TheWorstLineOfAnAxisDecidesAndWhatWasLeft) {
+  Laboratory lab;
+  MadeMachine m("S-42");
+  m.judge("X", "B", {9, 9});  // out, at Y = 100; conforms at Y = 500, named later
+  m.judge("X", "B", {5, 5});
+  for (std::size_t i = 0; i < 4; ++i)
+    m.stored().results[i].measurement = i < 2 ? "X at 100" : "X at 500";
+  lab.machines.push_back(m);
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].kind, Kind::out);
+  EXPECT_EQ(lines[0].since, "2020-01-15");
+  // Found out and left good is good.
+  for (std::size_t i = 2; i < 4; ++i) lab.machines[0].stored().results[i].state = "as-left";
+  EXPECT_TRUE(lab.lines().empty());
+}
+
+TEST(MorningLines, ACampaignWithoutTheLimitReplacesNothing) {
+  Laboratory lab;
+  MadeMachine m("S-42", 4);
+  m.judge("X", "A", {5, 9, 9, 5});
+  for (std::size_t i : {2, 3}) m.stored().results[i].decision.clear();
+  for (std::size_t i : {2, 3}) m.stored().results[i].tolerance.reset();
+  m.stored().results.push_back(
+      m.stored().results[0]);  // another quantity of the axis, judged later
+  m.stored().results.back().quantity = "B", m.stored().results.back().campaign = 3;
+  lab.machines.push_back(m);
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].id + " " + lines[0].quantity, "morning.out:S-42:X A");
+  EXPECT_EQ(lines[0].campaign + " " + lines[0].since, "S-42-2 2020-07-15");
+  // Judged again, it is closed.
+  store::StoredResult& last = lab.machines[0].stored().results[3];
+  last.tolerance = 8.0, last.decision = "conforms";
+  EXPECT_TRUE(lab.lines().empty());
+  // As left without the limit: what was found remains.
+  last.tolerance.reset(), last.decision.clear(), last.state = "as-left";
+  EXPECT_EQ(lab.lines().size(), 1U);
+}
+
+TEST(MorningLines, OneOfTwoCampaignsOfADayReplacesTheOtherOnlyAsLeft) {
+  Laboratory lab;
+  MadeMachine m("S-42", 0);
+  m.add_campaign("2024-01-15", 1), m.add_campaign("2024-01-15", 1);
+  m.judge("X", "A", {9, 5});
+  lab.machines.push_back(m);
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].campaign, "S-42-1");
+  lab.machines[0].stored().results[1].state = "as-left";
+  EXPECT_TRUE(lab.lines().empty());
+  // Whatever the campaigns are called.
+  lab.machines[0].stored().results[1].state = "as-found";
+  lab.machines[0].stored().results[0].state = "as-left";
+  EXPECT_EQ(lab.lines().size(), 1U);
+  lab.machines[0].stored().results[0].value = 5.0;
+  lab.machines[0].stored().results[0].decision = "conforms";
+  lab.machines[0].stored().results[1].value = 9.0;
+  lab.machines[0].stored().results[1].decision = "does not conform";
+  EXPECT_TRUE(lab.lines().empty());
+}
+
+MadeMachine worn() {
+  MadeMachine m("S-45");
+  m.follow("X", "B_mean", {-0.9, -1.9, -2.7, -3.7, -4.5, -5.5, -6.3, -7.2}, 0.1);
+  m.judge("X", "B", {1, 2, 2.8, 3.8, 4.6, 5.6, 6.4, 7.3});
+  return m;
+}
+
+TEST(MorningLines, SoonIsTheLastValueWithItsForecast) {
+  Laboratory lab;
+  lab.machines.push_back(worn());
+  lab.tonight.date = "2023-07-20", lab.due = "2024-03-01";
+  auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].finding.id, "morning.soon");
+  EXPECT_NEAR(*lines[0].value, 7.3e-6, 1e-12);
+  EXPECT_NEAR(*lines[0].u, 0.25e-6, 1e-12);
+  EXPECT_EQ(text_of(lines[0], "date"), "2024-03-01");
+  EXPECT_GT(text_of(lines[0], "leaves"), lab.tonight.date);
+  // Its day has passed.
+  lab.tonight.date = "2024-06-01";
+  lines = lab.lines();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].finding.id, "morning.soon-now");
+  EXPECT_EQ(lines[0].id, "morning.soon:S-45:X:B");
+  EXPECT_EQ(text_of(lines[0], "leaves"), "");
+  EXPECT_EQ(lines[1].kind, Kind::overdue);
+  // The value is indeterminate: that line asks for more.
+  auto& last = lab.machines[0].stored().results.back();
+  last.value = 7.6, last.decision = "cannot be decided";
+  for (const MorningLine& l : lab.lines()) EXPECT_NE(l.kind, Kind::soon);
+}
+
+TEST(MorningLines, ManyOfOneKindAreOneLine) {
+  Laboratory lab;
+  for (int i = 0; i < 212; ++i) {
+    const std::string id = "c" + std::to_string(i);
+    lab.tonight.vanished.push_back({id, "site-b/" + id, 4, "not there"});
+    lab.machine_of_campaign[id] = "S-" + std::to_string(i % 20);
+  }
+  for (int i = 0; i < 9; ++i)
+    lab.tonight.failed.push_back({"f" + std::to_string(i), "f", "site.toml:3: wrong", ""});
+  for (int i = 0; i < 6; ++i) {
+    lab.machines.emplace_back("S-1" + std::to_string(i));
+    lab.machines.back().judge("X", "B", {8, 8, 8, 8, 8, 8, 8, 8});
+  }
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 8U);
+  EXPECT_EQ(lines[0].finding.id, "morning.lost-several");
+  EXPECT_EQ(text_of(lines[0], "of"), "site-b");
+  EXPECT_EQ(lines[0].campaigns.size(), 212U);
+  EXPECT_EQ(lines[1].finding.id, "morning.failed-several");
+  EXPECT_EQ(lines[1].campaigns.size(), 9U);
+  for (std::size_t i = 2; i < lines.size(); ++i)  // each value has a line
+    EXPECT_EQ(lines[i].finding.id, "morning.undecided");
+}
+
+std::vector<std::string> open_of(const MorningLine& l) {
+  std::vector<std::string> out{l.quantity};
+  for (const reports::OpenValue& v : l.also)
+    out.push_back(v.quantity + (v.value ? v.undecided ? "?" : "" : " without value"));
+  return out;
+}
+
+const reports::HistorySeries& series_of(const reports::MachineHistory& m, const char* quantity) {
+  return *std::find_if(m.series.begin(), m.series.end(),
+                       [&](const auto& s) { return s.quantity == quantity; });
+}
+
+TEST(Forecasts, AreOfTheQuantityThatHasTheLimit) {
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-7.0, -7.0), 0.05);
+  m.judge("X", "B", flat(7.4, 7.4));  // limit 8
+  std::vector<assessment::AssessedMachine> one{m.assessed()};
+  judge_all(one);
+  const auto d = assessment::describe(one[0], "out", "2024-03-01", "12 months");
+  const auto &mean = series_of(d, "B_mean"), &B = series_of(d, "B");
+  ASSERT_TRUE(mean.forecast && B.forecast);
+  EXPECT_FALSE(mean.limit);
+  EXPECT_NEAR(*B.limit, 8e-6, 1e-12);
+  EXPECT_NEAR(B.forecast->value, 7.4e-6, 0.1e-6);
+  // |B_mean| of 7 um is never beyond 8 um, B at times.
+  EXPECT_GT(B.forecast->p_out, 1e-6);
+  EXPECT_EQ(mean.forecast->answer, B.forecast->answer);
+}
+
+TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOut) {
+  MadeMachine m("S-42");
+  m.follow("X", "B_mean", flat(-3.0, -3.0), 0.05);
+  m.follow("X", "scale", flat(1.0, 1.0), 0.05);
+  m.follow("Y", "scale", flat(1.0, 1.0), 0.05);
+  m.judge("X", "B", flat(4.0, 4.0));
+  m.judge("X", "R", flat(9.5, 9.5));  // out
+  std::vector<assessment::AssessedMachine> one{m.assessed()};
+  judge_all(one);
+  const auto d = assessment::describe(one[0], "out", "2024-03-01", "12 months");
+  for (const auto& s : d.series)
+    if (s.forecast) EXPECT_EQ(s.forecast->answer, s.axis == "X" ? "act" : "keep") << s.quantity;
+}
+
+TEST(Forecasts, NothingKeepsTheDateOfAnAxisThatIsOpenOrOverdue) {
+  MadeMachine m("S-42");
+  m.follow("X", "scale", flat(1.0, 1.0), 0.05);
+  m.follow("Y", "scale", flat(1.0, 1.0), 0.05);
+  m.judge("X", "R", flat(8.0, 8.0));  // indeterminate
+  std::vector<assessment::AssessedMachine> one{m.assessed()};
+  judge_all(one);
+  for (const std::string today : {"2024-03-01", "2024-03-02"})
+    for (const auto& s : assessment::describe(one[0], "out", "2024-03-01", "", today).series)
+      if (s.forecast)
+        EXPECT_EQ(s.forecast->answer, s.axis == "X"           ? "act"
+                                      : today == "2024-03-01" ? "keep"
+                                                              : "overdue");
+}
+
+TEST(Forecasts, AValueHasTheUOfItsCampaign) {
+  MadeMachine m("S-42", 1);
+  m.follow("X", "B_mean", {-4.0}, 0.1);
+  for (const double U : {0.4, 0.05}) {
+    MadeMachine own = m;
+    store::StoredResult r = own.stored().results[0];
+    r.followed = false, r.source = "iso230-2", r.u_repeat.reset(), r.expanded = U, r.k = 2.0;
+    own.stored().results.push_back(r);
+    const auto d = assessment::describe(own.assessed(), "out", "", "");
+    ASSERT_EQ(d.series.size(), 1U);  // no second series under the same name
+    EXPECT_NEAR(d.series[0].points[0].u, 0.1e-6, 1e-12);
+    EXPECT_NEAR(2.0 * reports::u_of_value(d.series[0].points[0]), U * 1e-6, 1e-12);
+  }
+}
+
+TEST(MorningLines, ListAllThatIsOpenOfAnAxis) {
+  Laboratory lab;
+  MadeMachine m("S-42", 2);
+  m.judge("X", "A", {9, 9});
+  m.judge("X", "B", {9, 12});
+  m.judge("X", "E", {9, 8});  // cannot be decided
+  m.judge("X", "R", {9, 5});  // a newer measurement replaced it
+  m.stored().without_value = {{1, "", "X", "M", "um", 5.0}, {1, "", "Y", "A", "um", 5.0}};
+  lab.machines.push_back(m);
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);  // nobody has measured Y
+  EXPECT_EQ(open_of(lines[0]), (std::vector<std::string>{"B", "A", "E?", "M without value"}));
+  EXPECT_NEAR(*lines[0].also[0].value, 9e-6, 1e-12);
+  EXPECT_NEAR(lines[0].also[0].limit, 8e-6, 1e-12);
+  EXPECT_EQ(lines[0].also[0].campaign, "S-42-2");
+}
+
+TEST(MorningLines, ALaterCircleOfAnotherPlaneReplacesNone) {
+  Laboratory lab;
+  MadeMachine m("S-42", 2);
+  m.judge("", "G", {9}, "circle");
+  m.judge("", "G", {5, 5}, "circle");
+  auto& results = m.stored().results;
+  results[0].measurement = "XY";
+  results.erase(results.begin() + 1);
+  results[1].measurement = "YZ";
+  lab.machines.push_back(m);
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].kind, Kind::out);
+  EXPECT_EQ(lines[0].measurement, "XY");
+}
+
+TEST(MorningLines, ACampaignWithoutAMachineHasItsLines) {
+  Laboratory lab;
+  MadeMachine m("", 1);
+  m.judge("X", "B", {9});
+  lab.machines.push_back(m);
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].kind, Kind::out);
+  EXPECT_EQ(lines[0].campaign, "-1");
+  EXPECT_TRUE(lines[0].machine.empty());
+  EXPECT_EQ(lines[1].finding.id, "morning.no-machine");
+  EXPECT_EQ(lines[1].campaigns, std::vector<std::string>{"-1"});
+}
+
+TEST(MorningLines, WhatWasWithheldIsALine) {
+  Laboratory lab;
+  MadeMachine m("S-42", 3);
+  for (const char* axis : {"X", "Y"}) m.follow(axis, "scale", {1, 1}, 0.1);
+  m.follow("X", "scale", {}, 0.1);
+  m.stored().results.push_back(m.stored().results[0]);  // X once more, in the last campaign
+  m.stored().results.back().campaign = 2;
+  m.stored().asked.resize(3);
+  for (const char* axis : {"X", "Y"})
+    m.stored().asked[1].push_back({axis, "fanuc", "table.refused-reversal", "attention"});
+  m.stored().asked[0] = {{"", "certificate", "certificate.incomplete", "attention"}};
+  for (const std::size_t campaign : {0, 1})  // the first was measured again
+    m.stored().asked[campaign].push_back(
+        {"", "plausibility", "traceability.calibration-expired", "attention"});
+  for (const std::size_t campaign : {0, 1})
+    m.stored().asked[campaign].push_back(
+        {"D1", "diagonal-straightness", "diagonals.refused-carrier", "attention"});
+  lab.machines.push_back(m);
+  std::vector<std::string> ids;
+  for (const MorningLine& l : lab.lines())
+    if (l.kind == Kind::withheld) ids.push_back(l.id);
+  EXPECT_EQ(ids, (std::vector<std::string>{
+                     "morning.calibration:S-42:S-42-2", "morning.certificate:S-42:S-42-1",
+                     "morning.no-result:S-42:S-42-2", "morning.no-table:S-42:S-42-2:Y"}));
+}
+
+TEST(MorningLines, AnAcknowledgementCoversWhatWasOpenOnItsDay) {
+  Laboratory lab;
+  MadeMachine m("S-42", 2);  // 2020-01-15, 2020-07-15
+  m.judge("X", "B", {9, 9});
+  m.judge("X", "A", {9, 9});
+  m.judge("X", "R", {5, 9});  // came later
+  lab.machines.push_back(m);
+  lab.logs.acknowledged = {acknowledged("morning.out:S-42:X", "2020-03-01")};
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].state, State::fresh);
+  EXPECT_EQ(open_of(lines[0]), std::vector<std::string>{"R"});
+  EXPECT_EQ(lines[1].state, State::known);
+  EXPECT_EQ(open_of(lines[1]), (std::vector<std::string>{"A", "B"}));
+}
+
+TEST(MorningLines, TheCampaignsOfAMachineThatVanishedAreOneLine) {
+  Laboratory lab;
+  for (const char* id : {"a", "b"}) {
+    lab.tonight.vanished.push_back({id, id, 4, "not there"});
+    lab.machine_of_campaign[id] = "S-1";
+  }
+  const auto lines = lab.lines();
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].machine, "S-1");
+}
+
+Templates words_of(const std::string& language) {
+  Templates out;
+  const std::string path = std::string(NONIO_WORDS) + "/" + language + "/site.toml";
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  auto settings = config::parse_settings(text.str(), path);
+  if (settings) out.tables["words/" + language + "/site"] = std::move(*settings);
+  return out;
+}
+
+// Long: one laboratory with a line of every kind.
+TEST(MorningLines, EachHasWordsInEachLanguage) {
+  Laboratory lab;
+  lab.tonight.vanished = {{"gone", "gone", 4, "not there"}, {"a", "a", 4, ""}, {"b", "b", 4, ""}};
+  lab.machine_of_campaign = {{"a", "S-1"}, {"b", "S-1"}};
+  lab.tonight.failed = {{"bad", "bad", "wrong", ""}};
+  lab.tonight.history_error = "disk full";
+  lab.spellings = {{"S-42", "S-4Z", "spelled alike"}};
+  lab.unknown = {"S-4Z (events.toml:7)"};
+  lab.machines = {hit(), MadeMachine("S-43"), MadeMachine("S-44"), MadeMachine("S-45"),
+                  MadeMachine("S-46")};
+  lab.machines[1].follow("X", "B_mean", flat(-1.0, -3.0), 0.1);
+  lab.machines[1].follow("Y", "squareness:XY.c", flat(-1.0, -3.0), 0.1);
+  lab.machines[1].events() = {{"2022-03-01", "S-43", "Y", "moved", "hall 2", "", 1}};
+  lab.machines[2].judge("X", "B", {7, 7, 7, 7, 7, 7, 7, 7.9});
+  lab.machines[3].follow("X", "B_mean", {-1, -1.9, -3.1, -4, -5.1, -6, -7, -7.9}, 0.1);
+  lab.machines[3].judge("X", "B", {1, 2, 3, 4, 5, 6, 7, 7.4});
+  lab.machines[4].judge("X", "B", {5, 5, 5, 5, 5, 5, 5, 5});
+  lab.machines[4].judge("Y", "B", {5, 5, 5, 5, 5, 5, 9, 5});
+  lab.machines[4].stored().campaigns[7].night = 5;
+  lab.machines[4].stored().findings.back() = {{"reversal.lost-motion", "attention"}};
+  lab.machines.emplace_back("S-47", 1);
+  lab.machines[5].judge("X", "B", {5});
+  lab.machines[5].stored().later = {{"S-47-2", "2042-03-01"}};
+  lab.machines.emplace_back("", 1);
+  lab.machines[6].judge("X", "B", {5});
+  lab.machines[6].stored().without_value = {{0, "", "X", "A", "um", 5.0}};
+  lab.machines[6].stored().asked = {{{"X", "fanuc", "table.refused-reversal", "attention"},
+                                     {"", "certificate", "certificate.incomplete", "attention"}}};
+  lab.machines.emplace_back("S-49", 1);
+  lab.machines[7].judge("X", "B", {5});
+  lab.machines[7].stored().asked = {
+      {{"", "plausibility", "traceability.calibration-expired", "attention"},
+       {"D1", "diagonal-straightness", "diagonals.refused-place", "attention"}}};
+  lab.machines.emplace_back("S-48", 1);
+  lab.machines[8].judge("X", "B", {8});
+  lab.machines[8].stored().results.back().expanded.reset();
+  lab.tonight.waiting = {"S-48-1"};
+  for (int i = 0; i < 4; ++i)
+    lab.tonight.failed.push_back({"f" + std::to_string(i), "f", "same", ""});
+  lab.due = "2024-03-01";
+  const auto lines = lab.lines();
+  std::set<std::string> ids;
+  for (const char* language : {"en", "de", "it"}) {
+    const Templates words = words_of(language);
+    ASSERT_FALSE(words.tables.empty()) << language;
+    for (const MorningLine& l : lines) {
+      ids.insert(l.finding.id);
+      const std::string says = reports::line_text(words, language, l, "says");
+      EXPECT_FALSE(says.empty()) << l.finding.id;
+      EXPECT_EQ(says.find('{'), std::string::npos) << language << ": " << says;
+      if (l.state == State::fixed) continue;
+      const std::string advice = reports::line_text(words, language, l, "advice");
+      EXPECT_FALSE(advice.empty()) << l.finding.id;
+      EXPECT_EQ(advice.find('{'), std::string::npos) << language << ": " << advice;
+    }
+  }
+  for (const char* id : {"morning.lost",           "morning.lost-several",
+                         "morning.failed",         "morning.history",
+                         "morning.out-changed",    "morning.changed",
+                         "morning.changed-event",  "morning.soon-now",
+                         "morning.overdue",        "morning.undecided",
+                         "morning.fixed",          "morning.conforms",
+                         "morning.not-judged",     "morning.spelling",
+                         "morning.later",          "morning.unknown-machine",
+                         "morning.no-machine",     "morning.no-value",
+                         "morning.no-table",       "morning.certificate",
+                         "morning.no-uncertainty", "morning.draft",
+                         "morning.failed-several", "morning.calibration",
+                         "morning.no-result"})
+    EXPECT_TRUE(ids.contains(id)) << id;
+}
+
+}  // namespace
+}  // namespace nonio::test::lines_test
