@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one measurement: its options, its judgement and its report, run by hand.
 // How well `explain` finds what the second generator (tests/support/hidden) has hidden:
 //   bench_hidden one|several|complete|outside|wave-under-curve|screw-and-curve|grouped|beside|
 //                fixed-end|blank-temperatures|day-wave|short-misread|short-complete|smallest
@@ -269,7 +268,6 @@ bool of_one(Kind kind) {
 bool is_complete(Kind kind) { return kind == Kind::complete || kind == Kind::short_complete; }
 
 /// Whether the campaign was explained as it had to be.
-// Long: every rule of the judgement, in the order of the tables of docs/model-evidence.md.
 bool judge(Score& score, const Hidden& h, const Followed& f) {
   score.answered.add(f.error.empty());
   if (f.steps.empty()) return false;
@@ -388,7 +386,6 @@ void tell(const Hidden& h, const Followed& f, std::uint64_t seed) {
   if (!f.error.empty()) std::printf("  error: %s\n", f.error.c_str());
 }
 
-// Long: one line a figure.
 void print_score(const Score& s, Kind kind) {
   print("answered without an error", s.answered);
   if (of_one(kind)) print("named first, or its alias group", s.right);

@@ -30,7 +30,6 @@ bool Exception::holds(const Method& m, const Scenario& s, const std::string& res
                      [&](const std::string& name) { return name == "*" || name == result; });
 }
 
-// Long: one table, a row an exception.
 const std::vector<Exception>& exceptions() {
   static const char* const contrasts =
       "C0Y;C0Y_LSQ;slave_shift;ECX;EYX;EXY;EYX_LSQ;EXY_LSQ;EYX_even;EXY_even;q_odd;squareness;"

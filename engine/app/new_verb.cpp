@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one dialogue: what is asked, what it becomes, and the trial run of it.
 // `nonio new`: a site or a campaign that runs at once.
 #include <unistd.h>
 

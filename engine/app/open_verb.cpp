@@ -46,10 +46,9 @@ Expected<fs::path> document_of(const fs::path& results) {
   if (!json) return fail(json.error());
   std::vector<std::string> files;
   for (const Json& o : json->value("outputs", Json::array()))
-    if (o.is_object() && o.value("plugin", "") == "pdf-report")
-      return results / o.value("file", "");
-    else if (o.is_object())
-      files.push_back(o.value("file", ""));
+    if (o.is_object()) files.push_back(o.value("file", ""));
+  std::stable_partition(files.begin(), files.end(),
+                        [](const std::string& file) { return file.starts_with("report"); });
   for (const char* ending : {".pdf", ".html"})
     for (const std::string& file : files)
       if (file.ends_with(ending)) return results / file;

@@ -41,7 +41,10 @@ int write_sheet(const char* verb, const SheetWish& wish, const Machine& machine,
   if (!templates) return complain(verb, text_of(templates.error()));
   options["language"] = wish.language;
   options["stops"] = std::to_string(wish.stops);
-  auto files = planning::write_programs(plugins, "plan-sheet", machine, rows, options, *templates);
+  const Output* sheet = plugins.output_of(Output::Role::sheet_of_stops);
+  if (sheet == nullptr) return complain(verb, "no output plugin writes a sheet of stops");
+  auto files =
+      planning::write_programs(plugins, sheet->info.name, machine, rows, options, *templates);
   if (!files) {
     for (const Error& e : files.error()) complain(verb, text_of(e));
     return exit_usage;

@@ -37,11 +37,11 @@ std::string writer_for(const std::string& control, const loader::Plugins& plugin
   return "gcode";
 }
 
-/// Of a control that runs no programs in G-code; the moves are told on the terminal all the same.
-bool runs_no_gcode(const std::string& control) {
-  for (const char* name : {"ecmc", "klipper", "marlin", "pmac", "twincat-nc-ptp"})
-    if (control == name) return true;
-  return false;
+/// Without a program in G-code the moves are printed on the terminal.
+bool runs_gcode(const std::string& control, const loader::Plugins& plugins) {
+  for (const Controller& c : plugins.controllers())
+    if (c.info.name == control) return c.table.runs_gcode;
+  return true;
 }
 
 /// What options and the record of the machine say of its axes.
@@ -93,7 +93,7 @@ Expected<Artifact> program_of(const tables::SignProbe& p, const Machine& machine
   settings["programs"] = "sign-probe";
   settings["axes"] = p.axis;
   settings[p.rotary ? "feed_deg_per_min" : "feed_mm_per_min"] = std::to_string(w.feed);
-  if (w.control.empty() && runs_no_gcode(machine.control))
+  if (w.control.empty() && !runs_gcode(machine.control, plugins))
     return fail("control " + machine.control +
                 " runs no part programs in G-code: enter the moves by hand (run without --out), or "
                 "name a writer with --control");

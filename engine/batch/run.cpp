@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one run, in the order of its steps.
 #include "batch/run.h"
 
 #include <algorithm>

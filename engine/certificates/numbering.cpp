@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one protocol, draw to issue; its steps are only right in their order.
 #include "certificates/numbering.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one database: its entries, numbers and issued files, and the queries of all of them.
 #include "certificates/register.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one function for each request, on the same few values.
 #include "live/calculation.h"
 
 #include <algorithm>

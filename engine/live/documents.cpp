@@ -99,7 +99,10 @@ Expected<std::string> difference(Bench& bench, const Json& request) {
 
 Expected<std::string> document(Bench& bench, const Json& request) {
   const bool page = request.at("kind") == "page";
-  const std::string output = page ? "model-html" : "pdf-report";
+  const Output* of_role =
+      bench.place->plugins.output_of(page ? Output::Role::model_page : Output::Role::report);
+  if (of_role == nullptr) return fail("no output plugin writes this document");
+  const std::string& output = of_role->info.name;
   config::Manifest& manifest = *bench.read.manifest;
   manifest.campaign.model = model_in(request);
   manifest.run.outputs = std::vector<std::string>{output};
@@ -114,7 +117,7 @@ Expected<std::string> document(Bench& bench, const Json& request) {
     if (written.plugin != output) continue;
     std::size_t k = 0;
     for (const Artifact& artifact : written.result.artifacts) {
-      // model-html writes a file for each model that could be fitted, in their order.
+      // A page of models is a file for each model that could be fitted, in their order.
       if (!page || (k < done.results.models.size() && done.results.models[k].part == wanted))
         return artifact.bytes;
       ++k;

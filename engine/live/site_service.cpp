@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of a site: verbs of this program, each as a terminal would call it; and the workbench of
 // each campaign that is open.
-// Long: each route of docs/live.md, "A site", has its few lines here.
 #include <sys/socket.h>
 #include <unistd.h>
 

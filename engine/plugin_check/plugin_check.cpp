@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one pass over a plugin; the checks of each kind are in files of their own.
 #include "plugin_check/plugin_check.h"
 
 #include <sys/resource.h>

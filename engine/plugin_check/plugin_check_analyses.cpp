@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one check after the other, each a function of its own, listed at the end.
 // Laws of analyses: what changes in the readings changes the results so, and no other way.
 #include <algorithm>
 #include <bit>

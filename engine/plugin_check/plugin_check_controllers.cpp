@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one check after the other, each a function of its own, listed at the end.
 // Laws of tables: read back as the plugin says its control reads them, they take the error away.
 #include <algorithm>
 #include <cmath>

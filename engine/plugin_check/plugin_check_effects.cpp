@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one check after the other, each a function of its own, listed at the end.
 // Laws of effects: what their columns are, and that a planted effect is found again.
 #include <algorithm>
 #include <cmath>

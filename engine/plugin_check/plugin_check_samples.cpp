@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: a function for each way to measure.
 // The samples of `nonio plugin check`: one machine with smooth errors, measured in every way.
 #include <array>
 #include <cmath>

@@ -168,7 +168,6 @@ const char* style_of(Kind kind) {
   return "fine";
 }
 
-// Long: one table, from its head to its cells.
 /// A row a machine, a cell a month: a letter beside the colour, so that no one needs the colour.
 std::string strip(const Page& page) {
   std::set<std::string> months;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one plot: marks of each kind, then the frame that they share.
 #include <algorithm>
 #include <cmath>
 #include <limits>

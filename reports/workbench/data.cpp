@@ -194,7 +194,6 @@ Kept kept_readings(const std::vector<double>& values, std::size_t most) {
   return kept;
 }
 
-// Long: one list of what the page gets, a line a column.
 std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   const ModelFit& fit = source.fit;
   const std::vector<std::size_t>& rows = kept.rows;

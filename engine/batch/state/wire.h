@@ -199,7 +199,8 @@ class Reader {
 
 NONIO_ON_THE_WIRE(Error, a, b, c, d, e)
 NONIO_ON_THE_WIRE(Number, a, b, c)
-NONIO_ON_THE_WIRE(Value, a, b, c, d, e, f)
+NONIO_ON_THE_WIRE(Followed, a, b, c, d)
+NONIO_ON_THE_WIRE(Value, a, b, c, d, e, f, g)
 NONIO_ON_THE_WIRE(Finding, a, b, c, d, e, f)
 NONIO_ON_THE_WIRE(Remark, a, b, c, d, e)
 NONIO_ON_THE_WIRE(PointTable::Column, a, b, c, d)

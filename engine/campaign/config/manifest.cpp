@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: every table of campaign.toml in the order of the file.
 #include "campaign/config/manifest.h"
 
 #include <algorithm>

@@ -142,7 +142,6 @@ std::string settings_of(const toml::table& root, std::initializer_list<const cha
 
 }  // namespace
 
-// Long: the keys of site.toml, one after the other.
 Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   auto root = parse_toml(text, file);
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});

@@ -9,6 +9,7 @@
 #include "campaign/reading/names.h"
 #include "campaign/reading/plausibility/plausibility.h"
 #include "nonio/sdk/check.h"
+#include "nonio/sdk/format.h"
 #include "nonio/sdk/statement.h"
 #include "platform/process/guarded.h"
 
@@ -41,6 +42,16 @@ double measured_length(const reading::ReadCampaign& read, const Evaluation& e,
   return most;
 }
 
+/// Of an analysis that does not state what is followed; only values in the budget will be.
+void follow_all(const std::string& plugin, const Measurement* m, Evaluation& e) {
+  for (Value& v : e.values) {
+    v.followed = {plugin + ':' + v.name, m == nullptr ? std::string() : m->axis};
+    if (m == nullptr) continue;
+    if (!m->compensation.empty()) v.followed->texts.emplace_back("compensation", m->compensation);
+    if (!m->at.empty()) v.followed->texts.emplace_back("at", positions_text(m->at));
+  }
+}
+
 /// Of one measurement, or of the campaign if there is none.
 std::optional<Results::Analysed> analysed_with(
     const Work& work, const Analysis& analysis, const Measurement* measurement,
@@ -71,6 +82,7 @@ std::optional<Results::Analysed> analysed_with(
   apply_cmc(work.campaign().laboratory, measured_length(work.read, *evaluation, measurement),
             *evaluation);
   for (Finding& f : evaluation->findings) f.measurement = id;
+  if (!analysis.states_followed) follow_all(analysis.info.name, measurement, *evaluation);
   return Results::Analysed{analysis.info.name, analysis.info.version, id, std::move(*evaluation)};
 }
 

@@ -32,13 +32,6 @@ std::string compensation_of(const Machine& machine, const Measurement& m) {
   return axis->table_on->empty() ? "off" : "on";
 }
 
-std::string joined(const std::map<std::string, double>& places) {
-  std::string out;
-  for (const auto& [axis, at] : places)
-    out += (out.empty() ? "" : " ") + axis + '=' + short_text(printed(at, Quantity::length), 9);
-  return out;
-}
-
 std::optional<double> mean_temperature(const Observations& o) {
   double sum = 0.0, n = 0.0;
   for (const double t : o.material)
@@ -62,7 +55,7 @@ void put_conditions(FollowedQuantity& to, const math::AxisTest& test, const Camp
                 {"to", printed(test.targets.back(), position)}};
   if (const std::string on = compensation_of(campaign.machine, m); !on.empty())
     to.texts.emplace_back("compensation", on);
-  if (!m.at.empty()) to.texts.emplace_back("at", joined(m.at));
+  if (!m.at.empty()) to.texts.emplace_back("at", positions_text(m.at));
   if (!m.lateral.empty()) to.texts.emplace_back("across", m.lateral);
 }
 
@@ -101,110 +94,23 @@ std::optional<FollowedGroup> of_axis(const reading::ReadCampaign& read, std::siz
   return out;
 }
 
-/// Names of values of other analyses that are followed, and under which name and axis.
-struct Named {
-  std::string name, axis;
-};
-
-/// Of a circle: another way to measure, so another quantity beside that of axis runs and diagonals.
-/// What is not linear in the readings (G, H, F, amplitudes, spikes) is none of them.
-std::optional<Named> named_of_circle(const std::string& value, const Measurement& m) {
-  std::string plane;
-  for (const char letter : {'X', 'Y', 'Z'})
-    for (const auto& [axis, at] : m.from)
-      if (axis.front() == letter) plane += letter;
-  if (value == "scale_mismatch" || value == "servo_mismatch")
-    return Named{value + ':' + plane, plane};
-  if (value == "D") return Named{"radius:" + plane, plane};
-  if (value.size() == 3 && value[1] == '0') return Named{"squareness:" + plane + ".circle", plane};
-  if (value.starts_with("bow_")) return Named{"bow:" + value.substr(4), value.substr(6)};
-  for (const auto& [begin, name] :
-       {std::pair("B_", "B_circle"), std::pair("lateral_", "lateral"),
-        std::pair("cyclicCos_", "cyclic_circle_cos"), std::pair("cyclicSin_", "cyclic_circle_sin")})
-    if (value.starts_with(begin)) return Named{name, value.substr(std::string(begin).size())};
-  return std::nullopt;
-}
-
-/// Of two rotary axes in one chain: lines with both at 0, from other positions than those of one axis
-/// alone, so beside them. What both have is called by both.
-std::optional<Named> named_of_chain(const Results::Analysed& a, const std::string& value) {
-  if (value == "distance" || value == "angle") {
-    std::string axes;
-    for (const Value& v : a.evaluation.values)
-      if (v.name.starts_with("direction_i_")) axes += v.name.substr(12);
-    return Named{"chain_" + value + ':' + axes, axes};
-  }
-  for (const auto& [begin, name] :
-       {std::pair("centre_x_", "chain_x"), std::pair("centre_y_", "chain_y"),
-        std::pair("centre_z_", "chain_z"), std::pair("direction_i_", "chain_i"),
-        std::pair("direction_j_", "chain_j"), std::pair("direction_k_", "chain_k")})
-    if (value.starts_with(begin)) return Named{name, value.substr(std::string(begin).size())};
-  return std::nullopt;
-}
-
-std::optional<Named> named(const Results::Analysed& a, const std::string& value,
-                           const Campaign& campaign) {
-  if (a.plugin == "rotary-chain") return named_of_chain(a, value);
-  if (a.plugin == "circle")
-    for (const Measurement& m : campaign.measurements)
-      if (m.id == a.measurement) return named_of_circle(value, m);
-  static const std::map<char, std::string> pairs{{'A', "YZ"}, {'B', "XZ"}, {'C', "XY"}};
-  if (value.size() == 3 && value[1] == '0' && pairs.contains(value[0]))
-    return Named{"squareness:" + pairs.at(value[0]), pairs.at(value[0])};
-  if (a.plugin != "rotary-kinematics") return std::nullopt;
-  for (const char* of :
-       {"centre_x", "centre_y", "centre_z", "direction_i", "direction_j", "direction_k"})
-    if (value == of)
-      for (const Measurement& m : campaign.measurements)
-        if (m.id == a.measurement) return Named{value, m.axis};
-  return std::nullopt;
-}
-
-/// Along the axis of rotation a centre is where the ball stood.
-bool is_set_up(const Results::Analysed& a, const std::string& name) {
-  static const std::map<std::string, std::string> along{
-      {"centre_x", "direction_i"}, {"centre_y", "direction_j"}, {"centre_z", "direction_k"}};
-  const std::size_t size = std::string("centre_x").size();
-  const auto direction = along.find(name.substr(0, size));
-  if (direction == along.end()) return false;
-  const std::string of = direction->second + name.substr(size);  // of a chain: and its axis
-  for (const Value& v : a.evaluation.values)
-    if (v.name == of) return std::fabs(v.value) > 0.7;
-  return true;
-}
-
-/// Circles are compared at one place, with one radius and one feed.
-void put_conditions(FollowedQuantity& to, const Campaign& campaign, const Measurement& m) {
-  if (m.kind != "circle") return;
-  std::map<std::string, double> at = m.at;
-  for (const auto& [axis, centre] : m.from) {
-    at[axis] = centre;
-    if (const auto end = m.to.find(axis); end != m.to.end() && end->second != centre)
-      to.numbers.emplace_back("radius", printed(end->second - centre, Quantity::length));
-  }
-  if (m.feed) to.numbers.emplace_back("feed", *m.feed * 60e3);  // mm/min, as the manifest has it
-  if (const std::string on = compensation_of(campaign.machine, m); !on.empty())
-    to.texts.emplace_back("compensation", on);
-  to.texts.emplace_back("at", joined(at));
-}
-
 /// Values with a budget: what the instrument has in common is in its contributions.
 std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaign& campaign) {
-  if (!a.evaluation.budget || a.plugin == "iso230-2" || a.plugin == "vdi-dgq-3441")
-    return std::nullopt;
+  if (!a.evaluation.budget) return std::nullopt;
   const UncertaintyBudget& budget = *a.evaluation.budget;
   FollowedGroup out;
   std::vector<double> variances;
   for (const Value& v : a.evaluation.values) {
-    const auto name = named(a, v.name, campaign);
     const auto result = std::find_if(budget.results.begin(), budget.results.end(),
                                      [&](const auto& r) { return r.name == v.name; });
-    if (!name || result == budget.results.end() || is_set_up(a, v.name)) continue;
+    if (!v.followed || result == budget.results.end()) continue;
     FollowedQuantity q{.measurement = a.measurement,
-                       .axis = name->axis,
-                       .name = name->name,
+                       .axis = v.followed->axis,
+                       .name = v.followed->quantity,
                        .value = v.value,
-                       .quantity = v.quantity};
+                       .quantity = v.quantity,
+                       .numbers = v.followed->numbers,
+                       .texts = v.followed->texts};
     double variance = 0.0, shared = 0.0;
     for (std::size_t i = 0; i < result->u.size(); ++i)
       (budget.contributions[i].correlation == Correlation::device ? shared : variance) +=
@@ -212,10 +118,7 @@ std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaig
     put_common(q, variance, instrument_source(campaign.instrument), std::sqrt(shared));
     q.u = std::sqrt(variance);
     for (const Measurement& m : campaign.measurements)
-      if (m.id == a.measurement) q.state = found_or_left(m), put_conditions(q, campaign, m);
-    if (const Axis* axis = campaign.machine.axis(q.axis);
-        q.name.starts_with("cyclic") && axis != nullptr && axis->screw_pitch)
-      q.numbers.emplace_back("period", printed(*axis->screw_pitch, Quantity::length));
+      if (m.id == a.measurement) q.state = found_or_left(m);
     if (q.state.empty()) q.state = "as-found";
     variances.push_back(variance);
     if (q.u > 0.0)

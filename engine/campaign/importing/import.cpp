@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one importer: what it finds, asks, and writes into a manifest.
 #include "campaign/importing/import.h"
 
 #include <algorithm>

@@ -58,6 +58,12 @@ class Plugins final : public Registry {
   const std::vector<Effect>& effects() const { return effects_; }
   const std::vector<Analysis>& analyses() const { return analyses_; }
   const std::vector<Output>& outputs() const { return outputs_; }
+  /// The first output with this role; null if there is none.
+  const Output* output_of(Output::Role role) const {
+    for (const Output& o : outputs_)
+      if (o.role == role) return &o;
+    return nullptr;
+  }
   const std::vector<Controller>& controllers() const { return controllers_; }
 
   /// Why a plugin of that name is not there, with the nearest name; of an output also among the

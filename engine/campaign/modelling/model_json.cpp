@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: three documents that share their parts.
 #include "campaign/modelling/model_json.h"
 
 #include <algorithm>
@@ -408,8 +407,8 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
     out.push_back(words.below_uncertainty(effect));
   for (std::size_t t = 0; t < fit.lost.size(); ++t)
     if (fit.lost[t] > 0) out.push_back(words.not_told(fit.terms[t].name(), fit.lost[t]));
-  if (part.part.kind == model::Part::Kind::space && model::stood_somewhere(part.part))
-    out.push_back(words.stood_somewhere());
+  if (part.part.kind == model::Part::Kind::space && model::has_unstated_position(part.part))
+    out.push_back(words.has_unstated_position());
   for (const std::string& measurement : part.part.order_assumed)
     out.push_back(words.order_assumed(measurement));
   if (!part.part.table.order_known) out.push_back(words.order_unknown());

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one finding after the other, from the numbers of the model to its words.
 #include "campaign/modelling/model_words.h"
 
 #include <algorithm>
@@ -400,7 +399,7 @@ std::string ModelWords::not_told(const std::string& effect, std::size_t paramete
               {{"effect", effect}});
 }
 
-std::string ModelWords::stood_somewhere() const { return says("stood-somewhere", {}, {}); }
+std::string ModelWords::has_unstated_position() const { return says("stood-somewhere", {}, {}); }
 
 std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartModel& part) const {
   using Zero = model::Noise::Zero;

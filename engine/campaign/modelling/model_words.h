@@ -52,7 +52,7 @@ class ModelWords {
   /// What thermal tests of the campaign state for this part, a sentence an axis.
   std::vector<std::string> time_constants(const PartModel& part, const model::Fit& fit) const;
   std::string order_unknown() const;
-  std::string stood_somewhere() const;
+  std::string has_unstated_position() const;
   std::string unmeasured(const std::string& effect) const;
   /// What the catalogue says of an effect by its kind: "is", "size", "looks", "cure"; "" if
   /// nothing.

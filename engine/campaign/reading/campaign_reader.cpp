@@ -9,7 +9,7 @@
 #include "campaign/reading/formula_copy.h"
 #include "campaign/reading/measurement_reader.h"
 #include "campaign/reading/names.h"
-#include "nonio/model/explain.h"
+#include "nonio/model/measurements.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one recursive walk through the table of keys; each method writes what another one nests.
 #include "campaign/schema/schema.h"
 
 #include <algorithm>

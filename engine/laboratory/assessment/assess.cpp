@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one night over all machines, step by step, with what is kept of each.
 #include "laboratory/assessment/assess.h"
 
 #include <sys/stat.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: all lines of one machine, which share what is known of its changes.
 #include "laboratory/assessment/lines_of_machine.h"
 
 #include <algorithm>

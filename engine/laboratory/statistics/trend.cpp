@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one search, from the first fit to what it found; its steps share the series and the shape.
 #include "laboratory/statistics/trend.h"
 
 #include <algorithm>

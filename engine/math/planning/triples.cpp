@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one search; its order, its limits and its reasons read each other.
 #include "nonio/math/triples.h"
 
 #include <algorithm>

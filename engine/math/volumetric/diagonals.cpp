@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one system of equations: unknowns, rows, solution and what is read from it.
 //
 // One least-squares problem for all readings. Every reading is a source of noise; a row is a
 // reading less positioning, so rows share sources, and their covariance is N diag(sigma^2) N'.

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "nonio/model/explain.h"
+#include "nonio/model/measurements.h"
 
 namespace nonio::model {
 

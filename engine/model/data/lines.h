@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "nonio/model/explain.h"
+#include "nonio/model/comparison.h"
 
 /// How the readings of measurements become lines of one table.
 namespace nonio::model {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "design.h"
-#include "nonio/model/explain.h"
+#include "nonio/model/comparison.h"
 #include "repeats.h"
 
 /// How the noise hangs together, from what repeats leave (docs/model.md).

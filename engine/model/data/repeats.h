@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "design.h"
-#include "nonio/model/explain.h"
+#include "nonio/model/comparison.h"
 
 namespace nonio::model {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "nonio/model/explain.h"
+#include "nonio/model/measurements.h"
 
 /// What runs of an axis take from its thermal tests.
 namespace nonio::model {

@@ -46,7 +46,6 @@ Part thinned(const Part& part, const std::vector<double>& weight) {
   return out;
 }
 
-// Long: one pass over the rows; each column is averaged into its group.
 Observations thinned(const Observations& o, const std::vector<double>& weight) {
   if (!can_be_thinned(o)) return o;
   const auto& axis = o.axes.front();

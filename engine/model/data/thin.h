@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "nonio/model/explain.h"
+#include "nonio/model/measurements.h"
 
 namespace nonio::model {
 

@@ -3,7 +3,7 @@
 
 #include "data/design.h"
 #include "data/repeats.h"
-#include "nonio/model/explain.h"
+#include "nonio/model/comparison.h"
 
 /// How what an explanation leaves scatters: what no effect can be blamed for, or named beside.
 namespace nonio::model {

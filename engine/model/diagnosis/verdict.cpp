@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one verdict; its rules are only right in their order.
 #include "verdict.h"
 
 #include <algorithm>

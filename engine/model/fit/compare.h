@@ -3,7 +3,7 @@
 
 #include "data/design.h"
 #include "data/repeats.h"
-#include "nonio/model/explain.h"
+#include "nonio/model/comparison.h"
 
 namespace nonio::model {
 

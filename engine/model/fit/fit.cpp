@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one fit: design, search of shapes, solution and its covariance.
 #include "nonio/model/fit.h"
 
 #include <algorithm>
@@ -12,7 +11,7 @@
 #include "data/whitening.h"
 #include "interpolation.h"
 #include "nonio/math/golden_section.h"
-#include "nonio/model/explain.h"
+#include "nonio/model/measurements.h"
 #include "nonio/sdk/axis_readings.h"
 #include "workbench.h"
 
@@ -396,7 +395,6 @@ void put_stated(Fit& out, const std::vector<StatedShape>& stated, const std::vec
 
 /// Covariance of the linear parameters and of the shapes that were searched, linearised: columns
 /// of the design and the derivatives by the shapes together.
-// Long: the columns of shapes, the noise and the correlation are steps on one matrix.
 void fill_covariance(Fit& out, const Observations& o, Design design, const Solution& s,
                      const std::vector<char>& searched, const Whitening& white) {
   std::vector<Index> place(out.parameters.size(), -1);         // row of the cofactor matrix

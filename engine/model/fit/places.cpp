@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one table of factors, and the cells and tests that go through it.
 #include "places.h"
 
 #include <algorithm>

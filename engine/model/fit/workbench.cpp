@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one class; its methods share the products of columns that they keep.
 #include "workbench.h"
 
 #include <algorithm>

@@ -8,7 +8,7 @@
 #include "data/noise.h"
 #include "data/repeats.h"
 #include "fit/workbench.h"
-#include "nonio/model/explain.h"
+#include "nonio/model/comparison.h"
 #include "search.h"
 
 namespace nonio::model {

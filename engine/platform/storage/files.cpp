@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: the one place of system calls on files; splitting it would share their error words.
 #include "platform/storage/files.h"
 
 #include <fcntl.h>

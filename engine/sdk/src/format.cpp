@@ -168,4 +168,12 @@ double rounded_to_places(double value, int decimals) {
   return rounded;
 }
 
+std::string positions_text(const std::map<std::string, double>& at) {
+  std::string out;
+  for (const auto& [axis, position] : at)
+    out +=
+        (out.empty() ? "" : " ") + axis + '=' + short_text(printed(position, Quantity::length), 9);
+  return out;
+}
+
 }  // namespace nonio

@@ -264,5 +264,6 @@ NONIO_PLUGIN(registry) {
             "Whether a compensation did what it should: one line before and after."};
   a.applies = applies;
   a.analyse = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

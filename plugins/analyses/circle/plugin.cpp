@@ -7,6 +7,7 @@
 #include <set>
 
 #include "causes.h"
+#include "followed.h"
 
 namespace nonio {
 namespace {
@@ -356,6 +357,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   circle_values(w);
   causes(w, {.calibrated_length = w.calibrated, .feed = in.measurement.feed});
   w.out.values.push_back({"s", w.fit.s, Quantity::deviation});
+  circle::follow(in.campaign, in.measurement, w.out);
   points(w);
   if (w.readings.missing.empty()) w.out.budget = w.budget->budget();
   return std::move(w.out);
@@ -396,5 +398,6 @@ NONIO_PLUGIN(registry) {
             nonio::options()};
   a.applies = nonio::applies;
   a.analyse = nonio::analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

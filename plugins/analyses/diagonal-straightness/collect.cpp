@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one gathering; each step refuses what a later one would rely on.
 #include <algorithm>
 #include <cmath>
 

@@ -137,6 +137,7 @@ class Report {
 
   void add_squareness() {
     value("C0Y", r_.C0Y, Quantity::small_angle, r_.u_C0Y, r_.shares_C0Y);
+    e_.values.back().followed = {"squareness:XY", "XY"};
     value("C0Y_LSQ", r_.lsq.C0Y, Quantity::small_angle, r_.lsq.u_C0Y, r_.lsq.shares_C0Y);
     if (r_.slave_shift) {
       math::Shares shares = r_.shares_C0Y;
@@ -352,5 +353,6 @@ NONIO_PLUGIN(registry) {
             options()};
   a.applies = applies;
   a.analyse = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

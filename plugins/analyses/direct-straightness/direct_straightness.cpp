@@ -180,5 +180,6 @@ NONIO_PLUGIN(registry) {
             "Straightness of a line of motion about three reference straight lines."};
   a.applies = applies;
   a.analyse = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

@@ -266,5 +266,6 @@ NONIO_PLUGIN(registry) {
               {"2002"}}}};
   a.applies = applies;
   a.analyse = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

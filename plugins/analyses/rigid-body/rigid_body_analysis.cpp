@@ -277,5 +277,6 @@ NONIO_PLUGIN(registry) {
             options(), true};
   a.applies = applies;
   a.analyse = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

@@ -205,6 +205,32 @@ void say_offset(Work& w, const Value& distance) {
         {{"one", w.chain.axes[0]}, {"other", w.chain.axes[1]}});
 }
 
+/// Both axes at 0: other lines than those of one axis alone, so their names in the history differ.
+/// Along the axis of rotation a centre is where the ball was put.
+void follow(Evaluation& e) {
+  const auto component = [&](const std::string& name) {
+    for (const Value& v : e.values)
+      if (v.name == name) return std::fabs(v.value);
+    return 1.0;
+  };
+  std::string both;
+  for (const Value& v : e.values)
+    if (v.name.starts_with("direction_i_")) both += v.name.substr(12);
+  for (Value& v : e.values) {
+    if (v.name == "distance" || v.name == "angle")
+      v.followed = {"chain_" + v.name + ':' + both, both};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string centre = std::string("centre_") + "xyz"[k] + '_',
+                        direction = std::string("direction_") + "ijk"[k] + '_';
+      if (v.name.starts_with(direction))
+        v.followed = {std::string("chain_") + "ijk"[k], v.name.substr(direction.size())};
+      if (!v.name.starts_with(centre)) continue;
+      const std::string axis = v.name.substr(centre.size());
+      if (component(direction + axis) <= 0.7) v.followed = {std::string("chain_") + "xyz"[k], axis};
+    }
+  }
+}
+
 void put_values(Work& w, math::BudgetOf& budget) {
   std::vector<std::string> withheld;
   for (const Candidate& c : candidates(w.chain, w.places, w.solved.fit)) {
@@ -319,6 +345,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   math::BudgetOf budget(w.model, w.solved.sigma, w.solved.dof, Quantity::deviation,
                         w.solved.from_readings ? "readings" : "options.rotary-chain.sigma_um");
   put_values(w, budget);
+  follow(w.out);
   say_tools(w, budget);
   put_points(w);
   if (w.model.missing.empty()) w.out.budget = budget.budget();
@@ -367,5 +394,6 @@ NONIO_PLUGIN(registry) {
             nonio::options(), true};
   a.applies = nonio::applies;
   a.analyse = nonio::analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

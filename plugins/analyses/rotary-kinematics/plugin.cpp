@@ -67,19 +67,30 @@ std::string source_of(const Wish& wish, const Judged& j) {
   return wish.sigma ? "options.rotary-kinematics.sigma_um" : "instrument.U_fixed_um";
 }
 
+/// A component of the direction from which on its centre is where the ball was put.
+constexpr double along_the_axis = 0.7;
+
 void add_values(Work& w) {
   const RotaryFit& fit = w.own.fit;
   const auto value = [&](std::string name, double v, Quantity q, double u,
                          const std::vector<double>& by) {
     w.out.values.push_back(w.budget.value(std::move(name), v, q, u, w.model.shares(by)));
   };
-  for (std::size_t i = 0; i < 3; ++i)
+  const auto follow = [&] {
+    Value& last = w.out.values.back();
+    last.followed = {last.name, w.in.measurement.axis};
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
     value(std::string("centre_") + "xyz"[i], fit.centre[i], Quantity::length, w.own.u_centre(i),
           w.by.centre[i]);
+    if (std::fabs(fit.direction[i]) <= along_the_axis) follow();
+  }
   value("radius", fit.radius, Quantity::length, w.own.u_radius(), w.by.radius);
-  for (std::size_t i = 0; i < 3; ++i)
+  for (std::size_t i = 0; i < 3; ++i) {
     value(std::string("direction_") + "ijk"[i], fit.direction[i], Quantity::number,
           w.own.u_direction(i), w.by.direction[i]);
+    follow();
+  }
   if (fit.dof == 0) return;
   // What they are: of the centres as read. Drift and shapes are in them, which no U of theirs
   // knows.
@@ -303,5 +314,6 @@ NONIO_PLUGIN(registry) {
             "Centre, direction and radius of a rotary axis from ball centres.", nonio::options()};
   a.applies = nonio::applies;
   a.analyse = nonio::analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

@@ -275,5 +275,6 @@ NONIO_PLUGIN(registry) {
             nonio::options()};
   a.applies = nonio::applies;
   a.analyse = nonio::analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

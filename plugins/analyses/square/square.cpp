@@ -90,5 +90,6 @@ NONIO_PLUGIN(registry) {
   a.info = {"square", "1.0.0", "Squareness of two axes read against the two faces of one square."};
   a.applies = applies;
   a.analyse = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

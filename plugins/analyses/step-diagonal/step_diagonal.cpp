@@ -145,13 +145,14 @@ void put_values(Work& w, const StepSolution& s, const ReadingModel& model) {
         {number("dof", s.dof, Quantity::count), number("wanted", enough_dof, Quantity::count)}));
   BudgetOf budget(model, s.u_reading, stated ? INFINITY : s.dof, Quantity::deviation,
                   stated ? "options.step-diagonal.u_reading_um" : "readings");
-  static constexpr std::array<const char*, 3> names{"C0Y", "B0Z", "A0Z"};
+  static constexpr std::array<const char*, 3> names{"C0Y", "B0Z", "A0Z"}, axes{"XY", "XZ", "YZ"};
   for (std::size_t k = 0; k < 3; ++k) {
     const Estimated& v = s.squareness[k];
     if (certain)
       w.out.values.push_back(budget.value(names[k], v.value, Quantity::small_angle, v.u, v.shares));
     else
       w.out.values.push_back({names[k], v.value, Quantity::small_angle});
+    w.out.values.back().followed = {std::string("squareness:") + axes[k], axes[k]};
   }
   for (const StepCurve& c : s.curves)
     if (!withheld(w, c)) put_curve(w, c, certain ? &budget : nullptr);
@@ -295,5 +296,6 @@ NONIO_PLUGIN(registry) {
             options()};
   a.applies = applies;
   a.analyse = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

@@ -117,5 +117,6 @@ NONIO_PLUGIN(registry) {
              incomplete_targets_option()}};
   a.applies = applies;
   a.analyse = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

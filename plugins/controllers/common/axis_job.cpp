@@ -297,7 +297,6 @@ std::optional<double> AxisJob::position_setting(std::string_view name) const {
   return value ? std::optional(*value / per_si()) : std::nullopt;
 }
 
-// Long: one list of what a job needs; each reason to leave an axis out stands where it is asked.
 Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
                                          const std::vector<std::string_view>& keys,
                                          OutputResult& result) {

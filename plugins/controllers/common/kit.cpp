@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: the steps of every table, from job to files, in the order in which they are done.
 #include "nonio/controllers/kit.h"
 
 #include <algorithm>

@@ -100,6 +100,7 @@ ControlTable skew_declared(std::string name) {
   t.name = std::move(name);
   t.rotary = false;
   t.squareness = true;
+  t.runs_gcode = false;
   t.facts = {{"formula", ControlTable::Confidence::documented,
               "x' = x - y xy - z (xz - xy yz), y' = y - z yz, of the firmware's source."},
              {"corners", ControlTable::Confidence::documented,

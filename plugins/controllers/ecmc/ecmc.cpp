@@ -18,6 +18,7 @@ ControlTable declared() {
       {"sign", Confidence::documented,
        "The sign changed in release 10.0.0: before it the value was added."},
       {"index", Confidence::documented, "The index is the encoder's reading, not corrected."}};
+  t.runs_gcode = false;
   return t;
 }
 

@@ -23,6 +23,7 @@ ControlTable declared() {
   t.facts = {{"sign", Confidence::documented, "The maker's printed numbers: motor less load."},
              {"blcomp", Confidence::documented, "Not written: DEFINE BLCOMP, other target motors."},
              {"points", Confidence::unsure, "Unsure: how many entries a motor can have."}};
+  t.runs_gcode = false;
   return t;
 }
 

@@ -20,6 +20,7 @@ ControlTable declared() {
              {"directions", Confidence::unsure,
               "Not written: a table for each direction (E_WorkDirection has names for it that were "
               "not found)."}};
+  t.runs_gcode = false;
   return t;
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: the parts of a certificate in the order of its pages.
 //
 // Blocks of the first page and the statements; clauses are those of ISO/IEC 17025:2017.
 #include <algorithm>

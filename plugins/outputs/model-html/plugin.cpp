@@ -40,6 +40,7 @@ Expected<OutputResult> write(const OutputInput& in) {
 
 NONIO_PLUGIN(registry) {
   nonio::Output output;
+  output.role = nonio::Output::Role::model_page;
   output.info = {
       "model-html",
       "1.0.0",

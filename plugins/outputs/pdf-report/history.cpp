@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one page, its words, its table and its plots.
 //
 // The page of the machine's history up to this campaign.
 #include "nonio/sdk/history.h"

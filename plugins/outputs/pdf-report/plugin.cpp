@@ -57,6 +57,7 @@ std::vector<Error> check_templates(const Templates& templates) {
 
 NONIO_PLUGIN(registry) {
   nonio::Output output;
+  output.role = nonio::Output::Role::report;
   output.info = {
       "pdf-report",
       "1.0.0",

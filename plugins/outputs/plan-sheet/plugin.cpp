@@ -296,6 +296,7 @@ std::vector<Option> options() {
 
 NONIO_PLUGIN(registry) {
   nonio::Output output;
+  output.role = nonio::Output::Role::sheet_of_stops;
   output.info = {"plan-sheet", "1.0.0",
                  "Plans of diagonals with their stops, or the table of triples, as a PDF.",
                  nonio::plan_sheet::options(), true};

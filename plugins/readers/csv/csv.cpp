@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: the rows of an axis from the header to the last line, and which function reads which kind.
 #include "csv.h"
 
 #include <algorithm>

@@ -160,7 +160,6 @@ class GeneralLines {
 
 }  // namespace
 
-// Long: one layout, column by column, then row by row.
 Expected<Observations> read_general(const ReadInput& input) {
   const auto possible = possible_axes(input.campaign);
   std::vector<ColumnSpec> columns{{"deviation_um", Kind::number, true},

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one simulated machine and the stories that are told on it.
 #include "hidden/space.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: cases of one kind of table, on one measured volume.
 // Tables of one axis over the other, from the diagonals.
 #include <gtest/gtest.h>
 
@@ -233,7 +232,6 @@ constexpr std::array<double, 3> travel{0.8, 0.6, 0.5};
 constexpr std::size_t steps = 20;
 
 /// What the analysis of step diagonals gives of it, and the readings of all four.
-// Long: what an analysis of a volume gives, value by value.
 Bench volume(bool with_lengths) {
   Bench bench;
   machine::Errors errors = volume_errors();

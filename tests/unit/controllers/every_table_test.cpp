@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: the same questions to the table of every control.
 #include <clocale>
 #include <locale>
 #include <numbers>

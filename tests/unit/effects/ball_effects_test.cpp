@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "nonio/model/explain.h"
+#include "nonio/model/comparison.h"
 #include "space_table.h"
 
 namespace nonio::ball_effects_test {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: the same questions to every effect of one axis.
 // The effects of one axis, loaded as the program loads them.
 #include <gtest/gtest.h>
 

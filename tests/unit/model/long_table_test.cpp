@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "nonio/model/explain.h"
+#include "nonio/model/comparison.h"
 
 namespace nonio::model::long_table_test {
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "nonio/model/explain.h"
+#include "nonio/model/comparison.h"
 
 namespace nonio::model::noise_test {
 

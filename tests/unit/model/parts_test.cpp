@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: cases of one function, parts_of.
 // What of a campaign is explained together.
 #include <gtest/gtest.h>
 
@@ -8,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "nonio/model/explain.h"
+#include "nonio/model/measurements.h"
 
 namespace nonio::model::parts_test {
 
@@ -179,7 +178,7 @@ TEST(Parts, RunsOfAnAxisAreOnePartEach) {
     ASSERT_EQ(part.table.axes.size(), 1u);
     EXPECT_EQ(part.along, part.table.axes[0].position);
     EXPECT_EQ(part.way, part.table.axes[0].approach);
-    EXPECT_FALSE(stood_somewhere(part));
+    EXPECT_FALSE(has_unstated_position(part));
     expect_traceable(part, t);
   }
 }
@@ -270,7 +269,7 @@ TEST(Parts, DiagonalsAndTheirAxesAreOnePart) {
   EXPECT_EQ(part.table.axes[1].position[0], 0.5);                                // X1: at
   EXPECT_TRUE(std::isnan(part.table.axes[0].position[std::size_t{6} * stops]));  // Y: nobody said
   EXPECT_EQ(part.table.axes[0].approach[std::size_t{6} * stops], 0);
-  EXPECT_TRUE(stood_somewhere(part));
+  EXPECT_TRUE(has_unstated_position(part));
   expect_traceable(part, t);
 }
 
@@ -279,7 +278,7 @@ TEST(Parts, ThePlaceOnADiagonalIsTheWayFromItsStart) {
   t.diagonals();
   const auto parts = t.parts();
   ASSERT_EQ(names(parts), Ids{"XY"});
-  EXPECT_FALSE(stood_somewhere(parts[0]));
+  EXPECT_FALSE(has_unstated_position(parts[0]));
   for (int line = 0; line < 2; ++line)
     for (int i = 0; i < 2 * stops; ++i) {
       const auto row =

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "nonio/model/explain.h"
+#include "nonio/model/measurements.h"
 #include "nonio/sdk/axis_readings.h"
 
 namespace nonio::model::time_constant_test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "nonio/model/explain.h"
+#include "nonio/model/comparison.h"
 
 namespace nonio::model::where_test {
 namespace {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one sentence of the certificate after the other.
 //
 // What a signed paper says is so: of the method, of its departures, of the decision; and the DCC
 // says the same.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: cases of one layout, with its fixtures.
 #include "nonio/reports/document.h"
 
 #include <algorithm>

@@ -25,7 +25,6 @@ struct Said {
   double b, p, z;
 };
 
-// Long: every member of the model that a document prints, in the order of the struct.
 inline ModelFit made_model(const MadeModel& made = {}) {
   const double um = made.rotary ? 1.0 / arcsec_per_rad : 1e-6;
   const double length = made.rotary ? 2 * std::numbers::pi : 1.6;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: cases of one document, with its fixtures.
 #include <algorithm>
 
 #include "fixtures.h"

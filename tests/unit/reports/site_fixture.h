@@ -86,7 +86,6 @@ inline MachineHistory made_machine(const std::string& id) {
   return m;
 }
 
-// Long: every member of a history that a page prints.
 inline SiteHistory made_site() {
   SiteHistory site{.night = 12,
                    .campaigns = 510,

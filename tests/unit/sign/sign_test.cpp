@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: cases of one library, on keys that are made once.
 #include <gtest/gtest.h>
 
 #include "authority.h"

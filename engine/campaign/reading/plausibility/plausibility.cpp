@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one check after the other, each a function of its own, on the same readings.
 #include "campaign/reading/plausibility/plausibility.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one document; its elements stand in the order of the schema.
 //
 // PTB's schema 3.3.0; the order of elements is the schema's. Words of the templates carry their
 // language; names, symbols and what the manifest says carry none.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one figure after the other, each a function of its own, with the same points.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: headings and sentences of every kind of measurement.
 #include "pages.h"
 
 #include <algorithm>
@@ -294,7 +293,6 @@ std::vector<Measured> measured(const OutputInput& in) {
   return out;
 }
 
-// Long: one list of texts, a line a text.
 Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
   const Machine& m = c.machine;
   const Instrument& i = c.instrument;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: the tables of results in the order of the pages.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -185,7 +185,6 @@ Curve table_of(const std::map<double, double>& mean, double q, std::mt19937& rng
   return [=](double at) { return line(points, entries, at); };
 }
 
-// Long: one campaign, and what seven things do to it.
 // Tables have points and entries of their own, and some are made from other readings.
 TEST(BeforeAfter, KnowsWhatTablesOfOtherPointsDid) {
   std::cout << "seed " << seed << "\n";

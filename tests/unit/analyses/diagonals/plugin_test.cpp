@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: cases of one plugin on one exact machine.
 // The plugin as it was built, on campaigns of the exact machine.
 #include "nonio/sdk/plugin.h"
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: one set-up of balls and squares, and all that is asked of it.
 //
 // Balls of artefacts and squares in the fit of all errors, against the exact machine.
 #include <gtest/gtest.h>

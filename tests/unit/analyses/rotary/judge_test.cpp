@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: cases of one judgement, with its fixtures.
 //
 // What the plugin says of good and bad measurements.
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: cases of one plugin, with its fixtures.
 // The analysis step-diagonal from files to findings: what it gives, and what it refuses.
 #include <cstdio>
 #include <cstdlib>

@@ -93,7 +93,6 @@ class KeptMachinesTest : public ::testing::Test {
   std::uint64_t night_ = 1;
 };
 
-// Long: one laboratory over many nights, each held against one without what was kept.
 TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
   constexpr std::uint64_t seed = 1923;
   std::cout << "seed " << seed << '\n';

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: a test a kind of line, over one made laboratory.
 #include "laboratory/assessment/lines.h"
 
 #include <gtest/gtest.h>
@@ -729,7 +728,6 @@ Templates words_of(const std::string& language) {
   return out;
 }
 
-// Long: one laboratory with a line of every kind.
 TEST(MorningLines, EachHasWordsInEachLanguage) {
   Laboratory lab;
   lab.tonight.vanished = {{"gone", "gone", 4, "not there"}, {"a", "a", 4, ""}, {"b", "b", 4, ""}};

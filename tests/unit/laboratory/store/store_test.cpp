@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: cases of one store, with its fixtures.
 #include "laboratory/store/store.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long: two tables of files, those that are read and those that are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>

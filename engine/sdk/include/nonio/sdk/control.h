@@ -56,6 +56,7 @@ struct ControlTable {
   bool straightness = false;   ///< an axis by the position of another
   bool squareness = false;
   bool volumetric = false;  ///< by the positions of several axes at once, or all errors in one file
+  bool runs_gcode = true;   ///< takes part programs in G-code
   std::string backlash;     ///< the parameter of lost motion; empty: none beside these tables
   std::vector<Fact> facts{};
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -58,6 +59,8 @@ std::optional<RoundedResult> rounded_result(double value, double U);
 /// With about `significant` digits, without an exponent from 1e-4 to 1e9. Empty if it is not
 /// finite.
 std::string short_text(double value, int significant = 3);
+/// Positions of axes, in m, as "X=400 Y=300" in mm.
+std::string positions_text(const std::map<std::string, double>& at);
 
 /// To 12 significant digits, half to even of its exact binary value; never -0.
 double rounded_by_digits(double value);

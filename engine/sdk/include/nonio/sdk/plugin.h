@@ -146,6 +146,10 @@ struct Analysis {
   Expected<Evaluation> (*analyse)(const AnalysisInput&) = nullptr;
   /// In place of these two: once, of the campaign as a whole (a plan needs no measurement).
   Expected<Evaluation> (*analyse_campaign)(const CampaignInput&) = nullptr;
+  /// Whether its values state what of them is followed over the years (`Value::followed`). If not,
+  /// each value whose uncertainty is in the budget is followed, as "<plugin>:<value>" of the
+  /// measurement's axis.
+  bool states_followed = false;
 };
 
 struct OutputInput {
@@ -173,7 +177,10 @@ struct Output {
     /// anew.
     std::vector<std::string> (*missing_requirements)(const OutputInput&) = nullptr;
   };
+  /// What the program writes with it where it has a document of this kind to show or to print.
+  enum class Role { other, report, model_page, sheet_of_stops };
   Info info;
+  Role role = Role::other;
   bool (*applies)(const Campaign&) = nullptr;
   Expected<OutputResult> (*write)(const OutputInput&) = nullptr;
   /// Optional: called once in a run, before any campaign, to pay for what all documents share
@@ -232,7 +239,7 @@ class Registry {
 };
 
 /// The version of this interface: the one place that it stands in.
-#define NONIO_SDK_VERSION 14
+#define NONIO_SDK_VERSION 15
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)

@@ -21,6 +21,16 @@ struct Number {
 };
 
 /// A result. What cannot be given is absent from the list, and a finding says why.
+/// What of a value is followed over the campaigns of its machine. Only values that are linear in
+/// the readings can be: a largest deviation grows with the number of runs.
+struct Followed {
+  std::string quantity;  ///< its name in the history: "squareness:XY"
+  std::string axis;      ///< of the control; of a plane or pair both, "XY"
+  /// What campaigns must have alike to be compared; numbers in the units that are printed.
+  std::vector<std::pair<std::string, double>> numbers{};
+  std::vector<std::pair<std::string, std::string>> texts{};
+};
+
 struct Value {
   std::string name;  ///< the standard's: A, R+, Ps_max
   double value = 0.0;
@@ -29,6 +39,8 @@ struct Value {
   double k = 2.0;             ///< the coverage factor of `U` or of `repeatability`
   /// Where a contribution was not stated, in place of U: the expanded scatter of the fit alone.
   std::optional<double> repeatability{};
+  /// Followed if the budget has its uncertainty; see Analysis::states_followed.
+  std::optional<Followed> followed{};
 };
 
 /// Something that the numbers mean. Its words are looked up by `id` in templates/words, with
