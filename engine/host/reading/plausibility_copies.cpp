@@ -34,7 +34,9 @@ class Copies {
                                   {"step", step_, deviation}}});
       return;
     }
-    const double pair_scatter = groups_.size() == strokes_.size() ? scatter_ : scatter_of_pairs();
+    const bool none_same = groups_.size() == strokes_.size();
+    const double of_pairs = scatter_of_pairs();
+    const double pair_scatter = none_same ? scatter_ : of_pairs;
     for (const auto& [what, same] : groups_) {
       if (same.size() < 2) continue;
       const auto n = static_cast<double>(std::get<2>(what).size());
@@ -58,7 +60,7 @@ class Copies {
                      .texts = {{"which", names}}});
       return;
     }
-    in_part(deviation, out);
+    in_part(of_pairs, deviation, out);
   }
 
  private:
@@ -119,10 +121,10 @@ class Copies {
   }
 
   /// Two passes of which more readings agree than chance allows, as they stand or but for a shift.
-  void in_part(Quantity deviation, std::vector<Finding>& out) const {
+  void in_part(double of_pairs, Quantity deviation, std::vector<Finding>& out) const {
     constexpr double chance = 1e-7, most_likely = 0.3;
     if (step_ <= 0.0 || !scatter_known_) return;
-    const double one = step_ / (std::max(scatter_of_pairs(), least_scatter_ / 3.0) * 3.5449);
+    const double one = step_ / (std::max(of_pairs, least_scatter_ / 3.0) * 3.5449);
     if (one > most_likely) return;
     const double tolerance = 0.01 * step_, log_one = std::log(one);
     const auto pairs = static_cast<double>(strokes_.size() * std::min(strokes_.size(), next));
