@@ -161,7 +161,7 @@ void implausible_passes(const Passes& passes, const Observations& o, bool with_d
   swapped(passes, deviation, out);
   if (out.size() == before) turned_passes(passes, o.angular, out);
   another_size(passes, deviation, out);
-  if (out.size() == before && o.size() <= most_sorted) implausible_halves(passes, o.angular, out);
+  if (out.size() == before) implausible_halves(passes, o.angular, out);
 }
 
 }  // namespace nonio::host::reading

@@ -67,6 +67,12 @@ const Finding* found(const std::vector<Finding>& findings, const std::string& id
   return nullptr;
 }
 
+std::vector<Finding> findings_of(const Series& series) {
+  std::vector<Finding> findings;
+  implausible_passes(passes_of(series.o), series.o, true, findings);
+  return findings;
+}
+
 TEST(RunningMean, without_a_value_it_is_the_mean_of_the_others) {
   std::mt19937 random(20261128);
   std::normal_distribution<double> noise;
@@ -93,31 +99,63 @@ TEST(RunningMean, equal_values_have_no_scatter_when_another_one_is_taken_out) {
   EXPECT_EQ(one.without(0.3).count, 0.0);
 }
 
-TEST(LongSeries, a_pass_that_is_one_row_off_is_found_among_40000) {
-  Series series(20000);
-  const Series right(20000);
+TEST(LongSeries, a_pass_that_is_one_row_off_is_found_among_16000) {
+  Series series(8000);
+  const Series right(8000);
   for (int i = 0; i < 8; ++i)
-    series.o.deviation[series.row(12345, +1, i)] = right.o.deviation[series.row(12345, +1, i + 1)];
+    series.o.deviation[series.row(4321, +1, i)] = right.o.deviation[series.row(4321, +1, i + 1)];
   std::vector<Finding> findings;
   shifted_rows(passes_of(series.o), Quantity::deviation, findings);
   ASSERT_EQ(findings.size(), 1U);
-  EXPECT_EQ(findings.front().texts.front().second, "12345 +");
+  EXPECT_EQ(findings.front().texts.front().second, "4321 +");
 }
 
-TEST(LongSeries, a_run_with_exchanged_directions_is_found_among_20000) {
-  Series series(20000);
+TEST(LongSeries, a_run_with_exchanged_directions_is_found_among_8000) {
+  Series series(8000);
   for (int i = 0; i < 9; ++i)
     std::swap(series.o.deviation[series.row(777, +1, i)],
               series.o.deviation[series.row(777, -1, i)]);
-  std::vector<Finding> findings;
-  implausible_passes(passes_of(series.o), series.o, true, findings);
+  const auto findings = findings_of(series);
   const Finding* swapped = found(findings, "plausibility.directions-swapped");
   ASSERT_NE(swapped, nullptr);
   EXPECT_EQ(swapped->evidence.front().value, 777.0);
 }
 
+TEST(LongSeries, runs_of_another_machine_are_found) {
+  Series series(8000);
+  for (std::uint32_t run = 6001; run <= 8000; ++run)
+    for (const int direction : {+1, -1})
+      for (int i = 0; i < 9; ++i)
+        series.o.deviation[series.row(run, direction, i)] += (i % 2 == 0 ? 5.0 : -5.0) * um;
+  const auto findings = findings_of(series);
+  EXPECT_NE(found(findings, "plausibility.two-curves"), nullptr);
+}
+
+TEST(LongSeries, a_pass_of_means_is_found) {
+  Series series(2000);
+  for (int i = 0; i < 9; ++i) {
+    double sum = 0.0;
+    for (std::uint32_t run = 1; run < 2000; ++run)
+      sum += series.o.deviation[series.row(run, -1, i)];
+    series.o.deviation[series.row(2000, -1, i)] = std::round(sum / 1999.0 / um * 1e3) * 1e-3 * um;
+  }
+  const auto findings = findings_of(series);
+  const Finding* means = found(findings, "plausibility.pass-of-means");
+  ASSERT_NE(means, nullptr);
+  EXPECT_EQ(means->texts.front().second, "2000 -");
+}
+
+TEST(LongSeries, a_reading_that_is_far_off_is_found) {
+  Series series(2000);
+  series.o.deviation[series.row(1234, +1, 4)] = 0.09;
+  const auto findings = findings_of(series);
+  const Finding* far = found(findings, "plausibility.reading-far-off");
+  ASSERT_NE(far, nullptr);
+  EXPECT_EQ(far->evidence.front().value, 0.09);
+}
+
 TEST(LongSeries, without_a_mistake_it_has_no_finding) {
-  const Series series(20000);
+  const Series series(8000);
   const Passes passes = passes_of(series.o);
   std::vector<Finding> findings;
   implausible_passes(passes, series.o, true, findings);
