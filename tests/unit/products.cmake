@@ -8,7 +8,7 @@ add_executable(test_engine
   live/difference_test.cpp live/events_test.cpp live/guard_test.cpp live/session_test.cpp
   campaign/modelling/model_edit_test.cpp
   campaign/evaluation/decision_test.cpp campaign/evaluation/record_test.cpp
-  campaign/loader/plugins_test.cpp campaign/reading/turned_test.cpp
+  campaign/loader/plugins_test.cpp campaign/reading/long_series_test.cpp campaign/reading/turned_test.cpp
   laboratory/store/store_test.cpp
   laboratory/assessment/changes_test.cpp laboratory/assessment/curves_test.cpp laboratory/assessment/fits_test.cpp laboratory/assessment/kept_test.cpp
   laboratory/assessment/history_so_far_test.cpp laboratory/assessment/lines_test.cpp laboratory/assessment/proposals_test.cpp laboratory/assessment/series_test.cpp laboratory/assessment/site_tables_test.cpp

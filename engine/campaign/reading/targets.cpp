@@ -56,15 +56,16 @@ std::size_t join(std::vector<double>& positions) {
   };
   for (const double x : positions)
     if (auto* group = group_of(x)) ++(*group)[x];
+  std::map<const std::map<double, std::size_t>*, double> common;
+  for (const auto& group : groups)
+    common[&group] = std::max_element(group.begin(), group.end(), [](const auto& a, const auto& b) {
+                       return a.second < b.second;
+                     })->first;
   std::size_t moved = 0;
   for (double& x : positions)
     if (const auto* group = group_of(x)) {
-      const double common =
-          std::max_element(group->begin(), group->end(), [](const auto& a, const auto& b) {
-            return a.second < b.second;
-          })->first;
-      moved += x != common ? 1 : 0;
-      x = common;
+      moved += x != common[group] ? 1 : 0;
+      x = common[group];
     }
   return moved;
 }

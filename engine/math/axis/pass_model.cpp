@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <deque>
 #include <limits>
 
 #include "nonio/math/statistics.h"
@@ -20,17 +21,42 @@ void keep_distinct(std::vector<std::uint32_t>& x) {
   x.erase(std::unique(x.begin(), x.end()), x.end());
 }
 
-std::vector<std::uint32_t> runs_of(const AxisTest& test) {
-  std::vector<std::uint32_t> runs;
-  std::size_t limit = 4096;
-  for (const auto& reading : test.readings()) {
-    if (!runs.empty() && runs.back() == reading.run) continue;
-    runs.push_back(reading.run);
-    if (runs.size() < limit) continue;
-    keep_distinct(runs);
-    limit = std::max(limit, 2 * runs.size());
+/// Finds numbers in a sorted list. The readings of a target come by run, so that the number after
+/// the last one is looked at first.
+class PlaceOfRun {
+ public:
+  explicit PlaceOfRun(const std::vector<std::uint32_t>& runs) : runs_(runs) {}
+  /// runs.size() if it is not one of them.
+  std::size_t of(std::uint32_t run) {
+    if (next_ >= runs_.size() || runs_[next_] != run)
+      next_ = static_cast<std::size_t>(std::lower_bound(runs_.begin(), runs_.end(), run) -
+                                       runs_.begin());
+    const std::size_t at = next_;
+    if (at == runs_.size() || runs_[at] != run) return runs_.size();
+    ++next_;
+    return at;
   }
-  keep_distinct(runs);
+
+ private:
+  const std::vector<std::uint32_t>& runs_;
+  std::size_t next_ = 0;
+};
+
+// Memory follows the number of runs, not of readings.
+std::vector<std::uint32_t> runs_of(const AxisTest& test) {
+  std::vector<std::uint32_t> runs, fresh;
+  const auto take_fresh = [&] {
+    runs.insert(runs.end(), fresh.begin(), fresh.end());
+    fresh.clear();
+    keep_distinct(runs);
+  };
+  PlaceOfRun place(runs);
+  for (const auto& reading : test.readings()) {
+    if (place.of(reading.run) < runs.size()) continue;
+    fresh.push_back(reading.run);
+    if (fresh.size() >= std::max<std::size_t>(4096, runs.size())) take_fresh();
+  }
+  take_fresh();
   return runs;
 }
 
@@ -40,6 +66,7 @@ void index_readings(const AxisTest& test, PassModel& m) {
     m.passes.push_back({run, false});
     m.passes.push_back({run, true});
   }
+  PlaceOfRun place(runs);
   m.pass.resize(test.readings().size());
   m.target.resize(test.readings().size());
   for (std::size_t i = 0; i < test.targets.size(); ++i)
@@ -47,8 +74,7 @@ void index_readings(const AxisTest& test, PassModel& m) {
       const auto part = minus ? test.minus(i) : test.plus(i);
       const std::size_t first = first_reading(test, i, minus);
       for (std::size_t k = 0; k < part.size(); ++k) {
-        const auto at = std::lower_bound(runs.begin(), runs.end(), part[k].run) - runs.begin();
-        m.pass[first + k] = static_cast<std::uint32_t>(2 * at + (minus ? 1 : 0));
+        m.pass[first + k] = static_cast<std::uint32_t>(2 * place.of(part[k].run) + (minus ? 1 : 0));
         m.target[first + k] = static_cast<std::uint32_t>(i);
       }
     }
@@ -189,24 +215,28 @@ struct Fitted {
 
 }  // namespace
 
-// Findings, reversal and each table ask for the fits of the same few tests: two dozen times for a campaign with two
-// analyses and four controls. So the last ones are kept, and are given again for the same bits only.
+// Findings, reversal and each table need the fits of the same few tests: 24 times for a campaign with two analyses and
+// four controls. So the last ones are kept, and are given again for the same bits only. The limit of their readings
+// bounds the memory (32 bytes a reading) that a worker keeps.
 PassModel fit_passes(const AxisTest& test, bool slopes, std::span<const std::size_t> left_out) {
-  constexpr std::size_t most_kept = 8, most_readings = 4096;
-  if (test.readings().empty() || test.readings().size() > most_readings)
-    return fitted(test, slopes, left_out);
-  thread_local std::vector<Fitted> kept;
-  thread_local std::size_t oldest = 0;
+  constexpr std::size_t most_kept = 8, most_readings = 24'000'000;
+  thread_local std::deque<Fitted> kept;  // the oldest one first
   for (const Fitted& known : kept)
     if (known.slopes == slopes && std::ranges::equal(known.left_out, left_out) &&
         same_bits(known.test, test))
       return known.model;
-  Fitted fresh{test, slopes, {left_out.begin(), left_out.end()}, fitted(test, slopes, left_out)};
-  if (kept.size() < most_kept) return kept.emplace_back(std::move(fresh)).model;
-  kept[oldest] = std::move(fresh);
-  const PassModel& model = kept[oldest].model;
-  oldest = (oldest + 1) % most_kept;
-  return model;
+  const std::size_t own = test.readings().size();
+  if (own == 0 || own > most_readings) return fitted(test, slopes, left_out);
+  std::size_t readings = own;
+  for (const Fitted& known : kept) readings += known.test.readings().size();
+  while (!kept.empty() && (kept.size() >= most_kept || readings > most_readings)) {
+    readings -= kept.front().test.readings().size();
+    kept.pop_front();
+  }
+  return kept
+      .emplace_back(
+          Fitted{test, slopes, {left_out.begin(), left_out.end()}, fitted(test, slopes, left_out)})
+      .model;
 }
 
 }  // namespace nonio::math

@@ -189,22 +189,28 @@ Worst worst_of(const Curve& c) {
   }
   double largest = -1.0;
   for (std::size_t t = 0; t < m; ++t) {
-    double vq = 0.0, vv = 0.0, rest = 0.0, others = 0.0;
-    for (std::size_t i = 1; i + 1 < m; ++i) {
-      const bool touched = i + 1 >= t && i <= t + 1;
-      const double v = touched ? w[t + 1 - i][i] : 0.0;
+    double vq = 0.0, vv = 0.0;
+    for (std::size_t i = std::max<std::size_t>(t, 2) - 1; i + 1 < m && i <= t + 1; ++i) {
+      const double v = w[t + 1 - i][i];
       vq += v * q[i], vv += v * v;
-      if (!touched) rest += q[i] * q[i], others += 1.0;
     }
     if (!(vv > 0.0) || vq * vq / vv <= largest) continue;
     largest = vq * vq / vv;
-    const double height = vq / vv;
-    const double t_value = test_ratio(height * std::sqrt(vv), std::sqrt(rest / others));
-    // Neighbouring q_i share readings: correlated by -2/3 and 1/6, so that their squares are worth
-    // 1/(1 + 2 (4/9 + 1/36)) = 18/35 of as many free ones.
-    const double dof = others * 18.0 / 35.0;
-    worst = {t, height, std::min(1.0, static_cast<double>(m) * t_two_sided(t_value, dof))};
+    worst = {t, vq / vv, 1.0};
   }
+  if (largest < 0.0) return worst;
+  double rest = 0.0, others = 0.0, vv = 0.0;
+  for (std::size_t i = 1; i + 1 < m; ++i) {
+    if (i + 1 >= worst.target && i <= worst.target + 1)
+      vv += w[worst.target + 1 - i][i] * w[worst.target + 1 - i][i];
+    else
+      rest += q[i] * q[i], others += 1.0;
+  }
+  const double t_value = test_ratio(worst.height * std::sqrt(vv), std::sqrt(rest / others));
+  // Neighbouring q_i share readings: correlated by -2/3 and 1/6, so that their squares are worth
+  // 1/(1 + 2 (4/9 + 1/36)) = 18/35 of as many free ones.
+  const double dof = others * 18.0 / 35.0;
+  worst.p = std::min(1.0, static_cast<double>(m) * t_two_sided(t_value, dof));
   return worst;
 }
 

@@ -73,9 +73,9 @@ std::optional<Unresolved> unresolved_step(const math::AxisTest& test,
         std::pair{&curve.minus, Side::minus}}) {
     std::vector<double> variance;
     for (const double x : curve.position) {
-      const auto at = std::find(test.targets.begin(), test.targets.end(), x);
+      const auto [at, after] = std::equal_range(test.targets.begin(), test.targets.end(), x);
       const auto i = static_cast<std::size_t>(at - test.targets.begin());
-      variance.push_back(at == test.targets.end() ? 0.0 : variance_at(test, i, side));
+      variance.push_back(at == after ? 0.0 : variance_at(test, i, side));
     }
     look_at(curve.position, *value, variance, resolution, test.rotary, found);
   }

@@ -34,7 +34,9 @@ class Copies {
                                   {"step", step_, deviation}}});
       return;
     }
-    const double pair_scatter = groups_.size() == strokes_.size() ? scatter_ : scatter_of_pairs();
+    const bool none_same = groups_.size() == strokes_.size();
+    const double of_pairs = scatter_of_pairs();
+    const double pair_scatter = none_same ? scatter_ : of_pairs;
     for (const auto& [what, same] : groups_) {
       if (same.size() < 2) continue;
       const auto n = static_cast<double>(std::get<2>(what).size());
@@ -58,7 +60,7 @@ class Copies {
                      .texts = {{"which", names}}});
       return;
     }
-    in_part(deviation, out);
+    in_part(of_pairs, deviation, out);
   }
 
  private:
@@ -119,10 +121,10 @@ class Copies {
   }
 
   /// Two passes of which more readings agree than chance allows, as they stand or but for a shift.
-  void in_part(Quantity deviation, std::vector<Finding>& out) const {
+  void in_part(double of_pairs, Quantity deviation, std::vector<Finding>& out) const {
     constexpr double chance = 1e-7, most_likely = 0.3;
     if (step_ <= 0.0 || !scatter_known_) return;
-    const double one = step_ / (std::max(scatter_of_pairs(), least_scatter_ / 3.0) * 3.5449);
+    const double one = step_ / (std::max(of_pairs, least_scatter_ / 3.0) * 3.5449);
     if (one > most_likely) return;
     const double tolerance = 0.01 * step_, log_one = std::log(one);
     const auto pairs = static_cast<double>(strokes_.size() * std::min(strokes_.size(), next));
@@ -232,13 +234,18 @@ bool tells(const std::vector<double>& readings, double step) {
 }
 
 /// Readings by run, direction and target.
-using Cells = std::map<std::tuple<std::uint32_t, int, double>, double>;
+using Place = std::tuple<std::uint32_t, int, double>;
+using Cells = std::vector<std::pair<Place, double>>;  // sorted
 
+/// Of repeated readings the last one.
 Cells cells_by_run(const std::vector<Stroke>& strokes) {
   Cells cells;
   for (const Stroke& s : strokes)
     for (std::size_t i = 0; i < s.target.size(); ++i)
-      cells[{s.run, s.direction, s.target[i]}] = s.deviation[i];
+      if (i + 1 == s.target.size() || s.target[i + 1] != s.target[i])
+        cells.emplace_back(Place{s.run, s.direction, s.target[i]}, s.deviation[i]);
+  std::stable_sort(cells.begin(), cells.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   return cells;
 }
 
@@ -251,13 +258,15 @@ std::optional<double> shared_readings(const Cells& one, const Cells& other) {
   std::map<double, double> first, second;
   std::set<double> values;
   double n = 0.0, same = 0.0, pairs = 0.0;
+  auto next = other.begin();
   for (const auto& [at, value] : one) {
-    const auto there = other.find(at);
-    if (there == other.end() || (value == 0.0 && there->second == 0.0)) continue;
+    while (next != other.end() && next->first < at) ++next;
+    if (next == other.end()) break;
+    if (next->first != at || (value == 0.0 && next->second == 0.0)) continue;
     n += 1.0;
     first[value] += 1.0;
-    second[there->second] += 1.0;
-    if (value != there->second) continue;
+    second[next->second] += 1.0;
+    if (value != next->second) continue;
     same += 1.0;
     values.insert(value);
   }
@@ -307,7 +316,7 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].size() == 0 || all[i].axes.empty()) continue;
     const auto& [strokes, step] = passes[i];
-    if (all[i].axes.size() == 1 && all[i].lines.size() == 1 && all[i].size() <= most_sorted)
+    if (all.size() > 1 && all[i].axes.size() == 1 && all[i].lines.size() == 1)
       cells[i] = cells_by_run(strokes);
     std::map<std::size_t, double> shared;
     for (const Stroke& s : strokes) {

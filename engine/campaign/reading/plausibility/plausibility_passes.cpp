@@ -6,6 +6,7 @@
 
 #include "campaign/reading/plausibility/plausibility.h"
 #include "campaign/reading/plausibility/plausibility_strokes.h"
+#include "campaign/reading/plausibility/running_mean.h"
 
 namespace nonio::reading {
 namespace {
@@ -32,45 +33,60 @@ void against_order(const std::vector<Stroke>& strokes, std::vector<Finding>& out
                  .texts = {{"which", name_of(*wrong.front())}}});
 }
 
-using Reversals = std::map<std::uint32_t, std::map<double, double>>;  // by run and target
+/// Of one run, by target.
+struct Reversals {
+  std::uint32_t run = 0;
+  std::vector<double> target, value;
+};
 
-Reversals reversals_of(const std::vector<Stroke>& strokes) {
+/// At the targets of both; of repeated readings the last one. Both are sorted by target.
+Reversals reversals_between(const Stroke& up, const Stroke& down) {
+  Reversals out{up.run, {}, {}};
+  const auto is_last = [](const Stroke& s, std::size_t i) {
+    return i + 1 == s.target.size() || s.target[i + 1] != s.target[i];
+  };
+  for (std::size_t i = 0, k = 0; i < up.target.size() && k < down.target.size();) {
+    if (!is_last(up, i) || up.target[i] < down.target[k]) {
+      ++i;
+    } else if (!is_last(down, k) || down.target[k] < up.target[i]) {
+      ++k;
+    } else {
+      out.target.push_back(up.target[i]);
+      out.value.push_back(up.deviation[i++] - down.deviation[k++]);
+    }
+  }
+  return out;
+}
+
+std::vector<Reversals> reversals_of(const std::vector<Stroke>& strokes) {
   std::map<std::uint32_t, const Stroke*> plus, minus;
   for (const Stroke& s : strokes) (s.direction > 0 ? plus : minus)[s.run] = &s;
-  Reversals out;
-  for (const auto& [run, up] : plus) {
-    const auto down = minus.find(run);
-    if (down == minus.end()) continue;
-    std::map<double, double> by_target;
-    for (std::size_t i = 0; i < up->target.size(); ++i) by_target[up->target[i]] = up->deviation[i];
-    for (std::size_t i = 0; i < down->second->target.size(); ++i)
-      if (const auto at = by_target.find(down->second->target[i]); at != by_target.end())
-        out[run][at->first] = at->second - down->second->deviation[i];
-  }
+  std::vector<Reversals> out;
+  for (const auto& [run, up] : plus)
+    if (const auto down = minus.find(run); down != minus.end())
+      out.push_back(reversals_between(*up, *down->second));
   return out;
 }
 
 /// A run whose reversal is that of the others with the other sign, and not a little.
 void swapped(const Passes& passes, Quantity deviation, std::vector<Finding>& out) {
-  const Reversals all = reversals_of(passes.strokes);
+  const auto all = reversals_of(passes.strokes);
   const double step = passes.step;
-  for (const auto& [run, own] : all) {
-    std::map<double, std::vector<double>> others;
-    for (const auto& [other, by_target] : all)
-      if (other != run)
-        for (const auto& [target, value] : by_target) others[target].push_back(value);
+  std::map<double, RunningMean> means;
+  for (const Reversals& own : all)
+    for (std::size_t i = 0; i < own.target.size(); ++i) means[own.target[i]].add(own.value[i]);
+  for (const Reversals& own : all) {
     double kept = 0.0, turned = 0.0, mean = 0.0, own_mean = 0.0, scatter = 0.0, freedom = 0.0;
     double n = 0.0;
-    for (const auto& [target, value] : own) {
-      const auto at = others.find(target);
-      if (at == others.end()) continue;
-      double middle = 0.0;
-      for (const double v : at->second) middle += v / static_cast<double>(at->second.size());
-      for (const double v : at->second) scatter += (v - middle) * (v - middle);
-      freedom += static_cast<double>(at->second.size()) - 1.0;
-      kept += (value - middle) * (value - middle);
-      turned += (value + middle) * (value + middle);
-      mean += middle;
+    for (std::size_t i = 0; i < own.target.size(); ++i) {
+      const double value = own.value[i];
+      const RunningMean others = means.at(own.target[i]).without(value);
+      if (others.count < 1.0) continue;
+      scatter += others.squares;
+      freedom += others.count - 1.0;
+      kept += (value - others.mean) * (value - others.mean);
+      turned += (value + others.mean) * (value + others.mean);
+      mean += others.mean;
       own_mean += value;
       n += 1.0;
     }
@@ -84,7 +100,7 @@ void swapped(const Passes& passes, Quantity deviation, std::vector<Finding>& out
       continue;
     out.push_back({.id = "plausibility.directions-swapped",
                    .attention = true,
-                   .evidence = {{"run", static_cast<double>(run), Quantity::count},
+                   .evidence = {{"run", static_cast<double>(own.run), Quantity::count},
                                 {"reversal", own_mean, deviation},
                                 {"others", mean, deviation}}});
     return;
@@ -145,7 +161,7 @@ void implausible_passes(const Passes& passes, const Observations& o, bool with_d
   swapped(passes, deviation, out);
   if (out.size() == before) turned_passes(passes, o.angular, out);
   another_size(passes, deviation, out);
-  if (out.size() == before && o.size() <= most_sorted) implausible_halves(passes, o.angular, out);
+  if (out.size() == before) implausible_halves(passes, o.angular, out);
 }
 
 }  // namespace nonio::reading

@@ -67,7 +67,7 @@ void implausible_pitch(const Campaign& c, std::vector<Finding>& out) {
 void period_against_pitch(const Axis& axis, const Observations& o, std::vector<Finding>& out) {
   constexpr std::size_t fewest_targets = 12, waves = 3;
   constexpr double chance = 1e-7, least_share = 0.3, of_finer = 0.25;
-  if (!axis.screw_pitch || axis.rotary || o.axes.size() != 1 || o.size() > most_sorted) return;
+  if (!axis.screw_pitch || axis.rotary || o.axes.size() != 1) return;
   const double pitch = *axis.screw_pitch, period = mm_per_inch * pitch;
   if (pitch <= 0.0 || 1e3 * pitch >= most_in_inch) return;
   std::map<double, std::pair<double, double>> cells;  // sum, count

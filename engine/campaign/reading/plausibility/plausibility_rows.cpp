@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pass whose readings were copied one row too high or too low.
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "campaign/reading/plausibility/plausibility_strokes.h"
+#include "campaign/reading/plausibility/running_mean.h"
 
 namespace nonio::reading {
 namespace {
@@ -15,22 +17,32 @@ struct OtherPasses {
   double variance = 0.0;
 };
 
-OtherPasses other_passes_of(const Stroke& own, const std::vector<Stroke>& all) {
-  std::map<double, std::vector<double>> at;
-  for (const Stroke& s : all)
-    if (&s != &own && s.line == own.line && s.direction == own.direction)
-      for (std::size_t i = 0; i < s.target.size(); ++i) at[s.target[i]].push_back(s.deviation[i]);
+using MeansByTarget = std::map<double, RunningMean>;
+using MeansByDirection = std::map<std::pair<std::uint32_t, int>, MeansByTarget>;  // and line
+
+MeansByDirection means_of(const std::vector<Stroke>& strokes) {
+  MeansByDirection means;
+  for (const Stroke& s : strokes) {
+    MeansByTarget& at = means[{s.line, s.direction}];
+    for (std::size_t i = 0; i < s.target.size(); ++i) at[s.target[i]].add(s.deviation[i]);
+  }
+  return means;
+}
+
+/// all: of the direction of `own`, which is a part of them.
+OtherPasses other_passes_of(const Stroke& own, const MeansByTarget& all) {
   OtherPasses out;
   double squares = 0.0, freedom = 0.0, count = 0.0, places = 0.0;
   for (const double target : own.target) {
-    const auto& v = at[target];
-    double mean = 0.0;
-    for (const double x : v) mean += x / static_cast<double>(v.size());
-    for (const double x : v) squares += (x - mean) * (x - mean);
-    out.mean.push_back(v.size() < 2 ? std::nan("") : mean);
-    if (v.size() < 2) continue;
-    freedom += static_cast<double>(v.size()) - 1.0;
-    count += static_cast<double>(v.size()), ++places;
+    RunningMean others = all.at(target);
+    const auto [from, to] = std::equal_range(own.target.begin(), own.target.end(), target);
+    for (auto i = from; i != to; ++i)
+      others = others.without(own.deviation[static_cast<std::size_t>(i - own.target.begin())]);
+    out.mean.push_back(others.count < 2.0 ? std::nan("") : others.mean);
+    squares += others.squares;
+    if (others.count < 2.0) continue;
+    freedom += others.count - 1.0;
+    count += others.count, ++places;
   }
   if (freedom > 0.0) out.variance = squares / freedom * (1.0 + places / count);
   return out;
@@ -63,8 +75,9 @@ void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>
   // Noise gives such a likelihood ratio once in e^9 passes at the most.
   constexpr double evidence = 9.0;
   constexpr std::size_t fewest = 7;
+  const MeansByDirection means = means_of(passes.strokes);
   for (const Stroke& own : passes.strokes) {
-    const OtherPasses others = other_passes_of(own, passes.strokes);
+    const OtherPasses others = other_passes_of(own, means.at({own.line, own.direction}));
     if (!(others.variance > 0.0)) continue;
     for (const int by : {1, -1}) {
       std::size_t used = 0;

@@ -41,9 +41,6 @@ std::string name_of(const Stroke& s);
 /// The line of least squares out of the values at these places.
 void take_line_out(const std::vector<double>& at, std::vector<double>& values);
 
-/// Beyond so many readings what would have to be sorted by target is not looked at.
-inline constexpr std::size_t most_sorted = 20000;
-
 /// Runs or targets of which one part is of another machine than the rest.
 void implausible_halves(const Passes& passes, bool angular, std::vector<Finding>& out);
 

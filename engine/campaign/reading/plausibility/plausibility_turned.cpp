@@ -33,11 +33,23 @@ class Curve {
       cell.squares += weight * s.deviation[i] * s.deviation[i];
     }
   }
+  /// To be called after all passes were added.
+  void sum_up() { all_ = sums(); }
+
+  /// At the targets of `s`, which is one of the passes; depth and scatter are those of all targets.
   Curve without(const Stroke& s) const {
-    Curve rest = *this;
-    rest.add(s, -1.0);
-    std::erase_if(rest.cells_, [](const auto& one) { return one.second.count < 0.5; });
-    return rest;
+    Curve own;
+    for (const double target : s.target) own.cells_[target] = cells_.at(target);
+    Sums elsewhere;
+    if (own.cells_.size() < cells_.size()) {
+      const Sums here = own.sums();
+      elsewhere = {all_.cells - here.cells, all_.count - here.count,
+                   std::max(0.0, all_.squares - here.squares), all_.freedom - here.freedom};
+    }
+    own.add(s, -1.0);
+    std::erase_if(own.cells_, [](const auto& one) { return one.second.count < 0.5; });
+    own.elsewhere_ = elsewhere;
+    return own;
   }
   template <class Visit>
   void each(const Visit& visit) const {
@@ -50,26 +62,38 @@ class Curve {
   }
   /// Readings behind a mean, at most targets.
   double depth() const {
-    double count = 0.0;
-    for (const auto& one : cells_) count += one.second.count;
-    return cells_.empty() ? 1.0 : count / static_cast<double>(cells_.size());
+    const Sums all = sums();
+    return all.cells == 0.0 ? 1.0 : all.count / all.cells;
   }
   /// Sum of squares about the means, and its degrees of freedom.
   std::pair<double, double> scatter() const {
-    double sum = 0.0, freedom = 0.0;
-    for (const auto& [target, cell] : cells_) {
-      if (cell.count < 1.5) continue;
-      sum += std::max(0.0, cell.squares - cell.sum * cell.sum / cell.count);
-      freedom += cell.count - 1.0;
-    }
-    return {sum, freedom};
+    const Sums all = sums();
+    return {all.squares, all.freedom};
   }
 
  private:
+  struct Sums {
+    double cells = 0.0, count = 0.0, squares = 0.0, freedom = 0.0;
+  };
   struct Cell {
     double count = 0.0, sum = 0.0, squares = 0.0;
   };
+
+  Sums sums() const {
+    Sums out = elsewhere_;
+    out.cells += static_cast<double>(cells_.size());
+    for (const auto& [target, cell] : cells_) {
+      out.count += cell.count;
+      if (cell.count < 1.5) continue;
+      out.squares += std::max(0.0, cell.squares - cell.sum * cell.sum / cell.count);
+      out.freedom += cell.count - 1.0;
+    }
+    return out;
+  }
+
   std::map<double, Cell> cells_;
+  Sums elsewhere_;  ///< of targets that are not in `cells_`
+  Sums all_;
 };
 
 /// What makes `one` the same curve as `other`: nothing, its other end first, its other sign.
@@ -255,6 +279,14 @@ Turned turned_direction(const Curve& minus, const Curve& plus, const Scatter& sc
   return sign ? Turned::sign : Turned::not_at_all;
 }
 
+/// The other one of two passes of a direction.
+Curve the_other(const Stroke& own, const std::vector<Stroke>& strokes) {
+  Curve other;
+  for (const Stroke& s : strokes)
+    if (&s != &own && s.direction == own.direction) other.add(s);
+  return other;
+}
+
 /// Of two passes of a direction that are opposed the one that is farther from the other direction.
 bool the_farther(const Curve& own, const Curve& other, const Curve& opposite) {
   const auto apart = [&](const Curve& one) {
@@ -285,6 +317,7 @@ void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out)
   std::map<int, Curve> by_direction;
   std::map<int, std::size_t> count;
   for (const Stroke& s : strokes) by_direction[s.direction].add(s), ++count[s.direction];
+  for (auto& one : by_direction) one.second.sum_up();
   for (const Stroke& own : strokes) {
     Curve one;
     one.add(own);
@@ -298,7 +331,7 @@ void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out)
     const Turned how = turned(one, others, scatter, step, false);
     if (how == Turned::not_at_all) continue;
     if (count[own.direction] == 2 && count.size() == 2 &&
-        !the_farther(one, others, by_direction[-own.direction]))
+        !the_farther(one, the_other(own, strokes), by_direction[-own.direction]))
       continue;
     return push_turned(how, name_of(own), out);
   }

@@ -4,9 +4,11 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "campaign/reading/plausibility/plausibility.h"
 #include "campaign/reading/plausibility/plausibility_strokes.h"
+#include "campaign/reading/plausibility/running_mean.h"
 
 namespace nonio::reading {
 namespace {
@@ -20,31 +22,45 @@ struct Grid {
   std::vector<std::vector<double>> reversal;  ///< [run][target]; empty with one direction
 };
 
+/// The last reading at each of these targets, which the pass has all.
+std::vector<double> values_at(const Stroke& s, const std::vector<double>& targets) {
+  std::vector<double> out;
+  out.reserve(targets.size());
+  std::size_t next = 0;
+  for (const double target : targets) {
+    while (next + 1 < s.target.size() && s.target[next] < target) ++next;
+    while (next + 1 < s.target.size() && s.target[next + 1] == target) ++next;
+    out.push_back(s.deviation[next]);
+  }
+  return out;
+}
+
 Grid grid_of(const std::vector<Stroke>& strokes) {
-  std::map<std::uint32_t, std::map<double, std::map<int, double>>> by_run;
-  std::set<int> directions;
   Grid grid;
+  std::map<std::uint32_t, std::size_t> place;
+  std::map<double, std::size_t> passes_with;
+  std::set<int> directions;
   for (const Stroke& s : strokes) {
-    if (!by_run.contains(s.run)) grid.runs.push_back(s.run);
+    if (place.try_emplace(s.run, place.size()).second) grid.runs.push_back(s.run);
     directions.insert(s.direction);
     for (std::size_t i = 0; i < s.target.size(); ++i)
-      by_run[s.run][s.target[i]][s.direction] = s.deviation[i];
+      if (i == 0 || s.target[i] != s.target[i - 1]) ++passes_with[s.target[i]];
   }
-  for (const auto& [target, cell] : by_run[grid.runs.front()])
-    if (std::all_of(by_run.begin(), by_run.end(), [&, at = target](const auto& run) {
-          const auto found = run.second.find(at);
-          return found != run.second.end() && found->second.size() == directions.size();
-        }))
-      grid.targets.push_back(target);
-  const bool both = directions.size() == 2;
-  for (const std::uint32_t run : grid.runs) {
-    grid.mean.emplace_back();
-    if (both) grid.reversal.emplace_back();
-    for (const double target : grid.targets) {
-      const auto& cell = by_run[run][target];
-      const double first = cell.begin()->second, last = cell.rbegin()->second;
-      grid.mean.back().push_back((first + last) / 2.0);
-      if (both) grid.reversal.back().push_back(last - first);
+  for (const auto& [target, passes] : passes_with)
+    if (passes == grid.runs.size() * directions.size()) grid.targets.push_back(target);
+  if (grid.targets.empty()) return grid;
+  std::vector<std::vector<double>> first(grid.runs.size()), last(grid.runs.size());
+  for (const Stroke& s : strokes) {
+    const auto values = values_at(s, grid.targets);
+    if (s.direction == *directions.begin()) first[place[s.run]] = values;
+    if (s.direction == *directions.rbegin()) last[place[s.run]] = values;
+  }
+  for (std::size_t r = 0; r < grid.runs.size(); ++r) {
+    auto& mean = grid.mean.emplace_back(std::move(first[r]));
+    if (directions.size() == 2) grid.reversal.push_back(last[r]);
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      if (directions.size() == 2) grid.reversal.back()[i] -= mean[i];
+      mean[i] = (mean[i] + last[r][i]) / 2.0;
     }
   }
   return grid;
@@ -73,6 +89,66 @@ struct Group {
   }
 };
 
+/// What is computed from sums may differ from what is computed directly by this share at most: where
+/// the sums find something, it is computed directly.
+constexpr double nearly = 1.0 - 1e-6;
+
+/// [k]: squares of the first k curves about their mean.
+template <class Iterator>
+std::vector<double> growing_squares(Iterator from, Iterator to) {
+  std::vector<double> out{0.0};
+  std::vector<RunningMean> means(from->size());
+  for (; from != to; ++from) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < means.size(); ++i)
+      means[i].add((*from)[i]), sum += means[i].squares;
+    out.push_back(sum);
+  }
+  return out;
+}
+
+/// For every place where the curves may be parted: whether both groups may be two curves.
+class Parted {
+ public:
+  explicit Parted(const std::vector<std::vector<double>>& curves)
+      : before_(growing_squares(curves.begin(), curves.end())),
+        behind_(growing_squares(curves.rbegin(), curves.rend())),
+        first_(curves.front().size()),
+        all_(curves.front().size()) {
+    for (const auto& curve : curves) add(curve, all_);
+  }
+
+  /// For k = 1, 2, ... in this order: takes curves[k - 1] into the first group.
+  void take(const std::vector<double>& curve) { add(curve, first_), ++taken_; }
+
+  /// skipped: the curves that belong to neither group.
+  bool may_be_two(std::span<const std::vector<double>> skipped, double least_scatter,
+                  double squares, double of_curve) const {
+    const std::size_t behind = before_.size() - 1 - taken_ - skipped.size();
+    const auto n = static_cast<double>(taken_), m = static_cast<double>(behind);
+    const double freedom = (n + m - 2.0) * (static_cast<double>(first_.size()) - 2.0);
+    const double scatter = std::max((before_[taken_] + behind_[behind]) / freedom, least_scatter);
+    double apart = 0.0, of_first = 0.0, of_rest = 0.0;
+    for (std::size_t i = 0; i < first_.size(); ++i) {
+      double rest = all_[i] - first_[i];
+      for (const auto& curve : skipped) rest -= curve[i];
+      const double a = first_[i] / n, b = rest / m;
+      apart += (a - b) * (a - b), of_first += a * a, of_rest += b * b;
+    }
+    const auto targets = static_cast<double>(first_.size());
+    return apart / targets >= nearly * squares * scatter &&
+           apart >= nearly * of_curve * std::max(of_first, of_rest);
+  }
+
+ private:
+  static void add(const std::vector<double>& curve, std::vector<double>& to) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += curve[i];
+  }
+
+  std::vector<double> before_, behind_, first_, all_;
+  std::size_t taken_ = 0;
+};
+
 /// Runs after which the curve is another one: two groups that agree each within itself, and not
 /// with one another. What drifts along one line does not count, nor does what changes little by
 /// little: then the groups scatter too (12 is the most that even steps of change give).
@@ -84,8 +160,14 @@ void two_curves(const Grid& grid, double step, Quantity deviation, std::vector<F
   for (auto& curve : curves) take_line_out(grid.targets, curve);
   const std::size_t n = curves.size();
   // A run whose rows are of both belongs to neither.
-  for (const std::size_t gap : {0U, 1U})
+  for (const std::size_t gap : {0U, 1U}) {
+    Parted parted(curves);
+    parted.take(curves.front());
     for (std::size_t k = 2; k + gap + 2 <= n; ++k) {
+      parted.take(curves[k - 1]);
+      if (!parted.may_be_two(std::span(curves).subspan(k, gap), step * step / 4.0, squares,
+                             of_curve))
+        continue;
       const Group first(curves, 0, k), rest(curves, k + gap, n);
       const double scatter = std::max(
           (first.squares + rest.squares) / (first.freedom + rest.freedom), step * step / 4.0);
@@ -100,6 +182,7 @@ void two_curves(const Grid& grid, double step, Quantity deviation, std::vector<F
                                          {"scatter", std::sqrt(scatter), deviation}},
                             .texts = {{"which", std::to_string(grid.runs[k + gap])}}});
     }
+  }
 }
 
 /// Squares that are left of the values from..to about their mean.
@@ -125,6 +208,13 @@ double jump(const Grid& grid, const std::vector<double>& curve, std::size_t at) 
   return std::fabs(curve[at] - curve[at - 1] - around * (grid.targets[at] - grid.targets[at - 1]));
 }
 
+template <class Iterator>
+std::vector<double> largest_so_far(Iterator from, Iterator to) {
+  std::vector<double> out;
+  for (; from != to; ++from) out.push_back(out.empty() ? *from : std::max(out.back(), *from));
+  return out;
+}
+
 /// A target from which on the reversal is another one, constant before it and behind it, and where
 /// the curve jumps as nowhere else.
 void two_reversals(const Grid& grid, double step, Quantity deviation, std::vector<Finding>& out) {
@@ -148,20 +238,21 @@ void two_reversals(const Grid& grid, double step, Quantity deviation, std::vecto
   std::vector<double> straight = reversal, jumping(n);
   take_line_out(grid.targets, straight);
   for (std::size_t i = 2; i + 1 < n; ++i) jumping[i] = jump(grid, curve, i);
+  const auto up_to = largest_so_far(jumping.begin(), jumping.end());
+  const auto from_end = largest_so_far(jumping.rbegin(), jumping.rend());
   for (std::size_t at = fewest_side; at + fewest_side <= n; ++at) {
+    // First, because it excludes nearly all targets without a sum over the others.
+    const double elsewhere = std::max(up_to[at - 2], from_end[n - at - 3]);
+    if (jumping[at] < jumps * elsewhere) continue;
     const double before = mean_of(reversal, 0, at), behind = mean_of(reversal, at, n);
     const double rest = about_mean(reversal, 0, at) + about_mean(reversal, at, n);
     const auto left = static_cast<double>(at), right = static_cast<double>(n - at);
     const double sigma = std::sqrt(of_mean * (1.0 / left + 1.0 / right));
     const double change = std::fabs(before - behind);
     const double largest = std::max(std::fabs(before), std::fabs(behind));
-    double elsewhere = 0.0;
-    for (std::size_t i = 2; i + 1 < n; ++i)
-      if (i + 1 < at || i > at + 1) elsewhere = std::max(elsewhere, jumping[i]);
     if (change < sigmas * sigma || change < of_reversal * largest ||
         rest > 2.5 * of_mean * (static_cast<double>(n) - 2.0) ||
-        square_mean(straight) * static_cast<double>(n) < line * rest ||
-        jumping[at] < jumps * elsewhere)
+        square_mean(straight) * static_cast<double>(n) < line * rest)
       continue;
     const Quantity position =
         deviation == Quantity::angular_deviation ? Quantity::angle : Quantity::length;

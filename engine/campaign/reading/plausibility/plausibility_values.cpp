@@ -8,6 +8,7 @@
 
 #include "campaign/reading/plausibility/plausibility.h"
 #include "campaign/reading/plausibility/plausibility_strokes.h"
+#include "campaign/reading/plausibility/running_mean.h"
 
 namespace nonio::reading {
 namespace {
@@ -50,34 +51,93 @@ Others others_of(const Stroke& own, const std::vector<Stroke>& strokes) {
   return others;
 }
 
+/// All passes of a direction that have the same targets: their sums, by which the mean of all but one
+/// of them and its scatter are known nearly.
+class Alike {
+ public:
+  void add(const Stroke& s) {
+    if (mean_.empty()) mean_.resize(s.target.size());
+    for (std::size_t i = 0; i < mean_.size(); ++i) mean_[i].add(s.deviation[i]);
+  }
+
+  /// After all of them were added.
+  void add_scatter(const Stroke& s) { squares_ += squares_of(s); }
+
+  /// Whether each reading of one of them may be the mean of those of the others within `tolerance`.
+  bool may_be_mean(const Stroke& own, double tolerance) const {
+    if (count() < 3.0) return false;
+    for (std::size_t i = 0; i < mean_.size(); ++i)
+      if (std::fabs(own.deviation[i] - mean_[i].mean) * count() / (count() - 1.0) > tolerance)
+        return false;
+    return true;
+  }
+
+  /// As Others::scatter.
+  double scatter_without(const Stroke& own) const {
+    const double others = count() - 1.0, free = static_cast<double>(mean_.size()) - 1.0;
+    const double squares = squares_ - squares_of(own) * (1.0 + 1.0 / others);
+    return std::sqrt(std::max(0.0, squares) / ((others - 1.0) * free));
+  }
+
+  double count() const { return mean_.front().count; }
+
+ private:
+  /// About the means, but for the shift of the pass.
+  double squares_of(const Stroke& s) const {
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < mean_.size(); ++i) {
+      const double off = s.deviation[i] - mean_[i].mean;
+      sum += off, squares += off * off;
+    }
+    return squares - sum * sum / static_cast<double>(mean_.size());
+  }
+
+  std::vector<RunningMean> mean_;
+  double squares_ = 0.0;
+};
+
+using ByTargets = std::map<std::tuple<std::uint32_t, int, std::vector<double>>, Alike>;
+
+ByTargets alike_of(const std::vector<Stroke>& strokes) {
+  ByTargets alike;
+  for (const Stroke& s : strokes) alike[{s.line, s.direction, s.target}].add(s);
+  for (const Stroke& s : strokes) alike[{s.line, s.direction, s.target}].add_scatter(s);
+  return alike;
+}
+
 /// A pass that is the mean of all others of its direction in every digit: the last block of a
 /// spreadsheet. Each mean is met by chance with step / (s sqrt(2 pi (1 + 1/k))).
 void pass_of_means(const std::vector<Stroke>& strokes, double step, Quantity deviation,
                    std::vector<Finding>& out) {
-  constexpr double chance = 1e-7;
+  constexpr double chance = 1e-7, at_most = 1.0 + 1e-6;
   constexpr std::size_t fewest = 5;
+  const ByTargets alike = alike_of(strokes);
+  const auto by_chance = [&](double scatter, double others, std::size_t readings) {
+    const double spread = scatter * std::sqrt(2.0 * std::numbers::pi * (1.0 + 1.0 / others));
+    const double one = std::min(1.0, 1.02 * step / spread);
+    return std::pow(one, static_cast<double>(readings)) * static_cast<double>(strokes.size());
+  };
   for (const Stroke& own : strokes) {
-    if (own.target.size() < fewest) continue;
+    const std::size_t n = own.target.size();
+    if (n < fewest) continue;
+    // Directly only where the sums do not exclude it.
+    const Alike& all = alike.at({own.line, own.direction, own.target});
+    if (!all.may_be_mean(own, at_most * 0.51 * step) ||
+        by_chance(at_most * all.scatter_without(own), all.count() - 1.0, n) > chance)
+      continue;
     const Others others = others_of(own, strokes);
     if (others.mean.empty() || others.scatter <= 0.0) continue;
-    const double spread =
-        others.scatter * std::sqrt(2.0 * std::numbers::pi * (1.0 + 1.0 / others.count));
-    const double one = std::min(1.0, 1.02 * step / spread);
-    if (std::pow(one, static_cast<double>(own.target.size())) *
-            static_cast<double>(strokes.size()) >
-        chance)
-      continue;
+    if (by_chance(others.scatter, others.count, n) > chance) continue;
     bool same = true;
     for (std::size_t i = 0; i < own.deviation.size() && same; ++i)
       same = std::fabs(own.deviation[i] - others.mean[i]) <= 0.51 * step;
     if (!same) continue;
-    return out.push_back(
-        {.id = "plausibility.pass-of-means",
-         .attention = true,
-         .evidence = {{"readings", static_cast<double>(own.target.size()), Quantity::count},
-                      {"step", step, deviation},
-                      {"scatter", others.scatter, deviation}},
-         .texts = {{"which", name_of(own)}}});
+    return out.push_back({.id = "plausibility.pass-of-means",
+                          .attention = true,
+                          .evidence = {{"readings", static_cast<double>(n), Quantity::count},
+                                       {"step", step, deviation},
+                                       {"scatter", others.scatter, deviation}},
+                          .texts = {{"which", name_of(own)}}});
   }
 }
 
@@ -140,10 +200,11 @@ void far_off(const Observations& o, std::vector<Finding>& out) {
   };
   std::map<std::tuple<std::uint32_t, int, long long>, std::vector<double>> cells;
   for (std::size_t i = 0; i < o.size(); ++i) cells[at(i)].push_back(o.deviation[i]);
+  std::map<std::tuple<std::uint32_t, int, long long>, double> middles;
+  for (auto& [where, here] : cells)
+    middles[where] = here.size() < fewest_here ? middle : middle_value(std::move(here));
   for (std::size_t i = 0; i < o.size(); ++i) {
-    const auto& here = cells[at(i)];
-    const double off =
-        std::fabs(o.deviation[i] - (here.size() < fewest_here ? middle : middle_value(here)));
+    const double off = std::fabs(o.deviation[i] - middles[at(i)]);
     if (off <= (o.angular ? angle : length) || off <= ranges * range) continue;
     const Quantity deviation = o.angular ? Quantity::angular_deviation : Quantity::deviation;
     return out.push_back(
@@ -183,7 +244,7 @@ void implausible_values(const Passes& passes, const Observations& o, std::vector
   const auto& [strokes, step] = passes;
   const Quantity deviation = o.angular ? Quantity::angular_deviation : Quantity::deviation;
   targets_against_order(strokes, position_of(o.axes.front().rotary), out);
-  if (step <= 0.0 || o.size() > most_sorted) return;
+  if (step <= 0.0) return;
   far_off(o, out);
   marks(strokes, step, deviation, out);
   pass_of_means(strokes, step, deviation, out);
