@@ -9,6 +9,10 @@ step: reversal, scale, a bent stretch of the screw, scatter or the error of the 
 no polynomials: slow waves, a wave of an Abbe error, a kink, an error of the pitch. Each target of each visit is moved by a random part of a
 step of at most the offset; 0: evenly spaced targets, always the same. --quiet: without steps. FOLDER must be empty or not there.
 
+A step of a quantity is its change over the whole travel, between the visits next to it whose targets tell the quantity. Its standard
+uncertainty is that of the difference of these two visits: of their readings, and of the calibrations of a scale where the instrument
+changed. It does not contain what moved targets sample differently. At offset 0 the step is that at the targets.
+
 Prints for each offset: planted steps of which a quantity is named; quantities with a step of 3 standard uncertainties or more that are
 named; reported changes that did not happen, out of the series in the history.
 """
@@ -29,6 +33,7 @@ import truth as truths  # noqa: E402
 from parts import Noise, targets  # noqa: E402
 
 OFFSET = 0.0
+DENSE = 331  # intervals, a prime number: no pitch divides them
 
 
 class Curved(life.Axis):
@@ -48,6 +53,39 @@ def moved(seed, machine, axis, plan):
     for i in range(1, len(places)):  # neighbours at half a step may meet
         places[i] = round(max(places[i], places[i - 1] + 0.1 * (last - first) / (axis.count - 1)), 3)
     return places
+
+
+def values_of_axis(axis, m, day, without=()):
+    """Of the whole travel. What a visit's own targets make of an error between them is no value of the axis, and no step of it."""
+    first, last = axis.travel
+    places = [first + (last - first) * i / DENSE for i in range(DENSE + 1)]
+    return life.true_values(axis, life.quantities_of(axis, places), places, day, without)
+
+
+class Truth(truths.Truth):
+    """Whose steps are those of the axis, between the visits next to them whose targets tell the quantity."""
+
+    def add_changes(self, machine, axis, taken, grouped):
+        if OFFSET == 0.0:
+            return super().add_changes(machine, axis, taken, grouped)
+        own = [truths.noise_of(machine, axis, m) for _, m in taken]
+        for k, together in grouped:
+            (p, m), (q, n) = taken[k], taken[k + 1]
+            now, before = (values_of_axis(axis, n, together[-1]["day"], without) for without in ((), tuple(together)))
+            sizes = {}
+            for name, size in ((name, now[name] - before[name]) for name in now):
+                told = [[u[name] for u in part if name in u] for part in (own[k::-1], own[k + 1:])]
+                if all(told):
+                    parts = [told[0][0], told[1][0]]
+                    if name == "scale" and p.instrument.key(p.day) != q.instrument.key(q.day):
+                        parts += [i.U_per_m / 2.0 for i in (p.instrument, q.instrument)]
+                    u = math.hypot(*parts)
+                    sizes[name] = {"size": size, "u": u, "in_u": abs(size) / u, "in_u_of_levels": abs(size) / math.hypot(
+                        *(math.hypot(*part) / len(part) for part in told))}
+            self.changes.append({"machine": machine.names[0], "axis": axis.name, "kinds": [h["kind"] for h in together],
+                                 "after": p.ident, "before": q.ident, "declared": False, "compensated": False, "comparable": True,
+                                 "quantities": sizes})
+        return None
 
 
 def laboratory(seed, machines, quiet):
@@ -77,6 +115,7 @@ def one(program, folder, seed, offset, given):
     where = folder / ("%g" % offset)
     where.mkdir(parents=True)
     lab = laboratory(seed, given.machines, given.quiet)
+    truths.Truth = Truth
     truth = make_laboratory.write(lab, where / "site", lab.night)
     for change in truth["changes"]:  # other ends are what is asked about
         change["comparable"] = True

@@ -47,6 +47,11 @@ void put_fit(JsonWriter& json, const char* name, const ComparedTargets::Fit& fit
   json.begin_object();
   json.member("beyond", printed_square(fit.beyond, q));
   json.member("dof", fit.dof);
+  if (const std::size_t n = fit.residuals.size(); n > 0)
+    put_list(json, "residuals", n, [&](std::size_t i) {
+      constexpr double digits = 1e4;  // of um or arcsec
+      return std::round(printed(fit.residuals[i], q) * digits) / digits + 0.0;
+    });
   if (const std::size_t n = fit.coefficients.size(); n > 0) {
     put_list(json, "coefficients", n,
              [&](std::size_t i) { return printed(fit.coefficients[i], q); });
@@ -70,7 +75,8 @@ void put_fit(JsonWriter& json, const char* name, const ComparedTargets::Fit& fit
 ComparedTargets compared_targets(const nonio::math::AxisTest& test,
                                  const nonio::math::OtherTargets& fits) {
   const auto fit = [](const nonio::math::TargetFit& f) {
-    ComparedTargets::Fit out{f.beyond, f.dof, f.coefficients, f.covariance, f.share};
+    ComparedTargets::Fit out{f.beyond, f.dof, f.coefficients, f.covariance,
+                             f.share,  {},    f.residuals};
     for (const auto& s : f.sinusoids)
       out.sinusoids.insert(out.sinusoids.end(), {s.value, s.variance, s.share});
     return out;

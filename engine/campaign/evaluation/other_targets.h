@@ -21,6 +21,7 @@ struct ComparedTargets {
     double beyond = 0.0, dof = 0.0;
     std::vector<double> coefficients{}, covariance{}, share{};
     std::vector<double> sinusoids{};  ///< three of each: value, variance, share
+    std::vector<double> residuals{};  ///< by target
   };
 
   std::uint64_t digest = 0;  ///< of the targets, to 1 um or 0.001 deg: the same targets, the same

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <numeric>
 
 namespace nonio::assessment {
 namespace dom = simdjson::dom;
@@ -35,6 +37,7 @@ std::vector<double> whole(const std::vector<double>& upper, std::size_t n) {
 StoredFit fit_in(const dom::object& o, const char* name, const kernel::Stretch& span) {
   const dom::object fit = o[name];
   StoredFit out{fit["beyond"], fit["dof"], {span, numbers(fit, "coefficients"), {}, {}}};
+  out.residuals = numbers(fit, "residuals");
   const std::size_t n = out.curve.coefficients.size();
   out.curve.covariance = whole(numbers(fit, "upper"), n);
   out.curve.share = whole(numbers(fit, "share"), n);
@@ -88,12 +91,70 @@ double factor_of(const std::string& kind, const kernel::Stretch& over) {
   return kind == "scale" ? 2.0 * mm_per_m / over.length() : 1.0;
 }
 
+/// Fits with as many targets and columns: their residuals are compared target by target.
+using Kind = std::pair<std::size_t, double>;
+Kind kind_of(const StoredFit& f) { return {f.residuals.size(), f.dof}; }
+
 /// Variance that a machine has between its targets: of all points together, since it is the
 /// machine's. Not below 0.
 double beyond_of(const std::vector<PointTargets>& targets) {
   double sum = 0.0, dof = 0.0;
   for (const PointTargets& t : targets) sum += t.fit.dof * t.fit.beyond, dof += t.fit.dof;
   return dof > 0.0 ? std::max(0.0, sum / dof) : 0.0;
+}
+
+double of_squares(const std::vector<double>& v) {
+  return std::inner_product(v.begin(), v.end(), v.begin(), 0.0);
+}
+
+/// Half the variance of what differs between the residuals of two fits of one kind, less what the
+/// readings make. divisor: of the sum of squares; the median of chi-square over its mean where a
+/// median is wanted, else 1.
+double half_difference(const StoredFit& a, const StoredFit& b, double divisor) {
+  std::vector<double> d(a.residuals.size());
+  std::transform(a.residuals.begin(), a.residuals.end(), b.residuals.begin(), d.begin(),
+                 std::minus<>());
+  const double noise =
+      of_squares(a.residuals) + of_squares(b.residuals) - a.dof * (a.beyond + b.beyond);
+  return (of_squares(d) / divisor - noise) / (2.0 * a.dof);
+}
+
+/// A variance of few degrees of freedom, as large as makes a normal test of 1 in 2,000 what that of
+/// Student's distribution is. Source: D. L. Wallace 1959, t^2 = dof (exp(z^2/dof) - 1).
+double of_few(double variance, double dof) {
+  constexpr double z2 = 12.1;
+  return variance * dof / z2 * std::expm1(z2 / dof);
+}
+
+/// The part of it that another choice of targets draws anew, of each point: half the variance of
+/// the differences from one point to the next of its kind. Half of it is the median of all, since a
+/// change of the machine itself is in one of them, and half that to its two neighbours. `beyond` of
+/// kinds that are too few.
+std::vector<double> drawn_anew(const std::vector<PointTargets>& targets, double beyond) {
+  constexpr std::size_t fewest = 4;
+  std::map<Kind, std::vector<std::size_t>> kinds;
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    if (!targets[i].fit.residuals.empty() && targets[i].fit.dof > 0.0)
+      kinds[kind_of(targets[i].fit)].push_back(i);
+  std::vector<double> out(targets.size(), beyond);
+  for (const auto& [kind, at] : kinds) {
+    if (at.size() < fewest) continue;
+    const double dof = kind.second, median = std::pow(1.0 - 2.0 / (9.0 * dof), 3);
+    const auto half = [&](std::size_t a, std::size_t b, double divisor) {
+      return half_difference(targets[at[a]].fit, targets[at[b]].fit, divisor);
+    };
+    std::vector<double> halves;
+    for (std::size_t k = 1; k < at.size(); ++k) halves.push_back(half(k - 1, k, median));
+    const auto middle = halves.begin() + static_cast<std::ptrdiff_t>(halves.size() / 2);
+    std::nth_element(halves.begin(), middle, halves.end());
+    const double pooled = std::max(0.0, *middle), pairs = static_cast<double>(halves.size());
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const std::size_t one = k > 0 ? k - 1 : 2, other = k + 1 < at.size() ? k + 1 : k - 2;
+      const double own = std::max(0.0, half(k, one, 1.0) + half(k, other, 1.0)) / 2.0;
+      out[at[k]] = std::min(beyond, of_few((pooled + own) / 2.0, dof * (1.0 + pairs / 2.0)));
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -130,6 +191,7 @@ Compared compared(std::vector<kernel::Point> points, const std::vector<PointTarg
   const std::string kind = name_in(quantity);
   const auto degree = degree_of(kind);
   const double beyond = beyond_of(of), factor = factor_of(kind, over);
+  const std::vector<double> drawn = drawn_anew(of, beyond);
   for (std::size_t i = 0; i < of.size(); ++i) {
     kernel::Point& p = out.points[i];
     double share = of[i].share;
@@ -143,8 +205,15 @@ Compared compared(std::vector<kernel::Point> points, const std::vector<PointTarg
       const kernel::CoefficientOver& c = of[i].fit.sinusoids[*at];
       p.value = c.value, p.u = std::sqrt(c.variance + of[i].other_variance), share = c.share;
     }
-    if (beyond * share > 0.0)
-      p.common.push_back({targets_source + of[i].digest, std::sqrt(beyond * share)});
+    const double anew = drawn[i];
+    if (anew * share > 0.0)
+      p.common.push_back({targets_source + of[i].digest, std::sqrt(anew * share)});
+    if ((beyond - anew) * share > 0.0) {
+      const auto [targets_of_kind, dof] = kind_of(of[i].fit);
+      p.common.push_back({targets_source + std::to_string(targets_of_kind) + ' ' +
+                              std::to_string(std::lround(dof)),
+                          std::sqrt((beyond - anew) * share)});
+    }
   }
   return out;
 }

@@ -19,6 +19,7 @@ struct StoredFit {
   nonio::statistics::FittedCurve curve{};  ///< no coefficients: its quantities do not refer to ends
   /// Of cos and sin of each sinusoid beside it.
   std::vector<nonio::statistics::CoefficientOver> sinusoids{};
+  std::vector<double> residuals{};  ///< of the values, by target; none: not in the store
 };
 
 /// What the store has of one measurement (results.json, `other_targets`).

@@ -71,6 +71,7 @@ TargetFit fit_columns(const AxisTest& test, const RunComponents& c, const Matrix
   TargetFit out;
   out.dof = static_cast<double>(n - own.cols());
   const VectorXd rest = y - own * (rows * y);
+  out.residuals.assign(rest.begin(), rest.end());
   double noise = 0.0;
   for (Index k = 0; k < n; ++k)
     noise += variance_at(test, c, seen[static_cast<std::size_t>(k)], reversal) *

@@ -73,6 +73,7 @@ class Site:
             raise SystemExit("history: expected schema nonio-history/1, found %r" % history.get("schema"))
         self.truth, self.history = truth, history
         self.names = {name: m["machine"] for m in truth["machines"] for name in m["names"]}
+        self.days = {p["campaign"]: p["date"] for s in truth["series"] for p in s["points"]}
         self.told = {}
         for s in history.get("series", []):
             self.told.setdefault(self.names.get(s["machine"]), []).append(s)
@@ -90,7 +91,14 @@ class Site:
         return next((t for t in found if t["axis"] == s["axis"]), found[0] if found else None)
 
     def changes_at(self, machine, after, before):
-        return [c for c in self.truth["changes"] if (c["machine"], c["after"], c["before"]) == (machine, after, before)]
+        return [c for c in self.truth["changes"] if c["machine"] == machine and self.is_within(c, after, before)]
+
+    def is_within(self, c, after, before):
+        """Between these campaigns, or wider: not every campaign between them has the quantity."""
+        if (c["after"], c["before"]) == (after, before):
+            return True
+        days = [self.days.get(name) for name in (after, c["after"], c["before"], before)]
+        return None not in days and c["after"] != c["before"] and days == sorted(days)
 
     def is_real(self, s, change):
         """Something was done to this quantity within the campaigns that the change names. Of a parameter of a model (effect:axis.name),
@@ -272,7 +280,7 @@ def look_for(site, c, quantity):
         return None, "no such series"
     for s in told:
         for change in s.get("changes", []):
-            if (change["after"], change["before"]) == (c["after"], c["before"]):
+            if site.is_within(c, change["after"], change["before"]):
                 return (change, "") if change.get("cause") != "instrument" else (None, "called the instrument's")
     if any(s.get("changes") for s in told):
         return None, "another interval"

@@ -30,9 +30,9 @@ double projected(const FittedCurve& c, const Stretch& over, unsigned degree) {
 
 FittedCurve with_unit_variances(const Stretch& over, std::vector<double> coefficients) {
   const std::size_t n = coefficients.size();
-  FittedCurve out{over, std::move(coefficients), std::vector<double>(n * n, 0.0), {}};
-  for (std::size_t i = 0; i < n; ++i) out.covariance[i * n + i] = 4.0;
-  out.share = out.covariance;
+  FittedCurve out{over, std::move(coefficients), std::vector<double>(n * n, 0.0),
+                  std::vector<double>(n * n, 0.0)};
+  for (std::size_t i = 0; i < n; ++i) out.covariance[i * n + i] = 4.0, out.share[i * n + i] = 1.0;
   return out;
 }
 
@@ -47,6 +47,7 @@ TEST(Stretch, OverItsOwnStretchNothingChanges) {
     const CoefficientOver found = coefficient_over(c, c.over, k);
     EXPECT_NEAR(found.value, c.coefficients[k], 1e-13);
     EXPECT_NEAR(found.variance, 4.0, 1e-12);
+    EXPECT_NEAR(found.share, 1.0, 1e-12);
   }
 }
 

@@ -58,7 +58,8 @@ struct TargetFit {
   /// Variance of the values about the fit beyond what the readings make of it: what a machine has
   /// between its targets. Below 0 by chance; m^2 or rad^2.
   double beyond = 0.0;
-  double dof = 0.0;  ///< degrees of freedom of `beyond`
+  double dof = 0.0;                 ///< degrees of freedom of `beyond`
+  std::vector<double> residuals{};  ///< of the values, by target; m or rad
   /// Of P0 .. Pd. None of a rotary axis, whose quantities do not refer to its ends.
   std::vector<double> coefficients{};
   /// Between them, row by row: what the readings make of them, and what independent values with
