@@ -11,7 +11,7 @@
 /// order, a copy, a date. A finding that asks for attention names the numbers that betray it; no
 /// table is written and no number drawn until a person says why it may stand. One that another
 /// cause explains as well is information. Sources: none, these
-/// are orders of magnitude of machine tools and instruments (docs/wrong-inputs.md lists them).
+/// are orders of magnitude of machine tools and instruments (docs/dev/wrong-inputs.md lists them).
 namespace nonio::reading {
 
 inline constexpr std::string_view plausibility_name = "plausibility";
