@@ -122,5 +122,6 @@ NONIO_PLUGIN(registry) {
             true};
   a.applies = nonio::applies;
   a.analyse = nonio::analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }

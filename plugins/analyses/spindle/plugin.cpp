@@ -251,5 +251,6 @@ NONIO_PLUGIN(registry) {
             {}};
   a.applies = nonio::applies;
   a.analyse = nonio::analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }
