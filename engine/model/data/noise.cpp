@@ -176,25 +176,30 @@ void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<dou
   noise.u_neighbours = noise.measured / z;
 }
 
-/// Sum of squares and degrees of freedom of each target's repeats, along the axis.
+/// Sum of squares and degrees of freedom of each target's repeats, along the axis. A cell of one
+/// reading has neither: its residual is 0 whatever the noise is.
 struct TargetScatter {
   std::vector<double> at, squares, dof;
 };
 
-TargetScatter scatter_of(const Part& part, const Saturated& s, const std::vector<double>& weight,
-                         double dof) {
+TargetScatter scatter_of(const Part& part, const Repeats& repeats, const Saturated& s,
+                         const std::vector<double>& weight, double dof) {
+  std::vector<double> in_cell(repeats.cells, 0.0);
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    if (weight[i] > 0.0) in_cell[repeats.cell[i]] += 1.0;
   std::map<double, std::pair<double, double>> of;
-  double used = 0.0;
+  double repeated = 0.0;
   for (std::size_t i = 0; i < weight.size(); ++i) {
-    if (!(weight[i] > 0.0)) continue;
-    auto& [squares, n] = of[part.table.axes.front().position[i]];
-    squares += s.e[i] * s.e[i], n += 1.0, used += 1.0;
+    const double n = in_cell[repeats.cell[i]];
+    if (!(weight[i] > 0.0) || !(n > 1.0)) continue;
+    auto& [squares, more] = of[part.table.axes.front().position[i]];
+    squares += s.e[i] * s.e[i], more += 1.0 - 1.0 / n, repeated += 1.0 - 1.0 / n;
   }
   TargetScatter out;
   for (const auto& [at, sum] : of) {
     out.at.push_back(at);
     out.squares.push_back(sum.first);
-    out.dof.push_back(sum.second * dof / used);
+    out.dof.push_back(sum.second * dof / repeated);
   }
   return out;
 }
@@ -210,15 +215,15 @@ void spread_out(const Part& part, Noise& noise) {
 
 /// The stretch of targets whose scatter differs most from that of the others, if chance does not
 /// give such a one: F-test of the two variances, times the number of stretches.
-void find_stretch(const Part& part, const Saturated& s, const std::vector<double>& weight,
-                  Noise& noise) {
+void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
+                  const std::vector<double>& weight, Noise& noise) {
   constexpr std::size_t fewest = 3, most_targets = 400;
   // docs/dev/constants.md, M26.
   constexpr double least_ratio = 1.5, by_chance = 0.005;
   const double rho2 = noise.in_repeats * noise.in_repeats;
   const double independent = (1.0 - rho2) / (1.0 + rho2);  // squares of neighbours go together
   if (part.kind != Part::Kind::axis || !(s.dof >= 2.0 * least_dof)) return;
-  const TargetScatter scatter = scatter_of(part, s, weight, s.dof * independent);
+  const TargetScatter scatter = scatter_of(part, repeats, s, weight, s.dof * independent);
   const std::size_t targets = scatter.at.size();
   if (targets < 2 * fewest || targets > most_targets) return;
   std::vector<double> squares(targets + 1, 0.0), dof(targets + 1, 0.0);
@@ -252,9 +257,9 @@ void find_stretch(const Part& part, const Saturated& s, const std::vector<double
 }
 
 /// Inside and outside of a known stretch anew, from what is left with their weights.
-void measure_stretch(const Part& part, const Saturated& s, const std::vector<double>& weight,
-                     Noise& noise) {
-  const TargetScatter scatter = scatter_of(part, s, weight, s.dof);
+void measure_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
+                     const std::vector<double>& weight, Noise& noise) {
+  const TargetScatter scatter = scatter_of(part, repeats, s, weight, s.dof);
   double in = 0.0, f = 0.0, out = 0.0, g = 0.0;
   for (std::size_t k = 0; k < scatter.at.size(); ++k) {
     const bool inside = scatter.at[k] >= noise.stretch->from && scatter.at[k] <= noise.stretch->to;
@@ -301,13 +306,13 @@ Noise noise_of(const Part& part, const Repeats& repeats, const std::vector<doubl
   noise.digit = digit_of(part.table);
   Saturated left = saturate(repeats, part.table.deviation, weight);
   find_neighbours(repeats, left, weight, noise);
-  find_stretch(part, left, weight, noise);
+  find_stretch(part, repeats, left, weight, noise);
   if (!noise.stretch) return noise;
   std::vector<double> with = with_scatter(weight, noise);
   // What a pass shares carries scatter of the stretch to the others: less with its weights.
   for (int round = 0; round < 3; ++round) {
     left = saturate(repeats, part.table.deviation, with);
-    measure_stretch(part, left, weight, noise);
+    measure_stretch(part, repeats, left, weight, noise);
     with = with_scatter(weight, noise);
   }
   left = saturate(repeats, part.table.deviation, with);

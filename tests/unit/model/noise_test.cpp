@@ -200,6 +200,34 @@ TEST(Noise, a_rough_stretch_is_found_and_weighted) {
   EXPECT_FALSE(compared(table).fit.noise.stretch);
 }
 
+/// ISO 230-2 asks for one run over a long axis and repeats over a part of it. Cells that are not
+/// repeated say nothing about the scatter.
+TEST(Noise, repeats_of_a_part_of_the_targets_give_the_scatter_of_the_readings) {
+  const std::uint64_t seed = std::random_device{}();
+  SCOPED_TRACE(seed);
+  std::mt19937_64 random(seed);
+  constexpr double scatter = 0.6e-6;
+  for (const std::size_t targets : {10, 21, 31})
+    for (const double share : {0.2, 0.35, 0.5, 0.7, 0.9})
+      for (const std::uint32_t repeats : {2U, 5U}) {
+        Table table(targets, 1 + repeats);
+        add_noise(table, 0.0, scatter, random);
+        const double half = 0.5 * share;
+        std::vector<char> kept(table.size());
+        for (std::size_t i = 0; i < table.size(); ++i)
+          kept[i] = table.part.table.run[i] == 1 || std::fabs(table.position(i) - 0.5) <= half;
+        keep_rows(table.part.table, kept);
+        const auto c = compare(table.part, {});
+        ASSERT_TRUE(c) << c.error().message;
+        if (!c->floor) continue;  // too few repeats
+        EXPECT_GT(c->floor->s, 0.2 * scatter) << targets << " targets, " << share << " of them";
+        EXPECT_LT(c->floor->s, 3.0 * scatter) << targets << " targets, " << share << " of them";
+        double largest = 0.0;
+        for (const double x : table.part.table.deviation) largest = std::max(largest, std::fabs(x));
+        EXPECT_LT(c->fit.rms, 100.0 * largest);
+      }
+}
+
 TEST(Noise, neighbours_that_are_alike_are_no_rough_stretch) {
   std::mt19937_64 random(52);  // taken for independent, a third of such tables has a stretch
   int stretches = 0;
