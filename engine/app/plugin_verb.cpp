@@ -140,9 +140,9 @@ Verb new_plugin_verb(Common& common) {
   return {.name = "new",
           .summary = "Writes a plugin folder that builds, has tests, and works",
           .arguments = joined(
-              {required(offering(
-                   {"reader", "analysis", "effect", "output", "controller"},
-                   {"KIND", &options->kind, "reader, analysis, effect, output or controller"})),
+              {required(offering({"method", "reader", "analysis", "effect", "output", "controller"},
+                                 {"KIND", &options->kind,
+                                  "method, reader, analysis, effect, output or controller"})),
                required({"NAME", &options->name, "Small letters, digits and '-'"}),
                takes(Argument::Takes::folder,
                      {"--out", &options->out, "The folder; it must not exist (default: NAME)"})},

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "campaign/loader/plugins.h"
+#include "nonio/sdk/method.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -16,6 +17,7 @@ Json option_json(const Option& o) {
   std::visit([&](const auto& v) { json["default"] = v; }, o.default_value);
   if (!o.unit.empty()) json["unit"] = o.unit;
   if (!o.choices.empty()) json["choices"] = o.choices;
+  if (o.required) json["required"] = true;
   json["help"] = o.help;
   return json;
 }
@@ -23,10 +25,12 @@ Json option_json(const Option& o) {
 struct Listed {
   const char* kind;
   const Info* info;
+  const Method* method = nullptr;
 };
 
 std::vector<Listed> all_of(const loader::Plugins& plugins) {
   std::vector<Listed> all;
+  for (const auto& p : plugins.methods()) all.push_back({"method", &p.info, &p});
   for (const auto& p : plugins.readers()) all.push_back({"reader", &p.info});
   for (const auto& p : plugins.effects()) all.push_back({"effect", &p.info});
   for (const auto& p : plugins.analyses()) all.push_back({"analysis", &p.info});
@@ -51,6 +55,11 @@ void print_plugins_json(const loader::Plugins& plugins) {
                    {"summary", p.info->summary},
                    {"on_request", p.info->opt_in},
                    {"options", std::move(options)}});
+    if (p.method == nullptr) continue;
+    Json columns = Json::array();
+    for (const Method::Column& c : p.method->columns)
+      columns.push_back({{"name", name_in_file(c)}, {"required", c.required}, {"help", c.help}});
+    all.back()["columns"] = std::move(columns);
   }
   std::cout << Json{{"abi", NONIO_ABI_TAG},
                     {"files", std::move(files)},
@@ -65,9 +74,15 @@ void print_plugins(const loader::Plugins& plugins, bool with_options) {
               << (p.info->opt_in ? " (on request)" : "") << "\n    " << p.info->summary << "\n";
     if (with_options)
       for (const Option& o : p.info->options)
-        std::cout << "    [options." << p.info->name << "] " << o.name << " = "
-                  << option_json(o)["default"].dump() << (o.unit.empty() ? "" : " " + o.unit)
-                  << "\n        " << o.help << "\n";
+        std::cout << "    "
+                  << (p.method != nullptr ? "[[measurement]]" : "[options." + p.info->name + "]")
+                  << " " << o.name
+                  << (o.required ? " (required)" : " = " + option_json(o)["default"].dump())
+                  << (o.unit.empty() ? "" : " " + o.unit) << "\n        " << o.help << "\n";
+    if (!with_options || p.method == nullptr) continue;
+    for (const Method::Column& c : p.method->columns)
+      std::cout << "    column " << name_in_file(c) << (c.required ? "" : " (optional)")
+                << "\n        " << c.help << "\n";
   }
   std::cout << "\nfiles (ABI " << NONIO_ABI_TAG << ")\n";
   for (const loader::PluginFile& f : plugins.files())

@@ -41,7 +41,7 @@ std::string holds_nothing(const fs::path& folder) {
 std::string id_of_campaign(const fs::path& folder) {
   std::string id;
   if (const auto text = storage::read_file(folder / config::manifest_name)) {
-    const auto manifest = config::parse_manifest(*text, config::manifest_name);
+    const auto manifest = config::parse_without_methods(*text, config::manifest_name);
     id = manifest ? manifest->campaign.id : config::extract_id(*text);
   }
   return id.empty() ? fs::absolute(folder).lexically_normal().filename().string() : id;

@@ -44,7 +44,8 @@ int simulate(const SimulateWish& w, const Common& common) {
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
-  const auto made = simulation::simulate(*text, w.specification, plugins.effects());
+  const auto made =
+      simulation::simulate(*text, w.specification, plugins.effects(), plugins.methods());
   if (!made) {
     for (const Error& e : made.error())
       complain(verb,

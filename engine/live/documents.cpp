@@ -84,7 +84,8 @@ Expected<std::string> difference(Bench& bench, const Json& request) {
   Json out = {{"manifest_sha256", digest},
               {"changed_on_disk", digest != bench.read.inputs.front().second},
               {"diff", ""}};
-  if (const auto manifest = config::parse_manifest(*text, config::manifest_name))
+  if (const auto manifest = config::parse_manifest(*text, config::manifest_name,
+                                                   bench.place->context.plugins->methods()))
     out["on_disk"] = manifest->campaign.model;
   else
     out["on_disk_error"] = manifest.error().front().message;

@@ -52,11 +52,13 @@ constexpr const char* of_files[][2] = {
 
 /// All that one file registers.
 struct Brought final : Registry {
+  std::vector<Method> methods;
   std::vector<Reader> readers;
   std::vector<Effect> effects;
   std::vector<Analysis> analyses;
   std::vector<Output> outputs;
   std::vector<Controller> controllers;
+  void add(Method m) override { methods.push_back(std::move(m)); }
   void add(Reader r) override { readers.push_back(std::move(r)); }
   void add(Effect e) override { effects.push_back(std::move(e)); }
   void add(Analysis a) override { analyses.push_back(std::move(a)); }
@@ -177,7 +179,7 @@ class Checker {
     if (!loads) return;
     run("", "symbols", [&](Bench&) { return symbols(); });
     if (!cases_.empty()) run("", "cases", [&](Bench&) { return open_cases(); });
-    std::size_t at[5] = {};
+    std::size_t at[6] = {};
     for (std::size_t i = 0; i < list.size();) {
       const std::size_t end = std::min(list.find('\n', i), list.size());
       check_plugin(list.substr(i, end - i), at);
@@ -194,7 +196,7 @@ class Checker {
       made.sources = kit::made_sources(number);
       // a reader that is being checked need not know the samples that are made for the program's
       for (const kit::Source& s : made.sources)
-        if (auto sample = kit::open_source(s, own_.readers()))
+        if (auto sample = kit::open_source(s, own_.readers(), own_.methods()))
           made.samples.push_back(std::move(*sample));
     }
     bench_.seed = number;
@@ -212,10 +214,12 @@ class Checker {
   }
 
   /// A line of `load`: "reader csv". Of each kind the plugins are counted.
-  void check_plugin(const std::string& plugin, std::size_t (&at)[5]) {
+  void check_plugin(const std::string& plugin, std::size_t (&at)[6]) {
     hung_ = 0;
     const std::string kind = plugin.substr(0, plugin.find(' '));
-    if (kind == "reader") {
+    if (kind == "method") {
+      run_all(plugin, kit::method_checks(), &Brought::methods, at[5]++);
+    } else if (kind == "reader") {
       run_all(plugin, kit::reader_checks(), &Brought::readers, at[0]++);
     } else if (kind == "effect") {
       run_all(plugin, kit::effect_checks(), &Brought::effects, at[1]++);
@@ -232,8 +236,10 @@ class Checker {
   void run_all(const std::string& plugin, const std::vector<kit::Check<Plugin>>& checks,
                std::vector<Plugin> Brought::*kind, std::size_t index) {
     wants_results_ = std::is_same_v<Plugin, Output> || std::is_same_v<Plugin, Controller>;
-    for (const auto& c : kit::info_checks())
+    for (const auto& c : kit::info_checks()) {
+      if (std::is_same_v<Plugin, Method> && c.name == std::string_view("options")) continue;
       run(plugin, c.name, [&](Bench& b) { return c.run((brought_.*kind)[index].info, b); });
+    }
     run_of(plugin, checks, kind, index);
     pure(plugin,
          [this, kind, index](Bench& b) { return kit::fingerprint((brought_.*kind)[index], b); });
@@ -373,6 +379,7 @@ class Checker {
   /// What every check works with, the file's own plugins among it.
   void set_up() {
     if (const auto entry = loader::open_entry(path_)) (*entry)->add_to(brought_);
+    bench_.methods = joined(brought_.methods, own_.methods());
     bench_.readers = joined(brought_.readers, own_.readers());
     bench_.effects = joined(brought_.effects, own_.effects());
     bench_.analyses = joined(brought_.analyses, own_.analyses());
@@ -382,7 +389,7 @@ class Checker {
     if (!brought_.analyses.empty() || !brought_.effects.empty())
       for (kit::Sample& s : bench_.samples) s.results.reset();  // they may say something else
     for (const kit::Source& s : cases_)
-      if (auto sample = kit::open_source(s, bench_.readers))
+      if (auto sample = kit::open_source(s, bench_.readers, bench_.methods))
         bench_.samples.push_back(std::move(*sample));
     bench_.sources.insert(bench_.sources.end(), cases_.begin(), cases_.end());
     bench_.stage("");
@@ -398,6 +405,7 @@ class Checker {
       return kit::failed("it took " + fixed_text(took, 1) + " s to load and register: expected " +
                          fixed_text(scan_seconds, 0) + " s at most");
     std::string list;
+    for (const auto& p : brought_.methods) list += "method " + p.info.name + "\n";
     for (const auto& p : brought_.readers) list += "reader " + p.info.name + "\n";
     for (const auto& p : brought_.effects) list += "effect " + p.info.name + "\n";
     for (const auto& p : brought_.analyses) list += "analysis " + p.info.name + "\n";
@@ -419,7 +427,7 @@ class Checker {
 
   Verdict open_cases() const {
     for (const kit::Source& s : cases_)
-      if (const auto sample = kit::open_source(s, bench_.readers); !sample)
+      if (const auto sample = kit::open_source(s, bench_.readers, bench_.methods); !sample)
         return kit::failed(sample.error().message);
     return kit::passed();
   }
@@ -470,6 +478,7 @@ std::vector<std::pair<std::string, std::string>> plugin_check_names() {
   std::vector<std::pair<std::string, std::string>> names;
   for (const auto& [name, law] : of_files) names.emplace_back(name, law);
   add_names(kit::info_checks(), names);
+  add_names(kit::method_checks(), names);
   add_names(kit::reader_checks(), names);
   add_names(kit::effect_checks(), names);
   add_names(kit::analysis_checks(), names);

@@ -18,20 +18,30 @@ const Artifact* file_named(const Source& source, const std::string& name) {
   return nullptr;
 }
 
-const Reader* reader_of(const Measurement& m, std::string_view bytes,
+const Reader* reader_of(const Measurement& m, const Method* method, std::string_view bytes,
                         const std::vector<Reader>& readers) {
-  for (const Reader& r : readers)
+  const Reader* of_columns = nullptr;
+  for (const Reader& r : readers) {
     if (m.reader.empty() ? r.reads(m.kind) && r.recognises(reading::head_of(bytes))
                          : r.info.name == m.reader)
       return &r;
-  return nullptr;
+    if (m.reader.empty() && reading::reads_columns_of(r, method)) of_columns = &r;
+  }
+  return of_columns;
 }
 
 }  // namespace
 
-Expected<Sample> open_source(const Source& source, const std::vector<Reader>& readers) {
+const Method* method_of(const Measurement& m, const std::vector<Method>& methods) {
+  const auto found = std::find_if(methods.begin(), methods.end(),
+                                  [&](const Method& one) { return one.info.name == m.kind; });
+  return found == methods.end() ? nullptr : &*found;
+}
+
+Expected<Sample> open_source(const Source& source, const std::vector<Reader>& readers,
+                             const std::vector<Method>& methods) {
   auto manifest =
-      config::parse_manifest(source.manifest, source.name + "/" + config::manifest_name);
+      config::parse_manifest(source.manifest, source.name + "/" + config::manifest_name, methods);
   if (!manifest) return fail(manifest.error().front());
   Sample s{source.name, std::move(manifest->campaign), std::move(manifest->options), {}};
   for (Axis& axis : s.campaign.machine.axes) {  // else no control writes a table
@@ -42,10 +52,11 @@ Expected<Sample> open_source(const Source& source, const std::vector<Reader>& re
     const std::string place = "sample " + source.name + ", " + m.file;
     const Artifact* file = file_named(source, m.file);
     if (file == nullptr) return fail(place + ": there is no such file");
-    const Reader* reader = reader_of(m, file->bytes, readers);
+    const Method* method = method_of(m, methods);
+    const Reader* reader = reader_of(m, method, file->bytes, readers);
     if (reader == nullptr) return fail(place + ": no reader knows it");
     const Settings options = settings_for(reader->info, s);
-    auto read = reading::checked_read(*reader, {file->bytes, s.campaign, m, options});
+    auto read = reading::checked_read(*reader, {file->bytes, s.campaign, m, options, {}, method});
     if (!read) return fail(place + ": " + read.error().message);
     s.observations.push_back(std::move(*read));
   }

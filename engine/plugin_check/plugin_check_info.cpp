@@ -57,8 +57,16 @@ std::string unit_in_name(std::string_view name) {
   return {};
 }
 
-/// What is wrong with an option; empty if nothing.
-std::string wrong_option(const Option& o) {
+bool is_empty(const Setting& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return text->empty();
+  const auto* number = std::get_if<double>(&value);
+  const auto* whole = std::get_if<std::int64_t>(&value);
+  return (number != nullptr && *number == 0.0) || (whole != nullptr && *whole == 0);
+}
+
+}  // namespace
+
+std::string wrong_option(const Option& o, bool may_be_absent) {
   if (o.help.empty()) return "has no help: expected one sentence";
   const bool number = std::holds_alternative<double>(o.default_value) ||
                       std::holds_alternative<std::vector<double>>(o.default_value);
@@ -68,19 +76,22 @@ std::string wrong_option(const Option& o) {
   const double value = own.number(o.name, 0.0);
   if (!std::isfinite(value)) return "has a default that is not a number";
   if (o.min && o.max && !(*o.min <= *o.max)) return "has its least value above its most";
+  std::set<std::string> choices(o.choices.begin(), o.choices.end());
+  if (choices.size() != o.choices.size()) return "has the same choice twice";
+  if (may_be_absent && is_empty(o.default_value)) return {};
   const Info one{"x", "1", "x", {o}};
   const config::RawOptions raw{{"x", {{o.name, {o.default_value, "", 0}}}}};
   if (const auto settled = config::settle_options(one, raw, {}); !settled)
     return "has a default that it does not allow: " + settled.error().front().message;
-  std::set<std::string> choices(o.choices.begin(), o.choices.end());
-  if (choices.size() != o.choices.size()) return "has the same choice twice";
   return {};
 }
+
+namespace {
 
 Verdict check_options(const Info& info, const Bench&) {
   if (info.options.empty()) return skipped("it has no options");
   for (const Option& o : info.options)
-    if (const std::string why = wrong_option(o); !why.empty())
+    if (const std::string why = wrong_option(o, false); !why.empty())
       return failed("option " + quoted(o.name) + " " + why);
   return passed();
 }

@@ -30,6 +30,7 @@ struct ReadFile {
   std::size_t measurement = 0;
   Settings options;
   std::string bytes;
+  const Method* method = nullptr;
 
   std::string where() const {
     return "sample " + sample + ", " + campaign.measurements[measurement].file;
@@ -39,7 +40,7 @@ struct ReadFile {
 std::vector<ReadFile> files_of(const Reader& r, const Bench& bench) {
   std::vector<ReadFile> files;
   for (const Source& source : bench.sources) {
-    const auto manifest = config::parse_manifest(source.manifest, source.name);
+    const auto manifest = config::parse_manifest(source.manifest, source.name, bench.methods);
     if (!manifest) continue;
     const Campaign& c = manifest->campaign;
     for (std::size_t i = 0; i < c.measurements.size(); ++i) {
@@ -48,14 +49,16 @@ std::vector<ReadFile> files_of(const Reader& r, const Bench& bench) {
       for (const Artifact& f : source.files)
         if (f.name == m.file && (!m.reader.empty() || r.recognises(f.bytes.substr(0, 4096))))
           files.push_back({source.name, c, i,
-                           settings_for(r.info, {source.name, c, manifest->options, {}}), f.bytes});
+                           settings_for(r.info, {source.name, c, manifest->options, {}}), f.bytes,
+                           method_of(m, bench.methods)});
     }
   }
   return files;
 }
 
 Expected<Observations> read(const Reader& r, const ReadFile& f, std::string_view bytes) {
-  return r.read({bytes, f.campaign, f.campaign.measurements[f.measurement], f.options});
+  return r.read(
+      {bytes, f.campaign, f.campaign.measurements[f.measurement], f.options, {}, f.method});
 }
 
 const char* const no_file =

@@ -245,11 +245,12 @@ std::string other_columns(const Effect& e, const Effect& formula, const Observat
 
 /// formulas.toml of a case: [[model.formula]] as in a manifest, where they would be refused, since
 /// they say what an effect says.
-Expected<std::vector<Formula>> formulas_of(const Source& source) {
+Expected<std::vector<Formula>> formulas_of(const Source& source,
+                                           const std::vector<Method>& methods) {
   const Artifact* file = file_of(source, "formulas.toml");
   if (file == nullptr) return std::vector<Formula>();
-  auto manifest =
-      config::parse_manifest(source.manifest + "\n" + file->bytes, "campaign.toml, formulas.toml");
+  auto manifest = config::parse_manifest(source.manifest + "\n" + file->bytes,
+                                         "campaign.toml, formulas.toml", methods);
   if (!manifest) return fail(manifest.error().front());
   return std::move(manifest->campaign.formulas);
 }
@@ -277,7 +278,8 @@ Verdict truth(const Effect& e, const Bench& bench) {
   if (!e.columns || !e.applies) return failed("applies or columns is missing");
   for (const Sample& s : bench.samples)
     for (const Source& source : bench.sources) {
-      const auto formulas = source.name == s.name ? formulas_of(source) : std::vector<Formula>();
+      const auto formulas =
+          source.name == s.name ? formulas_of(source, bench.methods) : std::vector<Formula>();
       if (!formulas) return failed("sample " + s.name + ": " + formulas.error().message);
       for (const Formula& formula : *formulas) {
         if (formula.name != e.info.name) continue;

@@ -40,15 +40,19 @@ struct Sample {
 
 /// Campaigns of every kind of measurement, made up by the seed.
 std::vector<Source> made_sources(std::uint64_t seed);
+/// The method of a measurement; null if it is not among them.
+const Method* method_of(const Measurement& m, const std::vector<Method>& methods);
 /// With the first reader that knows each file; an error that names the sample and the file.
-Expected<Sample> open_source(const Source& source, const std::vector<Reader>& readers);
+Expected<Sample> open_source(const Source& source, const std::vector<Reader>& readers,
+                             const std::vector<Method>& methods);
 
 /// Where a check takes everything from.
 struct Bench {
   std::uint64_t seed = 1;
   std::vector<Source> sources;
   std::vector<Sample> samples;  ///< of all sources that could be read
-  std::vector<Reader> readers;  ///< the file's own, then the program's
+  std::vector<Method> methods;  ///< the file's own, then the program's
+  std::vector<Reader> readers;
   std::vector<Effect> effects;
   std::vector<Analysis> analyses;
   Templates templates;
@@ -78,6 +82,7 @@ struct Check {
 };
 
 const std::vector<Check<Info>>& info_checks();
+const std::vector<Check<Method>>& method_checks();
 const std::vector<Check<Reader>>& reader_checks();
 const std::vector<Check<Effect>>& effect_checks();
 const std::vector<Check<Analysis>>& analysis_checks();
@@ -86,8 +91,13 @@ const std::vector<Check<Controller>>& controller_checks();
 /// The laws that controllers share with outputs.
 std::vector<Check<Controller>> controller_checks_of_files();
 
+/// What is wrong with an option; empty if nothing. `may_be_absent`: an empty default stands for a
+/// key that is not written.
+std::string wrong_option(const Option& option, bool may_be_absent);
+
 /// What a plugin makes of all samples, digested; a failure says why there is nothing. Calls
 /// `Bench::only_plugin` before the plugin.
+Verdict fingerprint(const Method& method, const Bench& bench);
 Verdict fingerprint(const Reader& reader, const Bench& bench);
 Verdict fingerprint(const Effect& effect, const Bench& bench);
 Verdict fingerprint(const Analysis& analysis, const Bench& bench);

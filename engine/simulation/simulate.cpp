@@ -8,6 +8,7 @@
 
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/method.h"
 #include "platform/storage/random.h"
 #include "simulation/simulate_rows.h"
 
@@ -208,11 +209,13 @@ void preset(const CycleSpec& c, Observations& o) {
 }
 
 /// The file of one measurement; tells in `truth` what was misread.
-std::string readings(const Specification& s, std::size_t k, const Observations& o, Json& truth) {
+Expected<std::string> readings(const Specification& s, std::size_t k, const Observations& o,
+                               Json& truth) {
   const CycleSpec& c = s.cycles[k];
   const bool rotary = o.angular;
   storage::Random noise_of = stream_of(s, k, noise), wrong = stream_of(s, k, misreadings);
   std::string text = std::string(simulated_mark) + "\n" + header_of(c);
+  Observations as_read = o;
   std::size_t file_line = 2;
   Json misread = Json::array();
   const std::size_t each = readings_in_row(c);
@@ -229,13 +232,19 @@ std::string readings(const Specification& s, std::size_t k, const Observations& 
       e += by;
       misread.push_back({{"line", file_line}, {"by", quantity_json(by, rotary)}});
     }
-    text += row_of(c, o, i, read);
+    if (c.method != nullptr)
+      as_read.deviation[i] = read[0];
+    else
+      text += row_of(c, o, i, read);
   }
   truth["measurements"].push_back({{"id", c.measurement.id},
                                    {"file", c.measurement.file},
                                    {"noise", quantity_json(c.noise, rotary)},
                                    {"misread", std::move(misread)}});
-  return text;
+  if (c.method == nullptr) return text;
+  const auto written = nonio::simulate(*c.method, {s.campaign, c.measurement, as_read});
+  if (!written) return fail(written.error());
+  return std::string(simulated_mark) + "\n" + table_of(*c.method, *written);
 }
 
 /// Rotary axes and squares as they were, mm, urad.
@@ -267,8 +276,9 @@ std::string manifest_text(const std::string& lines) {
 }  // namespace
 
 config::Checked<Simulated> simulate(std::string_view specification, const std::string& file,
-                                    const std::vector<Effect>& effects) {
-  const auto s = read_specification(specification, file, effects);
+                                    const std::vector<Effect>& effects,
+                                    const std::vector<Method>& methods) {
+  const auto s = read_specification(specification, file, effects, methods);
   if (!s) return tl::unexpected(s.error());
   std::vector<Error> errors;
   Json truth = {{"schema", "nonio-truth/1"},
@@ -299,8 +309,14 @@ config::Checked<Simulated> simulate(std::string_view specification, const std::s
   Simulated out;
   for (std::size_t k = 0; k < s->cycles.size(); ++k) {
     preset(s->cycles[k], rows[k]);
-    out.campaign.push_back({s->cycles[k].measurement.file, readings(*s, k, rows[k], truth)});
+    auto text = readings(*s, k, rows[k], truth);
+    if (!text) {
+      errors.push_back(Error{text.error().message, file, s->cycles[k].line});
+      continue;
+    }
+    out.campaign.push_back({s->cycles[k].measurement.file, std::move(*text)});
   }
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
   out.campaign.push_back({"campaign.toml", manifest_text(s->manifest)});
   out.truth = truth.dump(1) + "\n";
   return out;

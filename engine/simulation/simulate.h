@@ -24,6 +24,7 @@ inline constexpr std::string_view simulated_mark =
 /// [simulation], a [[cycle]] for each measurement and an [[effect]] for each cause. Same text, same
 /// bytes. `file` is the specification's name in errors.
 config::Checked<Simulated> simulate(std::string_view specification, const std::string& file,
-                                    const std::vector<Effect>& effects);
+                                    const std::vector<Effect>& effects,
+                                    const std::vector<Method>& methods);
 
 }  // namespace nonio::simulation

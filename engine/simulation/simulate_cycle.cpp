@@ -19,11 +19,11 @@ class CycleReader {
     c_.line = reader.line();
   }
 
-  CycleSpec read(const Campaign& campaign) {
-    if (!find_measurement(campaign)) return c_;
+  CycleSpec read(const Campaign& campaign, const std::vector<Method>& methods) {
+    if (!find_measurement(campaign, methods)) return c_;
     unit_ = c_.axis.rotary ? 1.0 / deg_per_rad : 1e-3;
-    const bool angular = c_.is("axis") && c_.axis.rotary;
-    reader_.settle(config::cycle_axis, c_.is("axis")            ? (angular ? "rotary" : "linear")
+    const bool angular = c_.along_axis() && c_.axis.rotary;
+    reader_.settle(config::cycle_axis, c_.along_axis()          ? (angular ? "rotary" : "linear")
                                        : c_.is("straightness")  ? "straightness"
                                        : c_.is("diagonal")      ? "diagonal"
                                        : c_.is("step-diagonal") ? "step-diagonal"
@@ -47,7 +47,7 @@ class CycleReader {
   }
 
  private:
-  bool find_measurement(const Campaign& campaign) {
+  bool find_measurement(const Campaign& campaign, const std::vector<Method>& methods) {
     const std::string id = reader_.text("measurement");
     std::vector<std::string> ids;
     for (const Measurement& m : campaign.measurements) {
@@ -63,16 +63,23 @@ class CycleReader {
     static constexpr std::array made{"axis",         "straightness", "diagonal", "step-diagonal",
                                      "ball-centres", "rtcp",         "circle"};
     if (std::find(made.begin(), made.end(), c_.measurement.kind) == made.end()) {
-      reader_.error("measurement",
-                    "expected a measurement of kind axis, straightness, diagonal, step-diagonal, "
-                    "ball-centres, rtcp or circle, found " +
-                        c_.measurement.kind);
-      return false;
+      const auto method = std::find_if(methods.begin(), methods.end(), [&](const Method& m) {
+        return c_.is(m.info.name) && !m.columns.empty() && !c_.measurement.axis.empty();
+      });
+      if (method == methods.end()) {
+        reader_.error("measurement",
+                      "expected a measurement of kind axis, straightness, diagonal, "
+                      "step-diagonal, ball-centres, rtcp or circle, or of a method with columns "
+                      "and an axis; found " +
+                          c_.measurement.kind);
+        return false;
+      }
+      c_.method = &*method;
     }
     if (!storage::is_artifact_name(c_.measurement.file))
       reader_.error("measurement", "its file is not a plain name: " + c_.measurement.file);
     if (const Axis* axis = campaign.machine.axis(c_.measurement.axis)) c_.axis = *axis;
-    if ((c_.is("ball-centres") || c_.is("rtcp")) != c_.axis.rotary && !c_.is("axis")) {
+    if ((c_.is("ball-centres") || c_.is("rtcp")) != c_.axis.rotary && !c_.along_axis()) {
       reader_.error("measurement", "expected a " +
                                        std::string(c_.axis.rotary ? "linear" : "rotary") +
                                        " axis for kind " + c_.measurement.kind);
@@ -247,13 +254,13 @@ class CycleReader {
 }  // namespace
 
 std::vector<CycleSpec> read_cycles(config::TableReader& top, const Campaign& campaign,
-                                   std::vector<Error>& errors) {
+                                   const std::vector<Method>& methods, std::vector<Error>& errors) {
   const auto complain = [&](std::uint64_t line, std::string message) {
     errors.push_back(Error{std::move(message), top.file(), line});
   };
   std::vector<CycleSpec> found, cycles;
   for (const config::TableReader& reader : top.tables("cycle"))
-    found.push_back(CycleReader(reader, errors).read(campaign));
+    found.push_back(CycleReader(reader, errors).read(campaign, methods));
   for (const Measurement& m : campaign.measurements) {
     const auto is_its = [&](const CycleSpec& c) { return c.measurement.id == m.id; };
     const auto of_it = std::find_if(found.begin(), found.end(), is_its);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/method.h"
 #include "simulation/simulate_rows.h"
 
 namespace nonio::simulation {
@@ -90,6 +91,28 @@ std::string header_of(const CycleSpec& c) {
   }
   text += c.timed ? ",time_s" : "";
   return text + (c.temperature ? ",material_c\n" : "\n");
+}
+
+std::string table_of(const Method& method, const Readings& readings) {
+  std::string text;
+  std::vector<std::pair<const Method::Column*, const std::vector<double>*>> columns;
+  for (const Method::Column& c : method.columns)
+    if (const auto* values = readings.column(c.name)) columns.emplace_back(&c, values);
+  for (const auto& [column, values] : columns)
+    text += (text.empty() ? "" : ",") + name_in_file(*column);
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    std::string row;
+    for (const auto& [column, values] : columns) {
+      const double value = (*values)[i];
+      if (!row.empty() || column != columns.front().first) row += ',';
+      if (column->role == Method::Column::Role::direction)
+        row += value > 0.0 ? "+" : value < 0.0 ? "-" : "";
+      else if (std::isfinite(value))
+        row += shortest(printed(value, column->quantity));
+    }
+    text += "\n" + row;
+  }
+  return text + "\n";
 }
 
 std::string row_of(const CycleSpec& c, const Observations& o, std::size_t i,

@@ -62,14 +62,14 @@ Expected<Observations> along(const Specification& s, const CycleSpec& c,
                              const std::vector<double>& targets) {
   Observations o;
   o.measurement = c.measurement.id;
-  o.angular = c.is("axis") && c.axis.rotary;
+  o.angular = c.along_axis() && c.axis.rotary;
   o.structure = s.campaign.machine.structure;
   std::vector<Side> sides{{c.axis.name, 0, 0.0, 1.0}};
   std::array<double, 3> sense{c.axis.rotary ? 0.0 : 1.0, 0.0, 0.0};
   if (const std::size_t k = coordinate_of(c.axis.name);
       !c.axis.rotary && k < 3 && !c.is("diagonal"))
     sense = {}, sense[k] = 1.0;
-  if (c.is("straightness")) {
+  if (c.is("straightness") || (c.method != nullptr && !c.measurement.lateral.empty())) {
     const std::size_t k = coordinate_of(c.measurement.lateral);
     if (k > 2) return fail("measurement \"" + c.measurement.id + "\": expected lateral X, Y or Z");
     sense = {}, sense[k] = 1.0;

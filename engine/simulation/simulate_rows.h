@@ -41,6 +41,8 @@ std::string header_of(const CycleSpec&);
 /// The row of readings `at` (three of a ball's centre), with `deviation` in place of the table's.
 std::string row_of(const CycleSpec&, const Observations&, std::size_t at,
                    const std::vector<double>& deviation);
+/// A whole file of the columns that a method declares.
+std::string table_of(const Method&, const Readings&);
 /// How many readings of the table make one row of the file.
 std::size_t readings_in_row(const CycleSpec&);
 

@@ -180,12 +180,13 @@ void add_formulas(const std::vector<Formula>& formulas, Specification& s, const 
 }  // namespace
 
 config::Checked<Specification> read_specification(std::string_view text, const std::string& file,
-                                                  const std::vector<Effect>& effects) {
+                                                  const std::vector<Effect>& effects,
+                                                  const std::vector<Method>& methods) {
   auto root = config::parse_toml(text, file);
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});
   Specification s;
   s.manifest = manifest_of(text, *root);
-  auto manifest = config::parse_manifest(s.manifest, file);
+  auto manifest = config::parse_manifest(s.manifest, file, methods);
   if (!manifest) return tl::unexpected(manifest.error());
   s.campaign = std::move(manifest->campaign);
   std::vector<Error> errors;
@@ -194,7 +195,7 @@ config::Checked<Specification> read_specification(std::string_view text, const s
   s.catalogue = effects;
   add_formulas(s.campaign.formulas, s, file, errors);
   add_formulas(hidden, s, file, errors);
-  s.cycles = read_cycles(top, s.campaign, errors);
+  s.cycles = read_cycles(top, s.campaign, methods, errors);
   EffectReader(s, file, errors).read(top);
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   return s;

@@ -44,7 +44,10 @@ struct CycleSpec {
   std::vector<std::array<double, 3>> senses;  ///< of gauges, unit vectors
   std::string sensor;                         ///< of rtcp: turns, stands, probe
   std::array<double, 3> ball_offset{};        ///< from where the control takes the ball to be, m
+  /// Of a kind that only its method can write: runs along its axis.
+  const Method* method = nullptr;
   bool is(std::string_view kind) const { return measurement.kind == kind; }
+  bool along_axis() const { return is("axis") || method != nullptr; }
 };
 
 /// A rotary axis as it is, and as the control has it. m, unit vectors.
@@ -89,11 +92,12 @@ struct Specification {
 };
 
 config::Checked<Specification> read_specification(std::string_view text, const std::string& file,
-                                                  const std::vector<Effect>& effects);
+                                                  const std::vector<Effect>& effects,
+                                                  const std::vector<Method>& methods);
 
 /// The [[cycle]]s, one for each measurement, in their order.
 std::vector<CycleSpec> read_cycles(config::TableReader& top, const Campaign& campaign,
-                                   std::vector<Error>& errors);
+                                   const std::vector<Method>& methods, std::vector<Error>& errors);
 
 /// [[simulation.rotary]] and [[simulation.square]].
 void read_things(config::TableReader& simulation, Specification& s);

@@ -15,8 +15,10 @@ add_executable(test_engine
   certificates/recomputed_test.cpp certificates/register_file_test.cpp certificates/register_processes_test.cpp
   certificates/register_test.cpp
   simulation/simulate_test.cpp)
-target_compile_definitions(test_engine PRIVATE NONIO_WORDS="${PROJECT_SOURCE_DIR}/templates/words")
-target_include_directories(test_engine PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine)
+target_compile_definitions(test_engine PRIVATE NONIO_WORDS="${PROJECT_SOURCE_DIR}/templates/words"
+  NONIO_TEST_PLUGINS="${CMAKE_BINARY_DIR}/${NONIO_PLUGIN_SUBDIR}")
+target_include_directories(test_engine PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine ${PROJECT_SOURCE_DIR}/tests/support/builders)
+add_dependencies(test_engine ${NONIO_METHODS})
 target_link_libraries(test_engine PRIVATE nonio_engine nonio_warnings GTest::gtest_main)
 nonio_tests(test_engine)
 

@@ -131,7 +131,7 @@ class Releaser {
     if (const std::string mistake = mistake_in(request_); !mistake.empty()) return fail(mistake);
     auto text = storage::read_file(request_.campaign / config::manifest_name);
     if (!text) return fail(text.error().message + ": it is not the folder of a campaign");
-    const auto manifest = config::parse_manifest(*text, config::manifest_name);
+    const auto manifest = config::parse_without_methods(*text, config::manifest_name);
     if (!manifest) {
       const Error& e = manifest.error().front();
       return fail(e.file + ":" + std::to_string(e.line) + ": " + e.message);

@@ -241,8 +241,9 @@ NONIO_ON_THE_WIRE(Cmc, a, b, c)
 NONIO_ON_THE_WIRE(Laboratory, a, b, c, d, e, f, g)
 NONIO_ON_THE_WIRE(CertificateTexts, a, b, c, d, e, f, g, h, i, j, k, l)
 NONIO_ON_THE_WIRE(Tolerance, a, b, c)
+NONIO_ON_THE_WIRE(Settings, a)
 NONIO_ON_THE_WIRE(Measurement, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w,
-                  x, y, z)
+                  x, y, z, aa)
 NONIO_ON_THE_WIRE(Formula::Parameter, a, b, c, d)
 NONIO_ON_THE_WIRE(Formula, a, b, c, d, e)
 NONIO_ON_THE_WIRE(Campaign, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s)
@@ -283,10 +284,10 @@ NONIO_ON_THE_WIRE(certificates::Approval, a, b, c, d, e)
 NONIO_ON_THE_WIRE(certificates::RegisterEntry, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 NONIO_ON_THE_WIRE(certificates::WaitingDraft, a, b, c, d, e, f, g, h, i)
 
-NONIO_ON_THE_WIRE(Option, a, b, c, d, e, f, g)
+NONIO_ON_THE_WIRE(Option, a, b, c, d, e, f, g, h, i, j, k)
 NONIO_ON_THE_WIRE(Info, a, b, c, d, e)
 NONIO_ON_THE_WIRE(loader::PluginFile, a, b, c)
-NONIO_ON_THE_WIRE(loader::Catalogue, a, b, c, d, e, f, g, h)
+NONIO_ON_THE_WIRE(loader::Catalogue, a, b, c, d, e, f, g, h, i)
 #undef NONIO_ON_THE_WIRE
 
 template <class... T>

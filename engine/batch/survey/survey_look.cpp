@@ -71,7 +71,7 @@ std::string ChangeDetector::read_whole(CampaignState& state, const std::string& 
                                        bool rough) {
   if (rough) return {};
   signs_.reads = false;
-  const auto parsed = config::parse_manifest(manifest, config::manifest_name);
+  const auto parsed = config::parse_without_methods(manifest, config::manifest_name);
   signs_.reads = true;
   signs_.beat();
   if (!parsed) return {};

@@ -33,7 +33,7 @@ struct TextRule {
 };
 
 /// What is known only at run time, of the loaded plugins.
-enum class Named { nothing, reader, effect, analysis, output, control };
+enum class Named { nothing, method, reader, effect, analysis, output, control };
 
 struct Key {
   enum class Holds {
@@ -53,7 +53,8 @@ struct Key {
     tables,          ///< a list of them: [[name]]
     named_tables,    ///< tables of that kind under any name
     options,         ///< a table for each plugin, with its options
-    anything         ///< a table that is not looked into
+    anything,        ///< a table that is not looked into
+    by_kind          ///< declared differently by the kinds that have it
   };
 
   std::string_view name;

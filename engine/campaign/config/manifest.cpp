@@ -8,10 +8,12 @@
 
 #include "campaign/config/certificate_reader.h"
 #include "campaign/config/formula_reader.h"
+#include "campaign/config/measurement_keys.h"
 #include "campaign/config/run_reader.h"
 #include "campaign/config/toml_reader.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/statement.h"
+#include "platform/storage/nearest.h"
 
 namespace nonio::config {
 
@@ -157,6 +159,11 @@ Environment read_environment(TableReader& top) {
   return environment;
 }
 
+NumberTable scaled(NumberTable table, double scale) {
+  for (auto& [name, value] : table) value *= scale;
+  return table;
+}
+
 /// One key for linear and one for rotary axes.
 std::optional<double> either(TableReader& reader, const char* linear, double linear_unit,
                              const char* rotary, double rotary_unit) {
@@ -181,12 +188,11 @@ void read_test(TableReader& reader, Measurement& m) {
 
 /// A circle goes from its centre (`from`) to its point at 0 deg (`to`): on the first axis of its
 /// plane.
-void read_circle(TableReader& reader, Measurement& m) {
-  const std::string plane = reader.text("plane");
-  const auto radius = reader.number("radius_mm", mm);
-  NumberTable centre;
-  for (const auto& [axis, position] : reader.number_table("centre", mm)) centre[axis] = position;
-  if (plane.size() != 2 || !radius || !reader.raw().contains("centre")) return;
+void fill_circle(TableReader& reader, Measurement& m) {
+  const std::string plane = m.settings.text("plane");
+  const NumberTable centre = scaled(m.settings.table("centre"), mm);
+  if (plane.size() != 2 || !reader.raw().contains("radius_mm") || !reader.raw().contains("centre"))
+    return;
   for (const char letter : plane) {
     const auto at = centre.find(std::string_view(&letter, 1));
     if (at == centre.end())
@@ -194,7 +200,7 @@ void read_circle(TableReader& reader, Measurement& m) {
                                         plane.substr(1) + ", found no " + letter);
     m.from[at->first] = m.to[at->first] = at->second;
   }
-  m.to[plane.substr(0, 1)] += *radius;
+  m.to[plane.substr(0, 1)] += m.settings.number("radius_mm") * mm;
   for (const auto& [axis, position] : centre)
     if (!m.from.contains(axis)) m.at[axis] = position;
 }
@@ -216,49 +222,113 @@ void read_tolerances(TableReader& reader, Measurement& m) {
   }
 }
 
-Measurement read_measurement(TableReader& reader) {
-  Measurement m;
+/// A key that a method declares, as it is written; its default where it is not.
+Setting read_setting(TableReader& reader, const Option& option) {
+  const Setting& value = option.default_value;
+  if (const auto* flag = std::get_if<bool>(&value)) return reader.flag(option.name).value_or(*flag);
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) {
+    const auto found = reader.integer(option.name);
+    return found ? std::int64_t{*found} : *whole;
+  }
+  if (const auto* number = std::get_if<double>(&value))
+    return reader.number(option.name).value_or(*number);
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    std::string found = reader.text(option.name);
+    return found.empty() ? *text : found;
+  }
+  if (const auto* numbers = std::get_if<std::vector<double>>(&value))
+    return reader.numbers(option.name).value_or(*numbers);
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&value))
+    return reader.texts(option.name).value_or(*texts);
+  NumberTable table;
+  for (const auto& [name, number] : reader.number_table(option.name, 1.0)) table[name] = number;
+  if (const auto* usual = std::get_if<NumberTable>(&value);
+      usual != nullptr && !reader.raw().contains(option.name))
+    return *usual;
+  return table;
+}
+
+/// The members of a measurement that keys of a method fill, whichever method has them. SI.
+void fill_members(TableReader& reader, Measurement& m) {
+  const Settings& s = m.settings;
+  m.axis = s.text("axis");
+  for (const char* key : {"lateral", "about", "artefact"})
+    if (std::string value = s.text(key); !value.empty()) m.lateral = std::move(value);
+  m.order = s.text("order");
+  m.side = s.text("side");
+  m.reversal_of = s.text("reversal_of");
+  m.square = s.text("square");
+  m.square_turned = s.flag("square_turned");
+  for (const char* key : {"foot_mm", "sensor_distance_mm"})
+    if (s.has(key) && reader.raw().contains(key)) m.foot = s.number(key) * mm;
+  for (const auto& [axis, position] : scaled(s.table("from"), mm)) m.from[axis] = position;
+  for (const auto& [axis, position] : scaled(s.table("to"), mm)) m.to[axis] = position;
+}
+
+/// What several keys of a method have to agree in.
+void check_members(TableReader& reader, const Measurement& m) {
+  if (!m.axis.empty() && m.settings.text("lateral") == m.axis)
+    reader.error("lateral", "expected another axis than " + m.axis +
+                                ", which moves: along it the deviation is one of positioning");
+  if (!m.square.empty() && !m.reversal_of.empty())
+    reader.error("square",
+                 "stands beside reversal_of; expected one of them: a square that was "
+                 "turned over has square_turned = true");
+  if (m.square_turned && m.square.empty())
+    reader.error("square_turned", "expected the key square beside it");
+}
+
+/// The keys of every method.
+void read_common(TableReader& reader, Measurement& m) {
   m.id = reader.text("id");
   m.kind = reader.text("kind");
   m.file = reader.text("file");
   m.reader = reader.text("reader");
-  m.axis = reader.text("axis");
-  m.lateral = reader.text("lateral");
   m.adjustment = reader.text("adjustment");
-  m.order = reader.text("order");
-  if (m.kind == "axis") m.side = reader.text("side");
   if (std::string state = reader.text("state"); reader.raw().contains("state"))
     m.state = std::move(state);
-  if (m.kind == "straightness" && !m.lateral.empty() && m.lateral == m.axis)
-    reader.error("lateral", "expected another axis than " + m.axis +
-                                ", which moves: along it the deviation is one of positioning");
-  if (m.kind == "straightness") {
-    m.reversal_of = reader.text("reversal_of");
-    m.square = reader.text("square");
-    m.square_turned = reader.flag("square_turned").value_or(false);
-    if (!m.square.empty() && !m.reversal_of.empty())
-      reader.error("square",
-                   "stands beside reversal_of; expected one of them: a square that was "
-                   "turned over has square_turned = true");
-    if (m.square_turned && m.square.empty())
-      reader.error("square_turned", "expected the key square beside it");
-  }
-  if (m.kind == "angle") {
-    m.lateral = reader.text("about");
-    m.foot = reader.number("foot_mm", mm);
-  }
-  if (m.kind == "artefact" || m.kind == "artefact-certificate") m.lateral = reader.text("artefact");
-  if (m.kind == "thermal" || m.kind == "spindle") m.foot = reader.number("sensor_distance_mm", mm);
   read_tolerances(reader, m);
   m.exclude = reader.integers("exclude");
   m.exclude_reason = reader.text("exclude_reason");
-  for (const auto& [axis, position] : reader.number_table("from", mm)) m.from[axis] = position;
-  for (const auto& [axis, position] : reader.number_table("to", mm)) m.to[axis] = position;
   for (const auto& [axis, position] : reader.number_table("at", mm)) m.at[axis] = position;
-  if (m.kind == "circle") read_circle(reader, m);
+  read_test(reader, m);
+}
+
+void refuse_kind(TableReader& reader, const std::string& kind, const std::vector<Method>& methods) {
+  std::vector<std::string> kinds;
+  for (const Method& method : methods) kinds.push_back(method.info.name);
+  std::sort(kinds.begin(), kinds.end());
+  std::string list;
+  for (const std::string& known : kinds) list += (list.empty() ? "" : ", ") + known;
+  reader.error("kind", "expected one of " + list + "; found \"" + kind + "\"" +
+                           storage::suggestion(kind, kinds));
+}
+
+/// Without `methods` only the keys of every method are read, and others are accepted.
+Measurement read_measurement(TableReader& common, const std::vector<Method>* methods) {
+  Measurement m;
+  if (methods == nullptr) {
+    read_common(common, m);
+    return m;
+  }
+  const std::string kind = common.raw()["kind"].value_or(std::string());
+  const auto method = std::find_if(methods->begin(), methods->end(),
+                                   [&](const Method& one) { return one.info.name == kind; });
+  if (method == methods->end()) {
+    read_common(common, m);
+    if (!m.kind.empty()) refuse_kind(common, kind, *methods);
+    return m;
+  }
+  const KindKeys keys(*method);
+  TableReader reader = common.declared(keys.table());
+  read_common(reader, m);
+  for (const Option& option : method->info.options)
+    m.settings.values[option.name] = read_setting(reader, option);
+  fill_members(reader, m);
+  check_members(reader, m);
+  fill_circle(reader, m);
   if (m.at.contains(m.axis))
     reader.error("at", "expected the axes that stood still, found " + m.axis + ", which moves");
-  read_test(reader, m);
   reader.finish();
   return m;
 }
@@ -277,7 +347,7 @@ void check_reversals(std::vector<TableReader>& list, const std::vector<Measureme
     if (of.empty()) continue;
     const auto first =
         std::find_if(all.begin(), all.end(), [&](const Measurement& m) { return m.id == of; });
-    const bool fits = first != all.end() && first->kind == "straightness" &&
+    const bool fits = first != all.end() && first->kind == all[i].kind &&
                       first->axis == all[i].axis && first->lateral == all[i].lateral &&
                       first->reversal_of.empty() && of != all[i].id;
     if (!fits || !taken.insert(of).second)
@@ -305,8 +375,9 @@ void check_squares(std::vector<TableReader>& list, const Campaign& campaign) {
   }
 }
 
-void read_measurements(TableReader& top, Manifest& manifest, bool plans) {
+void read_measurements(TableReader& top, Manifest& manifest, const std::vector<Method>* methods) {
   Campaign& campaign = manifest.campaign;
+  const bool plans = manifest.run.analyses && manifest.run.outputs;
   const bool any_named = !campaign.machine.axes.empty();
 
   auto list = top.tables("measurement");
@@ -316,7 +387,7 @@ void read_measurements(TableReader& top, Manifest& manifest, bool plans) {
               "[run] analyses and outputs");
   std::set<std::string> ids;
   for (TableReader& reader : list) {
-    Measurement m = read_measurement(reader);
+    Measurement m = read_measurement(reader, methods);
     if (!m.id.empty() && !ids.insert(m.id).second)
       reader.error("id", "\"" + m.id + "\" is there twice");
     if (!m.axis.empty() && campaign.machine.axis(m.axis) == nullptr)
@@ -378,11 +449,8 @@ void restore_axis_order(const toml::table& root, Machine& machine) {
                    [&](const Axis& a, const Axis& b) { return line(a) < line(b); });
 }
 
-}  // namespace
-
-bool is_campaign_id(std::string_view id) { return !id.empty() && obeys(id, campaign_id_rule); }
-
-Checked<Manifest> parse_manifest(std::string_view text, const std::string& file) {
+Checked<Manifest> parse(std::string_view text, const std::string& file,
+                        const std::vector<Method>* methods) {
   auto root = parse_toml(text, file);
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});
   std::vector<Error> errors;
@@ -403,7 +471,7 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
     reader->finish();
   }
   manifest.run = read_run(top);
-  read_measurements(top, manifest, manifest.run.analyses && manifest.run.outputs);
+  read_measurements(top, manifest, methods);
   if (auto reader = top.table("model")) {
     if (auto effects = reader->texts("effects")) campaign.model = std::move(*effects);
     campaign.compensate_model = reader->text("compensate") == "model";
@@ -416,6 +484,19 @@ Checked<Manifest> parse_manifest(std::string_view text, const std::string& file)
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   note_lines(*root, "", manifest.lines);
   return manifest;
+}
+
+}  // namespace
+
+bool is_campaign_id(std::string_view id) { return !id.empty() && obeys(id, campaign_id_rule); }
+
+Checked<Manifest> parse_manifest(std::string_view text, const std::string& file,
+                                 const std::vector<Method>& methods) {
+  return parse(text, file, &methods);
+}
+
+Checked<Manifest> parse_without_methods(std::string_view text, const std::string& file) {
+  return parse(text, file, nullptr);
 }
 
 std::string extract_id(std::string_view text) {

@@ -164,7 +164,11 @@ template <class T>
 using Checked = tl::expected<T, std::vector<Error>>;
 
 /// All that is wrong with the file at once, each with its line.
-Checked<Manifest> parse_manifest(std::string_view text, const std::string& file);
+Checked<Manifest> parse_manifest(std::string_view text, const std::string& file,
+                                 const std::vector<Method>& methods);
+/// For a process that has no plugins: any kind is accepted, keys of methods are not read, and the
+/// members of Measurement that they fill are empty.
+Checked<Manifest> parse_without_methods(std::string_view text, const std::string& file);
 Checked<SiteFile> parse_site(std::string_view text, const std::string& file);
 
 /// The id of a manifest that may be broken elsewhere; empty if none can be seen.

@@ -28,8 +28,10 @@ const char* kind_of(const Setting& setting) {
       return "a list of numbers";
     case 5:
       return "a list of texts";
-    default:
+    case 6:
       return "tables of numbers";
+    default:
+      return "a table of numbers";
   }
 }
 

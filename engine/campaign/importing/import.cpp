@@ -194,7 +194,7 @@ class Importer {
     if (!fs::is_directory(fs::symlink_status(folder, error))) return false;
     const auto text = storage::read_file(folder / config::manifest_name);
     const auto manifest =
-        text ? config::parse_manifest(*text, config::manifest_name)
+        text ? config::parse_without_methods(*text, config::manifest_name)
              : config::Checked<config::Manifest>(tl::unexpected(std::vector<Error>{}));
     if (!manifest || manifest->campaign.id != campaign.id) return false;
     const auto& measurements = manifest->campaign.measurements;
@@ -326,8 +326,8 @@ class Importer {
     const bool asked = std::any_of(campaign.files.begin(), campaign.files.end(),
                                    [](const ImportedFile& f) { return !f.lacks.empty(); });
     if (asked || !campaign.lacks.empty()) return;
-    const auto manifest =
-        config::parse_manifest(manifest_of(campaign, found.front().places), config::manifest_name);
+    const auto manifest = config::parse_manifest(manifest_of(campaign, found.front().places),
+                                                 config::manifest_name, plugins_.methods());
     if (!manifest)
       for (const Error& e : manifest.error()) campaign.lacks.push_back(e.message);
   }
@@ -348,7 +348,8 @@ class Importer {
       own.name = own.measurement = "m" + std::to_string(all.files.size());
       all.files.push_back(std::move(own));
     }
-    return config::parse_manifest(manifest_of(all, places), config::manifest_name);
+    return config::parse_manifest(manifest_of(all, places), config::manifest_name,
+                                  plugins_.methods());
   }
 
   /// Digest of the readings of a file; empty if there are none, or nobody can tell.
@@ -386,7 +387,8 @@ class Importer {
     name = reader->info.name;
     const auto options = config::settle_options(reader->info, site_options(), manifest.options);
     if (!options) return fail(options.error().front());
-    return reading::checked_read(*reader, {bytes, manifest.campaign, m, *options, {}});
+    return reading::checked_read(
+        *reader, {bytes, manifest.campaign, m, *options, {}, plugins_.method(m.kind)});
   }
 
   /// Of site.toml, if the site is there already.

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <iostream>
 #include <span>
-#include <variant>
 
+#include "campaign/loader/offered.h"
 #include "campaign/loader/plugin_file.h"
 #include "platform/process/apart.h"
 #include "platform/process/child.h"
@@ -55,6 +55,7 @@ namespace {
 /// Why this one must be refused; empty if it registers as it should.
 std::string try_registering(const fs::path& path) {
   struct Nobody final : Registry {
+    void add(Method) override {}
     void add(Reader) override {}
     void add(Effect) override {}
     void add(Analysis) override {}
@@ -146,61 +147,11 @@ std::vector<Plugin> named(std::vector<Info> all) {
 
 }  // namespace
 
-namespace {
-
-/// What a file registers: it is taken whole or not at all.
-class Offered final : public Registry {
- public:
-  void add(Reader reader) override { take("reader", std::move(reader)); }
-  void add(Effect effect) override { take("effect", std::move(effect)); }
-  void add(Analysis analysis) override { take("analysis", std::move(analysis)); }
-  void add(Output output) override { take("output", std::move(output)); }
-  void add(Controller c) override { take("controller", std::move(c)); }
-
-  /// The first of them without a function that it cannot do without; empty: none.
-  const std::string& incomplete() const { return incomplete_; }
-  void give_to(Registry& registry) {
-    for (auto& one : all_) std::visit([&](auto& plugin) { registry.add(std::move(plugin)); }, one);
-  }
-
- private:
-  static const char* missing(const Reader& r) {
-    return !r.recognises ? "recognises" : !r.reads ? "reads" : !r.read ? "read" : "";
-  }
-  static const char* missing(const Effect& e) {
-    return !e.applies ? "applies" : !e.columns ? "columns" : "";
-  }
-  static const char* missing(const Analysis& a) {
-    if (a.analyse_campaign && !a.applies) return "";
-    return !a.applies ? "applies" : !a.analyse ? "analyse" : "";
-  }
-  static const char* missing(const Output& o) {
-    if (o.certificate && !o.certificate->missing_requirements) return "missing_requirements";
-    return !o.applies ? "applies" : !o.write ? "write" : "";
-  }
-  static const char* missing(const Controller& c) {
-    return !c.applies ? "applies" : !c.write ? "write" : !c.parse ? "parse" : "";
-  }
-
-  template <class Plugin>
-  void take(const char* kind, Plugin plugin) {
-    const std::string function = missing(plugin);
-    if (incomplete_.empty() && !function.empty())
-      incomplete_ = std::string("registers the ") + kind + " " + plugin.info.name + " without `" +
-                    function + "`, a function that every " + kind + " has";
-    all_.emplace_back(std::move(plugin));
-  }
-
-  std::vector<std::variant<Reader, Effect, Analysis, Output, Controller>> all_;
-  std::string incomplete_;
-};
-
-}  // namespace
-
 Plugins::Plugins(Catalogue c)
     : files_(std::move(c.files)),
       conflicts_(std::move(c.conflicts)),
       names_(std::move(c.names)),
+      methods_(named<Method>(std::move(c.methods))),
       readers_(named<Reader>(std::move(c.readers))),
       effects_(named<Effect>(std::move(c.effects))),
       analyses_(named<Analysis>(std::move(c.analyses))),
@@ -211,6 +162,7 @@ Catalogue Plugins::catalogue() const {
   return {files_,
           conflicts_,
           names_,
+          described(methods_),
           described(readers_),
           described(effects_),
           described(analyses_),
@@ -327,6 +279,9 @@ bool Plugins::accept(std::string_view kind, const Info& info) {
   return true;
 }
 
+void Plugins::add(Method method) {
+  if (accept("method", method.info)) methods_.push_back(std::move(method));
+}
 void Plugins::add(Reader reader) {
   if (accept("reader", reader.info)) readers_.push_back(std::move(reader));
 }
@@ -341,6 +296,12 @@ void Plugins::add(Output output) {
 }
 void Plugins::add(Controller controller) {
   if (accept("controller", controller.info)) controllers_.push_back(std::move(controller));
+}
+
+const Method* Plugins::method(std::string_view kind) const {
+  const auto found = std::find_if(methods_.begin(), methods_.end(),
+                                  [&](const Method& m) { return m.info.name == kind; });
+  return found == methods_.end() ? nullptr : &*found;
 }
 
 std::string Plugins::absence(std::string_view kind, std::string_view name) const {

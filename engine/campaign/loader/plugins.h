@@ -22,7 +22,7 @@ struct Catalogue {
   std::vector<PluginFile> files;
   std::vector<std::string> conflicts;
   std::vector<std::pair<std::string, std::filesystem::path>> names;
-  std::vector<Info> readers, effects, analyses, outputs, controllers;
+  std::vector<Info> methods, readers, effects, analyses, outputs, controllers;
 };
 
 /// All plugins of this process. Loaded once, never unloaded.
@@ -54,6 +54,9 @@ class Plugins final : public Registry {
   /// One digest over the files of all that was loaded; reads them.
   Expected<std::string> digest() const;
 
+  const std::vector<Method>& methods() const { return methods_; }
+  /// The method of this kind of measurement; null if none is loaded.
+  const Method* method(std::string_view kind) const;
   const std::vector<Reader>& readers() const { return readers_; }
   const std::vector<Effect>& effects() const { return effects_; }
   const std::vector<Analysis>& analyses() const { return analyses_; }
@@ -74,6 +77,7 @@ class Plugins final : public Registry {
   /// A note for each reason: after an update that may be all plugins for one.
   std::vector<std::string> refusal_notes() const;
 
+  void add(Method) override;
   void add(Reader) override;
   void add(Effect) override;
   void add(Analysis) override;
@@ -86,6 +90,7 @@ class Plugins final : public Registry {
   std::vector<PluginFile> files_;
   std::vector<std::string> conflicts_;
   std::vector<std::pair<std::string, std::filesystem::path>> names_;  // "analysis iso230-2"
+  std::vector<Method> methods_;
   std::vector<Reader> readers_;
   std::vector<Effect> effects_;
   std::vector<Analysis> analyses_;

@@ -48,7 +48,8 @@ bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
     return false;
   }
   out.inputs.emplace_back(config::manifest_name, storage::sha256(*text));
-  auto manifest = config::parse_manifest(*text, config::manifest_name);
+  auto manifest =
+      config::parse_manifest(*text, config::manifest_name, from.context.plugins->methods());
   if (!manifest) {
     for (Error& error : manifest.error()) report_in(out, std::move(error));
     return false;

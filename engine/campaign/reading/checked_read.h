@@ -10,6 +10,11 @@ namespace nonio::reading {
 /// The first bytes of a file, by which readers recognise it.
 inline std::string_view head_of(std::string_view bytes) { return bytes.substr(0, 4096); }
 
+/// Whether a reader reads the columns that this method declares.
+inline bool reads_columns_of(const Reader& reader, const Method* method) {
+  return reader.reads_columns && method != nullptr && !method->columns.empty();
+}
+
 /// What a reader makes of a file, if all that comes later may rely on it.
 inline Expected<Observations> checked_read(const Reader& reader, const ReadInput& input) {
   const std::string who = "reader " + reader.info.name;

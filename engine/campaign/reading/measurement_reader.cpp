@@ -17,8 +17,9 @@ namespace nonio::reading {
 
 namespace {
 
-/// The reader that is named, or the first that knows the content; none if no plugin reads this
-/// kind of measurement at all, which is noted and leaves the others to be evaluated. Where a
+/// The reader that is named, or the first that knows the content, or the one for the columns that the
+/// method declares; none if no plugin reads this kind of measurement at all, which is noted and
+/// leaves the others to be evaluated. Where a
 /// plugin was refused, it may be the one that is wanted, and the measurement was not read.
 Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurement& m,
                                       std::string_view bytes, ReadCampaign& out) {
@@ -29,6 +30,8 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
     return fail(key_error(from, out, "measurement." + m.id + ".reader",
                           from.context.plugins->absence("reader", m.reader)));
   }
+  const Method* method = from.context.plugins->method(m.kind);
+  const Reader* of_columns = nullptr;
   bool any = false;
   if (bytes.find_first_not_of(" \t\r\n") == bytes.npos)
     return fail(Error{"expected readings, found an empty file", m.file});
@@ -42,7 +45,9 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
         process::guarded_answer(who, [&] { return *reads && r.recognises(head_of(bytes)); });
     if (!recognised) return fail(recognised.error());
     if (*recognised) return &r;
+    if (reads_columns_of(r, method)) of_columns = &r;
   }
+  if (of_columns != nullptr) return of_columns;
   const std::string refused = from.context.plugins->refusals();
   if (any)
     return fail(Error{"no reader knows the format of this file: " + what_is_wrong(bytes, m.file) +
@@ -137,10 +142,11 @@ Expected<void> read_one_measurement(const CampaignSource& from, const Measuremen
   if (!options) return {};
   const std::string who = "reader " + info.name;
   from.stage(who + " (measurement " + m.id + ")");
-  auto observations =
-      checked_read(**reader, {bytes, out.manifest->campaign, m, *options, [&](std::size_t offset) {
-                                if (!*converted) file->release(offset);
-                              }});
+  auto observations = checked_read(**reader, {bytes, out.manifest->campaign, m, *options,
+                                              [&](std::size_t offset) {
+                                                if (!*converted) file->release(offset);
+                                              },
+                                              from.context.plugins->method(m.kind)});
   if (!observations) {
     Error error = observations.error();
     if (error.message.starts_with(who + ": ")) error.message.erase(0, who.size() + 2);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "campaign/config/keys.h"
+#include "campaign/config/measurement_keys.h"
 #include "campaign/loader/plugins.h"
 #include "campaign/reading/names.h"
 #include "platform/storage/json_writer.h"
@@ -55,6 +56,7 @@ std::string pattern_of(const config::TextRule& rule) {
 class Loaded {
  public:
   explicit Loaded(const loader::Plugins& plugins) {
+    for (const Method& m : plugins.methods()) names_[config::Named::method].push_back(m.info.name);
     for (const Reader& r : plugins.readers()) add(config::Named::reader, r.info);
     for (const Analysis& a : plugins.analyses()) add(config::Named::analysis, a.info);
     for (const Output& o : plugins.outputs()) add(config::Named::output, o.info);
@@ -170,6 +172,8 @@ class SchemaWriter {
         return put_options();
       case Holds::anything:
         return json_.member("type", "object");
+      case Holds::by_kind:
+        return;
       case Holds::texts:
       case Holds::numbers:
       case Holds::wholes:
@@ -470,8 +474,8 @@ class SchemaWriter {
   }
 
   void put_option(const Option& option) {
-    static constexpr std::string_view types[] = {"boolean", "integer", "number",
-                                                 "string",  "array",   "array"};
+    static constexpr std::string_view types[] = {"boolean", "integer", "number", "string",
+                                                 "array",   "array",   "",       "object"};
     json_.key(option.name);
     json_.begin_object();
     json_.member("description",
@@ -542,13 +546,17 @@ class SchemaWriter {
     json_.end_array();
   }
 
+  void put_setting(const NumberTable& table) {
+    json_.begin_object();
+    for (const auto& [key, value] : table) json_.member(key, value);
+    json_.end_object();
+  }
+
   void put_setting(const NumberTables& tables) {
     json_.begin_object();
     for (const auto& [name, table] : tables) {
       json_.key(name);
-      json_.begin_object();
-      for (const auto& [key, value] : table) json_.member(key, value);
-      json_.end_object();
+      put_setting(table);
     }
     json_.end_object();
   }
@@ -561,7 +569,7 @@ class SchemaWriter {
 }  // namespace
 
 std::string campaign_schema(const loader::Plugins& plugins) {
-  return SchemaWriter(plugins).write(config::campaign_file());
+  return SchemaWriter(plugins).write(config::CampaignKeys(plugins.methods()).file());
 }
 
 std::string site_schema(const loader::Plugins& plugins) {

@@ -7,5 +7,6 @@ NONIO_PLUGIN(registry) {
   reader.recognises = nonio::csv::recognises;
   reader.reads = nonio::csv::reads;
   reader.read = nonio::csv::read;
+  reader.reads_columns = true;
   registry.add(std::move(reader));
 }

@@ -43,6 +43,8 @@ Expected<Observations> read_spindle(const ReadInput& input);
 Expected<Observations> read_thermal(const ReadInput& input);
 Expected<Observations> read_tool_centre(const ReadInput& input);
 Expected<Observations> read_general(const ReadInput& input);
+/// The columns that the method of the measurement declares.
+Expected<Observations> read_declared(const ReadInput& input);
 
 /// Names of columns that only these kinds have, for recognising a file.
 const std::vector<std::string_view>& spatial_names();

@@ -14,6 +14,7 @@ namespace {
 
 struct OneController final : nonio::Registry {
   nonio::Controller controller;
+  void add(nonio::Method) override {}
   void add(nonio::Reader) override {}
   void add(nonio::Effect) override {}
   void add(nonio::Analysis) override {}

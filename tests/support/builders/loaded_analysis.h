@@ -14,6 +14,7 @@ namespace nonio {
 inline Analysis analysis_of(const PluginEntry& plugin) {
   struct Taker final : Registry {
     Analysis analysis;
+    void add(Method) override {}
     void add(Reader) override {}
     void add(Effect) override {}
     void add(Analysis a) override { analysis = std::move(a); }

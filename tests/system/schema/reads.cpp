@@ -7,6 +7,7 @@
 #include "campaign/config/machines.h"
 #include "campaign/config/manifest.h"
 #include "campaign/config/site_logs.h"
+#include "methods.h"
 #include "platform/storage/files.h"
 
 namespace {
@@ -20,7 +21,8 @@ std::string verdict(const nonio::config::Checked<File>& read) {
 
 std::string verdict_of(const std::string& file, const std::string& text) {
   namespace config = nonio::config;
-  if (file == "campaign") return verdict(config::parse_manifest(text, "campaign.toml"));
+  if (file == "campaign")
+    return verdict(config::parse_manifest(text, "campaign.toml", nonio::own_methods()));
   if (file == "site") return verdict(config::parse_site(text, "site.toml"));
   if (file == "machine") return verdict(config::parse_machine(text, "machines/S-1.toml", "S-1"));
   if (file == "events") return verdict(config::parse_events(text, config::events_name));

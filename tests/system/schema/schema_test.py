@@ -169,7 +169,8 @@ class Schema(unittest.TestCase):
         for folder in ("samples", "plugins", "tests"):
             for path in sorted((PROJECT / folder).rglob("*.toml")):
                 file = "machine" if path.parent.name == "machines" else path.stem
-                if file in SCHEMAS and path.name != "machine.toml" and "corpus" not in path.parts:
+                # The method_cases have kinds of plugins that are wrong on purpose.
+                if file in SCHEMAS and path.name != "machine.toml" and not {"corpus", "method_cases"} & set(path.parts):
                     data = tomllib.loads(path.read_text(encoding="utf-8"))
                     self.assertEqual(complaints(file, data), [], path)
                     seen += 1

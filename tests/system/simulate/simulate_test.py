@@ -207,7 +207,7 @@ class EveryKind(unittest.TestCase):
                                ('"mirror-tilt:SD PPP"', '"mirror-tilt:SD QQQ"', "no measurement shows it"),
                                ("steps = 10\nruns = 1", "runs = 1", "steps: is missing"),
                                ('carries = "table"', "", "carries is missing"),
-                               ('kind = "straightness"\naxis = "X"', 'kind = "angle"\nabout = "Z"\naxis = "X"', "found angle")):
+                               ('kind = "straightness"\naxis = "X"\nlateral = "Y"', 'kind = "angle"\nabout = "Z"\naxis = "X"', "found angle")):
             self.assertIn(old, text)
             spec.write_text(text.replace(old, new, 1), "utf-8")
             done = nonio("simulate", spec, "--out", self.root / "site" / "none")

@@ -62,7 +62,7 @@ class Hostile(VerbTest):
                 self.assertEqual(self.text(), text)
 
     def test_kinds_without_an_axis(self):
-        text = manifest([]).replace('kind = "axis"', 'kind = "diagonal"\nfrom = { X = 0 }\nto = { X = 9 }')
+        text = manifest([]).replace('kind = "axis"\naxis = "X"', 'kind = "diagonal"\nfrom = { X = 0 }\nto = { X = 9 }')
         self.campaign(text, x=readings())
         self.assertEqual(self.nonio("compare", self.folder, expect=1).stdout.strip(), "")
 

@@ -28,6 +28,7 @@ inline constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
 
 struct OneController final : Registry {
   Controller controller;
+  void add(Method) override {}
   void add(Reader) override {}
   void add(Effect) override {}
   void add(Analysis) override {}

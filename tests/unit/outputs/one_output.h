@@ -17,6 +17,7 @@ namespace nonio {
 inline Output the_output() {
   struct Taker final : Registry {
     Output output;
+    void add(Method) override { ADD_FAILURE() << "a method"; }
     void add(Reader) override { ADD_FAILURE() << "a reader"; }
     void add(Effect) override { ADD_FAILURE() << "an effect"; }
     void add(Analysis) override { ADD_FAILURE() << "an analysis"; }

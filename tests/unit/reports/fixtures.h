@@ -64,6 +64,7 @@ inline Templates read_templates(const std::filesystem::path& folder) {
 struct Plugins final : Registry {
   std::vector<Analysis> analyses;
   std::vector<Output> outputs;
+  void add(Method) override {}
   void add(Reader) override {}
   void add(Effect) override {}
   void add(Analysis a) override { analyses.push_back(std::move(a)); }

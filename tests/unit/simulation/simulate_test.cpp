@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "methods.h"
 #include "nonio/sdk/axis_readings.h"
 
 namespace nonio::simulate_test {
@@ -112,7 +113,7 @@ std::vector<Row> rows(const simulation::Simulated& s) {
 }
 
 simulation::Simulated made(const std::string& text) {
-  auto s = simulation::simulate(text, "spec.toml", effects());
+  auto s = simulation::simulate(text, "spec.toml", effects(), own_methods());
   if (s) return std::move(*s);
   ADD_FAILURE() << s.error().front().line << ": " << s.error().front().message;
   return {};
@@ -120,7 +121,7 @@ simulation::Simulated made(const std::string& text) {
 
 /// The only complaint.
 Error complaint(const std::string& text) {
-  const auto s = simulation::simulate(text, "spec.toml", effects());
+  const auto s = simulation::simulate(text, "spec.toml", effects(), own_methods());
   if (s) return Error{"nothing was complained of"};
   EXPECT_EQ(s.error().size(), 1U) << s.error().back().message;
   EXPECT_EQ(s.error().front().file, "spec.toml");
@@ -196,7 +197,7 @@ TEST(Simulate, the_campaign_does_not_tell_the_truth) {
   EXPECT_EQ(text.find("effect"), std::string::npos);
   EXPECT_EQ(text.find("cycle"), std::string::npos);
   EXPECT_TRUE(text.starts_with(simulation::simulated_mark));
-  const auto read = config::parse_manifest(text, "campaign.toml");
+  const auto read = config::parse_manifest(text, "campaign.toml", own_methods());
   ASSERT_TRUE(read) << read.error().front().message;
   EXPECT_EQ(read->campaign.measurements.front().file, "x.csv");
   EXPECT_NE(s.truth.find("\"backlash:X\""), std::string::npos);

@@ -17,6 +17,7 @@ std::size_t index(Cause c) { return static_cast<std::size_t>(c); }
 
 struct Loaded : Registry {
   Analysis analysis;
+  void add(Method) override {}
   void add(Reader) override {}
   void add(Effect) override {}
   void add(Analysis a) override { analysis = std::move(a); }

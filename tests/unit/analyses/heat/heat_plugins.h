@@ -14,6 +14,7 @@ namespace heat {
 
 struct Loaded : nonio::Registry {
   nonio::Analysis analysis;
+  void add(nonio::Method) override {}
   void add(nonio::Reader) override {}
   void add(nonio::Effect) override {}
   void add(nonio::Analysis a) override { analysis = std::move(a); }

@@ -19,6 +19,7 @@ using namespace turntable;
 Analysis the_analysis() {
   struct Taker final : Registry {
     Analysis analysis;
+    void add(Method) override { ADD_FAILURE() << "a method"; }
     void add(Reader) override { ADD_FAILURE() << "a reader"; }
     void add(Effect) override { ADD_FAILURE() << "an effect"; }
     void add(Analysis a) override { analysis = std::move(a); }

@@ -22,6 +22,7 @@ using namespace nonio;
 Analysis the_analysis() {
   struct Taker final : Registry {
     Analysis analysis;
+    void add(Method) override { ADD_FAILURE() << "a method"; }
     void add(Reader) override { ADD_FAILURE() << "a reader"; }
     void add(Effect) override { ADD_FAILURE() << "an effect"; }
     void add(Output) override { ADD_FAILURE() << "an output"; }

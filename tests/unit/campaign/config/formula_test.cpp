@@ -9,6 +9,7 @@
 
 #include "campaign/config/manifest.h"
 #include "campaign/reading/formula_copy.h"
+#include "methods.h"
 #include "nonio/sdk/axis_readings.h"
 
 namespace nonio::formula_test {
@@ -284,7 +285,7 @@ TEST(Formula, ComesFromTheManifest) {
       "\"X\"\n"
       "file = \"x.csv\"\n[model]\neffects = [\"scale:X\"]\n[[model.formula]]\n";
   const auto parse = [&](const std::string& rest) {
-    return config::parse_manifest(head + rest, "c.toml");
+    return config::parse_manifest(head + rest, "c.toml", own_methods());
   };
   const auto good = parse(
       "name = \"sag\"\naxis = \"X\"\nexpression = \"a*sin(_pi*p/P)\"\n"

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "campaign/evaluation/evaluate.h"
+#include "methods.h"
 
 namespace nonio::machines_test {
 namespace {
@@ -57,7 +58,7 @@ config::Manifest manifest_with(const std::string& more,
   auto manifest = config::parse_manifest(
       "format = 1\n[campaign]\nid = \"c\"\ndate = 2026-06-01\n[machine]\n" + machine +
           "\n[[measurement]]\nid = \"Z\"\nkind = \"axis\"\naxis = \"Z\"\nfile = \"z.csv\"\n" + more,
-      "campaign.toml");
+      "campaign.toml", own_methods());
   EXPECT_TRUE(manifest) << manifest.error().front().message;
   return manifest.value_or(config::Manifest{});
 }
@@ -151,8 +152,9 @@ TEST(Machines, AMistakeInATableOfAnAxisHasItsLine) {
   const auto settled = config::settle_table_options(control_named("fanuc"), {}, m, &r);
   ASSERT_FALSE(settled);
   EXPECT_EQ(settled.error().front().line, 15U) << settled.error().front().message;
-  const std::string found = errors_of(config::parse_manifest(
-      "format = 1\n[options.fanuc.axes.Z]\nstep_mm = 25\nnumber = \"1\"\n", "campaign.toml"));
+  const std::string found = errors_of(
+      config::parse_manifest("format = 1\n[options.fanuc.axes.Z]\nstep_mm = 25\nnumber = \"1\"\n",
+                             "campaign.toml", own_methods()));
   EXPECT_NE(found.find("campaign.toml:4: options.fanuc.axes.Z.number: expected a finite number"),
             std::string::npos)
       << found;

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "campaign/config/secret_files.h"
+#include "methods.h"
 
 namespace nonio::manifest_test {
 
@@ -49,7 +50,7 @@ std::string complaint(const std::string& good, const std::string& bad) {
   const std::size_t at = text.find(good);
   EXPECT_NE(at, std::string::npos) << good;
   text.replace(at, good.size(), bad);
-  const auto parsed = config::parse_manifest(text, "campaign.toml");
+  const auto parsed = config::parse_manifest(text, "campaign.toml", own_methods());
   if (parsed) return "accepted";
   std::string all;
   for (const Error& e : parsed.error()) all += std::to_string(e.line) + ": " + e.message + "\n";
@@ -59,7 +60,7 @@ std::string complaint(const std::string& good, const std::string& bad) {
 }  // namespace
 
 TEST(Manifest, EverythingArrivesInSi) {
-  const auto m = config::parse_manifest(whole, "campaign.toml");
+  const auto m = config::parse_manifest(whole, "campaign.toml", own_methods());
   ASSERT_TRUE(m);
   EXPECT_EQ(m->campaign.id, "a-1");
   EXPECT_EQ(m->campaign.date, "2026-11-03");
@@ -81,7 +82,7 @@ TEST(Manifest, AMeasurementHasLimitsOfItsOwn) {
   const std::string kind = "kind = \"axis\"\n";
   text.replace(text.find(kind), kind.size(),
                kind + "tolerance_um = { E = 4 }\ntolerance_um_per_m = { slope = 12.5 }\n");
-  const auto m = config::parse_manifest(text, "campaign.toml");
+  const auto m = config::parse_manifest(text, "campaign.toml", own_methods());
   ASSERT_TRUE(m);
   const auto& limits = m->campaign.measurements[0].tolerances;
   ASSERT_EQ(limits.size(), 2U);
@@ -90,7 +91,7 @@ TEST(Manifest, AMeasurementHasLimitsOfItsOwn) {
   EXPECT_DOUBLE_EQ(limits[1].limit, 12.5e-6);
   EXPECT_EQ(limits[1].quantity, Quantity::deviation_per_length);
   text.replace(text.find("slope"), 5, "E");
-  const auto twice = config::parse_manifest(text, "campaign.toml");
+  const auto twice = config::parse_manifest(text, "campaign.toml", own_methods());
   ASSERT_FALSE(twice);
   EXPECT_NE(twice.error()[0].message.find("expected one limit of E, found a second"),
             std::string::npos)
@@ -159,7 +160,7 @@ TEST(Manifest, WhereTheOtherAxesStoodStill) {
   const auto parse = [](const std::string& at) {
     std::string text = whole;
     return config::parse_manifest(text.replace(text.find("file = "), 0, "at = " + at + "\n"),
-                                  "campaign.toml");
+                                  "campaign.toml", own_methods());
   };
   const auto m = parse("{ X = 300, Z = -50.5, C = 1 }");
   ASSERT_TRUE(m) << m.error().front().message;
@@ -223,7 +224,7 @@ TEST(Manifest, ALineOnASquareIsOnceInEachOfItsPositions) {
 }
 
 TEST(Manifest, KeysHaveTheirLines) {
-  const auto m = config::parse_manifest(whole, "campaign.toml");
+  const auto m = config::parse_manifest(whole, "campaign.toml", own_methods());
   ASSERT_TRUE(m);
   EXPECT_EQ(m->lines.at("campaign.date"), 4U);
   EXPECT_EQ(m->lines.at("machine.axes.Y.travel"), 9U);
@@ -233,8 +234,8 @@ TEST(Manifest, KeysHaveTheirLines) {
 }
 
 TEST(Manifest, AllErrorsAtOnce) {
-  const auto m =
-      config::parse_manifest("format = 1\nnonsense = 2\n[campaign]\nid = 3\n", "campaign.toml");
+  const auto m = config::parse_manifest("format = 1\nnonsense = 2\n[campaign]\nid = 3\n",
+                                        "campaign.toml", own_methods());
   ASSERT_FALSE(m);
   EXPECT_EQ(m.error().size(), 3u);  // the key, the id, no measurement
 }

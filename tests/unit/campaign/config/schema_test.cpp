@@ -82,6 +82,33 @@ TEST(Schema, HoldsTheOptionsOfPlugins) {
   EXPECT_TRUE(o.contains("only-here"));
 }
 
+TEST(Schema, HoldsTheKeysOfMethodsOnlyForTheirKinds) {
+  loader::Plugins all;
+  Method one{.info = {"one", "1", "A method."}};
+  one.info.options = {
+      {.name = "load", .default_value = 0.5, .unit = "", .help = "A load.", .min = 0.0},
+      {.name = "axis",
+       .default_value = std::string(),
+       .unit = "",
+       .help = "An axis.",
+       .required = true,
+       .missing = "the axis"}};
+  Method two = one;
+  two.info.name = "two";
+  two.info.options[0].default_value = std::string();
+  two.info.options[0].min.reset();
+  all.add(one);
+  all.add(two);
+  const Json s = Json::parse(schema::campaign_schema(all));
+  const Json& items = s["properties"]["measurement"]["items"];
+  EXPECT_EQ(items["properties"]["kind"]["enum"], Json({"one", "two"}));
+  EXPECT_EQ(items["properties"]["axis"]["type"], "string");
+  EXPECT_FALSE(items["properties"]["load"].contains("type"));  // a number of one, a text of two
+  const std::string rules = items["then"]["allOf"].dump();
+  EXPECT_NE(rules.find("only where kind is one"), std::string::npos);
+  EXPECT_NE(rules.find("\"required\":[\"axis\"]"), std::string::npos);
+}
+
 TEST(Schema, IsGoodWithoutPlugins) {
   for (const std::string& text :
        {schema::campaign_schema(loader::Plugins()), schema::site_schema(loader::Plugins())}) {

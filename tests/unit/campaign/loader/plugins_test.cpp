@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "campaign/loader/offered.h"
+
 namespace nonio::plugins_test {
 namespace {
 
@@ -40,14 +42,39 @@ TEST(Plugins, AnAbsentOutputIsLookedForAmongControllersToo) {
   EXPECT_NE(all.absence("output", "jsn").find("nearest: \"json\""), std::string::npos);
 }
 
+TEST(Plugins, AMethodCannotDeclareAKeyOfEveryMethod) {
+  const auto refusal = [](Option key) {
+    Method method{.info = {"m", "1", "A method."}};
+    method.info.options = {std::move(key)};
+    loader::Offered offered;
+    offered.add(std::move(method));
+    return offered.incomplete();
+  };
+  EXPECT_EQ(refusal({"gauge", 1.0, "", "A gauge."}), "");
+  EXPECT_EQ(refusal({"file", std::string(), "", "A file."}),
+            "registers the method m: the key `file` is one that every method has");
+  EXPECT_EQ(refusal({"gauge", NumberTables{}, "", "Gauges."}),
+            "registers the method m: the key `gauge` has tables; expected one table of numbers");
+  Method half{.info = {"m", "1", "A method."}};
+  half.observe = [](const MethodInput&) { return Expected<Observations>(Observations{}); };
+  loader::Offered offered;
+  offered.add(std::move(half));
+  EXPECT_EQ(offered.incomplete(),
+            "registers the method m without `simulate`, a function that every "
+            "method has");
+}
+
 TEST(Plugins, TheCatalogueHasEveryKind) {
   loader::Plugins all;
   all.add(output_named("json"));
   all.add(controller_named("fanuc"));
+  all.add(Method{.info = {"axis", "1", "A method"}});
   const loader::Plugins described(all.catalogue());
   ASSERT_EQ(described.outputs().size(), 1U);
   ASSERT_EQ(described.controllers().size(), 1U);
   EXPECT_EQ(described.controllers().front().info.name, "fanuc");
+  ASSERT_NE(described.method("axis"), nullptr);
+  EXPECT_EQ(described.method("axes"), nullptr);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "nonio/sdk/settings.h"
 #include "nonio/sdk/units.h"
 
 namespace nonio {
@@ -129,9 +130,11 @@ inline std::string tolerance_key(Quantity q) {
   return "tolerance" + std::string(unit_of(q).suffix);
 }
 
+/// One [[measurement]]. The members from `axis` on that belong to keys of a method (axis, lateral,
+/// from, to, order, side, reversal_of, square, foot) are empty where its method has no such key.
 struct Measurement {
   std::string id;
-  std::string kind;  ///< axis, straightness, angle, diagonal, step-diagonal, ball-centres, ...
+  std::string kind;  ///< name of the method
   std::string axis;
   std::string lateral;  ///< direction of a straightness; axis about which an angle turns (`about`)
   std::string file;
@@ -160,6 +163,8 @@ struct Measurement {
   bool square_turned = false;    ///< after the square was turned over about one of its faces
   /// Of this measurement's results. They hold in place of those of its axis with the same name.
   std::vector<Tolerance> tolerances{};
+  /// The keys that the method declares, in the unit of the file, each with its value or its default.
+  Settings settings{};
 };
 
 /// State of the machine in which something was measured: "final". Empty: it holds for every state.

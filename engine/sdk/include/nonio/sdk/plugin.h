@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@
 #include "nonio/sdk/settings.h"
 #include "nonio/sdk/units.h"
 
-/// A plugin is a shared library with one exported symbol. It registers values of the five kinds
+/// A plugin is a shared library with one exported symbol. It registers values of the six kinds
 /// below: pure functions from a value to a value or an error. The host owns disk, clock, log,
 /// locale, threads, processes and configuration.
 ///
@@ -24,14 +25,23 @@ namespace nonio {
 
 struct HistorySoFar;
 
-/// One option of a plugin. The host checks kind, range and choices and fills in the default.
+/// One option of a plugin, or one key that a method adds to [[measurement]]. The host checks kind,
+/// range and choices and fills in the default.
 struct Option {
   std::string name;
   Setting default_value;               ///< it also fixes the kind
   std::string unit;                    ///< "" if none
   std::string help;                    ///< one sentence
   std::vector<std::string> choices{};  ///< of a text option: what is allowed; empty: anything
-  std::optional<double> min{}, max{};  ///< of a number: the allowed range, ends included
+  /// Of a number: the allowed range, ends included. Of a text that a method declares, `max` limits
+  /// its bytes.
+  std::optional<double> min{}, max{};
+
+  // Of a key that a method declares.
+  bool required = false;
+  std::string missing{};    ///< reported where it is missing: "the plane of the circle, \"XY\""
+  std::string expected{};   ///< reported of a wrong value: "expected a length above 0"
+  std::string forbidden{};  ///< characters that a text must not contain
 };
 
 struct Info {
@@ -44,6 +54,8 @@ struct Info {
   bool opt_in = false;
 };
 
+struct Method;
+
 struct ReadInput {
   std::string_view bytes;  ///< the whole file
   const Campaign& campaign;
@@ -52,6 +64,8 @@ struct ReadInput {
   /// To be called now and then with the offset up to which the bytes are not needed any more, so
   /// that a file of a gigabyte does not stay in memory beside its readings. May be empty.
   std::function<void(std::size_t)> done_with{};
+  /// The method of the measurement; null where none is loaded.
+  const Method* method = nullptr;
 };
 
 /// bytes -> observations
@@ -62,6 +76,69 @@ struct Reader {
   /// Whether it can read a measurement of this kind.
   bool (*reads)(std::string_view measurement_kind) = nullptr;
   Expected<Observations> (*read)(const ReadInput&) = nullptr;
+  /// Whether it also reads the columns that a method declares (`ReadInput::method`), of any kind.
+  bool reads_columns = false;
+};
+
+/// The content of a file of readings, by the columns that a method declares. SI; NaN where a value
+/// is blank; a direction is +1, -1, or 0 where it is blank.
+struct Readings {
+  std::map<std::string, std::vector<double>, std::less<>> columns;  ///< by `Method::Column::name`
+  std::vector<std::uint32_t> source_line;                           ///< line of the file, 1-based
+
+  std::size_t size() const { return source_line.size(); }
+  /// Null if the file does not have it.
+  const std::vector<double>* column(std::string_view name) const {
+    const auto found = columns.find(name);
+    return found == columns.end() ? nullptr : &found->second;
+  }
+};
+
+struct MethodInput {
+  const Campaign& campaign;
+  const Measurement& measurement;
+  const Readings& readings;
+};
+
+struct SimulationInput {
+  const Campaign& campaign;
+  const Measurement& measurement;
+  const Observations& observations;  ///< what `observe` has to make of the readings
+};
+
+/// A measuring method: what [[measurement]] and a file of readings contain, and which observations
+/// the readings are. sdk/method.h has the functions that apply it.
+struct Method {
+  struct Column {
+    /// What the default of `observe` makes of it.
+    enum class Role {
+      none,      ///< only `observe` of the method uses it
+      position,  ///< of the measurement's axis
+      deviation,
+      run,        ///< a whole number from 1
+      direction,  ///< + or -
+      time,
+      material,
+      air,
+      pressure,
+      humidity,
+    };
+    std::string name;  ///< in a file with the unit: `target` of quantity length is `target_mm`
+    Quantity quantity = Quantity::number;
+    Role role = Role::none;
+    std::string help;      ///< one sentence
+    bool required = true;  ///< else a file may leave it out, and fields may be blank
+  };
+  /// name: the `kind` of [[measurement]]. options: the keys that it adds there, next to those of all
+  /// methods. The host fills `Measurement::axis`, `lateral`, `from` and `to` from keys of that name.
+  Info info;
+  std::vector<Column> columns{};  ///< none: readers of their own read its files
+  /// Optional: readings -> observations. Without it, the roles of the columns determine them
+  /// (`observe` in sdk/method.h).
+  Expected<Observations> (*observe)(const MethodInput&) = nullptr;
+  /// Optional, required with `observe`: observations -> the readings that give them, for `nonio
+  /// simulate` and `nonio plugin check`.
+  Expected<Readings> (*simulate)(const SimulationInput&) = nullptr;
 };
 
 /// Why an effect is no candidate for these readings: a name of words ("unseen.<id>"), empty if it
@@ -228,6 +305,7 @@ struct Controller {
 /// What the host gives to a plugin's registration function.
 class Registry {
  public:
+  virtual void add(Method) = 0;
   virtual void add(Reader) = 0;
   virtual void add(Effect) = 0;
   virtual void add(Analysis) = 0;

@@ -16,7 +16,7 @@ using NumberTable = std::map<std::string, double, std::less<>>;
 using NumberTables = std::map<std::string, NumberTable, std::less<>>;
 
 using Setting = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
-                             std::vector<std::string>, NumberTables>;
+                             std::vector<std::string>, NumberTables, NumberTable>;
 
 /// Names and values: the options of one plugin, or one file of templates/ with its tables
 /// flattened ("finding.drift.parallel.advice"). An accessor gives `otherwise` where the name is
@@ -50,6 +50,7 @@ class Settings {
     return get<std::vector<double>>(name, {});
   }
   NumberTables tables(std::string_view name) const { return get<NumberTables>(name, {}); }
+  NumberTable table(std::string_view name) const { return get<NumberTable>(name, {}); }
 
  private:
   template <class T>

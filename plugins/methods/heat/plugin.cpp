@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/sdk/plugin.h"
+
+using namespace nonio;
+
+namespace {
+
+Option sensor_distance() {
+  return {.name = "sensor_distance_mm",
+          .default_value = 0.0,
+          .unit = "mm",
+          .help =
+              "Distance along the spindle between the sensors 1 and 2 of a nest (x1_um and "
+              "x2_um, y1_um and y2_um): their difference then gives the tilt.",
+          .min = 1.0,
+          .max = 1e4,
+          .expected = "expected a distance from 1 to 10000 mm"};
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  registry.add(Method{.info = {"thermal",
+                               "1.0",
+                               "Drift of sensors or of an exercised axis over time",
+                               {{.name = "axis",
+                                 .default_value = std::string(),
+                                 .unit = "",
+                                 .help = "The linear axis that is exercised; without it the "
+                                         "columns are those of sensors."},
+                                sensor_distance()}}});
+  registry.add(Method{.info = {"spindle",
+                               "1.0",
+                               "Displacement of a rotating test mandrel over its angle",
+                               {sensor_distance()}}});
+  registry.add(
+      Method{.info = {"lengths", "1.0", "Lengths of calibrated artefacts in the working space"}});
+}

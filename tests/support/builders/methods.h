@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "campaign/loader/plugins.h"
+
+namespace nonio {
+
+/// The methods of the program's own plugins, from the folder in which they are built.
+inline const std::vector<Method>& own_methods() {
+  static const auto* plugins = [] {
+    auto* loaded = new loader::Plugins;
+    for (const auto& entry : std::filesystem::directory_iterator(NONIO_TEST_PLUGINS))
+      if (entry.path().filename().string().ends_with("-method.so"))
+        loaded->load_file(entry.path(), "");
+    return loaded;
+  }();
+  return plugins->methods();
+}
+
+}  // namespace nonio

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A measuring method that the tree does not have: `nonio plugin new method`, built against the package, in every verb."""
+import csv
+import json
+import os
+import pathlib
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "live"))
+import live
+
+NONIO = os.environ["NONIO"]
+MEANS = [2, 4, 10, 8, 6]  # um, of the gauge
+
+
+def manifest(**changes):
+    measurement = {"id": "X", "kind": "lever-gauge", "axis": "X", "ratio": 0.5, "file": "x.csv", **changes}
+    lines = [f"{key} = {json.dumps(value)}" for key, value in measurement.items() if value is not None]
+    return "\n".join(["format = 1", "[campaign]", 'id = "a"', "date = 2026-03-02", "[machine]", 'asset = "M-1"',
+                      "[machine.axes.X]", 'kind = "linear"', "travel = [0.0, 500.0]", "[[measurement]]", *lines,
+                      "[run]", 'outputs = ["json", "csv", "pdf-report"]', ""])
+
+
+def readings(shift=0.0):
+    rows = ["direction,target_mm,gauge_um"]
+    for off in (2, -2, 2):
+        for way in "+-":
+            for k in range(5) if way == "+" else range(4, -1, -1):
+                rows.append(f"{way},{100 * k},{MEANS[k] + off + shift + (way == '-') * 20}")
+    return "\n".join(rows) + "\n"
+
+
+class ForeignMethod(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory(prefix="nonio-method-")
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.work = pathlib.Path(cls.folder.name)
+        subprocess.run([NONIO, "plugin", "new", "method", "lever-gauge"], cwd=cls.work, check=True, capture_output=True)
+        cmake, plugin = os.environ["NONIO_CMAKE"], cls.work / "lever-gauge"
+        for command in ([cmake, "-S", plugin, "-B", plugin / "build", "-G", "Ninja",
+                         f"-DCMAKE_PREFIX_PATH={os.environ['NONIO_PACKAGE']}",
+                         f"-DCMAKE_CXX_COMPILER={os.environ['NONIO_COMPILER']}"],
+                        [cmake, "--build", plugin / "build"]):
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            assert done.returncode == 0, done.stdout + done.stderr
+        cls.plugins = plugin / "build"
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="nonio-method-site-")
+        self.addCleanup(folder.cleanup)
+        self.site = pathlib.Path(folder.name) / "site"
+        self.out = pathlib.Path(folder.name) / "out"
+
+    def campaign(self, text, rows=None):
+        folder = self.site / "a"
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "campaign.toml").write_text(text)
+        (folder / "x.csv").write_text(readings() if rows is None else rows)
+        return folder
+
+    def nonio(self, *arguments, status=0):
+        done = subprocess.run([NONIO, *map(str, arguments), "--plugin-path", self.plugins], capture_output=True,
+                              text=True, check=False)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def refusal(self, text, rows=None):
+        self.campaign(text, rows)
+        self.nonio("run", self.site, "--out", self.out, status=1)
+        return json.loads((self.out / "a/results.json").read_text())["errors"][0]
+
+    def test_a_run_with_its_report_and_tables(self):
+        self.campaign(manifest())
+        self.nonio("run", self.site, "--out", self.out)
+        results = json.loads((self.out / "a/results.json").read_text())
+        analysis = next(a for a in results["analyses"] if a["plugin"] == "lever-gauge")
+        value = analysis["values"]["range"]
+        self.assertAlmostEqual(value["value"], 4.0, places=6)  # half of 10 - 2 um
+        self.assertGreater(value["U"], 0.0)
+        self.assertEqual(analysis["budget"]["contributions"][0]["id"], "repetition")
+        with open(self.out / "a/values.csv") as file:
+            self.assertIn(("lever-gauge", "range"), {(r["plugin"], r["name"]) for r in csv.DictReader(file)})
+        self.assertTrue((self.out / "a/a.pdf").exists() or list((self.out / "a").glob("*.pdf")))
+
+    def test_mistakes_are_answered_with_the_nearest_name(self):
+        for changes, wanted in (
+                ({"ratio": None, "ratoi": 0.5}, r'unknown key measurement\.ratoi \(nearest: "ratio"\)'),
+                ({"kind": "lever-gage"}, r'measurement\.kind: expected one of angle, .*, lever-gauge, .*nearest: "lever-gauge"'),
+                ({"ratio": "half"}, r"measurement\.ratio: expected a number, found a text"),
+                ({"ratio": 0}, r"measurement\.ratio: expected a ratio from 0\.001 to 1000; found 0"),
+                ({"axis": None}, r'measurement\.axis: is missing: the axis that moves, "X"'),
+                ({"lateral": "Y"}, r"unknown key measurement\.lateral")):
+            with self.subTest(changes):
+                self.assertRegex(self.refusal(manifest(**changes))["message"], wanted)
+
+    def test_mistakes_in_the_file(self):
+        for rows, wanted, line in (
+                (readings().replace("gauge_um", "gage_um"), 'unknown column "gage_um"; did you mean "gauge_um"', 1),
+                (readings().replace(",gauge_um", ""), 'missing column: expected "gauge_um", found direction, target_mm', 1),
+                (readings().replace("100,", "one,", 1), 'expected a number, found "one"', 3),
+                (readings().replace(",6", ",600000", 1), "expected a reading of the gauge in um, up to 100 mm", 0)):
+            with self.subTest(wanted):
+                error = self.refusal(manifest(), rows)
+                self.assertIn(wanted, error["message"])
+                self.assertEqual(error["file"], "x.csv")
+                if line:
+                    self.assertEqual(error["line"], line)
+
+    def test_effects_are_compared_and_explained(self):
+        folder = self.campaign(manifest())
+        self.assertIn("axis X (X): 30 readings", self.nonio("compare", folder))
+        self.assertRegex(self.nonio("explain", folder), r"backlash")
+
+    def test_the_history_has_its_values(self):
+        self.campaign(manifest())
+        self.nonio("run", self.site, "--out", self.out)
+        with sqlite3.connect(self.out / "history.sqlite") as history:
+            rows = history.execute("SELECT quantity, value FROM result WHERE source = 'lever-gauge'").fetchall()
+        self.assertEqual([(q, round(v, 6)) for q, v in rows], [("range", 4.0)])
+        self.nonio("history", self.out, "M-1")
+
+    def test_the_live_page_has_its_measurement(self):
+        folder = self.campaign(manifest())
+        with live.Server(folder, "--plugin-path", self.plugins) as server:
+            state = server.opened()
+            self.assertEqual([part["name"] for part in state["parts"]], ["X"])
+
+    def test_a_simulated_campaign_is_explained(self):
+        spec = self.site.parent / "spec.toml"
+        spec.write_text(manifest() + "\n".join([
+            "[simulation]", "seed = 3", "[[cycle]]", 'measurement = "X"', "from_mm = 0", "to_mm = 500", "step_mm = 25",
+            "runs = 5", "feed_mm_per_min = 2000", "noise_um = 0.2", "[[effect]]", 'name = "backlash:X"', "b_um = 9", ""]))
+        self.nonio("simulate", spec, "--out", self.site / "a")
+        header = (self.site / "a/x.csv").read_text().splitlines()[1]
+        self.assertEqual(header, "target_mm,direction,gauge_um")
+        self.nonio("run", self.site, "--out", self.out)
+        self.assertRegex(self.nonio("explain", self.site / "a"), r"backlash:X")
+
+    def test_the_schema_has_its_keys(self):
+        measurement = json.loads(self.nonio("schema", "campaign"))["properties"]["measurement"]["items"]
+        self.assertIn("lever-gauge", measurement["properties"]["kind"]["enum"])
+        self.assertEqual(measurement["properties"]["ratio"]["minimum"], 0.001)
+
+    def test_its_checks(self):
+        words = self.nonio("plugin", "check", self.plugins, "--cases", self.work / "lever-gauge/cases", "--json")
+        checks = {(c["plugin"], c["check"]): c["state"] for c in json.loads(words[:words.rindex("}") + 1])["checks"]}
+        for name in ("names", "keys", "columns", "round-trip", "hostile", "pure"):
+            self.assertEqual(checks["method lever-gauge", name], "passed", name)
+
+
+if __name__ == "__main__":
+    unittest.main()
