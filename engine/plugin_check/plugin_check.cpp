@@ -185,6 +185,9 @@ class Checker {
     }
   }
 
+  /// The names of all plugins of the files that were loaded.
+  const std::vector<std::string>& names() const { return names_; }
+
  private:
   /// The samples of a number, made and read once.
   void seed(std::uint64_t number) {
@@ -215,6 +218,7 @@ class Checker {
   void check_plugin(const std::string& plugin, std::size_t (&at)[5]) {
     hung_ = 0;
     const std::string kind = plugin.substr(0, plugin.find(' '));
+    names_.push_back(plugin.substr(kind.size() + 1));
     if (kind == "reader") {
       run_all(plugin, kit::reader_checks(), &Brought::readers, at[0]++);
     } else if (kind == "effect") {
@@ -231,6 +235,7 @@ class Checker {
   template <class Plugin>
   void run_all(const std::string& plugin, const std::vector<kit::Check<Plugin>>& checks,
                std::vector<Plugin> Brought::*kind, std::size_t index) {
+    if (!request_.plugin.empty() && names_.back() != request_.plugin) return;
     wants_results_ = std::is_same_v<Plugin, Output> || std::is_same_v<Plugin, Controller>;
     for (const auto& c : kit::info_checks())
       run(plugin, c.name, [&](Bench& b) { return c.run((brought_.*kind)[index].info, b); });
@@ -436,6 +441,7 @@ class Checker {
   std::map<std::uint64_t, Made> made_;  ///< by the seed
   bool wants_results_ = false;          ///< the plugin that is being checked writes results
   std::vector<kit::Source> cases_;
+  std::vector<std::string> names_;
   fs::path path_, shown_path_;  ///< the second as it was given
   std::size_t hung_ = 0;        ///< checks of one plugin that did not come back
   bool elsewhere_ = false;      ///< the next child is the second of `pure`
@@ -495,6 +501,11 @@ Expected<void> check_plugins(const PluginCheckRequest& wanted,
   Checker checker(request, tell);
   if (auto ready = checker.prepare(); !ready) return ready;
   for (const fs::path& file : files) checker.check(file);
+  const std::vector<std::string>& found = checker.names();
+  if (!request.plugin.empty() && !found.empty() &&
+      std::find(found.begin(), found.end(), request.plugin) == found.end())
+    return fail("there is no plugin \"" + request.plugin + "\" in " + request.subject.string() +
+                storage::suggestion(request.plugin, found));
   return {};
 }
 
