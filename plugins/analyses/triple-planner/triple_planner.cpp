@@ -7,8 +7,9 @@
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
-using namespace nonio::math;
+namespace nonio::triple_planner {
+
+using namespace math;
 
 namespace {
 
@@ -154,3 +155,5 @@ NONIO_PLUGIN(registry) {
   a.analyse_campaign = analyse;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::triple_planner
