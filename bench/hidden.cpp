@@ -70,7 +70,7 @@ struct Step {
   std::vector<std::string> aliases;  ///< of the effect that the verdict names
 };
 
-struct Followed {
+struct LoopEnd {
   std::vector<Step> steps;         ///< never empty if `error` is
   std::vector<std::string> added;  ///< in order
   bool offered = true;             ///< the catalogue has all that is hidden, for these readings
@@ -115,8 +115,8 @@ std::vector<model::Part> parts_with(const Hidden& h, std::uint64_t thermal) {
   return model::parts_of(campaign, read);
 }
 
-Followed follow(const Hidden& h, const std::vector<Effect>& effects, std::uint64_t thermal) {
-  Followed f;
+LoopEnd follow(const Hidden& h, const std::vector<Effect>& effects, std::uint64_t thermal) {
+  LoopEnd f;
   const auto parts = parts_with(h, thermal);
   if (parts.size() != 1) {
     f.error = "not one part";
@@ -160,7 +160,7 @@ const char* to_text(Verdict::Kind kind) {
 }
 
 /// Each hidden effect found by its name, or within the alias group that was said, and nothing else.
-bool all_and_nothing_else(const Hidden& h, const Followed& f) {
+bool all_and_nothing_else(const Hidden& h, const LoopEnd& f) {
   std::vector<std::string> open = h.truth.hidden;
   for (std::size_t k = 0; k < f.added.size(); ++k) {
     const auto same = std::find(open.begin(), open.end(), f.added[k]);
@@ -268,7 +268,7 @@ bool of_one(Kind kind) {
 bool is_complete(Kind kind) { return kind == Kind::complete || kind == Kind::short_complete; }
 
 /// Whether the campaign was explained as it had to be.
-bool judge(Score& score, const Hidden& h, const Followed& f) {
+bool judge(Score& score, const Hidden& h, const LoopEnd& f) {
   score.answered.add(f.error.empty());
   if (f.steps.empty()) return false;
   const model::Explanation &first = f.steps.front().said, &last = f.steps.back().said;
@@ -343,7 +343,7 @@ bool judge(Score& score, const Hidden& h, const Followed& f) {
 }
 
 /// What became of the time constant of a thermal test.
-void score_thermal(Score& score, const Followed& f) {
+void score_thermal(Score& score, const LoopEnd& f) {
   score.tested.add(f.tested), score.stated.add(f.stated);
   if (!f.stated || f.steps.empty()) return;
   for (const model::Term& term : f.steps.back().said.comparison.fit.terms)
@@ -356,7 +356,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text.empty() ? "-" : text;
 }
 
-void tell(const Hidden& h, const Followed& f, std::uint64_t seed) {
+void tell(const Hidden& h, const LoopEnd& f, std::uint64_t seed) {
   const hidden::Scenario& s = h.scenario;
   std::printf("seed %llu: %s, %zu%s targets, %u runs, %s%s%s, %zu misread\n",
               static_cast<unsigned long long>(seed), s.rotary ? "rotary" : "linear", s.targets,
@@ -558,7 +558,7 @@ int main(int argc, char** argv) {
         return 1;
       }
     }
-    const Followed f = follow(h, plugins.effects(), a->thermal);
+    const LoopEnd f = follow(h, plugins.effects(), a->thermal);
     if (a->thermal > 0 && !scenario.rotary) score_thermal(score, f);
     const bool right = judge(score, h, f);
     for (const Step& s : f.steps) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""margins.py NONIO FILE...: how far files of readings lie from the bounds of docs/wrong-inputs.md. Runs the program over
+"""margins.py NONIO FILE...: how far files of readings lie from the bounds of docs/dev/wrong-inputs.md. Runs the program over
 each file (CSV of one axis, or .rtl) as a campaign of its own, prints its findings plausibility.*, and beside each bound that
 readings alone meet what the file that comes nearest to it has. Status 1 if a file is called implausible."""
 import json

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """scale.py PROGRAM [FEW MANY]: what a campaign more costs in each step of a night: calls of the file system (strace), CPU time,
 files, bytes and memory of the plan. Each is the difference of two sites of FEW and MANY campaigns (100 and 300; for the
-memory 100 times as many), divided by the difference of their numbers. The constants of docs/scale.md; TMPDIR says on which disk."""
+memory 100 times as many), divided by the difference of their numbers. The constants of docs/dev/scale.md; TMPDIR says on which disk."""
 import collections
 import pathlib
 import re
@@ -38,7 +38,7 @@ def kind_of(name, line):
     return next((kind for begin, kind in KINDS if name.startswith(begin)), name)
 
 
-# As docs/scale.md counts them; a page of a pack is part of a request of 256 kB.
+# As docs/dev/scale.md counts them; a page of a pack is part of a request of 256 kB.
 OPERATIONS = {"create": 4, "open to read": 3, "rename": 1, "mkdir": 1, "open folder": 2, "pread of a pack": 16 / 256}
 
 

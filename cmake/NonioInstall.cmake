@@ -57,6 +57,13 @@ set(papers ${CMAKE_INSTALL_DATADIR}/doc/nonio)
 # Scripts that users adapt.
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/cmake/package/slurm/nonio-night ${PROJECT_SOURCE_DIR}/cmake/package/slurm/nonio-shard.sbatch
         DESTINATION ${CMAKE_INSTALL_DATADIR}/nonio/slurm)
+# The same as pages with search, if they were made: cmake --build BUILD --target docs_site
+find_program(MKDOCS mkdocs)
+if(MKDOCS)
+  add_custom_target(docs_site COMMAND ${MKDOCS} build --quiet --site-dir ${CMAKE_BINARY_DIR}/site
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
+  install(DIRECTORY ${CMAKE_BINARY_DIR}/site/ DESTINATION ${papers}/site OPTIONAL)
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${papers} FILES_MATCHING PATTERN *.md PATTERN *.png PATTERN *.svg)
 foreach(folder IN LISTS NONIO_PLUGIN_FOLDERS)
   install(FILES ${PROJECT_SOURCE_DIR}/plugins/${folder}/README.md DESTINATION ${papers}/plugins/${folder})

@@ -134,7 +134,7 @@ Verb morning_verb(Common& common) {
           "is\n"
           "so, what to look at, and the page that shows it. The pages of the site say the same:\n"
           "OUT/index.html.\n\n"
-          "Exit status: 0 nothing asks for a decision; 1 some line does; 2 "
+          "Exit status: 0 no action required; 1 action required; 2 "
           "error.\n\n"
           "Examples: nonio morning out\n"
           "          nonio morning out --since 2026-11-01 --customer \"Sample Works\"",

@@ -55,7 +55,7 @@ Expected<fs::path> document_of(const fs::path& results) {
   return results / evaluation::results_name;
 }
 
-/// The first campaign that asks for attention or has failed; with none, the summary.
+/// The first campaign that requires action or has failed; with none, the summary.
 Expected<fs::path> document_of_night(const fs::path& out, const Common& common) {
   const auto summary = json_file(out / "summary.json");
   if (!summary) return fail(summary.error());

@@ -113,7 +113,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
       for (const std::string& key : done.without_reason)
         complain(release_name,
                  key +
-                     " asks for attention and no reason is given why it may stand; expected "
+                     " requires action and no reason is given why it may stand; expected "
                      "--reason \"" +
                      key + "=TEXT\"");
       return exit_failed;

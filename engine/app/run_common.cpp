@@ -38,8 +38,8 @@ void print_summary(const batch::Night& night, const fs::path& out, bool json) {
             << (night.vanished.empty() ? "" : std::to_string(night.vanished.size()) + " vanished; ")
             << attention << (attention == 1 ? " has findings" : " have findings");
   if (night.asking)
-    std::cout << "; " << *night.asking << (*night.asking == 1 ? " line asks" : " lines ask")
-              << " for a decision";
+    std::cout << "; action required: " << *night.asking
+              << (*night.asking == 1 ? " line" : " lines");
   std::cout << ": " << (out / "summary.txt").string() << "\n";
 }
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What holds for the documents: lines fit 120 columns, tables and code apart; links point at pages and headings that
-are there, and so do the pages that the sources name; the rows of docs/constants.md are those that the code names;
+are there, and so do the pages that the sources name; the rows of docs/dev/constants.md are those that the code names;
 no page, no help and no English text has the phrases that readers stumbled over.
 
 docs_test.py SOURCE_FOLDER"""
@@ -10,7 +10,7 @@ import sys
 import unittest
 
 ROOT = pathlib.Path(sys.argv.pop(1))
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 WIDTH = 120
 
 
@@ -106,13 +106,17 @@ class Documents(unittest.TestCase):
         for text in ("what\ncomes of it", 'a = "what comes "\n      "of it";'):
             self.assertTrue(RIDDLES.search(joined(text)), text)
 
+    def test_every_page_is_in_the_navigation_once(self):
+        named = re.findall(r"^ +- [^:]+: (\S+\.md)$", (ROOT / "mkdocs.yml").read_text(), re.M)
+        self.assertEqual(sorted(named), sorted(p.relative_to(ROOT / "docs").as_posix() for p in (ROOT / "docs").rglob("*.md")))
+
     def test_rows_of_the_constants_are_those_that_the_code_names(self):
-        rows = set(re.findall(r"^\| ([AM]\d+) \|", (ROOT / "docs/constants.md").read_text(), re.M))
+        rows = set(re.findall(r"^\| ([AM]\d+) \|", (ROOT / "docs/dev/constants.md").read_text(), re.M))
         named = set()
         for folder in ("engine/model", "engine/math", "engine/campaign", "plugins"):
             for path in (ROOT / folder).rglob("*"):
                 if path.suffix in (".cpp", ".h"):
-                    named.update(re.findall(r"docs/constants\.md, ([AM]\d+)\b", path.read_text()))
+                    named.update(re.findall(r"docs/dev/constants\.md, ([AM]\d+)\b", path.read_text()))
         self.assertEqual(rows, named)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The figures that the source papers print: each has a test that is there and has the figure in its body, or a reason; the
-page docs/printed-figures.md shows the same rows.
+page docs/dev/printed-figures.md shows the same rows.
 
 figures_test.py SOURCE_FOLDER [--update]   --update writes the rows of the page anew"""
 import pathlib
@@ -11,7 +11,7 @@ import unittest
 
 ROOT = pathlib.Path(sys.argv.pop(1))
 LIST = ROOT / "tests" / "structure" / "printed_figures.toml"
-PAGE = ROOT / "docs" / "printed-figures.md"
+PAGE = ROOT / "docs" / "dev" / "printed-figures.md"
 PAPERS = {"gantry": "Two diagonals of a gantry, and triples", "standards": "ISO 230-2 and VDI/DGQ 3441",
           "rotary": "Rotary axes", "steps": "Step diagonals"}
 KEYS = {"paper", "printed", "nonio", "test", "with", "why"}

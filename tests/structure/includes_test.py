@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What may include what: docs/architecture.md, compared with the include lines, and planted lines that break it."""
+"""What may include what: docs/dev/architecture.md, compared with the include lines, and planted lines that break it."""
 import pathlib
 import re
 import sys

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What others wrote and lies in third_party is what its README says, file by file; every file has its digest there, its
-licence stands in the package's copyright and in docs/architecture.md, and Nonio embeds its bytes unchanged.
+licence stands in the package's copyright and in docs/dev/architecture.md, and Nonio embeds its bytes unchanged.
 
 third_party_test.py SOURCE_FOLDER BUILD_FOLDER"""
 import hashlib
@@ -34,7 +34,7 @@ class ThirdParty(unittest.TestCase):
     def test_the_package_and_the_documents_name_them(self):
         for folder in self.folders:
             name = (folder / "README.md").read_text().splitlines()[0].split()[1]
-            for text in ("cmake/package/copyright", "docs/architecture.md"):
+            for text in ("cmake/package/copyright", "docs/dev/architecture.md"):
                 self.assertIn(name, (ROOT / text).read_text(), f"{text} names {name}")
 
     def test_they_are_embedded_unchanged(self):

@@ -25,12 +25,12 @@ add_executable(bench_history ${PROJECT_SOURCE_DIR}/bench/history.cpp)
 target_include_directories(bench_history PRIVATE ${PROJECT_SOURCE_DIR}/engine)
 target_link_libraries(bench_history PRIVATE nonio_engine nonio_warnings)
 
-# Measures: what each stage of a campaign costs, see docs/performance.md.
+# Measures: what each stage of a campaign costs, see docs/dev/performance.md.
 add_executable(bench_campaign ${PROJECT_SOURCE_DIR}/bench/campaign.cpp)
 target_include_directories(bench_campaign PRIVATE ${PROJECT_SOURCE_DIR}/engine)
 target_link_libraries(bench_campaign PRIVATE nonio_engine nonio_warnings)
 
-# Measures: memory of the plan of ten million campaigns, see docs/scale.md.
+# Measures: memory of the plan of ten million campaigns, see docs/dev/scale.md.
 add_executable(bench_plan_memory ${PROJECT_SOURCE_DIR}/bench/plan_memory.cpp)
 target_include_directories(bench_plan_memory PRIVATE ${PROJECT_SOURCE_DIR}/engine)
 target_link_libraries(bench_plan_memory PRIVATE nonio_engine nonio_warnings)

@@ -221,7 +221,7 @@ std::string waiting_line(const std::vector<certificates::WaitingDraft>& drafts,
   return line + (drafts.size() > most ? ", ..." : "") + "\n";
 }
 
-/// "12 campaigns: 3 done, 9 unchanged, 0 failed; 2 lines ask for a decision".
+/// "12 campaigns: 3 done, 9 unchanged, 0 failed; 2 lines: action required".
 std::string counts_line(const Night& night, const Lists& lists, const Morning& morning,
                         const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };

@@ -109,7 +109,7 @@ std::vector<Finding> no_sign_findings(const model::Explanation& e, const PartMod
 
 namespace {
 
-// docs/constants.md, M24.
+// docs/dev/constants.md, M24.
 constexpr double told_apart = 4.0;         // standard deviations
 constexpr std::size_t enough_targets = 9;  // a wave and a bend need as many columns as 5 targets
 

@@ -26,7 +26,7 @@ struct Standing {
   bool has_results = false;
   bool judged = false;     ///< some result has a limit
   bool conforms = false;   ///< nothing that was judged last does not
-  bool attention = false;  ///< the last campaign has a finding that asks for attention
+  bool attention = false;  ///< the last campaign has a finding that requires action
   bool reversal = false;   ///< and it is one of the reversal
   IntervalFacts interval{};
   std::string until{};  ///< last night's date on which the lines are the same

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double periods_asked = 2.0;
 constexpr double steps_of_period = 20.0;
-// docs/constants.md, A20: what may be noise alone has the distribution of Rayleigh.
+// docs/dev/constants.md, A20: what may be noise alone has the distribution of Rayleigh.
 constexpr double noise_alone = 3.0, of_noise = 1.25;
 constexpr double as_written = 1e-6;  // of a period: targets are printed to a digit
 
@@ -161,7 +161,7 @@ PeriodicError periodic_error(std::span<const Pass> passes, double period) {
 namespace {
 
 constexpr double same_size = 1e-3;     // of a step: targets are printed to a digit
-constexpr double followed_from = 0.5;  // of the commanded step; docs/constants.md, A21
+constexpr double followed_from = 0.5;  // of the commanded step; docs/dev/constants.md, A21
 
 /// Which way over which place: the scatter of one step is that about the mean of its place.
 using Place = std::tuple<long long, int, bool>;

@@ -26,9 +26,9 @@ namespace {
 
 // Runs are pooled with single readings if this level does not tell them apart; a pair of runs tells
 // nearly nothing by itself (one degree of freedom) and is given the benefit of the doubt.
-// docs/constants.md, A3.
+// docs/dev/constants.md, A3.
 constexpr double pooling_level = 0.5, pooling_level_of_pair = 0.05;
-// docs/constants.md, A4.
+// docs/dev/constants.md, A4.
 constexpr double tolerated_share = 0.5;  // of the largest |B_i| that one value may leave behind
 constexpr double negligible = 1e-12;     // m or rad: rounding, not a machine
 
@@ -110,7 +110,7 @@ void fit_turn(const AxisTest& test, const std::vector<double>& plus,
     half_B.push_back((plus[i] - minus[i]) / 2.0);
     middle.push_back((plus[i] + minus[i]) / 2.0);
   }
-  // docs/constants.md, A5.
+  // docs/dev/constants.md, A5.
   constexpr double most = 0.5;  // a sinusoid that explains less than half is not the story
   const Harmonic opposed = fit_harmonic(test.targets, half_B);
   const Harmonic concordant = fit_harmonic(test.targets, middle);

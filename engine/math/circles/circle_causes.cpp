@@ -4,8 +4,8 @@
 // s = (ccw + cw)/2 and half difference h = (ccw - cw)/2 the causes that do not turn with the
 // direction are in s, those that do in h. Noise of s and h is estimated apart: a form that the model
 // does not have is in s, twice the same, and no noise of h.
-// What the analysis concludes from it has judgements too: docs/constants.md, A12, of shares;
-// docs/constants.md, A13, of spikes; docs/constants.md, A14, of what is not separable.
+// What the analysis concludes from it has judgements too: docs/dev/constants.md, A12, of shares;
+// docs/dev/constants.md, A13, of spikes; docs/dev/constants.md, A14, of what is not separable.
 #include <algorithm>
 #include <cmath>
 #include <map>

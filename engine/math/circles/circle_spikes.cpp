@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Reversal spikes (docs/constants.md, A13), and how far from a reversal they last.
+// Reversal spikes (docs/dev/constants.md, A13), and how far from a reversal they last.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -13,7 +13,7 @@ namespace nonio::math {
 namespace {
 
 // What the spikes leave behind the zone, in its u: beyond the first the zone becomes wider, and once
-// it has, as long as it is beyond the second: an exponential ends late. docs/constants.md, A23.
+// it has, as long as it is beyond the second: an exponential ends late. docs/dev/constants.md, A23.
 constexpr double normal_quartile = 0.6745;  // median of |x|, in standard deviations
 constexpr double begins = 2.24, goes_on = 1.0, wide = 2.0 * full_turn / 360.0;
 

@@ -7,7 +7,7 @@
 namespace nonio::math {
 
 inline constexpr double full_turn = 2.0 * std::numbers::pi;  // rad
-// docs/constants.md, A1.
+// docs/dev/constants.md, A1.
 inline constexpr double significance = 0.01;  // of the tests behind findings
 inline constexpr double rounding = 1e-10;     // m or rad: less is no machine's scatter
 /// Standard uncertainty of what lies within a full range of 1, and of a limit of 1 that is reached

@@ -19,7 +19,7 @@
 namespace nonio::math {
 namespace {
 
-// docs/constants.md, A11.
+// docs/dev/constants.md, A11.
 constexpr double long_axis = 2.0;  // m
 constexpr double close = 1e-6;     // m or rad, where nominal positions are compared
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Formulas: nonio/math/spindle.h.
-// What the analysis names has judgements too: docs/constants.md, A18, of few turns;
-// docs/constants.md, A19, of waves.
+// What the analysis names has judgements too: docs/dev/constants.md, A18, of few turns;
+// docs/dev/constants.md, A19, of waves.
 #include "nonio/math/spindle.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double whole_turn = 2.0 * std::numbers::pi;
 constexpr std::size_t fewest_in_turn = 16, fewest_turns = 2;
-// docs/constants.md, A17.
+// docs/dev/constants.md, A17.
 constexpr double widest_gap = whole_turn / 8.0;
 constexpr double as_read = 1e-4;  // rad: angles this near to even steps are the steps
 
@@ -102,7 +102,7 @@ std::optional<Turns> rotating(const Turns& X, const Turns& Y, int sense) {
 }
 
 int sense_of(const ErrorMotion& X, const ErrorMotion& Y) {
-  constexpr double clearly = 3.0;  // docs/constants.md, A27
+  constexpr double clearly = 3.0;  // docs/dev/constants.md, A27
   const double f = std::hypot(X.a + Y.b, X.b - Y.a) / 2.0;
   const double g = std::hypot(X.a - Y.b, X.b + Y.a) / 2.0;
   const double noise = 4.0 * std::hypot(X.u_ab, Y.u_ab);

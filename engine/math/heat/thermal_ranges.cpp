@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ranges in windows, by two queues of candidates: O(n). Formulas: nonio/math/thermal.h.
-// What the analysis names has a judgement: docs/constants.md, A16.
+// What the analysis names has a judgement: docs/dev/constants.md, A16.
 #include <algorithm>
 #include <cmath>
 #include <deque>

@@ -21,7 +21,7 @@ using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
 constexpr std::size_t most_means = 120, fewest = 12;
-// docs/constants.md, A15.
+// docs/dev/constants.md, A15.
 constexpr double longest_share = 0.5;   // of the test
 constexpr double largest_u_tau = 0.25;  // of the time constant
 constexpr double second_level = 0.01;

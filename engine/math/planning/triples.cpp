@@ -19,7 +19,7 @@ constexpr std::int64_t fewest_steps = 4;  // five points
 constexpr double longest_travel = 1e3;    // m; keeps every product far from the end of 64 bits
 constexpr std::int64_t largest_hypotenuse = 1'000'000;
 constexpr std::int64_t most_points = 1'000'000;
-// docs/constants.md, A10.
+// docs/dev/constants.md, A10.
 constexpr double even_bonus = 0.01;
 const double even_part_gain = std::sqrt(6.0) / 4.0;
 

@@ -22,7 +22,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 constexpr double largest_size = 1e6;  // m; beyond it a micrometre has no digits
 constexpr double thinnest = 1e-6;     // second to first singular value: still a plane
 constexpr double same_angle = 1e-6;   // rad
-// docs/constants.md, A9.
+// docs/dev/constants.md, A9.
 constexpr double worst_follow = 0.1;  // rms of encoder against circle, rad
 
 double wrapped(double angle) { return std::remainder(angle, full_turn); }

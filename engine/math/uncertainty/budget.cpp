@@ -34,7 +34,7 @@ namespace {
 
 using LineKind = BudgetLine::Kind;
 
-// docs/constants.md, A8.
+// docs/dev/constants.md, A8.
 constexpr double as_if_known = 500.0;  // degrees of freedom from which on k is 2.00
 
 double k_of(double dof) { return dof < as_if_known ? coverage_factor(dof) : 2.0; }

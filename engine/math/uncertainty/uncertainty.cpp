@@ -29,7 +29,7 @@
 namespace nonio::math {
 namespace {
 
-// docs/constants.md, A7.
+// docs/dev/constants.md, A7.
 constexpr double of_range = 0.6;  // see above: 2/(2 sqrt 3), rounded up
 
 double get(const std::optional<double>& given, const std::string& key,

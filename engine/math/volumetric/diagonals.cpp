@@ -21,7 +21,7 @@ using Row = Eigen::RowVectorXd;
 
 constexpr std::size_t most_stops = 1000;
 constexpr double rank_threshold = 1e-10;  ///< of the largest column; columns are lengths
-// docs/constants.md, A6.
+// docs/dev/constants.md, A6.
 constexpr double closure_limit = 4.0;  ///< closure, in standard uncertainties
 
 Expected<void> check_curve(const MeanCurve& curve, std::size_t length, const std::string& what) {

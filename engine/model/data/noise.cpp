@@ -146,7 +146,7 @@ class ExpectedRatio {
 /// readings leave it open: normal, most are below `usual`.
 void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<double>& weight,
                      Noise& noise) {
-  // docs/constants.md, M25.
+  // docs/dev/constants.md, M25.
   constexpr double usual = 0.8, least_seen = 1.5, fine = 0.01;
   noise.measured = not_measured;
   if (!(s.dof >= least_dof) || !(s.squares > 0.0)) return;
@@ -213,7 +213,7 @@ void spread_out(const Part& part, Noise& noise) {
 void find_stretch(const Part& part, const Saturated& s, const std::vector<double>& weight,
                   Noise& noise) {
   constexpr std::size_t fewest = 3, most_targets = 400;
-  // docs/constants.md, M26.
+  // docs/dev/constants.md, M26.
   constexpr double least_ratio = 1.5, by_chance = 0.005;
   const double rho2 = noise.in_repeats * noise.in_repeats;
   const double independent = (1.0 - rho2) / (1.0 + rho2);  // squares of neighbours go together

@@ -289,7 +289,7 @@ std::vector<double> without_set_up(const Observations& o, const std::vector<Term
 /// median; 1 where it is not twice as much. A rough stretch is no row of misreadings.
 std::vector<double> rougher_than(double s, const Observations& o, const std::vector<double>& e) {
   constexpr std::size_t fewest = 16;
-  // docs/constants.md, M27.
+  // docs/dev/constants.md, M27.
   constexpr double much = 2.0;
   std::vector<double> out(e.size(), 1.0);
   if (o.axes.size() != 1 || e.size() < 4 * fewest || e.size() > 20000) return out;
@@ -336,7 +336,7 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   std::vector<std::uint32_t> high, flagged;
   const std::vector<double> rougher = rougher_than(s_rough, o, e);
   for (std::uint32_t i = 0; i < n; ++i)
-    // docs/constants.md, M11.
+    // docs/dev/constants.md, M11.
     if (std::fabs(e[i]) > 3.5 * s_rough * rougher[i]) high.push_back(i);
   const std::vector<double> apart = apart_from_others(r, high, e);
   for (std::size_t k = 0; k < high.size(); ++k) {
@@ -352,7 +352,7 @@ std::vector<Suspect> suspects_of(const Observations& o, const Repeats& r,
   std::vector<double> in_cell(r.cells, 0.0);
   for (std::size_t i = 0; i < n; ++i) in_cell[r.cell[i]] += weight[i];
   double least = 3.0;  // smallest t that would be named
-  // docs/constants.md, M12.
+  // docs/dev/constants.md, M12.
   while (math::t_two_sided(least, dof) * static_cast<double>(n) > 0.01) least += 0.01;
   std::vector<Suspect> out;
   for (const auto i : flagged) {

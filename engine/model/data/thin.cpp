@@ -12,7 +12,7 @@ namespace nonio::model {
 
 namespace {
 
-// docs/constants.md, M22.
+// docs/dev/constants.md, M22.
 constexpr std::size_t most_runs = 20, least_positions = 25;
 
 /// Group of each value when neighbours among the distinct ones are joined to at most `most` groups.

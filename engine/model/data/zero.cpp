@@ -207,10 +207,10 @@ class Search {
 
 Noise with_zero(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight, const Noise& noise) {
-  // docs/constants.md, M28.
+  // docs/dev/constants.md, M28.
   constexpr double worth = 1.5;    // an uncertainty too small is worse than one too large
   constexpr double no_sign = 1.2;  // score, where a gain of `worth` is hardly to be had
-  // docs/constants.md, M31.
+  // docs/dev/constants.md, M31.
   constexpr std::size_t most = 1500;  // beyond, the covariance of all readings is too large
   if (o.size() > most || o.size() < 10 || noise.pass.empty()) return noise;
   const auto blocks = blocks_of(o, terms, root_weights(o, weight));

@@ -30,7 +30,7 @@ void fill_measured(Observations& o) {
 
 namespace {
 
-// docs/constants.md, M13.
+// docs/dev/constants.md, M13.
 constexpr double enough = 4.0;  // standard deviations between two explanations
 
 struct Course {  // one further measurement

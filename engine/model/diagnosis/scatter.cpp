@@ -47,7 +47,7 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
     if (apart * apart / within > best)
       best = apart * apart / within, best_apart = -apart, split = i + 1;
   }
-  // docs/constants.md, M33.
+  // docs/dev/constants.md, M33.
   constexpr double one_digit = 1.6;  // two neighbouring digits of a coarse display
   if (best < 18.0 || best_apart < one_digit * digit) return false;
   std::vector<int> side(repeats.cells, 0);

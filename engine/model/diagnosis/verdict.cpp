@@ -19,27 +19,27 @@ namespace nonio::model {
 
 namespace {
 
-// docs/constants.md, M4.
+// docs/dev/constants.md, M4.
 constexpr double least_left = 0.25;  // of the noise: smaller structure is not worth a verdict
-// docs/constants.md, M5.
+// docs/dev/constants.md, M5.
 constexpr double serious_p = 0.005;
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
-// docs/constants.md, M6.
+// docs/dev/constants.md, M6.
 constexpr double unexplained_share = 0.04;
 // The same of an effect that is certain, whatever else there is.
-// docs/constants.md, M7.
+// docs/dev/constants.md, M7.
 constexpr double certain_share = 0.06;
 // Far more than chance asks for: what is left beside it is no independent noise.
-// docs/constants.md, M8.
+// docs/dev/constants.md, M8.
 constexpr double certain_evidence = 50.0;
-// docs/constants.md, M9.
+// docs/dev/constants.md, M9.
 constexpr double most_of_one_target = 0.3;
 // Evidence of effects below it is not asked whether a zero that is not steady gives as much: sizes
 // that are printed as the smallest would be lost.
-// docs/constants.md, M29.
+// docs/dev/constants.md, M29.
 constexpr double least_against_zero = 30.0;
 // Two effects whose parts run against each other like this are one thing without a name.
-// docs/constants.md, M10.
+// docs/dev/constants.md, M10.
 constexpr double cancels_beyond = 0.95;
 
 /// Whether two places share a factor.
@@ -132,7 +132,7 @@ class Judge {
   /// How much less evidence is as good for zeros of runs, of so much: a small effect is not lost
   /// for zeros that might be there; a large one would leave far more of itself beside them.
   static double as_good_as(double evidence) {
-    // docs/constants.md, M30.
+    // docs/dev/constants.md, M30.
     constexpr double share = 0.1;
     return std::clamp(share * evidence, 0.0, alias_evidence);
   }
@@ -219,7 +219,7 @@ class Judge {
   /// Growth about the middle and a drift of the zero are together one growth from another place.
   /// Where a bearing may be there, the growth is named first: the drift would be its shadow.
   void find_one_growth() {
-    // docs/constants.md, M21.
+    // docs/dev/constants.md, M21.
     constexpr double farthest = 0.8;  // of the stretch, from its middle
     auto& names = out_.together;
     if (f_.part.kind != Part::Kind::axis || f_.part.axes.front().rotary) return;

@@ -189,7 +189,7 @@ Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
 
 std::vector<Place> seats_in(const Part& part, const Repeats& repeats,
                             const Comparison& comparison) {
-  // docs/constants.md, M20.
+  // docs/dev/constants.md, M20.
   constexpr double least_share = 0.02;
   const Fit& fit = comparison.fit;
   const Whitening white(part.table, fit.weight, Whitening::of_repeats(fit.noise));

@@ -441,7 +441,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
       steady.zero = Noise::Zero::steady;
       const MatrixXd known = with(steady);
       for (Index k = 0; k < columns; ++k)
-        // docs/constants.md, M32.
+        // docs/dev/constants.md, M32.
         open[static_cast<std::size_t>(k)] = known(k, k) < 0.5 * cofactor(k, k);
     }
   }

@@ -55,7 +55,7 @@ std::string to_text(const Where& where) {
 
 namespace {
 
-// docs/constants.md, M23.
+// docs/dev/constants.md, M23.
 constexpr Index most_bins = 40;
 
 MatrixXd dummies(const std::vector<std::size_t>& level, std::size_t levels) {
@@ -305,7 +305,7 @@ class Cells {
 /// Whether what a factor says differs between repeats of a cell: what comes back in every run sits
 /// in the cells, even where a wave of time describes it with fewer columns.
 bool tells_repeats_apart(const Cells& cells, const MatrixXd& basis, const VectorXd& residual) {
-  // docs/constants.md, M19.
+  // docs/dev/constants.md, M19.
   constexpr double least = 0.1;  // of its squares; of a line in time over two runs, a fifth
   MatrixXd said = basis * (basis.transpose() * residual);
   const double all = said.squaredNorm();

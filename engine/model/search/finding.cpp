@@ -205,7 +205,7 @@ class Finder {
   /// Few readings without repeats: a misread value bends every effect. So each is left out in turn,
   /// and the best explanation of the others predicts it.
   std::vector<Suspect> suspect_without_repeats() {
-    // docs/constants.md, M18.
+    // docs/dev/constants.md, M18.
     constexpr std::size_t fewest = 8, most = 40;
     const std::size_t n = f_.part.table.size();
     const auto repeated = saturate(f_.repeats, f_.part.table.deviation, {});
@@ -240,7 +240,7 @@ class Finder {
   /// A reading of weight 0 against what the best explanation of the others says of it: none if it
   /// is as far away as one of so many may be.
   std::optional<Suspect> predicted(std::size_t row) const {
-    // docs/constants.md, M12.
+    // docs/dev/constants.md, M12.
     constexpr double rarely = 0.01;
     const MatrixXd basis = f_.bench->basis(f_.best);
     const double dof = f_.dof(f_.best), n = f_.bench->readings() + 1.0;

@@ -14,7 +14,7 @@
 namespace nonio::model {
 
 inline constexpr double alias_evidence = 6.0;  ///< 2 ln 20: one twentieth is no difference
-// docs/constants.md, M3.
+// docs/dev/constants.md, M3.
 inline constexpr double least_rms = 0.2;  ///< of the noise: smaller effects are not worth a name
 
 /// What the search over all sets of effects has found in one part: candidates and the verdict are

@@ -15,9 +15,9 @@ namespace {
 
 using State = Workbench::State;
 
-// docs/constants.md, M16.
+// docs/dev/constants.md, M16.
 constexpr std::size_t side_by_side = 4;
-// docs/constants.md, M17.
+// docs/dev/constants.md, M17.
 constexpr int most_effects_added = 7;
 
 std::set<std::size_t> effects_of(const Workbench& bench, const State& s) {
@@ -112,9 +112,9 @@ double Chance::corrected(double p) const {
 
 SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd& residual,
                    const std::vector<std::uint32_t>& pass, std::uint64_t seed) {
-  // docs/constants.md, M15.
+  // docs/dev/constants.md, M15.
   constexpr std::size_t stretch = 5;  // readings whose sign is flipped together
-  // docs/constants.md, M14.
+  // docs/dev/constants.md, M14.
   constexpr Index shuffles = 200;
   std::vector<Index> block(pass.size());
   std::vector<std::size_t> in_pass;

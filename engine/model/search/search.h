@@ -44,7 +44,7 @@ std::vector<char> named_in(const Workbench& bench, const Workbench::State& compl
 double p_of(const Workbench& bench, const Workbench::State& state, std::size_t effect);
 
 /// An effect is named if noise would give such evidence in this search less often than this.
-// docs/constants.md, M2.
+// docs/dev/constants.md, M2.
 inline constexpr double named_below = 0.005;
 
 }  // namespace nonio::model

@@ -18,7 +18,7 @@ using math::CauseFit;
 using math::CircleModel;
 
 constexpr double level = 0.01;  // of a cyclic error
-// docs/constants.md, A14.
+// docs/dev/constants.md, A14.
 constexpr double most_inflation = 1e4;  // of the variance: beyond it the columns are one
 
 const CauseFit::Value& of(const CauseFit& fit, Cause c) {

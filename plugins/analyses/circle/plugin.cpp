@@ -18,7 +18,7 @@ using math::PathCircle;
 
 constexpr std::size_t fewest = 12;                                          // readings of a path
 constexpr double per_deg = std::numbers::pi / 180.0, most_left_out = 20.0;  // deg
-// docs/constants.md, A12.
+// docs/dev/constants.md, A12.
 constexpr double share_for_attention = 0.2;
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "circle"; }
@@ -232,7 +232,7 @@ void spikes(Work& w, double total) {
     });
     add(w, "spike_" + w.circle.axis[k], worst.height, Quantity::deviation,
         std::hypot(worst.u, adds), std::vector<double>(w.fit.bins.size(), 0.0));
-    // docs/constants.md, A13.
+    // docs/dev/constants.md, A13.
     if (!(std::fabs(worst.height) > 4.0 * worst.u)) continue;  // readings of 0: nothing
     const double alone = std::fabs(worst.height), share = alone / (total + alone);
     w.out.findings.push_back({.id = "circle.spikes",

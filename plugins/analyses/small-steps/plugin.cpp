@@ -121,6 +121,7 @@ NONIO_PLUGIN(registry) {
             true};
   a.applies = applies;
   a.analyse = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }
 

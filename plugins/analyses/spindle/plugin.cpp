@@ -102,7 +102,7 @@ class Worker {
     }
     waves(c, curve, u_mean);
     put_curve(c, curve);
-    constexpr double few = 20.0;  // docs/constants.md, A18
+    constexpr double few = 20.0;  // docs/dev/constants.md, A18
     if (N < few && !few_turns_) {
       few_turns_ = true;
       out_.findings.push_back({.id = "spindle.few-turns",
@@ -156,7 +156,7 @@ class Worker {
       }
       if (const double size = std::hypot(a, b); size > best) best = size, order = k;
     }
-    constexpr double large_share = 0.5;  // docs/constants.md, A19
+    constexpr double large_share = 0.5;  // docs/dev/constants.md, A19
     if (order == 0 || !(best * best / 2.0 > large_share * all) ||
         !(best > 4.0 * u_mean * std::sqrt(2.0 / n)))
       return;
@@ -247,6 +247,7 @@ NONIO_PLUGIN(registry) {
             {}};
   a.applies = applies;
   a.analyse = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }
 

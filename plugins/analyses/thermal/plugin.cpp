@@ -19,7 +19,7 @@ bool applies(const Campaign&, const Measurement& m) { return m.kind == "thermal"
 void propose_drift(const AnalysisInput& in, const Worked& worked, const Wish& wish,
                    Evaluation& out) {
   if (!(worked.drift > 0.0)) return;
-  constexpr double of_range = 0.6;  // docs/constants.md, A7
+  constexpr double of_range = 0.6;  // docs/dev/constants.md, A7
   Finding f{.id = "thermal.drift-proposal",
             .attention = false,
             .evidence = {{"drift", worked.drift, Quantity::deviation},

@@ -71,7 +71,7 @@ class Worker {
       out_.drift = window->range, out_.drift_sensor = f.name;
     double widest = 0.0;
     for (std::size_t i = 1; i < k.size(); ++i) widest = std::max(widest, k.time[i] - k.time[i - 1]);
-    // docs/constants.md, A16: a window with fewer readings can miss its extremes.
+    // docs/dev/constants.md, A16: a window with fewer readings can miss its extremes.
     if (widest > wish_.window / 4.0)
       once("thermal.sparse", {minutes("step_min", widest), minutes("window_min", wish_.window)});
   }

@@ -153,6 +153,7 @@ NONIO_PLUGIN(registry) {
             "Stops for two axes and both diagonals of their rectangle, with equal whole steps.",
             options(), true};
   a.analyse_campaign = analyse;
+  a.states_followed = true;
   registry.add(std::move(a));
 }
 

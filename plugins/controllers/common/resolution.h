@@ -13,7 +13,7 @@ namespace nonio::controllers {
 
 /// The steepest step, of the mean or of one direction, that is larger than 1 um (1 arcsec) and either
 /// steeper than 1000 um/m (0.36 deg per turn) though three digits of the instrument or the scatter explain
-/// it, or steeper than ten times that: digits of a dial between two close targets. docs/constants.md, A26.
+/// it, or steeper than ten times that: digits of a dial between two close targets. docs/dev/constants.md, A26.
 std::optional<Unresolved> unresolved_step(const math::AxisTest& test,
                                           const math::ErrorCurve& curve);
 

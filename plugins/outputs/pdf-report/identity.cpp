@@ -119,7 +119,7 @@ bool has_results(const Evaluation& e) {
          !e.rows.columns.empty();
 }
 
-/// Nothing asks for attention. Green only where there was something that could have: what was not
+/// Nothing requires action. Green only where there was something that could have: what was not
 /// evaluated, or held against no tolerance, is not good for that.
 void say_what_was_looked_at(const Source& source, Status& status, bool of_laboratory) {
   const Results& results = source.in.results;

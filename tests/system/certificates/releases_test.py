@@ -115,10 +115,10 @@ class Releases(NumberedTest):
         self.out_of_tolerance()
         self.night()
         done = self.release_verb("--by", "B", expect=1, known=())
-        self.assertIn("X: " + KNOWN + " asks for attention", done.stderr)
+        self.assertIn("X: " + KNOWN + " requires action", done.stderr)
         done = self.release_verb("--by", "B", expect=1)
-        self.assertIn("X: tolerance.X.E.iso230-2 asks for attention", done.stderr)
-        self.assertNotIn("X: " + KNOWN + " asks for attention", done.stderr)
+        self.assertIn("X: tolerance.X.E.iso230-2 requires action", done.stderr)
+        self.assertNotIn("X: " + KNOWN + " requires action", done.stderr)
         self.assertEqual(self.entries(), [])
         for wrong in (["--reason", "nonsense=x"], ["--reason", "x"], ["--reason", "tolerance.X.E.iso230-2= "]):
             self.release_verb("--by", "B", *wrong, expect=2)

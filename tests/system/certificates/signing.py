@@ -15,7 +15,7 @@ if shutil.which("openssl") is None:
     sys.exit(77)
 
 PASSWORD = "correct horse"
-# The campaigns here have one finding that asks for attention.
+# The campaigns here have one finding that requires action.
 AUTOMATIC = ('[certificate]\nrelease = "automatic"\n'
              'may_stand = [{ finding = "reversal.lost-motion", reason = "it is what was ordered" }]\n')
 SIGNER = "CN=Ada Bianchi,O=Laboratorio di Prova"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mutants of a good campaign: each takes (manifest, readings as rows, rng) and gives a folder's files.
 
-A mutator has a name (unit-position-m), a class of the table in docs/wrong-inputs.md, and what may become of it:
+A mutator has a name (unit-position-m), a class of the table in docs/dev/wrong-inputs.md, and what may become of it:
 "refused", "remarked" (a finding or note that the original does not have), or "accepted" (nothing new is said, although
 the numbers may differ: the table says why that is right)."""
 import collections

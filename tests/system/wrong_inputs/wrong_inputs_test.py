@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """wrong_inputs_test.py [--count N] [--seed S] [--list]: N mutants of manifests and readings, each held against its own
 original. A mutant is refused, remarked (it has a finding or note that the original has not) or accepted. One that is
-accepted must be named in docs/wrong-inputs.md, with the reason, or have the numbers of the original.
+accepted must be named in docs/dev/wrong-inputs.md, with the reason, or have the numbers of the original.
 The whole: --count 1200. `NONIO` is the program, `NONIO_DOCS` the folder of the documents."""
 import argparse
 import collections
@@ -136,7 +136,7 @@ def main():
                 wrong.append(f"{name} ({campaign}): accepted, expected a remark")
             if outcome == "accepted" and changed and name not in known:
                 wrong.append(f"{name} ({campaign}): accepted with other numbers, and no word why that is right in "
-                             "docs/wrong-inputs.md")
+                             "docs/dev/wrong-inputs.md")
             if outcome == "refused":
                 wrong += [f"{name} ({campaign}): {c}" for c in complaints_of(mutant.errors)]
                 lines["with line" if all(e.get("line") for e in mutant.errors) else "without line"] += 1

@@ -300,7 +300,7 @@ constexpr Key mail_keys[] = {
     {.name = "on",
      .holds = text,
      .help = "From what on a night writes: a campaign is lost or failed; or a machine is out of "
-             "tolerance; or any line asks for a decision.",
+             "tolerance; or any line requires action.",
      .otherwise = "decision",
      .choices = mail_reasons},
     {.name = "sendmail",

@@ -8,10 +8,10 @@
 #include "campaign/reading/campaign_reader.h"
 
 /// What looks like a mistake of the person or program that wrote the files: a unit, a sign, an
-/// order, a copy, a date. A finding that asks for attention names the numbers that betray it; no
+/// order, a copy, a date. A finding that requires action names the numbers that betray it; no
 /// table is written and no number drawn until a person says why it may stand. One that another
 /// cause explains as well is information. Sources: none, these
-/// are orders of magnitude of machine tools and instruments (docs/wrong-inputs.md lists them).
+/// are orders of magnitude of machine tools and instruments (docs/dev/wrong-inputs.md lists them).
 namespace nonio::reading {
 
 inline constexpr std::string_view plausibility_name = "plausibility";

@@ -13,7 +13,7 @@ namespace {
 constexpr double micrometre = 1e-6, arc_second = 1.0 / arcsec_per_rad;
 
 /// What somebody stated, and what is ordinary. 0 is a statement too. Confidence of the bounds:
-/// inferred; see docs/wrong-inputs.md.
+/// inferred; see docs/dev/wrong-inputs.md.
 struct Statement {
   std::string key;
   std::optional<double> value;

@@ -84,7 +84,7 @@ struct Comparison {
 };
 
 /// A place is said to fail below this p.
-// docs/constants.md, M1.
+// docs/dev/constants.md, M1.
 inline constexpr double place_p = 0.01;
 
 /// What is found out of the readings before any model of them: how they repeat each other, which

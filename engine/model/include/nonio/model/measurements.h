@@ -28,7 +28,7 @@ struct TimeConstant {
 };
 
 /// Time constants differ from so many standard uncertainties of the difference of their logarithms
-/// on (docs/constants.md, M34).
+/// on (docs/dev/constants.md, M34).
 inline constexpr double time_constants_apart = 2.6;
 
 /// Measurements that are explained together: they sense the same axes in the same unit.

@@ -180,7 +180,6 @@ struct Output {
   /// What the program writes with it where it has a document of this kind to show or to print.
   enum class Role { other, report, model_page, sheet_of_stops };
   Info info;
-  Role role = Role::other;
   bool (*applies)(const Campaign&) = nullptr;
   Expected<OutputResult> (*write)(const OutputInput&) = nullptr;
   /// Optional: called once in a run, before any campaign, to pay for what all documents share
@@ -192,6 +191,7 @@ struct Output {
   /// Optional: whether it shows the machine's history with these options. It is then written again
   /// when that history is another one.
   bool (*wants_history)(const Settings&) = nullptr;
+  Role role = Role::other;
 };
 
 struct ControllerInput {

@@ -14,7 +14,7 @@ namespace nonio::math {
 /// Level of both 1 %. u from the differences of the runs, pooled with the scatter of single
 /// readings where the runs show no more than that. Sources: B_i of ISO 230-2; pooling of
 /// T. A. Bancroft, Biometrics 20 (1964) 427; the decisions are ours (docs/formulas.md,
-/// docs/constants.md A3 to A5).
+/// docs/dev/constants.md A3 to A5).
 struct Reversal {
   enum class Kind {
     unknown,      ///< not measured from both directions at every target, or no scatter is known

@@ -73,7 +73,7 @@ enum class TripleReason : std::uint8_t {
   next,           ///< the next triple in the order
 };
 /// How near: share of the best plan's coverage of the worse axis.
-// docs/constants.md, A10.
+// docs/dev/constants.md, A10.
 inline constexpr double near_best = 0.95;
 
 struct TriplePlan {

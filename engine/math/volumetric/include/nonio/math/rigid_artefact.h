@@ -83,7 +83,7 @@ struct ArtefactRefusal {
 };
 
 /// Farther than this no ball is from where it should be: then it is another ball, or another
-/// artefact. docs/constants.md, A22.
+/// artefact. docs/dev/constants.md, A22.
 inline constexpr double artefact_limit = 0.3e-3;
 
 /// `first`: number of its first shared unknown; `group`: of the scatter.
