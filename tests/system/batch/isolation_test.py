@@ -145,8 +145,16 @@ class Isolation(NightTest):
         self.assertEqual(done.returncode, 1, done.stderr + done.stdout)
         self.assertEqual(self.ids("failed"), ["a"])
         message = self.results("a")["errors"][0]["message"]
-        self.assertIn("no reader knows the format of this file", message)
+        self.assertIn('no reader takes measurements of kind "axis"', message)
         self.assertIn('readers.so was built for "nonio-sdk 0; another compiler"', message)
+
+    def test_a_refused_plugin_might_have_read_a_file_of_an_unknown_format(self):
+        folder = self.campaign("a")
+        (folder / "x.csv").write_text("what no reader knows\n")
+        self.run_nonio("--plugin-path", str(PLUGINS / "wrong_abi"), expect=1)
+        message = self.results("a")["errors"][0]["message"]
+        self.assertIn("no reader knows the format of this file", message)
+        self.assertIn('was built for "nonio-sdk 0; another compiler"', message)
 
     def test_duplicate_name_names_both_files(self):
         self.campaign("a")
