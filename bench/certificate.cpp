@@ -104,7 +104,7 @@ int main(int argc, char** argv) {
   if (argc > 2) std::from_chars(argv[2], argv[2] + std::string_view(argv[2]).size(), count);
   Bench b;
   for (const char* name : {"iso230-2", "certificate", "dcc"})
-    if (!b.plugins.load(std::string(NONIO_PLUGINS) + "/" + name + ".so")) return 1;
+    if (!b.plugins.load(NONIO_PLUGINS, name)) return 1;
   b.campaign = fixtures::whole_case(b.plugins);
   b.campaign.add("Y", {});
   b.campaign.campaign.machine.axes.back().expansion = 11.5e-6;

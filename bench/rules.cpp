@@ -77,8 +77,9 @@ int main(int argc, char** argv) {
     if (std::strcmp(argv[k], "--rounds") == 0) rounds = std::atoi(argv[k + 1]);
     if (std::strcmp(argv[k], "--most") == 0) most = std::atof(argv[k + 1]);
   }
-  const Analysis iso = loaded_analysis(NONIO_ISO_PLUGIN), vdi = loaded_analysis(NONIO_VDI_PLUGIN),
-                 all = loaded_analysis(NONIO_POSITIONING_PLUGIN);
+  const Analysis iso = loaded_analysis(NONIO_ANALYSES, "iso230-2"),
+                 vdi = loaded_analysis(NONIO_ANALYSES, "vdi-dgq-3441"),
+                 all = loaded_analysis(NONIO_ANALYSES, "positioning");
   const Settings of_iso = defaults(iso), of_vdi = defaults(vdi);
   Settings of_all = defaults(all);
   std::vector<std::string> rules;

@@ -1,20 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-# nonio_add_plugin(NAME SOURCE...): a plugin, ready to be loaded. In Nonio's own tree it goes where
-# the program looks for plugins; elsewhere it stays in the current binary folder.
+# nonio_add_plugin(NAME SOURCE... [LIBRARIES LIBRARY...]): a plugin, ready to be loaded, in the current binary folder. In
+# Nonio's own tree it becomes a part of the library of its kind (plugins/CMakeLists.txt).
 function(nonio_add_plugin name)
-  add_library(${name} MODULE ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 plugin "" "" "LIBRARIES")
+  if(COMMAND nonio_add_built_in)
+    nonio_add_built_in(${name} "${plugin_UNPARSED_ARGUMENTS}" "${plugin_LIBRARIES}")
+    return()
+  endif()
+  add_library(${name} MODULE ${plugin_UNPARSED_ARGUMENTS})
   set_target_properties(${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden
                         VISIBILITY_INLINES_HIDDEN ON)
   target_compile_features(${name} PRIVATE cxx_std_20)
-  if(TARGET nonio_math)
-    target_link_libraries(${name} PRIVATE nonio_sdk nonio_math nonio_warnings)
-    set_target_properties(${name} PROPERTIES
-      LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${NONIO_PLUGIN_SUBDIR}
-      INSTALL_RPATH "$ORIGIN/..")
-    install(TARGETS ${name} LIBRARY DESTINATION ${NONIO_PLUGIN_SUBDIR})
-  else()
-    target_link_libraries(${name} PRIVATE nonio::sdk nonio::math nonio::controllers)
-  endif()
+  target_link_libraries(${name} PRIVATE nonio::sdk nonio::math nonio::controllers ${plugin_LIBRARIES})
 endfunction()
 
 # nonio_test_plugin(NAME [FOLDER]): `nonio plugin check`, and of each campaign of FOLDER a run that must give the files of

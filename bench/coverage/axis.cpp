@@ -69,18 +69,18 @@ void compare(const Analysis& analysis, const Settings& settings, const Scenario&
 }
 
 void iso(const Scenario& s, unsigned seed, double size, Tally& tally) {
-  static const Analysis analysis = loaded_analysis(NONIO_ISO_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "iso230-2");
   compare(analysis, defaults(analysis), s, seed, size, tally);
 }
 
 void vdi(const Scenario& s, unsigned seed, double size, Tally& tally) {
-  static const Analysis analysis = loaded_analysis(NONIO_VDI_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "vdi-dgq-3441");
   compare(analysis, defaults(analysis), s, seed, size, tally);
 }
 
 /// Of rules with the formulas of these two no more is to be learnt.
 void rules(const Scenario& s, unsigned seed, double size, Tally& tally) {
-  static const Analysis analysis = loaded_analysis(NONIO_POSITIONING_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "positioning");
   Settings settings = defaults(analysis);
   settings.values["rules"] = std::vector<std::string>{"upr",   "vdi-3441",        "b5.54-1992",
                                                       "nmtba", "nmtba-no-offset", "jis-6330"};

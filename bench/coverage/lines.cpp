@@ -93,7 +93,7 @@ std::vector<double> along(const std::vector<Observations::AxisColumn>& places) {
 }
 
 void diagonals(const Scenario& s, unsigned seed, double size, Tally& tally, bool third) {
-  static const Analysis analysis = loaded_analysis(NONIO_DIAGONAL_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "diagonal-straightness");
   const ::bench::Rectangle rect{s.size, s.size * 2.0 / 3.0, 8};
   std::mt19937 rng(20261122);  // the machine is the same in all campaigns
   const ::bench::Errors errors = ::bench::random_gantry(rng, rect, 3 * um * s.size);
@@ -192,7 +192,7 @@ void turn_axes(machine::Errors& e, Day& day, const steps::Volume& v, double boun
 
 void step_diagonals(const Scenario& s, unsigned seed, double size, Tally& tally, bool averaging,
                     double angle = 0.0) {
-  static const Analysis analysis = loaded_analysis(NONIO_STEP_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "step-diagonal");
   const steps::Volume volume{{s.size, 0.75 * s.size, 0.75 * s.size}, 7};
   std::mt19937 rng(20261122);
   Day day(s, seed, size);

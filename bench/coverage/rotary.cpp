@@ -51,7 +51,7 @@ Settings settings_of(const Analysis& a) {
 }
 
 const Analysis& rotary() {
-  static const Analysis analysis = loaded_analysis(NONIO_ROTARY_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "rotary-kinematics");
   return analysis;
 }
 

@@ -76,8 +76,9 @@ class CheckReport {
 
  private:
   std::string repeat(const plugin_check::PluginCheck& c) const {
-    std::string words = "nonio plugin check " + c.file + " --only " + c.name + " --seed " +
-                        std::to_string(c.seed) + " --seeds 1";
+    std::string words = "nonio plugin check " + c.file;
+    if (!c.plugin.empty()) words += " --plugin " + c.plugin.substr(c.plugin.find(' ') + 1);
+    words += " --only " + c.name + " --seed " + std::to_string(c.seed) + " --seeds 1";
     if (fs::is_directory(options_.subject) &&
         fs::is_directory(fs::path(options_.subject) / "cases"))
       words += " --cases " + (fs::path(options_.subject) / "cases").string();
@@ -164,6 +165,8 @@ Verb check_plugin_verb(Common& common) {
                     "samples"})),
                {"--seed", &options->request.seed, "Seed of the generated samples (default: 1)"},
                {"--seeds", &options->request.seeds, "Number of seeds, in steps of 1 (default: 3)"},
+               {"--plugin", &options->request.plugin,
+                "Only the plugin of this name, of a file that has several"},
                {"--only", &options->request.only, "Only this check of the list below"},
                existing(Takes::folder,
                         {"--cases", &options->cases, "A folder with campaigns as further samples"}),

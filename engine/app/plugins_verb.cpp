@@ -85,9 +85,11 @@ void print_plugins(const loader::Plugins& plugins, bool with_options) {
                 << "\n        " << c.help << "\n";
   }
   std::cout << "\nfiles (ABI " << NONIO_ABI_TAG << ")\n";
-  for (const loader::PluginFile& f : plugins.files())
+  for (const loader::PluginFile& f : plugins.files()) {
     std::cout << "  " << f.path.string() << (f.refused.empty() ? "" : "\n    refused: " + f.refused)
               << "\n";
+    for (const std::string& plugin : f.brought) std::cout << "    " << plugin << "\n";
+  }
 }
 
 int list_plugins(const Common& common) {

@@ -187,6 +187,9 @@ class Checker {
     }
   }
 
+  /// The names of all plugins of the files that were loaded.
+  const std::vector<std::string>& names() const { return names_; }
+
  private:
   /// The samples of a number, made and read once.
   void seed(std::uint64_t number) {
@@ -217,6 +220,7 @@ class Checker {
   void check_plugin(const std::string& plugin, std::size_t (&at)[6]) {
     hung_ = 0;
     const std::string kind = plugin.substr(0, plugin.find(' '));
+    names_.push_back(plugin.substr(kind.size() + 1));
     if (kind == "method") {
       run_all(plugin, kit::method_checks(), &Brought::methods, at[5]++);
     } else if (kind == "reader") {
@@ -235,6 +239,7 @@ class Checker {
   template <class Plugin>
   void run_all(const std::string& plugin, const std::vector<kit::Check<Plugin>>& checks,
                std::vector<Plugin> Brought::*kind, std::size_t index) {
+    if (!request_.plugin.empty() && names_.back() != request_.plugin) return;
     wants_results_ = std::is_same_v<Plugin, Output> || std::is_same_v<Plugin, Controller>;
     for (const auto& c : kit::info_checks()) {
       if (std::is_same_v<Plugin, Method> && c.name == std::string_view("options")) continue;
@@ -444,6 +449,7 @@ class Checker {
   std::map<std::uint64_t, Made> made_;  ///< by the seed
   bool wants_results_ = false;          ///< the plugin that is being checked writes results
   std::vector<kit::Source> cases_;
+  std::vector<std::string> names_;
   fs::path path_, shown_path_;  ///< the second as it was given
   std::size_t hung_ = 0;        ///< checks of one plugin that did not come back
   bool elsewhere_ = false;      ///< the next child is the second of `pure`
@@ -504,6 +510,11 @@ Expected<void> check_plugins(const PluginCheckRequest& wanted,
   Checker checker(request, tell);
   if (auto ready = checker.prepare(); !ready) return ready;
   for (const fs::path& file : files) checker.check(file);
+  const std::vector<std::string>& found = checker.names();
+  if (!request.plugin.empty() && !found.empty() &&
+      std::find(found.begin(), found.end(), request.plugin) == found.end())
+    return fail("there is no plugin \"" + request.plugin + "\" in " + request.subject.string() +
+                storage::suggestion(request.plugin, found));
   return {};
 }
 

@@ -28,6 +28,7 @@ struct PluginCheckRequest {
   std::filesystem::path subject;             ///< a plugin, or a folder with plugins below it
   std::vector<std::filesystem::path> cases;  ///< folders with campaigns below: more samples
   std::string only;                          ///< the one check to do; empty: all
+  std::string plugin;                        ///< the one plugin to check, by name; empty: all
   std::uint64_t seed = 1;                    ///< the first one
   std::uint64_t seeds = 3;                   ///< so many, each one more than the last
   double seconds = 20.0;                     ///< of the processor, for one check

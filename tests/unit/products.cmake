@@ -18,7 +18,7 @@ add_executable(test_engine
 target_compile_definitions(test_engine PRIVATE NONIO_WORDS="${PROJECT_SOURCE_DIR}/templates/words"
   NONIO_TEST_PLUGINS="${CMAKE_BINARY_DIR}/${NONIO_PLUGIN_SUBDIR}")
 target_include_directories(test_engine PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/engine ${PROJECT_SOURCE_DIR}/tests/support/builders)
-add_dependencies(test_engine ${NONIO_METHODS})
+add_dependencies(test_engine methods)
 target_link_libraries(test_engine PRIVATE nonio_engine nonio_warnings GTest::gtest_main)
 nonio_tests(test_engine)
 

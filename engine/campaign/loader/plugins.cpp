@@ -304,6 +304,19 @@ const Method* Plugins::method(std::string_view kind) const {
   return found == methods_.end() ? nullptr : &*found;
 }
 
+namespace {
+
+/// Whether a file that was refused may have this plugin: by its name, or that of the kind, as
+/// Nonio's own libraries are called.
+bool may_contain(const fs::path& file, std::string_view kind, std::string_view name) {
+  const std::string stem = file.stem().string();
+  const std::string all = kind == "analysis" ? "analyses" : std::string(kind) + "s";
+  return stem == all || stem == std::string(named_with(kind)) + "s" ||
+         stem.find(name) != std::string::npos;
+}
+
+}  // namespace
+
 std::string Plugins::absence(std::string_view kind, std::string_view name) const {
   std::vector<std::string> candidates;
   const std::string prefix = std::string(kind) + " ";
@@ -313,7 +326,7 @@ std::string Plugins::absence(std::string_view kind, std::string_view name) const
   std::string words = "there is no " + prefix + "\"" + std::string(name) + "\"" +
                       storage::suggestion(name, candidates);
   for (const PluginFile& file : files_)
-    if (!file.refused.empty() && file.path.stem().string().find(name) != std::string::npos)
+    if (!file.refused.empty() && may_contain(file.path, kind, name))
       words += "; " + file.path.string() + " " + file.refused;
   return words;
 }

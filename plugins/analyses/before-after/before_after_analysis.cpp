@@ -15,7 +15,8 @@
 #include "nonio/math/uncertainty.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::before_after {
+
 using math::BeforeAfter;
 
 namespace {
@@ -267,3 +268,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::before_after

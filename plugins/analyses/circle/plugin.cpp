@@ -9,11 +9,9 @@
 #include "causes.h"
 #include "followed.h"
 
-namespace nonio {
+namespace nonio::circle {
 namespace {
 
-using circle::CauseValue;
-using circle::Circle;
 using math::Cause;
 using math::CircleReading;
 using math::PathCircle;
@@ -121,13 +119,13 @@ std::vector<double> by_bins(const Work& w, const std::vector<CircleReading>& pat
 }
 
 void add(Work& w, std::string name, double v, Quantity q, double u, const std::vector<double>& by) {
-  v = circle::steady(v, std::max(std::fabs(v), u)), u = circle::steady(u, u);
+  v = steady(v, std::max(std::fabs(v), u)), u = steady(u, u);
   math::Shares shares = w.readings.shares(by);
   // What cancels leaves the rounding of the processor, which is none of the budget.
   double largest = 0.0;
   for (const double share : shares.u) largest = std::max(largest, std::fabs(share));
   for (double& share : shares.u)
-    share = std::fabs(share) < 1e-9 * largest ? 0.0 : circle::steady(share, std::fabs(share));
+    share = std::fabs(share) < 1e-9 * largest ? 0.0 : steady(share, std::fabs(share));
   w.out.values.push_back(w.budget->value(std::move(name), v, q, u, shares));
 }
 
@@ -249,9 +247,9 @@ void spikes(Work& w, double total) {
 }
 
 /// The causes that are more than their uncertainty, the largest share first.
-void causes(Work& w, const circle::Wish& wish) {
+void causes(Work& w, const Wish& wish) {
   std::vector<Finding> refused;
-  const auto values = circle::cause_values(w.circle, w.model, w.fit, wish, refused);
+  const auto values = cause_values(w.circle, w.model, w.fit, wish, refused);
   double total = 0.0;
   for (const CauseValue& v : values) total += v.alone;
   std::vector<std::pair<double, Finding>> ranked;
@@ -321,7 +319,7 @@ math::CircleModel model_of(const Work& w) {
 }
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
-  auto circle = circle::circle_of(in.measurement, in.observations);
+  auto circle = circle_of(in.measurement, in.observations);
   if (!circle) return fail(circle.error());
   Work w{in,
          std::move(*circle),
@@ -344,7 +342,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
     return std::move(w.out);
   }
   w.fit = std::move(*fit);
-  for (double* x : {&w.fit.s, &w.fit.s_reading, &w.fit.dof}) *x = circle::steady(*x, *x);
+  for (double* x : {&w.fit.s, &w.fit.s_reading, &w.fit.dof}) *x = steady(*x, *x);
   w.noise.emplace(w.circle.readings, w.model, w.fit);
   if (w.model.leave_out > stated)
     w.out.findings.push_back({.id = "circle.spikes-last",
@@ -357,7 +355,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   circle_values(w);
   causes(w, {.calibrated_length = w.calibrated, .feed = in.measurement.feed});
   w.out.values.push_back({"s", w.fit.s, Quantity::deviation});
-  circle::follow(in.campaign, in.measurement, w.out);
+  follow(in.campaign, in.measurement, w.out);
   points(w);
   if (w.readings.missing.empty()) w.out.budget = w.budget->budget();
   return std::move(w.out);
@@ -389,15 +387,16 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Analysis a;
+  Analysis a;
   a.info = {"circle", "1.0.0",
             "Circular tests (ISO 230-4): deviations of the path, and the causes behind them.",
-            nonio::options()};
-  a.applies = nonio::applies;
-  a.analyse = nonio::analyse;
+            options()};
+  a.applies = applies;
+  a.analyse = analyse;
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::circle

@@ -5,7 +5,7 @@
 #include "nonio/sdk/format.h"
 #include "sets.h"
 
-namespace nonio::diagonals {
+namespace nonio::diagonal_straightness {
 
 namespace {
 
@@ -582,4 +582,4 @@ OrRefusal<Collected> collect(const AnalysisInput& in, const std::vector<Set>& se
   return Gatherer(in, sets, set).run();
 }
 
-}  // namespace nonio::diagonals
+}  // namespace nonio::diagonal_straightness

@@ -11,8 +11,7 @@
 #include "nonio/math/square.h"
 #include "sets.h"
 
-using namespace nonio;
-using namespace nonio::diagonals;
+namespace nonio::diagonal_straightness {
 
 namespace {
 
@@ -356,3 +355,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::diagonal_straightness

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace nonio::diagonals {
+namespace nonio::diagonal_straightness {
 
 namespace {
 
@@ -105,4 +105,4 @@ std::vector<const Observations*> observations_of(const AnalysisInput& in,
   return out;
 }
 
-}  // namespace nonio::diagonals
+}  // namespace nonio::diagonal_straightness

@@ -4,7 +4,7 @@
 #include "nonio/math/budget.h"
 #include "sets.h"
 
-namespace nonio::diagonals {
+namespace nonio::diagonal_straightness {
 
 /// The lines of a set as its budget needs them, in the order of solve_diagonals.
 std::vector<math::BudgetLine> budget_lines(const Collected&, const Campaign&);
@@ -13,4 +13,4 @@ std::vector<math::BudgetLine> budget_lines(const Collected&, const Campaign&);
 std::vector<const Observations*> observations_of(const AnalysisInput&,
                                                  const std::vector<std::string>& uses);
 
-}  // namespace nonio::diagonals
+}  // namespace nonio::diagonal_straightness

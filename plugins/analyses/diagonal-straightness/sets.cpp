@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace nonio::diagonals {
+namespace nonio::diagonal_straightness {
 
 std::vector<Set> sets_of(const Campaign& campaign) {
   std::vector<Set> sets;
@@ -25,4 +25,4 @@ const Set* set_led_by(const std::vector<Set>& sets, const Campaign& campaign,
   return nullptr;
 }
 
-}  // namespace nonio::diagonals
+}  // namespace nonio::diagonal_straightness

@@ -9,7 +9,7 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/plugin.h"
 
-namespace nonio::diagonals {
+namespace nonio::diagonal_straightness {
 
 /// Diagonals measured in one state of the machine.
 struct Set {
@@ -45,4 +45,4 @@ void turn_back(Collected&, math::DiagonalResult&);
 
 OrRefusal<Collected> collect(const AnalysisInput&, const std::vector<Set>&, const Set&);
 
-}  // namespace nonio::diagonals
+}  // namespace nonio::diagonal_straightness

@@ -10,7 +10,7 @@
 
 #include "sets.h"
 
-namespace nonio::diagonals {
+namespace nonio::diagonal_straightness {
 
 namespace {
 
@@ -41,4 +41,4 @@ void turn_back(Collected& c, math::DiagonalResult& r) {
   negate(r.ECX.value);
 }
 
-}  // namespace nonio::diagonals
+}  // namespace nonio::diagonal_straightness

@@ -8,8 +8,7 @@
 #include "nonio/math/straightness.h"
 #include "points.h"
 
-using namespace nonio;
-using namespace nonio::straightness;
+namespace nonio::direct_straightness {
 
 namespace {
 
@@ -183,3 +182,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::direct_straightness

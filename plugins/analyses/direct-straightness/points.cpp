@@ -6,7 +6,7 @@
 
 #include "nonio/math/straightness.h"
 
-namespace nonio::straightness {
+namespace nonio::direct_straightness {
 
 namespace {
 
@@ -180,4 +180,4 @@ std::vector<double> by_means(const Points& p, const std::vector<double>& by_poin
   return row;
 }
 
-}  // namespace nonio::straightness
+}  // namespace nonio::direct_straightness

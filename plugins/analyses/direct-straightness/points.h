@@ -8,7 +8,7 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/plugin.h"
 
-namespace nonio::straightness {
+namespace nonio::direct_straightness {
 
 /// Deviations across the line of motion, made from the means y of one measurement or two:
 /// e = D y.
@@ -33,4 +33,4 @@ PointsOrRefusal points_of(const AnalysisInput&);
 /// Derivative of a result by the means, from that by the points.
 std::vector<double> by_means(const Points&, const std::vector<double>& by_points);
 
-}  // namespace nonio::straightness
+}  // namespace nonio::direct_straightness

@@ -7,8 +7,9 @@
 #include "nonio/math/iso230_2.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
-using namespace nonio::math;
+namespace nonio::iso230_2 {
+
+using namespace math;
 
 namespace {
 
@@ -93,3 +94,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::iso230_2

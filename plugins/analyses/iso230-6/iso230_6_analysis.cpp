@@ -12,8 +12,9 @@
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
-using namespace nonio::math;
+namespace nonio::iso230_6 {
+
+using namespace math;
 
 namespace {
 
@@ -269,3 +270,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::iso230_6

@@ -12,7 +12,7 @@
 #include "nonio/math/decision.h"
 #include "nonio/math/lengths.h"
 
-namespace nonio {
+namespace nonio::lengths {
 namespace {
 
 using math::BudgetLine;
@@ -332,15 +332,16 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Analysis a;
+  Analysis a;
   a.info = {"lengths", "1.0.0",
             "Length measuring errors of a machine with a probe (ISO 10360-2): E0, EL, R0, P.",
-            nonio::options()};
-  a.applies = nonio::applies;
-  a.analyse = nonio::analyse;
+            options()};
+  a.applies = applies;
+  a.analyse = analyse;
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::lengths

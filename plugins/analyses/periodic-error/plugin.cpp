@@ -12,7 +12,7 @@
 #include "nonio/math/fine_motion.h"
 #include "nonio/math/thermal.h"
 
-namespace nonio {
+namespace nonio::periodic_error {
 namespace {
 
 using math::Difference;
@@ -151,10 +151,9 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Analysis a;
+  Analysis a;
   a.info = {"periodic-error",
             "1.0.0",
             "Periodic error of a linear axis from a dense run over two periods or more.",
@@ -166,8 +165,10 @@ NONIO_PLUGIN(registry) {
               0.0,
               1e5}},
             true};
-  a.applies = nonio::applies;
-  a.analyse = nonio::analyse;
+  a.applies = applies;
+  a.analyse = analyse;
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::periodic_error

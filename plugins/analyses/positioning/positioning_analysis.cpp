@@ -10,9 +10,9 @@
 #include "nonio/sdk/plugin.h"
 #include "remarks.h"
 
-using namespace nonio;
-using namespace nonio::math;
-using positioning::Rules;
+namespace nonio::positioning {
+
+using namespace math;
 
 namespace {
 
@@ -163,7 +163,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   plan(e, *begun, *rules);
   pass(e, statistics, *rules);
   for (Finding& f : e.findings) f.measurement = in.measurement.id;
-  e.notes = positioning::remarks_on(
+  e.notes = remarks_on(
       *rules, {offset_of(statistics, offset), begun->deviation, in.options.text("nmtba_offset")},
       begun->budget.has_value());
   return e;
@@ -193,3 +193,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::positioning

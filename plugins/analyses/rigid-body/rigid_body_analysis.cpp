@@ -8,9 +8,9 @@
 #include "artefacts.h"
 #include "nonio/sdk/format.h"
 
-using namespace nonio;
-using namespace nonio::math;
-using namespace nonio::rigid_body;
+namespace nonio::rigid_body {
+
+using namespace math;
 
 namespace {
 
@@ -280,3 +280,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::rigid_body

@@ -10,15 +10,8 @@
 #include "chain.h"
 #include "nonio/math/probed.h"
 
-namespace nonio {
+namespace nonio::rotary_chain {
 namespace {
-
-using rotary_chain::Candidate;
-using rotary_chain::Chain;
-using rotary_chain::listed;
-using rotary_chain::Places;
-using rotary_chain::Solved;
-using rotary_chain::Wish;
 
 constexpr double per_um = 1e-6, per_urad = 1e-6, per_mm = 1e-3;
 constexpr const char* linear_axes_key = "options.rotary-chain.linear_axes_urad";
@@ -26,7 +19,7 @@ constexpr const char* linear_axes_key = "options.rotary-chain.linear_axes_urad";
 /// The first of its state.
 bool applies(const Campaign& c, const Measurement& m) {
   for (const Measurement& other : c.measurements)
-    if (other.kind == "ball-centres" && rotary_chain::same_state(other, m)) return other.id == m.id;
+    if (other.kind == "ball-centres" && same_state(other, m)) return other.id == m.id;
   return false;
 }
 
@@ -165,7 +158,7 @@ void say_separation(Work& w, const std::vector<std::string>& withheld) {
 
 /// A pivot needs the stated length of a tool and its U; else the radius holds both together.
 bool pivot_stated(const Work& w) {
-  return !w.places.tools.empty() && rotary_chain::tool_length(*w.places.tools.front()) > 0.0 &&
+  return !w.places.tools.empty() && tool_length(*w.places.tools.front()) > 0.0 &&
          w.wish.U_tool.has_value();
 }
 
@@ -175,7 +168,7 @@ void say_tools(Work& w, const math::BudgetOf& budget) {
     w.say("rotary-chain.tool-not-stated", false, {},
           {{"axis", listed({w.chain.axes.begin() + static_cast<std::ptrdiff_t>(w.chain.tables),
                             w.chain.axes.end()})}});
-  const auto tools = rotary_chain::tools_of(w.places);
+  const auto tools = tools_of(w.places);
   if (!tools.two || !w.wish.U_tool) return;
   const Candidate c{"tool", Quantity::length,
                     math::chain_value(w.solved.fit, [&](const math::ChainState& s) {
@@ -323,7 +316,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
     return refused(w);
   }
   w.chain = *chain;
-  w.places = rotary_chain::places_of(in, w.chain);
+  w.places = places_of(in, w.chain);
   w.out.findings = std::move(w.places.findings);
   if (!w.places.sound) return refused(w);
   if (w.places.used.empty()) {
@@ -385,15 +378,16 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Analysis a;
+  Analysis a;
   a.info = {"rotary-chain", "1.0.0",
-            "Two rotary axes as one chain, from centres of a ball at positions of both.",
-            nonio::options(), true};
-  a.applies = nonio::applies;
-  a.analyse = nonio::analyse;
+            "Two rotary axes as one chain, from centres of a ball at positions of both.", options(),
+            true};
+  a.applies = applies;
+  a.analyse = analyse;
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::rotary_chain

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-namespace nonio::rotary {
+namespace nonio::rotary_kinematics {
 namespace {
 
 const Observations::AxisColumn* column(const Observations& o, std::string_view axis) {
@@ -48,4 +48,4 @@ tl::expected<std::vector<math::BallCentre>, Finding> centres_of(const Observatio
   return out;
 }
 
-}  // namespace nonio::rotary
+}  // namespace nonio::rotary_kinematics

@@ -5,7 +5,7 @@
 
 #include "nonio/math/probed.h"
 
-namespace nonio::rotary {
+namespace nonio::rotary_kinematics {
 
 namespace {
 
@@ -69,4 +69,4 @@ Derivatives::Row chain(const Derivatives& d, const std::array<double, 6>& by_lin
   return out;
 }
 
-}  // namespace nonio::rotary
+}  // namespace nonio::rotary_kinematics

@@ -7,7 +7,7 @@
 #include "judge.h"
 #include "nonio/math/budget.h"
 
-namespace nonio::rotary {
+namespace nonio::rotary_kinematics {
 
 /// Derivatives of what is fitted to a circle by its coordinates: x of every centre, then y, then z.
 struct Derivatives {
@@ -28,4 +28,4 @@ math::ReadingModel coordinate_model(const Campaign&, const Environment&,
 /// A derivative by the six numbers of a line (centre, direction) as one by its coordinates.
 Derivatives::Row chain(const Derivatives&, const std::array<double, 6>& by_line);
 
-}  // namespace nonio::rotary
+}  // namespace nonio::rotary_kinematics

@@ -9,7 +9,7 @@
 #include "centres.h"
 #include "nonio/math/distributions.h"
 
-namespace nonio::rotary {
+namespace nonio::rotary_kinematics {
 namespace {
 
 using math::DoubleWave;
@@ -332,4 +332,4 @@ double Judged::u_radius() const { return sigma * std::sqrt(fit.cofactor_radius);
 
 Judged judge(const Observations& o, const Wish& wish) { return Judge(o, wish).done(); }
 
-}  // namespace nonio::rotary
+}  // namespace nonio::rotary_kinematics

@@ -8,7 +8,7 @@
 #include "nonio/math/rotary.h"
 #include "nonio/sdk/plugin.h"
 
-namespace nonio::rotary {
+namespace nonio::rotary_kinematics {
 
 /// What the user wants and knows; SI.
 struct Wish {
@@ -41,4 +41,4 @@ struct Judged {
 
 Judged judge(const Observations&, const Wish&);
 
-}  // namespace nonio::rotary
+}  // namespace nonio::rotary_kinematics

@@ -9,12 +9,10 @@
 #include "doubt.h"
 #include "judge.h"
 
-namespace nonio {
+namespace nonio::rotary_kinematics {
 namespace {
 
 using math::RotaryFit;
-using rotary::Judged;
-using rotary::Wish;
 
 constexpr double per_um = 1e-6, per_urad = 1e-6;
 
@@ -56,7 +54,7 @@ struct Work {
   Wish wish;
   math::HeldLimits limits;
   Judged own;
-  rotary::Derivatives by;
+  Derivatives by;
   math::ReadingModel model;
   math::BudgetOf budget;
   Evaluation out;
@@ -108,7 +106,7 @@ double repetition_in(const Judged& j, const std::vector<double>& by) {
 }
 
 void add_curve(Work& w, const char* name, const std::vector<double>& angle,
-               const std::vector<double>& value, const std::vector<rotary::Derivatives::Row>& by) {
+               const std::vector<double>& value, const std::vector<Derivatives::Row>& by) {
   Series s{name, w.in.measurement.axis, Quantity::angle, Quantity::deviation, angle, value, {}};
   std::vector<double> u;
   std::vector<math::Shares> shares;
@@ -164,8 +162,8 @@ void add_relation(Work& w, const std::string& id, const Judged& j) {
              b = math::relation_of(j.fit, 0.0, w.own.fit, w.own.sigma);
   const auto by = derivatives_of(j, w.wish.use_angles);
   // One instrument in one frame: what it has in common for both circles is no distance.
-  const auto model = rotary::coordinate_model(w.in.campaign, w.limits.environment, {&j, &w.own},
-                                              w.wish.linear_axes);
+  const auto model =
+      coordinate_model(w.in.campaign, w.limits.environment, {&j, &w.own}, w.wish.linear_axes);
   auto distance = model.shares(joined(chain(by, r.distance_by_a), chain(w.by, r.distance_by_b)));
   auto angle = model.shares(joined(chain(by, r.angle_by_a), chain(w.by, r.angle_by_b)));
   distance.dof = joined_dof(a.u_distance, j.dof, b.u_distance, w.own.dof);
@@ -212,7 +210,7 @@ std::vector<const Observations*> observations_of(const AnalysisInput& in) {
 }
 
 /// What the residuals of this circle show of the budget. (Each place read as often as the others.)
-void show_residuals(math::ReadingModel& model, const Judged& j, const rotary::Derivatives& by) {
+void show_residuals(math::ReadingModel& model, const Judged& j, const Derivatives& by) {
   const bool alike = std::all_of(j.centres.begin(), j.centres.end(),
                                  [&](const auto& c) { return c.weight == j.centres[0].weight; });
   if (!alike || j.fit.dof == 0 || by.radial.empty() || !std::isfinite(j.dof)) return;
@@ -241,8 +239,8 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   }
   math::HeldLimits limits = math::limits_held(in.campaign, observations_of(in));
   math::ReadingModel model =
-      rotary::coordinate_model(in.campaign, limits.environment, {&judged}, wish.linear_axes);
-  rotary::Derivatives by = derivatives_of(judged, wish.use_angles);
+      coordinate_model(in.campaign, limits.environment, {&judged}, wish.linear_axes);
+  Derivatives by = derivatives_of(judged, wish.use_angles);
   show_residuals(model, judged, by);
   math::BudgetOf budget(model, judged.sigma, judged.dof, Quantity::deviation,
                         source_of(wish, judged));
@@ -306,14 +304,15 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Analysis a;
+  Analysis a;
   a.info = {"rotary-kinematics", "1.0.0",
-            "Centre, direction and radius of a rotary axis from ball centres.", nonio::options()};
-  a.applies = nonio::applies;
-  a.analyse = nonio::analyse;
+            "Centre, direction and radius of a rotary axis from ball centres.", options()};
+  a.applies = applies;
+  a.analyse = analyse;
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::rotary_kinematics

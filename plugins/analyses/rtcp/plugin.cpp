@@ -10,11 +10,8 @@
 #include "check.h"
 #include "nonio/math/distributions.h"
 
-namespace nonio {
+namespace nonio::rtcp {
 namespace {
-
-using rtcp::Checked;
-using rtcp::Wish;
 
 constexpr double level = 0.01;
 constexpr double per_um = 1e-6, per_urad = 1e-6;
@@ -191,7 +188,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   const Wish wish = wish_of(in.options, m.axis);
   const std::array<const Observations*, 1> own{&in.observations};
   const math::HeldLimits limits = math::limits_held(in.campaign, own);
-  Checked c = rtcp::check(in.campaign, in.observations, m.axis, limits.environment, wish);
+  Checked c = check(in.campaign, in.observations, m.axis, limits.environment, wish);
   Evaluation out;
   out.findings = std::move(c.findings);
   if (!c.given) return out;
@@ -206,8 +203,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   if (c.model.missing.empty()) out.budget = budget.budget();
   if (const auto before = before_of(in.campaign, m);
       m.adjustment == "after" && before && in.all != nullptr && (*in.all)[*before].size() > 0) {
-    const Checked first =
-        rtcp::check(in.campaign, (*in.all)[*before], m.axis, limits.environment, wish);
+    const Checked first = check(in.campaign, (*in.all)[*before], m.axis, limits.environment, wish);
     if (first.given) {
       out.uses.push_back(in.campaign.measurements[*before].id);
       compare(first, c, in.campaign.measurements[*before].id, out);
@@ -266,15 +262,16 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Analysis a;
+  Analysis a;
   a.info = {"rtcp", "1.0.0",
             "What is wrong in the control's rotary axis, with its tool centre point control on.",
-            nonio::options()};
-  a.applies = nonio::applies;
-  a.analyse = nonio::analyse;
+            options()};
+  a.applies = applies;
+  a.analyse = analyse;
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::rtcp

@@ -12,7 +12,7 @@
 #include "nonio/math/differences.h"
 #include "nonio/math/fine_motion.h"
 
-namespace nonio {
+namespace nonio::small_steps {
 namespace {
 
 using math::Difference;
@@ -111,17 +111,18 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Analysis a;
+  Analysis a;
   a.info = {"small-steps",
             "1.0.0",
             "Small steps of a linear axis: deviation of the shortest and of the longest step.",
             {},
             true};
-  a.applies = nonio::applies;
-  a.analyse = nonio::analyse;
+  a.applies = applies;
+  a.analyse = analyse;
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::small_steps

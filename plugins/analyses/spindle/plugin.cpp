@@ -12,13 +12,12 @@
 #include "nonio/math/thermal.h"
 #include "set_ups.h"
 
-namespace nonio {
+namespace nonio::spindle {
 namespace {
 
 using math::Difference;
 using math::ErrorMotion;
 using math::Turns;
-using spindle::Separation;
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "spindle"; }
 
@@ -33,8 +32,7 @@ struct Channel {
 
 class Worker {
  public:
-  explicit Worker(const AnalysisInput& in)
-      : in_(in), set_ups_(spindle::set_ups_of(in.observations)) {}
+  explicit Worker(const AnalysisInput& in) : in_(in), set_ups_(set_ups_of(in.observations)) {}
 
   Evaluation run() {
     out_.findings = set_ups_.findings;
@@ -43,7 +41,7 @@ class Worker {
         one({name, places.begin()->second, true, 0.0, false}, nullptr);
         continue;
       }
-      const Separation how = spindle::separation_of(places);
+      const Separation how = separation_of(places);
       one({name, first_of(places, how), false, 0.0, how.kind == Separation::Kind::none}, &how);
     }
     both_directions();
@@ -56,8 +54,7 @@ class Worker {
   }
 
  private:
-  static const Turns& first_of(const std::map<spindle::Place, Turns>& places,
-                               const Separation& how) {
+  static const Turns& first_of(const std::map<Place, Turns>& places, const Separation& how) {
     return how.places.empty() ? places.begin()->second : places.at(how.places.front());
   }
 
@@ -231,7 +228,7 @@ class Worker {
   }
 
   const AnalysisInput& in_;
-  spindle::SetUps set_ups_;
+  SetUps set_ups_;
   std::vector<Difference> items_;
   Evaluation out_;
   bool ball_ = false, few_turns_ = false;
@@ -240,17 +237,18 @@ class Worker {
 Expected<Evaluation> analyse(const AnalysisInput& in) { return Worker(in).run(); }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Analysis a;
+  Analysis a;
   a.info = {"spindle",
             "1.0.0",
             "Axes of rotation (ISO 230-7): total, synchronous and asynchronous error motion, tilt, "
             "reversal.",
             {}};
-  a.applies = nonio::applies;
-  a.analyse = nonio::analyse;
+  a.applies = applies;
+  a.analyse = analyse;
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::spindle

@@ -9,7 +9,7 @@
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::square {
 
 namespace {
 
@@ -93,3 +93,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::square

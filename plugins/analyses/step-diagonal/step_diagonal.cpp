@@ -11,9 +11,9 @@
 #include "passes.h"
 #include "whole_steps.h"
 
-using namespace nonio;
-using namespace nonio::math;
-using namespace nonio::step_diagonal;
+namespace nonio::step_diagonal {
+
+using namespace math;
 
 namespace {
 
@@ -299,3 +299,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::step_diagonal

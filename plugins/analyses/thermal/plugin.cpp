@@ -10,13 +10,8 @@
 #include "nonio/math/differences.h"
 #include "worked.h"
 
-namespace nonio {
+namespace nonio::thermal {
 namespace {
-
-using thermal::Test;
-using thermal::Tracks;
-using thermal::Wish;
-using thermal::Worked;
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "thermal"; }
 
@@ -47,8 +42,8 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
     return fail("measurement \"" + in.measurement.id + "\": expected a time with each reading");
   const Wish wish{in.options.number("window_min", 60.0) * 60.0,
                   in.options.number("remaining_um", 1.0) * 1e-6};
-  const Tracks tracks = thermal::tracks_of(in.measurement, o);
-  Worked worked = thermal::work(tracks, in.measurement, wish);
+  const Tracks tracks = tracks_of(in.measurement, o);
+  Worked worked = work(tracks, in.measurement, wish);
   Evaluation out;
   out.findings = std::move(worked.findings);
   math::put_differences(in.campaign, worked.items, out);
@@ -82,15 +77,16 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Analysis a;
+  Analysis a;
   a.info = {"thermal", "1.0.0",
             "Thermal tests (ISO 230-3): ranges in windows, time constants, growth, proposals.",
-            nonio::options()};
-  a.applies = nonio::applies;
-  a.analyse = nonio::analyse;
+            options()};
+  a.applies = applies;
+  a.analyse = analyse;
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::thermal

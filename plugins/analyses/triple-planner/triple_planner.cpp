@@ -7,8 +7,9 @@
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
-using namespace nonio::math;
+namespace nonio::triple_planner {
+
+using namespace math;
 
 namespace {
 
@@ -155,3 +156,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::triple_planner

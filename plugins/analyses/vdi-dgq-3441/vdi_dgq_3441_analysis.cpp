@@ -10,8 +10,9 @@
 #include "nonio/math/vdi3441.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
-using namespace nonio::math;
+namespace nonio::vdi_dgq_3441 {
+
+using namespace math;
 
 namespace {
 
@@ -120,3 +121,5 @@ NONIO_PLUGIN(registry) {
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::vdi_dgq_3441

@@ -8,7 +8,7 @@
 #include "nonio/math/axis_analysis.h"
 #include "nonio/math/iso230_2.h"
 
-namespace nonio {
+namespace nonio::worst_line {
 namespace {
 
 using math::AxisAnalysis;
@@ -112,17 +112,18 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Analysis a;
+  Analysis a;
   a.info = {"worst-line",
             "1.0.0",
             "One axis on several lines in the volume: of each value the worst line (ASME B5.54).",
-            {nonio::math::incomplete_targets_option()},
+            {math::incomplete_targets_option()},
             true};
-  a.applies = nonio::applies;
-  a.analyse = nonio::analyse;
+  a.applies = applies;
+  a.analyse = analyse;
   a.states_followed = true;
   registry.add(std::move(a));
 }
+
+}  // namespace nonio::worst_line

@@ -6,7 +6,7 @@
 #include "nonio/controllers/list.h"
 #include "nonio/controllers/replay.h"
 
-namespace nonio {
+namespace nonio::aerotech {
 namespace {
 
 using Confidence = ControlTable::Confidence;
@@ -244,17 +244,17 @@ Expected<OutputResult> write(const ControllerInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   Controller controller = controllers::controller(
       {"aerotech", "1.0.0",
        "Axis calibration files (.cal, one and two dimensions) for Aerotech A3200 and Automation1.",
        controllers::table_options(
            declared(),
            "number (of the axis, from 1), step_mm, backlash_mm and the same with _deg")},
-      declared(), nonio::write, parse);
-  controller.merge = aerotech::merge;
+      declared(), write, parse);
+  controller.merge = merge;
   registry.add(std::move(controller));
 }
+
+}  // namespace nonio::aerotech

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/controllers/list.h"
 
-namespace nonio {
+namespace nonio::ecmc {
 namespace {
 
 using Confidence = ControlTable::Confidence;
@@ -63,10 +63,8 @@ Expected<OutputResult> write(const ControllerInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   registry.add(controllers::controller(
       {"ecmc", "1.0.0", "Encoder look-up tables for ecmc (EPICS).",
        controllers::table_options(
@@ -78,5 +76,7 @@ NONIO_PLUGIN(registry) {
              {},
              1.0,
              99.0}})},
-      declared(), nonio::write, parse));
+      declared(), write, parse));
 }
+
+}  // namespace nonio::ecmc

@@ -3,7 +3,7 @@
 
 #include "nonio/controllers/list.h"
 
-namespace nonio {
+namespace nonio::fagor_8055 {
 namespace {
 
 using Confidence = ControlTable::Confidence;
@@ -47,11 +47,12 @@ Expected<OutputResult> write(const ControllerInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  registry.add(nonio::controllers::controller(
+  registry.add(controllers::controller(
       {"fagor-8055", "1.0.0", "Leadscrew error tables of Fagor 8055, as a list to be typed in.",
-       nonio::controllers::table_options(nonio::declared(), "step, first, reference, backlash")},
-      nonio::declared(), nonio::write, nonio::parse));
+       controllers::table_options(declared(), "step, first, reference, backlash")},
+      declared(), write, parse));
 }
+
+}  // namespace nonio::fagor_8055

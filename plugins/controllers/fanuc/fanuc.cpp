@@ -268,15 +268,14 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio::fanuc
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   Controller controller = controllers::controller(
       {"fanuc", "1.1.0",
-       "Stored pitch error compensation (3620-3627) and backlash (1851) for FANUC.",
-       fanuc::options()},
-      fanuc::declared(), fanuc::write, fanuc::parse, controllers::Offered::always);
-  controller.merge = fanuc::merge;
+       "Stored pitch error compensation (3620-3627) and backlash (1851) for FANUC.", options()},
+      declared(), write, parse, controllers::Offered::always);
+  controller.merge = merge;
   registry.add(std::move(controller));
 }
+
+}  // namespace nonio::fanuc

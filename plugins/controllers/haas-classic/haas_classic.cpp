@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/controllers/list.h"
 
-namespace nonio {
+namespace nonio::haas_classic {
 namespace {
 
 using Confidence = ControlTable::Confidence;
@@ -49,12 +49,13 @@ Expected<OutputResult> write(const ControllerInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  registry.add(nonio::controllers::controller(
+  registry.add(controllers::controller(
       {"haas-classic", "1.0.0",
        "Lead screw tables of classic Haas controls, as a list to be typed in.",
-       nonio::controllers::table_options(nonio::declared(), "backlash_mm")},
-      nonio::declared(), nonio::write, nonio::parse));
+       controllers::table_options(declared(), "backlash_mm")},
+      declared(), write, parse));
 }
+
+}  // namespace nonio::haas_classic

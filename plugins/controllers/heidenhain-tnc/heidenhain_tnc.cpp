@@ -6,7 +6,7 @@
 #include "nonio/controllers/replay.h"
 #include "parse.h"
 
-namespace nonio::heidenhain {
+namespace nonio::heidenhain_tnc {
 namespace {
 
 using controllers::AxisJob;
@@ -281,15 +281,14 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio::heidenhain
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   Controller controller = controllers::controller(
       {"heidenhain-tnc", "1.1.0",
-       "Non-linear axis error tables (.COM, .CMA) and backlash for HEIDENHAIN TNC.",
-       heidenhain::options()},
-      heidenhain::declared(), heidenhain::write, heidenhain::parse, controllers::Offered::always);
-  controller.merge = heidenhain::merge;
+       "Non-linear axis error tables (.COM, .CMA) and backlash for HEIDENHAIN TNC.", options()},
+      declared(), write, parse, controllers::Offered::always);
+  controller.merge = merge;
   registry.add(std::move(controller));
 }
+
+}  // namespace nonio::heidenhain_tnc

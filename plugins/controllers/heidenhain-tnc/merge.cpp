@@ -5,7 +5,7 @@
 
 #include "nonio/controllers/text.h"
 
-namespace nonio::heidenhain {
+namespace nonio::heidenhain_tnc {
 namespace {
 
 using controllers::lines_of;
@@ -98,4 +98,4 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
   return out;
 }
 
-}  // namespace nonio::heidenhain
+}  // namespace nonio::heidenhain_tnc

@@ -9,7 +9,7 @@
 #include "nonio/controllers/text.h"
 #include "nonio/math/loaded_table.h"
 
-namespace nonio::heidenhain {
+namespace nonio::heidenhain_tnc {
 namespace {
 
 using controllers::KnownAxis;
@@ -172,4 +172,4 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables;
 }
 
-}  // namespace nonio::heidenhain
+}  // namespace nonio::heidenhain_tnc

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/controllers/skew.h"
 
-namespace nonio {
+namespace nonio::klipper {
 namespace {
 
 // SET_SKEW XY=AC,BD,AD and so on, in mm.
@@ -34,14 +34,14 @@ Expected<OutputResult> write(const ControllerInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   Controller controller = controllers::controller(
       {"klipper", "1.0.0",
        "Skew correction (SET_SKEW) for Klipper, from the squareness of the planes."},
-      controllers::skew_declared("skew"), nonio::write, parse);
+      controllers::skew_declared("skew"), write, parse);
   controller.applies = controllers::has_squareness;
   registry.add(std::move(controller));
 }
+
+}  // namespace nonio::klipper

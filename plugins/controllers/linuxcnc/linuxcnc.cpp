@@ -4,7 +4,7 @@
 #include "nonio/controllers/kit.h"
 #include "nonio/sdk/format.h"
 
-namespace nonio {
+namespace nonio::linuxcnc {
 namespace {
 
 constexpr std::size_t most_entries = 256;
@@ -239,11 +239,12 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  registry.add(nonio::controllers::controller(
+  registry.add(controllers::controller(
       {"linuxcnc", "1.1.0", "Screw compensation files (COMP_FILE, types 0 and 1) for LinuxCNC.",
-       nonio::options()},
-      nonio::declared(), nonio::write, nonio::parse, nonio::controllers::Offered::always));
+       options()},
+      declared(), write, parse, controllers::Offered::always));
 }
+
+}  // namespace nonio::linuxcnc

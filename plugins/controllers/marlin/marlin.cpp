@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/controllers/skew.h"
 
-namespace nonio {
+namespace nonio::marlin {
 namespace {
 
 // XY_DIAG_AC and so on of Configuration.h, in mm.
@@ -44,14 +44,14 @@ Expected<OutputResult> write(const ControllerInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   Controller controller = controllers::controller(
       {"marlin", "1.0.0",
        "Skew correction (Configuration.h) for Marlin, from the squareness of the planes."},
-      controllers::skew_declared("skew"), nonio::write, parse);
+      controllers::skew_declared("skew"), write, parse);
   controller.applies = controllers::has_squareness;
   registry.add(std::move(controller));
 }
+
+}  // namespace nonio::marlin

@@ -3,7 +3,7 @@
 
 #include "nonio/controllers/list.h"
 
-namespace nonio {
+namespace nonio::mitsubishi {
 namespace {
 
 using Confidence = ControlTable::Confidence;
@@ -77,15 +77,15 @@ Expected<OutputResult> write(const ControllerInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   registry.add(controllers::controller(
       {"mitsubishi", "1.0.0",
        "Incremental machine error compensation of Mitsubishi C64 and E68, as a list.",
        controllers::table_options(
            declared(), "step_mm, reference_mm, backlash_mm",
            {{"scale", std::int64_t{1}, "", "Compensation scale factor.", {}, 1.0, 99.0}})},
-      declared(), nonio::write, parse));
+      declared(), write, parse));
 }
+
+}  // namespace nonio::mitsubishi

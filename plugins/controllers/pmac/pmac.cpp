@@ -4,7 +4,7 @@
 
 #include "nonio/controllers/list.h"
 
-namespace nonio {
+namespace nonio::pmac {
 namespace {
 
 using Confidence = ControlTable::Confidence;
@@ -113,14 +113,14 @@ Expected<OutputResult> write(const ControllerInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   registry.add(controllers::controller(
       {"pmac", "1.0.0", "Leadscrew compensation tables (DEFINE COMP) for PMAC and Turbo PMAC.",
        controllers::table_options(declared(),
                                   "number (of the motor), counts_per_mm or counts_per_deg "
                                   "(always), step_mm, backlash_mm")},
-      declared(), nonio::write, parse));
+      declared(), write, parse));
 }
+
+}  // namespace nonio::pmac

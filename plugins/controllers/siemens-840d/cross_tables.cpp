@@ -6,7 +6,7 @@
 #include "nonio/controllers/replay.h"
 #include "parse.h"
 
-namespace nonio::siemens {
+namespace nonio::siemens_840d {
 namespace {
 
 using controllers::CrossCurve;
@@ -153,4 +153,4 @@ Expected<void> write_cross_tables(const ControllerInput& input,
   return {};
 }
 
-}  // namespace nonio::siemens
+}  // namespace nonio::siemens_840d

@@ -3,7 +3,7 @@
 
 #include "nonio/controllers/kit.h"
 
-namespace nonio::siemens {
+namespace nonio::siemens_840d {
 
 /// A CEC table for each curve of one axis over another that diagonals or step diagonals gave: Y by
 /// the position of X, and X by that of Y with the squareness in it; of a volume six. `pitch`: what
@@ -20,4 +20,4 @@ void note_chosen(const std::string& axis, std::int64_t first, std::size_t count,
 Expected<void> write_cross_tables(const ControllerInput&,
                                   const std::vector<controllers::AxisJob>& pitch, OutputResult&);
 
-}  // namespace nonio::siemens
+}  // namespace nonio::siemens_840d

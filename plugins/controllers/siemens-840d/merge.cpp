@@ -9,7 +9,7 @@
 
 #include "nonio/controllers/text.h"
 
-namespace nonio::siemens {
+namespace nonio::siemens_840d {
 namespace {
 
 /// "$AN_CEC_STEP[3]=50": name, indices, value. Nothing of a line that is none.
@@ -243,4 +243,4 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
   return merger.changed();
 }
 
-}  // namespace nonio::siemens
+}  // namespace nonio::siemens_840d

@@ -9,7 +9,7 @@
 #include "nonio/controllers/text.h"
 #include "nonio/math/loaded_table.h"
 
-namespace nonio::siemens {
+namespace nonio::siemens_840d {
 namespace {
 
 using controllers::KnownAxis;
@@ -210,4 +210,4 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   return tables;
 }
 
-}  // namespace nonio::siemens
+}  // namespace nonio::siemens_840d

@@ -5,10 +5,10 @@
 
 #include "nonio/sdk/plugin.h"
 
-namespace nonio::siemens {
+namespace nonio::siemens_840d {
 
 /// The control as the manual describes it: what it does with these files. Shares nothing with the
 /// code that writes them.
 Expected<std::vector<LoadedTable>> parse(const TableInput&);
 
-}  // namespace nonio::siemens
+}  // namespace nonio::siemens_840d

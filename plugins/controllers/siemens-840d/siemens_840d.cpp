@@ -4,7 +4,7 @@
 #include "nonio/controllers/kit.h"
 #include "parse.h"
 
-namespace nonio::siemens {
+namespace nonio::siemens_840d {
 namespace {
 
 using controllers::AxisJob;
@@ -159,15 +159,15 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio::siemens
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   Controller controller = controllers::controller(
       {"siemens-840d", "1.1.0",
        "Leadscrew error tables (EEC), direction tables (CEC) and backlash for SINUMERIK.",
-       siemens::options()},
-      siemens::declared(), siemens::write, siemens::parse, controllers::Offered::always);
-  controller.merge = siemens::merge;
+       options()},
+      declared(), write, parse, controllers::Offered::always);
+  controller.merge = merge;
   registry.add(std::move(controller));
 }
+
+}  // namespace nonio::siemens_840d

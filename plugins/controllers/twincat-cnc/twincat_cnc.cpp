@@ -7,7 +7,7 @@
 #include "nonio/controllers/list.h"
 #include "nonio/controllers/replay.h"
 
-namespace nonio {
+namespace nonio::twincat_cnc {
 namespace {
 
 using Confidence = ControlTable::Confidence;
@@ -265,15 +265,15 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   Controller controller = controllers::controller(
       {"twincat-cnc", "1.0.0",
        "Correction lists (kw.ssfk, kw.crosscomp) for Beckhoff TwinCAT CNC and the ISG kernel.",
-       nonio::options()},
-      declared(), nonio::write, parse);
-  controller.merge = twincat_cnc::merge;
+       options()},
+      declared(), write, parse);
+  controller.merge = merge;
   registry.add(std::move(controller));
 }
+
+}  // namespace nonio::twincat_cnc

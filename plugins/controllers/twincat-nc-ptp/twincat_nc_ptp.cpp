@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/controllers/list.h"
 
-namespace nonio {
+namespace nonio::twincat_nc_ptp {
 namespace {
 
 using Confidence = ControlTable::Confidence;
@@ -96,13 +96,13 @@ Expected<OutputResult> write(const ControllerInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   registry.add(controllers::controller(
       {"twincat-nc-ptp", "1.0.0", "Position compensation tables (Tc2_MC2) for TwinCAT NC PTP.",
        controllers::table_options(
            declared(), "step_mm, first_mm, reference_mm, backlash_mm and the same with _deg")},
-      declared(), nonio::write, parse));
+      declared(), write, parse));
 }
+
+}  // namespace nonio::twincat_nc_ptp

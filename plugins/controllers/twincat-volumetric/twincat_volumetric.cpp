@@ -6,7 +6,7 @@
 #include "nonio/controllers/replay.h"
 #include "nonio/controllers/size.h"
 
-namespace nonio {
+namespace nonio::twincat_volumetric {
 namespace {
 
 using Confidence = ControlTable::Confidence;
@@ -219,13 +219,13 @@ Expected<OutputResult> write(const ControllerInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  using namespace nonio;
   registry.add(controllers::controller(
       {"twincat-volumetric", "1.0.0",
        "Volumetric compensation (TF5280, ISG CSV) for TwinCAT CNC: ISO 230 errors over X, Y and Z.",
        controllers::table_options(declared(), "reference_mm, backlash_mm")},
-      declared(), nonio::write, parse));
+      declared(), write, parse));
 }
+
+}  // namespace nonio::twincat_volumetric

@@ -3,7 +3,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::backlash {
 
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
@@ -27,3 +27,5 @@ NONIO_PLUGIN(registry) {
              .columns = columns,
              .why_not = one_direction});
 }
+
+}  // namespace nonio::backlash

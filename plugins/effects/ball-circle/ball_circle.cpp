@@ -8,7 +8,7 @@
 // the model moves the circle by that fits all centres alone.
 #include "nonio/sdk/space_readings.h"
 
-using namespace nonio;
+namespace nonio::ball_circle {
 
 namespace {
 
@@ -75,3 +75,5 @@ NONIO_PLUGIN(registry) {
       .instances = of,
       .is_nuisance = true});
 }
+
+}  // namespace nonio::ball_circle

@@ -8,7 +8,7 @@
 
 #include "nonio/sdk/space_readings.h"
 
-using namespace nonio;
+namespace nonio::circular_path {
 
 namespace {
 
@@ -151,3 +151,5 @@ NONIO_PLUGIN(registry) {
       .columns = mismatch,
       .instances = mismatches});
 }
+
+}  // namespace nonio::circular_path

@@ -9,7 +9,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::day_wave {
 
 constexpr double day = 86400.0;         // s
 constexpr double shortest = day / 6.0;  // of a shorter piece nobody can say that it is a wave
@@ -70,3 +70,5 @@ NONIO_PLUGIN(registry) {
              .columns = zero,
              .why_not = why_not});
 }
+
+}  // namespace nonio::day_wave

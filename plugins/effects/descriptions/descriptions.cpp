@@ -9,7 +9,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::descriptions {
 
 constexpr std::size_t fewest_targets = 5;  // ISO 230-2 wants no fewer
 constexpr std::size_t most_targets = 400;
@@ -130,3 +130,5 @@ NONIO_PLUGIN(registry) {
       .columns = of_growth,
       .description = true});
 }
+
+}  // namespace nonio::descriptions

@@ -3,7 +3,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::eccentricity {
 
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
@@ -28,3 +28,5 @@ NONIO_PLUGIN(registry) {
       .applies = applies,
       .columns = columns});
 }
+
+}  // namespace nonio::eccentricity

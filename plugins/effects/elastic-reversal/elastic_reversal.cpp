@@ -4,7 +4,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::elastic_reversal {
 
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
@@ -32,3 +32,5 @@ NONIO_PLUGIN(registry) {
         return axis.rotary ? one_direction(o, axis) : WhyNot{};
       }});
 }
+
+}  // namespace nonio::elastic_reversal

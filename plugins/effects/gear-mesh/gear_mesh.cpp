@@ -4,7 +4,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::gear_mesh {
 
 /// One or two periods in a revolution are eccentricity and harmonic2.
 static bool applies(const Observations& o, const Axis& axis) {
@@ -31,3 +31,5 @@ NONIO_PLUGIN(registry) {
       .applies = applies,
       .columns = columns});
 }
+
+}  // namespace nonio::gear_mesh

@@ -5,7 +5,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::growth_drift {
 
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
@@ -30,3 +30,5 @@ NONIO_PLUGIN(registry) {
       .columns = columns,
       .why_not = no_order});
 }
+
+}  // namespace nonio::growth_drift

@@ -5,7 +5,7 @@
 //     linear-scale       X: -k x n_x, and so on   (k: m/m, as scale)
 #include "nonio/sdk/space_readings.h"
 
-using namespace nonio;
+namespace nonio::linear_errors {
 
 namespace {
 
@@ -62,3 +62,5 @@ NONIO_PLUGIN(registry) {
   registry.add(effect_of("linear-scale", "An axis that reads the ball has a wrong scale",
                          {"k", "slope over the travel", Quantity::deviation_per_length}, scales));
 }
+
+}  // namespace nonio::linear_errors

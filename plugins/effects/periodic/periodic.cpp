@@ -7,7 +7,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::periodic {
 
 /// ISO 3408-2:1991 table 1, nominal leads, and those of inch screws; m.
 constexpr double usual_leads[] = {0.0025, 0.003, 0.004, 0.005, 0.006,  0.008, 0.010, 0.012,
@@ -72,3 +72,5 @@ NONIO_PLUGIN(registry) {
                         return WhyNot{!axis.rotary && readings_of(o, axis) ? "few-targets" : ""};
                       }});
 }
+
+}  // namespace nonio::periodic

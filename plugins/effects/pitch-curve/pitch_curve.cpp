@@ -6,7 +6,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::pitch_curve {
 
 /// Numbers of knots: at most 10, and at least three targets for two free values, so that the curve
 /// cannot follow single targets. `explain` does not name a curve that needs more than half of them.
@@ -53,3 +53,5 @@ NONIO_PLUGIN(registry) {
                         return WhyNot{readings_of(o, axis) ? "few-targets" : ""};
                       }});
 }
+
+}  // namespace nonio::pitch_curve

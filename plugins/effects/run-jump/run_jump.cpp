@@ -6,7 +6,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::run_jump {
 
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
@@ -71,3 +71,5 @@ NONIO_PLUGIN(registry) {
              .columns = columns,
              .why_not = no_order});
 }
+
+}  // namespace nonio::run_jump

@@ -6,7 +6,7 @@
 
 #include "nonio/sdk/space_readings.h"
 
-using namespace nonio;
+namespace nonio::run_out {
 
 namespace {
 
@@ -63,3 +63,5 @@ NONIO_PLUGIN(registry) {
   registry.add(effect_of("radial-run-out", "The rotary axis wanders across itself as it turns", 0));
   registry.add(effect_of("axial-run-out", "The rotary axis rises and falls as it turns", 1));
 }
+
+}  // namespace nonio::run_out

@@ -4,7 +4,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::scale {
 
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
@@ -29,3 +29,5 @@ NONIO_PLUGIN(registry) {
              .applies = applies,
              .columns = columns});
 }
+
+}  // namespace nonio::scale

@@ -8,7 +8,7 @@
 
 #include "nonio/sdk/space_readings.h"
 
-using namespace nonio;
+namespace nonio::set_up {
 
 namespace {
 
@@ -108,3 +108,5 @@ NONIO_PLUGIN(registry) {
                  },
              .is_nuisance = true});
 }
+
+}  // namespace nonio::set_up

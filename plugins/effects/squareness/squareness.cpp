@@ -5,7 +5,7 @@
 // turns +Z towards -Y.
 #include "nonio/sdk/space_readings.h"
 
-using namespace nonio;
+namespace nonio::squareness {
 
 namespace {
 
@@ -51,3 +51,5 @@ NONIO_PLUGIN(registry) {
              .columns = columns,
              .instances = of});
 }
+
+}  // namespace nonio::squareness

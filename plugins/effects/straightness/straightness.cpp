@@ -5,7 +5,7 @@
 #include "nonio/math/spline.h"
 #include "nonio/sdk/space_readings.h"
 
-using namespace nonio;
+namespace nonio::straightness {
 
 namespace {
 
@@ -64,3 +64,5 @@ NONIO_PLUGIN(registry) {
              .columns = columns,
              .instances = of});
 }
+
+}  // namespace nonio::straightness

@@ -4,7 +4,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::temperature {
 
 constexpr double least_range = 0.05;  // K; less is the sensor's own noise
 
@@ -51,3 +51,5 @@ NONIO_PLUGIN(registry) {
       .columns = columns,
       .why_not = why_not});
 }
+
+}  // namespace nonio::temperature

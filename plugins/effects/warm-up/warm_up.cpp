@@ -5,7 +5,7 @@
 #include "nonio/sdk/axis_readings.h"
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::warm_up {
 
 static bool applies(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
@@ -46,3 +46,5 @@ NONIO_PLUGIN(registry) {
              .columns = columns,
              .why_not = no_order});
 }
+
+}  // namespace nonio::warm_up

@@ -16,7 +16,7 @@
 #include "nonio/math/spline.h"
 #include "nonio/sdk/space_readings.h"
 
-using namespace nonio;
+namespace nonio::yaw_pitch_roll {
 
 namespace {
 
@@ -199,3 +199,5 @@ NONIO_PLUGIN(registry) {
   registry.add(effect_of("pitch", "The carriage nods as it travels"));
   registry.add(effect_of("roll", "The carriage turns about its own direction of travel"));
 }
+
+}  // namespace nonio::yaw_pitch_roll

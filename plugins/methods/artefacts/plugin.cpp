@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::artefacts_method {
 
 namespace {
 
@@ -28,3 +28,5 @@ NONIO_PLUGIN(registry) {
   registry.add(
       of_artefact("artefact-certificate", "Calibrated positions of the balls of an artefact"));
 }
+
+}  // namespace nonio::artefacts_method

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::circles_method {
 
 namespace {
 
@@ -44,3 +44,5 @@ NONIO_PLUGIN(registry) {
   registry.add(
       Method{.info = {"ballbar", "1.0", "File of a ballbar; its circles are only listed"}});
 }
+
+}  // namespace nonio::circles_method

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::diagonals_method {
 
 namespace {
 
@@ -30,3 +30,5 @@ NONIO_PLUGIN(registry) {
   registry.add(
       between_ends("step-diagonal", "Deviation along a diagonal, after each move of one axis"));
 }
+
+}  // namespace nonio::diagonals_method

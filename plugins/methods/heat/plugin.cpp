@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::heat_method {
 
 namespace {
 
@@ -36,3 +36,5 @@ NONIO_PLUGIN(registry) {
   registry.add(
       Method{.info = {"lengths", "1.0", "Lengths of calibrated artefacts in the working space"}});
 }
+
+}  // namespace nonio::heat_method

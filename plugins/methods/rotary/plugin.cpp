@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::rotary_method {
 
 namespace {
 
@@ -25,3 +25,5 @@ NONIO_PLUGIN(registry) {
   registry.add(of_rotary_axis(
       "rtcp", "Deviation of a ball that the control follows while a rotary axis turns"));
 }
+
+}  // namespace nonio::rotary_method

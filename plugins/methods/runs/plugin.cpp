@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/sdk/plugin.h"
 
-using namespace nonio;
+namespace nonio::runs_method {
 
 namespace {
 
@@ -92,3 +92,5 @@ NONIO_PLUGIN(registry) {
   registry.add(straightness());
   registry.add(angle());
 }
+
+}  // namespace nonio::runs_method

@@ -141,19 +141,19 @@ std::string accredited_claim(const OutputInput& in) {
   return look && !look->mark.empty() ? "the template has the mark " + look->mark : "";
 }
 
-}  // namespace nonio::certificate
-
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
+  Output output;
   output.info = {"certificate",
-                 nonio::certificate::version,
+                 version,
                  "The signed calibration report or certificate for the customer, with its DCC.",
                  {},
                  true};
-  output.applies = nonio::certificate::applies;
-  output.write = nonio::certificate::write;
-  output.prepare = nonio::certificate::prepare;
-  output.certificate = {.missing_requirements = nonio::certificate::lacks};
-  output.check_templates = nonio::certificate::check_templates;
+  output.applies = applies;
+  output.write = write;
+  output.prepare = prepare;
+  output.certificate = {.missing_requirements = lacks};
+  output.check_templates = check_templates;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::certificate

@@ -15,7 +15,7 @@
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 
-namespace nonio {
+namespace nonio::csv_output {
 namespace {
 
 /// Empty where the value is not known.
@@ -143,12 +143,13 @@ Expected<OutputResult> write(const OutputInput& input) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
+  Output output;
   output.info = {"csv", "1.0", "Values and points by target as CSV files, for spreadsheets."};
-  output.applies = [](const nonio::Campaign&) { return true; };
-  output.write = nonio::write;
+  output.applies = [](const Campaign&) { return true; };
+  output.write = write;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::csv_output

@@ -6,9 +6,9 @@
 #include "dcc.h"
 #include "nonio/sdk/format.h"
 
-namespace {
+namespace nonio::dcc {
 
-using namespace nonio;
+namespace {
 
 constexpr const char* version = "1.0.0";
 
@@ -71,7 +71,7 @@ Expected<OutputResult> write(const OutputInput& in) {
 }  // namespace
 
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
+  Output output;
   output.info = {
       "dcc",
       version,
@@ -89,3 +89,5 @@ NONIO_PLUGIN(registry) {
   output.write = write;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::dcc

@@ -14,7 +14,7 @@
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/json.h"
 
-namespace nonio {
+namespace nonio::json_output {
 namespace {
 
 void append_count(std::string& out, std::uint64_t value) {
@@ -173,12 +173,13 @@ Expected<OutputResult> write(const OutputInput& input) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
+  Output output;
   output.info = {"json", "1.0", "The readings as columns in a JSON file, for other programs."};
-  output.applies = [](const nonio::Campaign&) { return true; };
-  output.write = nonio::write;
+  output.applies = [](const Campaign&) { return true; };
+  output.write = write;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::json_output

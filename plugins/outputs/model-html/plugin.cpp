@@ -36,17 +36,18 @@ Expected<OutputResult> write(const OutputInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio::model_html
 
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
-  output.role = nonio::Output::Role::model_page;
+  Output output;
+  output.role = Output::Role::model_page;
   output.info = {
       "model-html",
       "1.0.0",
       "The error model as an interactive page for a browser, in one file.",
       {{"language", std::string("en"), "", "Language of the page.", {"de", "en", "it"}}}};
-  output.applies = nonio::model_html::applies;
-  output.write = nonio::model_html::write;
+  output.applies = applies;
+  output.write = write;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::model_html

@@ -53,11 +53,10 @@ std::vector<Error> check_templates(const Templates& templates) {
 }
 
 }  // namespace
-}  // namespace nonio::pdf_report
 
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
-  output.role = nonio::Output::Role::report;
+  Output output;
+  output.role = Output::Role::report;
   output.info = {
       "pdf-report",
       "1.0.0",
@@ -67,10 +66,12 @@ NONIO_PLUGIN(registry) {
        {"sign", false, "", "Have it signed with the key of [signing] in site.toml."},
        {"history", false, "",
         "A page with the machine's history up to this campaign: trends, changes, next due date."}}};
-  output.applies = nonio::pdf_report::applies;
-  output.check_templates = nonio::pdf_report::check_templates;
-  output.write = nonio::pdf_report::write;
-  output.prepare = nonio::pdf_report::prepare;
-  output.wants_history = nonio::pdf_report::wants_history;
+  output.applies = applies;
+  output.check_templates = check_templates;
+  output.write = write;
+  output.prepare = prepare;
+  output.wants_history = wants_history;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::pdf_report

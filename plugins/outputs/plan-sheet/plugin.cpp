@@ -292,15 +292,16 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio::plan_sheet
 
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
-  output.role = nonio::Output::Role::sheet_of_stops;
+  Output output;
+  output.role = Output::Role::sheet_of_stops;
   output.info = {"plan-sheet", "1.0.0",
                  "Plans of diagonals with their stops, or the table of triples, as a PDF.",
-                 nonio::plan_sheet::options(), true};
-  output.applies = [](const nonio::Campaign&) { return true; };
-  output.write = nonio::plan_sheet::write;
+                 options(), true};
+  output.applies = [](const Campaign&) { return true; };
+  output.write = write;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::plan_sheet

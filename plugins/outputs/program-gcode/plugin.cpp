@@ -5,7 +5,7 @@
 
 #include "programs.h"
 
-namespace nonio {
+namespace nonio::program_gcode {
 namespace {
 
 using programs::Program;
@@ -45,14 +45,12 @@ Expected<OutputResult> write(const OutputInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  using nonio::Option;
-  nonio::Output output;
+  Output output;
   output.info = {
       "program-gcode", "1.0.0", "Part programs of the measurement in ISO G-code.",
-      nonio::programs::options(
+      programs::options(
           {Option{"dwell_word",
                   std::string("P-s"),
                   "",
@@ -65,7 +63,9 @@ NONIO_PLUGIN(registry) {
                   "coordinates.",
                   {"G53", "G54", "G55", "G56", "G57", "G58", "G59"}}}),
       true};
-  output.applies = [](const nonio::Campaign&) { return true; };
-  output.write = nonio::write;
+  output.applies = [](const Campaign&) { return true; };
+  output.write = write;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::program_gcode

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace nonio::probing {
+namespace nonio::program_probing {
 
 Vector Turning::direction(const Vector& v, double angle) const {
   const std::size_t k = about(), i = (k + 1) % 3, j = (k + 2) % 3;
@@ -61,4 +61,4 @@ std::vector<Touch> touches(const Ball& ball, const Place& place) {
   return out;
 }
 
-}  // namespace nonio::probing
+}  // namespace nonio::program_probing

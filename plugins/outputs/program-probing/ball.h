@@ -8,7 +8,7 @@
 #include <vector>
 
 /// A ball on a rotary axis, or on one that another carries, and how it is touched. mm and deg.
-namespace nonio::probing {
+namespace nonio::program_probing {
 
 using Vector = std::array<double, 3>;
 
@@ -47,4 +47,4 @@ struct Touch {
 /// less than 60 deg gives way to those between the sides that are free. None where the stem is above.
 std::vector<Touch> touches(const Ball&, const Place&);
 
-}  // namespace nonio::probing
+}  // namespace nonio::program_probing

@@ -15,14 +15,8 @@
 #include "nonio/sdk/format.h"
 #include "programs.h"
 
-namespace nonio {
+namespace nonio::program_probing {
 namespace {
-
-using probing::Ball;
-using probing::Place;
-using probing::Touch;
-using probing::Turning;
-using probing::Vector;
 
 constexpr std::array<const char*, 3> linear{"X", "Y", "Z"};
 
@@ -358,14 +352,15 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
+  Output output;
   output.info = {"program-probing", "1.0.0",
                  "Part programs that probe a ball on a rotary axis, or on two, at several angles.",
-                 nonio::options(), true};
-  output.applies = [](const nonio::Campaign&) { return true; };
-  output.write = nonio::write;
+                 options(), true};
+  output.applies = [](const Campaign&) { return true; };
+  output.write = write;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::program_probing

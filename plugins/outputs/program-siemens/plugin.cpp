@@ -5,7 +5,7 @@
 
 #include "programs.h"
 
-namespace nonio {
+namespace nonio::program_siemens {
 namespace {
 
 using programs::Program;
@@ -39,13 +39,14 @@ Expected<OutputResult> write(const OutputInput& in) {
 }
 
 }  // namespace
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
+  Output output;
   output.info = {"program-siemens", "1.0.0", "Part programs of the measurement for SINUMERIK.",
-                 nonio::programs::options({}), true};
-  output.applies = [](const nonio::Campaign&) { return true; };
-  output.write = nonio::write;
+                 programs::options({}), true};
+  output.applies = [](const Campaign&) { return true; };
+  output.write = write;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::program_siemens

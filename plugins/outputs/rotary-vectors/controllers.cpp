@@ -7,7 +7,7 @@
 
 #include "vectors.h"
 
-namespace nonio::vectors {
+namespace nonio::rotary_vectors {
 namespace {
 
 /// A table C on a tilting axis: A turns about X, B about Y. Coordinates in m.
@@ -329,4 +329,4 @@ void write_controllers(const std::vector<Line>& lines, const std::string& campai
   result.notes.push_back({.id = "vectors.controls-inferred" + chain});
 }
 
-}  // namespace nonio::vectors
+}  // namespace nonio::rotary_vectors

@@ -14,8 +14,7 @@
 #include "nonio/sdk/format.h"
 #include "vectors.h"
 
-namespace nonio {
-namespace vectors {
+namespace nonio::rotary_vectors {
 
 std::string millimetres(double si) { return fixed_text(printed(si, Quantity::length), 4); }
 std::string component(double value) { return fixed_text(value, 7); }
@@ -206,15 +205,15 @@ std::vector<Option> options() {
 }
 
 }  // namespace
-}  // namespace vectors
-}  // namespace nonio
 
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
+  Output output;
   output.info = {"rotary-vectors", "1.0.0",
                  "Centre and direction of rotary axes as text, JSON, CSV, and for controls.",
-                 nonio::vectors::options()};
-  output.applies = nonio::vectors::applies;
-  output.write = nonio::vectors::write;
+                 options()};
+  output.applies = applies;
+  output.write = write;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::rotary_vectors

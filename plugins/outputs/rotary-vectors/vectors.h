@@ -8,7 +8,7 @@
 
 #include "nonio/sdk/plugin.h"
 
-namespace nonio::vectors {
+namespace nonio::rotary_vectors {
 
 /// A rotary axis as an analysis gave it; SI.
 struct Line {
@@ -41,4 +41,4 @@ struct Wish {
 void write_controllers(const std::vector<Line>&, const std::string& campaign, const Wish&,
                        OutputResult&);
 
-}  // namespace nonio::vectors
+}  // namespace nonio::rotary_vectors

@@ -13,8 +13,7 @@
 
 #include "nonio/sdk/format.h"
 
-namespace nonio {
-namespace volume_grid {
+namespace nonio::volume_grid {
 
 using Json = nlohmann::ordered_json;
 using Vector = std::array<double, 3>;
@@ -192,17 +191,16 @@ Expected<OutputResult> write(const OutputInput& in) {
   return result;
 }
 
-}  // namespace volume_grid
-}  // namespace nonio
-
 NONIO_PLUGIN(registry) {
-  nonio::Output output;
+  Output output;
   output.info = {"volume-grid",
                  "1.0.0",
                  "The error vector at the nodes of a grid as JSON, with what it would leave.",
                  {},
                  true};
-  output.applies = [](const nonio::Campaign&) { return true; };
-  output.write = nonio::volume_grid::write;
+  output.applies = [](const Campaign&) { return true; };
+  output.write = write;
   registry.add(std::move(output));
 }
+
+}  // namespace nonio::volume_grid

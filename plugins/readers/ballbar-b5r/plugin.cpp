@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ballbar.h"
 
-NONIO_PLUGIN(registry) { registry.add(nonio::ballbar::reader()); }
+namespace nonio::ballbar_b5r {
+
+NONIO_PLUGIN(registry) { registry.add(ballbar::reader()); }
+
+}  // namespace nonio::ballbar_b5r

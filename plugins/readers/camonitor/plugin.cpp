@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camonitor.h"
 
-NONIO_PLUGIN(registry) { registry.add(nonio::camonitor::reader()); }
+namespace nonio::camonitor {
+
+NONIO_PLUGIN(registry) { registry.add(camonitor::reader()); }
+
+}  // namespace nonio::camonitor

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "linuxcnc_probe.h"
 
-NONIO_PLUGIN(registry) { registry.add(nonio::linuxcnc_probe::reader()); }
+namespace nonio::linuxcnc_probe {
+
+NONIO_PLUGIN(registry) { registry.add(linuxcnc_probe::reader()); }
+
+}  // namespace nonio::linuxcnc_probe

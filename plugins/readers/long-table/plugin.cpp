@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "long_table.h"
 
-NONIO_PLUGIN(registry) { registry.add(nonio::long_table::reader()); }
+namespace nonio::long_table {
+
+NONIO_PLUGIN(registry) { registry.add(long_table::reader()); }
+
+}  // namespace nonio::long_table

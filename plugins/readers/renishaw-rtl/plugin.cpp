@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtl.h"
 
-NONIO_PLUGIN(registry) { registry.add(nonio::renishaw::rtl_reader()); }
+namespace nonio::renishaw_rtl {
+
+NONIO_PLUGIN(registry) { registry.add(renishaw::rtl_reader()); }
+
+}  // namespace nonio::renishaw_rtl

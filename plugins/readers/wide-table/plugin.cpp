@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wide_table.h"
 
-NONIO_PLUGIN(registry) { registry.add(nonio::wide_table::reader()); }
+namespace nonio::wide_table {
+
+NONIO_PLUGIN(registry) { registry.add(wide_table::reader()); }
+
+}  // namespace nonio::wide_table

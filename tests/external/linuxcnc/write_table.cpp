@@ -19,7 +19,9 @@ struct OneController final : nonio::Registry {
   void add(nonio::Effect) override {}
   void add(nonio::Analysis) override {}
   void add(nonio::Output) override {}
-  void add(nonio::Controller c) override { controller = std::move(c); }
+  void add(nonio::Controller c) override {
+    if (c.info.name == "linuxcnc") controller = std::move(c);
+  }
 };
 
 nonio::Observations measured(std::istream& in) {

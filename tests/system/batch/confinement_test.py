@@ -108,7 +108,7 @@ class Confinement(NightTest):
         (program / "bin").mkdir()
         shutil.copy2(NONIO, program / "bin")
         (program / "share").symlink_to(own / "share")
-        plugins = next(program.rglob("csv-reader.so")).parent
+        plugins = next(program.rglob("readers.so")).parent
         shutil.copy(next((PLUGINS / "hostile").glob("*.so")), plugins)
         self.hostile("rounding")
         done = subprocess.run([program / "bin" / "nonio", "run", self.site, "--out", self.out, "--jobs", "1"],
@@ -256,7 +256,7 @@ class Confinement(NightTest):
             (program / "bin").mkdir()
             shutil.copy2(NONIO, program / "bin")
             (program / "share").symlink_to(own / "share")
-            plugins = next(program.rglob("csv-reader.so")).parent
+            plugins = next(program.rglob("readers.so")).parent
             shutil.copy(next((PLUGINS / f"on_load_{how}").glob("*.so")), plugins)
             done = subprocess.run([program / "bin" / "nonio", "compare", self.site / "a"], capture_output=True, text=True,
                                   timeout=120)

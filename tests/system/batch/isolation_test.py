@@ -129,7 +129,7 @@ class Isolation(NightTest):
         self.assertIn("did not survive loading: signal 11", done.stderr)
 
     def test_what_a_refused_reader_would_have_read_has_failed(self):
-        """A program without its csv-reader, in whose place lies a plugin of another build."""
+        """A program without its readers, in whose place is a library of another build."""
         self.campaign("a")
         program = self.root / "program"
         own = pathlib.Path(NONIO).resolve().parents[1]
@@ -137,7 +137,7 @@ class Isolation(NightTest):
         (program / "bin").mkdir()
         shutil.copy2(NONIO, program / "bin")
         (program / "share").symlink_to(own / "share")
-        reader = next(program.rglob("csv-reader.so"))
+        reader = next(program.rglob("readers.so"))
         reader.unlink()
         shutil.copy(next((PLUGINS / "wrong_abi").glob("*.so")), reader)
         done = subprocess.run([program / "bin" / "nonio", "run", self.site, "--out", self.out],
@@ -145,15 +145,23 @@ class Isolation(NightTest):
         self.assertEqual(done.returncode, 1, done.stderr + done.stdout)
         self.assertEqual(self.ids("failed"), ["a"])
         message = self.results("a")["errors"][0]["message"]
+        self.assertIn('no reader takes measurements of kind "axis"', message)
+        self.assertIn('readers.so was built for "nonio-sdk 0; another compiler"', message)
+
+    def test_a_refused_plugin_might_have_read_a_file_of_an_unknown_format(self):
+        folder = self.campaign("a")
+        (folder / "x.csv").write_text("what no reader knows\n")
+        self.run_nonio("--plugin-path", str(PLUGINS / "wrong_abi"), expect=1)
+        message = self.results("a")["errors"][0]["message"]
         self.assertIn("no reader knows the format of this file", message)
-        self.assertIn('csv-reader.so was built for "nonio-sdk 0; another compiler"', message)
+        self.assertIn('was built for "nonio-sdk 0; another compiler"', message)
 
     def test_duplicate_name_names_both_files(self):
         self.campaign("a")
         done = self.run_nonio("--plugin-path", str(PLUGINS / "twin"), expect=2)
         self.assertIn("two plugins are the analysis iso230-2", done.stderr)
         self.assertIn("test_twin.so", done.stderr)
-        self.assertIn("iso230-2.so", done.stderr)
+        self.assertIn("analyses.so", done.stderr)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """help, version, man page, completion; the nearest word for a mistyped one."""
 import json
+import pathlib
 import re
 import shutil
 import subprocess
@@ -83,6 +84,19 @@ class Mistyped(VerbTest):
         table = self.site / "t.comp"
         table.write_text("0 0 0\n")
         self.assertIn('nearest: "linuxcnc"', self.refused("diff", table, table, "--control", "linuxnc"))
+
+    def test_one_plugin_of_a_library(self):
+        files = {pathlib.Path(f["path"]): f["plugins"] for f in json.loads(self.nonio("plugins", "--json").stdout)["files"]}
+        effects = next(path for path in files if path.name == "effects.so")
+        self.assertIn("effect backlash 1.0.0", files[effects])
+        listed = self.nonio("plugins", "--quiet").stdout
+        for path, plugins in files.items():
+            self.assertIn("".join(f"\n    {plugin}" for plugin in plugins) + "\n", listed.split(str(path))[1])
+        done = self.nonio("plugin", "check", effects, "--plugin", "backlash", "--only", "names", "--json")
+        self.assertEqual({"effect backlash"}, {check["plugin"] for check in json.loads(done.stdout)["checks"]})
+        refused = self.nonio("plugin", "check", effects, "--plugin", "backlsh", expect=2).stderr
+        self.assertIn('there is no plugin "backlsh"', refused)
+        self.assertIn('nearest: "backlash"', refused)
 
     def test_names_in_the_manifest(self):
         for key, wrong, nearest in (("analyses", "iso230-3", "iso230-2"), ("outputs", "pdf-reprot", "pdf-report")):

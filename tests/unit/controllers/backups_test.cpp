@@ -15,7 +15,7 @@ namespace {
 
 struct Kind {
   const char* name;
-  const char* path;
+  const char* plugin;
   Options options;
   const char* comment = nullptr;  ///< begins a line that says nothing
   bool below = false;
@@ -27,30 +27,30 @@ struct Kind {
 
 std::vector<Kind> kinds() {
   const Options error{{"sign", std::string("error")}}, both{{"directions", true}};
-  return {{"siemens-840d", plugin_siemens_840d, {}, ";"},
-          {"siemens-840d directions", plugin_siemens_840d, both, ";"},
-          {"heidenhain-tnc", plugin_heidenhain_tnc, {}},
-          {"heidenhain-tnc directions", plugin_heidenhain_tnc, both},
+  return {{"siemens-840d", "siemens-840d", {}, ";"},
+          {"siemens-840d directions", "siemens-840d", both, ";"},
+          {"heidenhain-tnc", "heidenhain-tnc", {}},
+          {"heidenhain-tnc directions", "heidenhain-tnc", both},
           {"heidenhain-tnc itnc530",
-           plugin_heidenhain_tnc,
+           "heidenhain-tnc",
            {{"layout", std::string("itnc530")}},
            nullptr,
            false,
            "X number=1",
            true},
-          {"fanuc", plugin_fanuc, {{"extended", true}}},
-          {"fanuc directions", plugin_fanuc, {{"extended", true}, {"directions", true}}},
-          {"linuxcnc", plugin_linuxcnc, {}},
-          {"twincat-cnc", plugin_twincat_cnc, {}, "#"},
-          {"twincat-cnc directions", plugin_twincat_cnc, both, "#"},
-          {"twincat-nc-ptp", plugin_twincat_nc_ptp, {}},
-          {"twincat-volumetric", plugin_twincat_volumetric, error, "//", false, "X number=1", true},
-          {"fagor-8055", plugin_fagor_8055, error, "#"},
-          {"haas-classic", plugin_haas_classic, error, "#", true},
-          {"mitsubishi", plugin_mitsubishi, {}, "#"},
-          {"pmac", plugin_pmac, {}, nullptr, false, "X number=1 counts_per_mm=2000"},
-          {"aerotech", plugin_aerotech, {}, ";"},
-          {"ecmc", plugin_ecmc, {}, "#"}};
+          {"fanuc", "fanuc", {{"extended", true}}},
+          {"fanuc directions", "fanuc", {{"extended", true}, {"directions", true}}},
+          {"linuxcnc", "linuxcnc", {}},
+          {"twincat-cnc", "twincat-cnc", {}, "#"},
+          {"twincat-cnc directions", "twincat-cnc", both, "#"},
+          {"twincat-nc-ptp", "twincat-nc-ptp", {}},
+          {"twincat-volumetric", "twincat-volumetric", error, "//", false, "X number=1", true},
+          {"fagor-8055", "fagor-8055", error, "#"},
+          {"haas-classic", "haas-classic", error, "#", true},
+          {"mitsubishi", "mitsubishi", {}, "#"},
+          {"pmac", "pmac", {}, nullptr, false, "X number=1 counts_per_mm=2000"},
+          {"aerotech", "aerotech", {}, ";"},
+          {"ecmc", "ecmc", {}, "#"}};
 }
 
 Bench machine(bool below) {
@@ -120,7 +120,7 @@ bool is_note(const std::string& line, const std::string& file) {
 // parser that ignores it shows another table than the control has.
 TEST(Backup, ASecondLineWithAnotherNumberIsNamedOrHasAnEffect) {
   for (const Kind& k : kinds()) {
-    const Controller output = plugin(k.path);
+    const Controller output = plugin(k.plugin);
     const auto r = machine(k.below).write(output, with_axes(k));
     ASSERT_TRUE(r) << k.name;
     const auto whole = read_back(output, r->artifacts, with_axes(k), {{.name = "X"}});
@@ -151,7 +151,7 @@ TEST(Backup, ASecondLineWithAnotherNumberIsNamedOrHasAnEffect) {
 
 TEST(Backup, CutAtEveryByteItIsTheWholeTableOrNone) {
   for (const Kind& k : kinds()) {
-    const Controller output = plugin(k.path);
+    const Controller output = plugin(k.plugin);
     const auto r = machine(k.below).write(output, with_axes(k));
     ASSERT_TRUE(r) << k.name << r.error().message;
     const auto whole = read_back(output, r->artifacts, with_axes(k), {{.name = "X"}});
@@ -178,7 +178,7 @@ TEST(Backup, CutAtEveryByteItIsTheWholeTableOrNone) {
 
 TEST(Backup, LineEndsOfWindowsAndCommentsChangeNothing) {
   for (const Kind& k : kinds()) {
-    const Controller output = plugin(k.path);
+    const Controller output = plugin(k.plugin);
     const auto r = machine(k.below).write(output, with_axes(k));
     ASSERT_TRUE(r) << k.name;
     const auto whole = read_back(output, r->artifacts, with_axes(k), {{.name = "X"}});
@@ -202,7 +202,7 @@ TEST(Backup, LineEndsOfWindowsAndCommentsChangeNothing) {
 
 // kw.crosscomp of which the end is missing: what is left is a table of a shorter way.
 TEST(Backup, ACrossTableOfTwincatHasAllItsPoints) {
-  const Controller output = plugin(plugin_twincat_cnc);
+  const Controller output = plugin("twincat-cnc");
   std::string list =
       "kopf.achs_nr 2\nkw.crosscomp.unit 1\nkw.crosscomp.last_index 2\n"
       "kw.crosscomp.master_ax_nr 1\n";

@@ -21,7 +21,7 @@ namespace {
 
 struct Kind {
   const char* name;
-  const char* path;
+  const char* plugin;
   Options options;
   double step, step_deg;  ///< of an entry: m, rad; 0: takes no rotary axis
   models::Control (*control)(const models::Files&, const models::Axis&);
@@ -35,36 +35,36 @@ std::vector<Kind> kinds() {
   using models::Files;
   const Options error{{"sign", std::string("error")}}, of{};
   const double deg_4 = 1e-4 * deg;
-  return {{"siemens-840d", plugin_siemens_840d, of, 1e-9, 1e-6 * deg, models::siemens},
-          {"heidenhain-tnc", plugin_heidenhain_tnc, of, 1e-7, deg_4, models::heidenhain},
-          {"fanuc", plugin_fanuc, {{"extended", true}}, 1e-6, 1e-3 * deg, models::fanuc},
-          {"linuxcnc 0", plugin_linuxcnc, of, 1e-11, 1e-8 * deg,
+  return {{"siemens-840d", "siemens-840d", of, 1e-9, 1e-6 * deg, models::siemens},
+          {"heidenhain-tnc", "heidenhain-tnc", of, 1e-7, deg_4, models::heidenhain},
+          {"fanuc", "fanuc", {{"extended", true}}, 1e-6, 1e-3 * deg, models::fanuc},
+          {"linuxcnc 0", "linuxcnc", of, 1e-11, 1e-8 * deg,
            [](const Files& f, const Axis& a) { return models::linuxcnc(f, a, false); }},
           {"linuxcnc 1",
-           plugin_linuxcnc,
+           "linuxcnc",
            {{"type", std::int64_t{1}}},
            1e-11,
            1e-8 * deg,
            [](const Files& f, const Axis& a) { return models::linuxcnc(f, a, true); }},
-          {"twincat-cnc", plugin_twincat_cnc, of, 1e-7, deg_4, models::twincat_cnc},
-          {"twincat-nc-ptp", plugin_twincat_nc_ptp, of, 1e-9, 1e-6 * deg, models::twincat_nc_ptp},
-          {"twincat-volumetric", plugin_twincat_volumetric, error, 1e-9, 0.0, models::volumetric},
-          {"fagor-8055", plugin_fagor_8055, error, 1e-7, deg_4,
+          {"twincat-cnc", "twincat-cnc", of, 1e-7, deg_4, models::twincat_cnc},
+          {"twincat-nc-ptp", "twincat-nc-ptp", of, 1e-9, 1e-6 * deg, models::twincat_nc_ptp},
+          {"twincat-volumetric", "twincat-volumetric", error, 1e-9, 0.0, models::volumetric},
+          {"fagor-8055", "fagor-8055", error, 1e-7, deg_4,
            [](const Files& f, const Axis& a) { return models::list(f, a, -1.0, a.unit()); }},
           {"haas-classic",
-           plugin_haas_classic,
+           "haas-classic",
            {{"sign", std::string("correction")}},
            2.54e-6,
            0.0,
            [](const Files& f, const Axis& a) { return models::list(f, a, 1.0, 25.4 * mm); },
            true,
            true},
-          {"mitsubishi", plugin_mitsubishi, of, 0.5e-6, 0.0, models::mitsubishi},
-          {"pmac", plugin_pmac, of, 1e-3 / 16 / 2000, deg / 16 / 2000,
+          {"mitsubishi", "mitsubishi", of, 0.5e-6, 0.0, models::mitsubishi},
+          {"pmac", "pmac", of, 1e-3 / 16 / 2000, deg / 16 / 2000,
            [](const Files& f, const Axis& a) { return models::pmac(f, a, 2000.0); }, true, false,
            " counts_per_mm=2000 counts_per_deg=2000"},
-          {"aerotech", plugin_aerotech, of, 1e-9, 1e-6 * deg, models::aerotech, true},
-          {"ecmc", plugin_ecmc, of, 1e-9, 1e-6 * deg, models::ecmc}};
+          {"aerotech", "aerotech", of, 1e-9, 1e-6 * deg, models::aerotech, true},
+          {"ecmc", "ecmc", of, 1e-9, 1e-6 * deg, models::ecmc}};
 }
 
 /// A machine, and what was on while it was measured.
@@ -310,7 +310,7 @@ TEST(BlindMachines, WhatIsLeftIsWhatWasPredicted) {
   const std::uint32_t seed = 20261122;
   print_seed(seed);
   for (const Kind& k : kinds()) {
-    const Controller output = plugin(k.path);
+    const Controller output = plugin(k.plugin);
     std::mt19937 random(seed);
     int written = 0;
     const int so_far = failures();
@@ -335,7 +335,7 @@ TEST(BlindMachines, WithATableAlreadyOn) {
   const std::uint32_t seed = 20261123;
   print_seed(seed);
   for (const Kind& k : kinds()) {
-    const Controller output = plugin(k.path);
+    const Controller output = plugin(k.plugin);
     std::mt19937 random(seed);
     int written = 0;
     const int so_far = failures();

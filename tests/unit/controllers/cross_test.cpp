@@ -96,10 +96,10 @@ TEST(Cross, ZeroAtTheReferencePointAndSaid) {
   };
   for (const Kind& k : {Kind{siemens_plugin(), {}, {"siemens-840d-XY-CEC.ini"}},
                         {heidenhain_plugin(), {}, {"heidenhain-tnc-X.COM"}},
-                        {plugin(plugin_twincat_cnc),
+                        {plugin("twincat-cnc"),
                          {{"cross_sign", std::string("error")}},
                          {"twincat-cnc-cross-Y.lis"}},
-                        {plugin(plugin_twincat_volumetric),
+                        {plugin("twincat-volumetric"),
                          {{"sign", std::string("error")}},
                          {"twincat-volumetric-XY.csv"}}})
     for (const double reference : {0.0, 5.0, Lx}) {  // m
@@ -139,7 +139,7 @@ TEST(Cross, ZeroAtTheReferencePointAndSaid) {
 TEST(Cross, APlaneOfAerotechCountsFromHome) {
   Bench bench = gantry();
   bench.results.analyses.push_back(analysed(true));
-  const Controller aerotech = plugin(plugin_aerotech);
+  const Controller aerotech = plugin("aerotech");
   const auto result = bench.write(aerotech);
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_TRUE(contains(file(*result, "aerotech-plane-D1.cal"), "; Y over X: zero at 0.0 mm of X"));

@@ -297,17 +297,15 @@ TEST(Gantry, WhereTheSecondSideIsNotDocumentedThereIsNoTable) {
   Gantry m = random_gantry(random);
   while (m.x0 != 0.0) m = random_gantry(random);  // these count from home
   for (const auto& [built, options, cross] :
-       {std::tuple{plugin_aerotech, Options{}, "aerotech-plane-D1.cal"},
-        {plugin_twincat_volumetric,
-         {{"sign", std::string("error")}},
-         "twincat-volumetric-XY.csv"}}) {
+       {std::tuple{"aerotech", Options{}, "aerotech-plane-D1.cal"},
+        {"twincat-volumetric", {{"sign", std::string("error")}}, "twincat-volumetric-XY.csv"}}) {
     const auto result = bench_of(m).write(plugin(built), options);
     ASSERT_TRUE(result) << result.error().message;
     EXPECT_FALSE(has_file(*result, cross));
     EXPECT_NE(finding(*result, "table.gantry-second-side"), nullptr) << built;
   }
   const auto result =
-      bench_of(m).write(plugin(plugin_twincat_cnc), {{"cross_sign", std::string("error")}});
+      bench_of(m).write(plugin("twincat-cnc"), {{"cross_sign", std::string("error")}});
   ASSERT_TRUE(result) << result.error().message;
   for (const std::string& axis : {std::string("X"), m.slave})
     EXPECT_TRUE(has_file(*result, "twincat-cnc-cross-" + axis + ".lis")) << axis;

@@ -13,7 +13,7 @@ using namespace workshop;
 namespace {
 
 struct Kind {
-  const char* path;
+  const char* plugin;
   Options options;
   double step;  ///< of an entry, m
   bool below = false;
@@ -21,19 +21,19 @@ struct Kind {
 
 std::vector<Kind> kinds() {
   const Setting counts = std::vector<std::string>{"X counts_per_mm=2000"};
-  return {{plugin_siemens_840d, {}, 1e-9},
-          {plugin_heidenhain_tnc, {}, 1e-7},
-          {plugin_fanuc, {{"extended", true}}, 1e-6},
-          {plugin_linuxcnc, {{"type", std::int64_t{1}}}, 1e-11},
-          {plugin_twincat_cnc, {}, 1e-7},
-          {plugin_twincat_nc_ptp, {}, 1e-9},
-          {plugin_twincat_volumetric, {{"sign", std::string("error")}}, 1e-9},
-          {plugin_fagor_8055, {{"sign", std::string("error")}}, 1e-7},
-          {plugin_haas_classic, {{"sign", std::string("correction")}}, 2.54e-6, true},
-          {plugin_mitsubishi, {}, 0.5e-6},
-          {plugin_pmac, {{"axes", counts}}, 1.0 / 32e6},
-          {plugin_aerotech, {}, 1e-9},
-          {plugin_ecmc, {}, 1e-9}};
+  return {{"siemens-840d", {}, 1e-9},
+          {"heidenhain-tnc", {}, 1e-7},
+          {"fanuc", {{"extended", true}}, 1e-6},
+          {"linuxcnc", {{"type", std::int64_t{1}}}, 1e-11},
+          {"twincat-cnc", {}, 1e-7},
+          {"twincat-nc-ptp", {}, 1e-9},
+          {"twincat-volumetric", {{"sign", std::string("error")}}, 1e-9},
+          {"fagor-8055", {{"sign", std::string("error")}}, 1e-7},
+          {"haas-classic", {{"sign", std::string("correction")}}, 2.54e-6, true},
+          {"mitsubishi", {}, 0.5e-6},
+          {"pmac", {{"axes", counts}}, 1.0 / 32e6},
+          {"aerotech", {}, 1e-9},
+          {"ecmc", {}, 1e-9}};
 }
 
 /// From 0 towards one side: every control can have that.
@@ -49,7 +49,7 @@ Measured random_axis(std::mt19937& random, bool below) {
 }
 
 std::string rebuilt(const Kind& k, std::uint32_t seed, int round) {
-  return std::string(k.path) + ", seed " + std::to_string(seed) + ", round " +
+  return std::string(k.plugin) + ", seed " + std::to_string(seed) + ", round " +
          std::to_string(round);
 }
 
@@ -61,7 +61,7 @@ TEST(TenThousandCurves, EveryEntryIsWithinHalfAStep) {
   std::mt19937 random(seed);
   const auto all = kinds();
   std::vector<Controller> outputs;
-  for (const Kind& k : all) outputs.push_back(plugin(k.path));
+  for (const Kind& k : all) outputs.push_back(plugin(k.plugin));
   for (int round = 0; round < 10000; ++round) {
     const std::size_t which = static_cast<std::size_t>(round) % all.size();
     const Kind& k = all[which];
@@ -96,7 +96,7 @@ TEST(TenThousandCurves, IncrementsAreInRangeAndTurnsClose) {
   print_seed(seed);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
-  const Controller fanuc = fanuc_plugin(), cnc = plugin(plugin_twincat_cnc);
+  const Controller fanuc = fanuc_plugin(), cnc = plugin("twincat-cnc");
   for (int round = 0; round < 2000; ++round) {
     Measured m;
     m.axis = m.id = "C";

@@ -27,34 +27,40 @@ inline constexpr double um = 1e-6, mm = 1e-3;
 inline constexpr double deg = 1.0 / deg_per_rad, arcsec = 1.0 / arcsec_per_rad;
 
 struct OneController final : Registry {
+  std::string name;
   Controller controller;
   void add(Method) override {}
   void add(Reader) override {}
   void add(Effect) override {}
   void add(Analysis) override {}
   void add(Output) override {}
-  void add(Controller c) override { controller = std::move(c); }
+  void add(Controller c) override {
+    if (c.info.name == name) controller = std::move(c);
+  }
 };
 
-/// NONIO_TEST_PLUGINS: a folder whose plugins take the place of those of that name (tests/mutants).
-inline Controller plugin(const char* built) {
-  std::filesystem::path path = built;
+/// NONIO_TEST_PLUGINS: a folder whose library takes the place of the one that was built
+/// (tests/mutants).
+inline Controller plugin(const std::string& name) {
+  std::filesystem::path path = NONIO_CONTROLLERS;
   if (const char* folder = std::getenv("NONIO_TEST_PLUGINS"))
     if (const auto other = folder / path.filename(); exists(other)) path = other;
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) throw std::runtime_error(dlerror());
   const auto* entry = static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"));
   OneController registry;
+  registry.name = name;
   entry->add_to(registry);
+  if (registry.controller.info.name != name) throw std::runtime_error("no controller " + name);
   return registry.controller;
 }
 
 inline void print_seed(std::uint32_t seed) { std::cout << "seed " << seed << '\n'; }
 
-inline Controller siemens_plugin() { return plugin(plugin_siemens_840d); }
-inline Controller heidenhain_plugin() { return plugin(plugin_heidenhain_tnc); }
-inline Controller fanuc_plugin() { return plugin(plugin_fanuc); }
-inline Controller linuxcnc_plugin() { return plugin(plugin_linuxcnc); }
+inline Controller siemens_plugin() { return plugin("siemens-840d"); }
+inline Controller heidenhain_plugin() { return plugin("heidenhain-tnc"); }
+inline Controller fanuc_plugin() { return plugin("fanuc"); }
+inline Controller linuxcnc_plugin() { return plugin("linuxcnc"); }
 
 using Options = std::map<std::string, Setting>;
 

@@ -16,7 +16,7 @@ namespace {
 
 struct Kind {
   const char* name;
-  const char* path;
+  const char* plugin;
   Options options;
   std::string axes = "X number=1";
   bool below = false;
@@ -24,21 +24,21 @@ struct Kind {
 
 std::vector<Kind> kinds() {
   const Options error{{"sign", std::string("error")}};
-  return {{"siemens-840d", plugin_siemens_840d, {}},
-          {"heidenhain-tnc", plugin_heidenhain_tnc, {}},
-          {"heidenhain-tnc", plugin_heidenhain_tnc, {{"layout", std::string("itnc530")}}},
-          {"fanuc", plugin_fanuc, {{"extended", true}}},
-          {"linuxcnc", plugin_linuxcnc, {}},
-          {"linuxcnc", plugin_linuxcnc, {{"type", std::int64_t{1}}}},
-          {"twincat-cnc", plugin_twincat_cnc, {}},
-          {"twincat-nc-ptp", plugin_twincat_nc_ptp, {}},
-          {"twincat-volumetric", plugin_twincat_volumetric, error},
-          {"fagor-8055", plugin_fagor_8055, error},
-          {"haas-classic", plugin_haas_classic, error, "X number=1", true},
-          {"mitsubishi", plugin_mitsubishi, {}},
-          {"pmac", plugin_pmac, {}, "X number=1 counts_per_mm=2000"},
-          {"aerotech", plugin_aerotech, {}},
-          {"ecmc", plugin_ecmc, {}}};
+  return {{"siemens-840d", "siemens-840d", {}},
+          {"heidenhain-tnc", "heidenhain-tnc", {}},
+          {"heidenhain-tnc", "heidenhain-tnc", {{"layout", std::string("itnc530")}}},
+          {"fanuc", "fanuc", {{"extended", true}}},
+          {"linuxcnc", "linuxcnc", {}},
+          {"linuxcnc", "linuxcnc", {{"type", std::int64_t{1}}}},
+          {"twincat-cnc", "twincat-cnc", {}},
+          {"twincat-nc-ptp", "twincat-nc-ptp", {}},
+          {"twincat-volumetric", "twincat-volumetric", error},
+          {"fagor-8055", "fagor-8055", error},
+          {"haas-classic", "haas-classic", error, "X number=1", true},
+          {"mitsubishi", "mitsubishi", {}},
+          {"pmac", "pmac", {}, "X number=1 counts_per_mm=2000"},
+          {"aerotech", "aerotech", {}},
+          {"ecmc", "ecmc", {}}};
 }
 
 /// 8 um up and down over 0 to 400 mm (or below 0), 4 um lost, an instrument that was not zeroed.
@@ -57,7 +57,7 @@ Options with(const Kind& k, const std::string& more) {
 }
 
 double largest_entry(const Kind& k, const OutputResult& r, const Options& options) {
-  const auto read = read_back(plugin(k.path), r.artifacts, options, {{.name = "X"}});
+  const auto read = read_back(plugin(k.plugin), r.artifacts, options, {{.name = "X"}});
   EXPECT_TRUE(read && !read->empty())
       << k.name << ": " << (read ? "no table" : read.error().message);
   double largest = 0.0;
@@ -85,7 +85,7 @@ const Remark* note(const OutputResult& r, const std::string& id) {
 TEST(ZeroRule, TheInstrumentsZeroGoesIntoNoTable) {
   for (const Kind& k : kinds()) {
     const Options o = with(k, "");
-    const auto r = sensor_at(50.14 * mm, k.below).write(plugin(k.path), o);
+    const auto r = sensor_at(50.14 * mm, k.below).write(plugin(k.plugin), o);
     ASSERT_TRUE(r) << k.name << ": " << r.error().message;
     EXPECT_LT(largest_entry(k, *r, o), 20 * um) << k.name;
     EXPECT_LT(largest_entry(k, *r, o), prediction(*r, "E").before + 5 * um) << k.name;
@@ -106,13 +106,13 @@ TEST(ZeroRule, ZeroWhereItIsSaid) {
     const std::string name = k.name;
     const bool own = name == "haas-classic" || name == "pmac" || name == "aerotech";
     const Options o = with(k, " reference_mm=100");
-    const auto r = sensor_at(7 * mm, k.below).write(plugin(k.path), o);
+    const auto r = sensor_at(7 * mm, k.below).write(plugin(k.plugin), o);
     ASSERT_EQ(bool(r), !own) << name;  // these count from their own zero
     if (own) {
       EXPECT_TRUE(contains(r.error().message, "reference_mm must be 0")) << r.error().message;
       continue;
     }
-    const auto read = read_back(plugin(k.path), r->artifacts, o, {{.name = "X"}});
+    const auto read = read_back(plugin(k.plugin), r->artifacts, o, {{.name = "X"}});
     ASSERT_TRUE(read) << name << read.error().message;
     const double x = 100 * mm;
     const double c = (math::added(read->front(), std::span(&x, 1), 1) +
@@ -126,7 +126,7 @@ TEST(ZeroRule, ZeroWhereItIsSaid) {
 
 TEST(SizeRule, TheMakersLimitsAreKept) {
   for (const Kind& k : kinds()) {
-    const Controller output = plugin(k.path);
+    const Controller output = plugin(k.plugin);
     const auto bench = sensor_at(0.0, k.below);
     ASSERT_FALSE(
         bench.write(output, with(k, " largest_um=30 slope_um_per_m=300"))->artifacts.empty())
@@ -180,9 +180,9 @@ TEST(Settings, TheKeysOfAMachineAreTakenEverywhere) {
   for (const Kind& k : kinds()) {
     const auto r =
         sensor_at(0.0, k.below)
-            .write(plugin(k.path), with(k,
-                                        " reference_mm=0 from_mm=-500 to_mm=600 largest_um=100 "
-                                        "slope_um_per_m=1000 resolution_um=0.1 backlash_mm=0"));
+            .write(plugin(k.plugin), with(k,
+                                          " reference_mm=0 from_mm=-500 to_mm=600 largest_um=100 "
+                                          "slope_um_per_m=1000 resolution_um=0.1 backlash_mm=0"));
     EXPECT_TRUE(r) << k.name << ": " << r.error().message;
   }
 }
@@ -198,7 +198,7 @@ TEST(Reversal, ASmallUnevenReversalDoesNotRefuseALargePitch) {
   for (const Kind& k : kinds()) {
     const std::string name = k.name;
     if (name == "linuxcnc" || name == "haas-classic") continue;  // directions; coarse steps
-    const auto r = Bench(m).write(plugin(k.path), with(k, ""));
+    const auto r = Bench(m).write(plugin(k.plugin), with(k, ""));
     ASSERT_TRUE(r) << name << ": " << r.error().message;
     EXPECT_EQ(finding(*r, "table.refused-reversal"), nullptr) << name;
     ASSERT_FALSE(r->artifacts.empty()) << name;
@@ -206,7 +206,7 @@ TEST(Reversal, ASmallUnevenReversalDoesNotRefuseALargePitch) {
     EXPECT_GT(prediction(*r, "E").before, 30 * um) << name;
     // The backlash value is decided by itself: it stays.
     EXPECT_NEAR(prediction(*r, "B").after, prediction(*r, "B").before, 0.05 * um) << name;
-    if (plugin(k.path).table.backlash.empty()) continue;
+    if (plugin(k.plugin).table.backlash.empty()) continue;
     EXPECT_NE(finding(*r, "table.backlash-not-constant"), nullptr) << name;
   }
 }
@@ -236,7 +236,7 @@ TEST(Cut, AShorterFileIsNoTable) {
     const std::string name = k.name;
     const char* ending = name == "linuxcnc" ? ".comp" : name == "twincat-nc-ptp" ? ".st" : nullptr;
     if (ending == nullptr) continue;
-    const Controller output = plugin(k.path);
+    const Controller output = plugin(k.plugin);
     const auto r = bench.write(output, with(k, ""));
     ASSERT_TRUE(r);
     for (const Artifact& a : r->artifacts) {
@@ -293,7 +293,7 @@ TEST(Resolution, DigitsBetweenCloseTargetsAreNoTable) {
       };
       m.minus = m.plus;
       if (c.one_side) m.minus = [](double) { return 60 * um; };
-      const auto r = Bench(m).write(plugin(k.path), with(k, ""));
+      const auto r = Bench(m).write(plugin(k.plugin), with(k, ""));
       const std::string where = std::string(k.name) + ", " + std::to_string(c.apart) + " m, " +
                                 std::to_string(c.digits) + " digits";
       ASSERT_TRUE(r) << where << ": " << r.error().message;
@@ -313,11 +313,11 @@ TEST(Resolution, DigitsBetweenCloseTargetsAreNoTable) {
 
 // P-AXIS-00103 is a whole number of 0.1 um.
 TEST(TwincatCnc, BacklashIsInTenthsOfAMicrometre) {
-  const auto r = sensor_at(0.0).write(plugin(plugin_twincat_cnc));
+  const auto r = sensor_at(0.0).write(plugin("twincat-cnc"));
   ASSERT_TRUE(r);
   const std::string lis = file(*r, "twincat-cnc-X.lis");
   EXPECT_TRUE(contains(lis, "getriebe[0].lose = 40 (a whole number of 0.1 um: 0.004 mm)")) << lis;
-  const auto read = read_back(plugin(plugin_twincat_cnc), r->artifacts);
+  const auto read = read_back(plugin("twincat-cnc"), r->artifacts);
   ASSERT_TRUE(read);
   EXPECT_NEAR(read->front().backlash.value_or(0.0), 4 * um, 1e-12);
 }
@@ -330,14 +330,14 @@ TEST(Aerotech, BothSidesOfHome) {
   m.targets = even(-180 * deg, 15 * deg, 25);
   m.plus = [](double x) { return 8.2 * arcsec * std::sin(x + 0.4); };
   m.minus = m.plus;
-  const auto r = Bench(m).write(plugin(plugin_aerotech));
+  const auto r = Bench(m).write(plugin("aerotech"));
   ASSERT_TRUE(r) << r.error().message;
   EXPECT_GT(prediction(*r, "E").before, 16 * arcsec);
   EXPECT_LT(prediction(*r, "E").after, 0.02 * arcsec);
   Measured linear;
   linear.targets = even(-200 * mm, 25 * mm, 17);
   linear.plus = linear.minus = [](double x) { return 8 * um * std::sin(x / (60 * mm)); };
-  const auto both = Bench(linear).write(plugin(plugin_aerotech));
+  const auto both = Bench(linear).write(plugin("aerotech"));
   ASSERT_TRUE(both) << both.error().message;
   EXPECT_LT(prediction(*both, "E").after, 0.05 * um);
   EXPECT_TRUE(contains(file(*both, "aerotech-X.cal"), "SAMPLEDIST=-25.0"));

@@ -24,7 +24,7 @@ struct Truth : testing::Test {
 
   void SetUp() override {
     for (const char* name : {"iso230-2", "vdi-dgq-3441", "certificate"})
-      ASSERT_TRUE(plugins.load(std::string(NONIO_PLUGINS) + "/" + name + ".so"));
+      ASSERT_TRUE(plugins.load(NONIO_PLUGINS, name));
   }
   const Output& output() const { return plugins.outputs.front(); }
   OutputInput input(const Case& c) const {

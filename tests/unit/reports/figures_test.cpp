@@ -14,7 +14,7 @@ struct Figures : testing::Test {
 
   void SetUp() override {
     for (const char* name : {"iso230-2", "vdi-dgq-3441"})
-      ASSERT_TRUE(plugins.load(std::string(NONIO_PLUGINS) + "/" + name + ".so"));
+      ASSERT_TRUE(plugins.load(NONIO_PLUGINS, name));
   }
 
   /// Of the first measurement, one kind of figure.

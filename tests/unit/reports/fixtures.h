@@ -67,20 +67,32 @@ struct Plugins final : Registry {
   void add(Method) override {}
   void add(Reader) override {}
   void add(Effect) override {}
-  void add(Analysis a) override { analyses.push_back(std::move(a)); }
-  void add(Output o) override { outputs.push_back(std::move(o)); }
+  void add(Analysis a) override {
+    if (a.info.name == wanted_) analyses.push_back(std::move(a));
+  }
+  void add(Output o) override {
+    if (o.info.name == wanted_) outputs.push_back(std::move(o));
+  }
   void add(Controller) override {}
 
-  bool load(const std::string& path) {
-    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr) ADD_FAILURE() << dlerror();
-    const auto* entry = library != nullptr
-                            ? static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"))
-                            : nullptr;
-    if (entry == nullptr) return false;
-    entry->add_to(*this);
-    return true;
+  /// The analysis or output of this name, from the libraries of a folder.
+  bool load(const std::string& folder, const std::string& name) {
+    wanted_ = name;
+    const std::size_t before = analyses.size() + outputs.size();
+    for (const char* library : {"/analyses.so", "/outputs.so"}) {
+      void* opened = dlopen((folder + library).c_str(), RTLD_NOW | RTLD_LOCAL);
+      if (opened == nullptr) ADD_FAILURE() << dlerror();
+      const auto* entry = opened != nullptr
+                              ? static_cast<const PluginEntry*>(dlsym(opened, "nonio_plugin"))
+                              : nullptr;
+      if (entry == nullptr) return false;
+      entry->add_to(*this);
+    }
+    return analyses.size() + outputs.size() == before + 1;
   }
+
+ private:
+  std::string wanted_;
 };
 
 inline Settings defaults(const Info& info) {

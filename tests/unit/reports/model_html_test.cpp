@@ -13,9 +13,7 @@ struct ModelHtml : testing::Test {
   Templates templates = read_templates(NONIO_TEMPLATES);
   Case made = simple_case();
 
-  void SetUp() override {
-    ASSERT_TRUE(plugins.load(std::string(NONIO_PLUGINS) + "/model-html.so"));
-  }
+  void SetUp() override { ASSERT_TRUE(plugins.load(NONIO_PLUGINS, "model-html")); }
   std::vector<Artifact> write(const std::string& language = "en") {
     Settings options = defaults(plugins.outputs.front().info);
     options.values["language"] = language;

@@ -20,9 +20,7 @@ struct ModelReport : testing::Test {
   Plugins plugins;
   Templates templates = read_templates(NONIO_TEMPLATES);
 
-  void SetUp() override {
-    ASSERT_TRUE(plugins.load(std::string(NONIO_PLUGINS) + "/pdf-report.so"));
-  }
+  void SetUp() override { ASSERT_TRUE(plugins.load(NONIO_PLUGINS, "pdf-report")); }
   std::string pdf(const ModelFit& fit, const std::string& language = "en",
                   const std::optional<Results::Analysed>& fitted = {}) {
     Case c = simple_case();

@@ -14,7 +14,7 @@ struct PdfReport : testing::Test {
 
   void SetUp() override {
     for (const char* name : {"iso230-2", "vdi-dgq-3441", "pdf-report"})
-      ASSERT_TRUE(plugins.load(std::string(NONIO_PLUGINS) + "/" + name + ".so"));
+      ASSERT_TRUE(plugins.load(NONIO_PLUGINS, name));
   }
   Expected<OutputResult> write(const Case& c, const std::string& language = "en",
                                const std::string& look = "report") {

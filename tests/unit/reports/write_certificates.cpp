@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::cerr << "usage: write_certificates FOLDER\n", 2;
   Plugins plugins;
   for (const char* name : {"iso230-2", "vdi-dgq-3441", "certificate"})
-    if (!plugins.load(std::string(NONIO_PLUGINS) + "/" + name + ".so")) return 1;
+    if (!plugins.load(NONIO_PLUGINS, name)) return 1;
   const Templates templates = read_templates(NONIO_TEMPLATES);
   const Settings none;
   Issue issue{"2026-0012",  "2026-11-21", "2026-0003",

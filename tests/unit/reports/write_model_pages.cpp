@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   Plugins plugins;
   for (const char* name : {"pdf-report", "model-html"})
-    if (!plugins.load(std::string(NONIO_PLUGINS) + "/" + name + ".so")) return 1;
+    if (!plugins.load(NONIO_PLUGINS, name)) return 1;
   const Templates templates = read_templates(NONIO_TEMPLATES);
   const auto write = [&](const char* name, const std::vector<ModelFit>& models) {
     Case c = simple_case();

@@ -84,7 +84,7 @@ struct Shop {
     }
   }
   Evaluation evaluate() const {
-    static const Analysis analysis = loaded_analysis(NONIO_BEFORE_AFTER_PLUGIN);
+    static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "before-after");
     const Settings none;
     EXPECT_FALSE(analysis.applies(campaign, campaign.measurements[0]));
     EXPECT_TRUE(analysis.applies(campaign, campaign.measurements[1]));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "exact_path.h"
+#include "loaded_analysis.h"
 #include "nonio/sdk/plugin.h"
 
 using namespace nonio;
@@ -15,24 +15,9 @@ namespace {
 
 std::size_t index(Cause c) { return static_cast<std::size_t>(c); }
 
-struct Loaded : Registry {
-  Analysis analysis;
-  void add(Method) override {}
-  void add(Reader) override {}
-  void add(Effect) override {}
-  void add(Analysis a) override { analysis = std::move(a); }
-  void add(Output) override {}
-  void add(Controller) override {}
-  Loaded() {
-    void* library = dlopen(NONIO_CIRCLE_PLUGIN, RTLD_NOW);
-    if (library == nullptr) ADD_FAILURE() << dlerror();
-    static_cast<const PluginEntry*>(dlsym(library, "nonio_plugin"))->add_to(*this);
-  }
-};
-
 const Analysis& plugin() {
-  static const Loaded loaded;
-  return loaded.analysis;
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "circle");
+  return analysis;
 }
 
 Settings options(std::map<std::string, Setting, std::less<>> changed = {}) {

@@ -20,7 +20,7 @@ using namespace bench;
 constexpr unsigned seed = 20261121;
 
 const Analysis& the_analysis() {
-  static const Analysis analysis = loaded_analysis(NONIO_DIAGONAL_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "diagonal-straightness");
   return analysis;
 }
 

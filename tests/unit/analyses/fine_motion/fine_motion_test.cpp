@@ -73,15 +73,15 @@ const Finding* finding(const Evaluation& e, const std::string& id) {
 }
 
 const Analysis& periodic() {
-  static const Analysis a = loaded_analysis(NONIO_PERIODIC_PLUGIN);
+  static const Analysis a = loaded_analysis(NONIO_ANALYSES, "periodic-error");
   return a;
 }
 const Analysis& steps() {
-  static const Analysis a = loaded_analysis(NONIO_STEPS_PLUGIN);
+  static const Analysis a = loaded_analysis(NONIO_ANALYSES, "small-steps");
   return a;
 }
 const Analysis& worst() {
-  static const Analysis a = loaded_analysis(NONIO_WORST_PLUGIN);
+  static const Analysis a = loaded_analysis(NONIO_ANALYSES, "worst-line");
   return a;
 }
 

@@ -1,46 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <dlfcn.h>
-
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 
+#include "loaded_analysis.h"
 #include "nonio/sdk/plugin.h"
 
 /// The three analyses as the host has them.
 namespace heat {
 
-struct Loaded : nonio::Registry {
-  nonio::Analysis analysis;
-  void add(nonio::Method) override {}
-  void add(nonio::Reader) override {}
-  void add(nonio::Effect) override {}
-  void add(nonio::Analysis a) override { analysis = std::move(a); }
-  void add(nonio::Output) override {}
-  void add(nonio::Controller) override {}
-  explicit Loaded(const char* path) {
-    void* library = dlopen(path, RTLD_NOW);
-    if (library == nullptr) {
-      std::fprintf(stderr, "%s\n", dlerror());
-      std::abort();
-    }
-    static_cast<const nonio::PluginEntry*>(dlsym(library, "nonio_plugin"))->add_to(*this);
-  }
-};
-
 inline const nonio::Analysis& thermal() {
-  static const Loaded loaded(NONIO_THERMAL_PLUGIN);
-  return loaded.analysis;
+  static const nonio::Analysis analysis = nonio::loaded_analysis(NONIO_ANALYSES, "thermal");
+  return analysis;
 }
 inline const nonio::Analysis& spindle() {
-  static const Loaded loaded(NONIO_SPINDLE_PLUGIN);
-  return loaded.analysis;
+  static const nonio::Analysis analysis = nonio::loaded_analysis(NONIO_ANALYSES, "spindle");
+  return analysis;
 }
 inline const nonio::Analysis& lengths() {
-  static const Loaded loaded(NONIO_LENGTHS_PLUGIN);
-  return loaded.analysis;
+  static const nonio::Analysis analysis = nonio::loaded_analysis(NONIO_ANALYSES, "lengths");
+  return analysis;
 }
 
 struct Made {

@@ -139,7 +139,7 @@ TEST(Blindness, FourBodyDiagonalsKnowOneScaleAndThreeSquarenesses) {
 }
 
 const Analysis& the_analysis() {
-  static const Analysis analysis = loaded_analysis(NONIO_ISO230_6_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "iso230-6");
   return analysis;
 }
 

@@ -160,12 +160,12 @@ TEST(RotaryTable, UCoversTheTruth) {
       t.direction = Eigen::Vector3d(noise.uniform(-1, 1), noise.uniform(-1, 1), 1).normalized();
       t.phase = noise.uniform(-3, 3);
       const double sigma = noise.uniform(0.5, 5.0) * um;
-      rotary::Wish wish;
+      rotary_kinematics::Wish wish;
       wish.use_angles = kind.use_angles;
       wish.tolerance = wish.tolerance_direction = 1.0;
       wish.linear_axes = 0.0;
       if (kind.stated) wish.sigma = sigma;
-      const auto j = rotary::judge(observed(noise.on(t.at(kind.angles), sigma)), wish);
+      const auto j = rotary_kinematics::judge(observed(noise.on(t.at(kind.angles), sigma)), wish);
       ASSERT_TRUE(j.given) << kind.name << ": " << j.findings.front().id;
       for (std::size_t k = 0; k < 3; ++k) {
         const auto c = static_cast<int>(k);

@@ -28,7 +28,7 @@ constexpr double travel = 0.6;
 constexpr std::size_t stops = 7;
 
 const Analysis& the_analysis() {
-  static const Analysis analysis = loaded_analysis(NONIO_SQUARE_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "square");
   return analysis;
 }
 

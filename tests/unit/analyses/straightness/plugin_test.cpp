@@ -22,7 +22,7 @@ constexpr double um = 1e-6;
 using Shape = std::function<double(double)>;
 
 const Analysis& the_analysis() {
-  static const Analysis analysis = loaded_analysis(NONIO_STRAIGHTNESS_PLUGIN);
+  static const Analysis analysis = loaded_analysis(NONIO_ANALYSES, "direct-straightness");
   return analysis;
 }
 

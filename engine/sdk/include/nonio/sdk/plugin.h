@@ -353,8 +353,17 @@ struct PluginEntry {
 
 }  // namespace nonio
 
-#define NONIO_PLUGIN(registry)                                                             \
-  static void nonio_plugin_add_to(nonio::Registry& registry);                              \
+/// The entry of a library, and what it registers.
+#define NONIO_PLUGIN_LIBRARY(registry)                                                     \
+  static void nonio_plugin_library(nonio::Registry& registry);                             \
   extern "C" __attribute__((visibility("default"))) const nonio::PluginEntry nonio_plugin; \
-  const nonio::PluginEntry nonio_plugin = {NONIO_ABI_TAG, &nonio_plugin_add_to};           \
-  static void nonio_plugin_add_to(nonio::Registry& registry)
+  const nonio::PluginEntry nonio_plugin = {NONIO_ABI_TAG, &nonio_plugin_library};          \
+  static void nonio_plugin_library(nonio::Registry& registry)
+
+/// What a plugin registers. Nonio's own plugins of one kind are one library: each has a namespace
+/// of its own, and the entry of the library calls the functions of all (plugins/CMakeLists.txt).
+#ifdef NONIO_BUILT_IN
+#define NONIO_PLUGIN(registry) void nonio_plugin_of_library(nonio::Registry& registry)
+#else
+#define NONIO_PLUGIN(registry) NONIO_PLUGIN_LIBRARY(registry)
+#endif
