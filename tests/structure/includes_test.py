@@ -55,7 +55,7 @@ HOMES = {
     "toml++": {"engine/campaign", "engine/certificates", "engine/laboratory/store"}, "muParser": {"engine/campaign/config"},
     "hpdf": {"engine/pdf"}, "qrencode": {"reports"}, "libdeflate": {"engine/pdf"},
     "openssl/": {"engine/pdf", "engine/sign", "engine/platform/storage"}, "xmlsec/": {"engine/sign"},
-    "libxml/": {"engine/sign", "plugins/readers"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"},
+    "libxml/": {"engine/sign"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"},
     "nlohmann": ENGINE | {"engine/app", "plugins/outputs"},
     "Eigen": {"engine/math", "engine/laboratory/statistics", "engine/model", "plugins/analyses", "plugins/effects"},
     "tl/": {"engine/sdk"}, "sqlite3": {"engine/platform/storage"}, "libpq": {"engine/platform/storage"},

@@ -39,10 +39,6 @@ Method circle() {
 
 }  // namespace
 
-NONIO_PLUGIN(registry) {
-  registry.add(circle());
-  registry.add(
-      Method{.info = {"ballbar", "1.0", "File of a ballbar; its circles are only listed"}});
-}
+NONIO_PLUGIN(registry) { registry.add(circle()); }
 
 }  // namespace nonio::circles_method

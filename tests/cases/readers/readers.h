@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "ballbar.h"
 #include "camonitor.h"
 #include "ecmc_iso230.h"
 #include "linuxcnc_probe.h"
@@ -21,7 +20,7 @@ inline const std::vector<nonio::Reader>& readers() {
   static const std::vector<nonio::Reader> all{
       nonio::renishaw::rtl_reader(),   nonio::renishaw::rta_reader(), nonio::wide_table::reader(),
       nonio::long_table::reader(),     nonio::ecmc_iso230::reader(),  nonio::camonitor::reader(),
-      nonio::linuxcnc_probe::reader(), nonio::ballbar::reader()};
+      nonio::linuxcnc_probe::reader()};
   return all;
 }
 

@@ -88,7 +88,7 @@ struct World {
     campaign.machine.axes.push_back(other);
     measurement.id = "m";
     measurement.axis = axis.name;
-    for (const char* kind : {"axis", "ball-centres", "ballbar"})
+    for (const char* kind : {"axis", "ball-centres"})
       if (measurement.kind.empty() && reader.reads(kind)) measurement.kind = kind;
   }
 
