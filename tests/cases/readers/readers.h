@@ -18,8 +18,8 @@ namespace reader_cases {
 /// All readers of instrument files.
 inline const std::vector<nonio::Reader>& readers() {
   static const std::vector<nonio::Reader> all{
-      nonio::renishaw::rtl_reader(),   nonio::renishaw::rta_reader(), nonio::wide_table::reader(),
-      nonio::long_table::reader(),     nonio::ecmc_iso230::reader(),  nonio::camonitor::reader(),
+      nonio::renishaw::rtl_reader(),  nonio::renishaw::rta_reader(), nonio::wide_table::reader(),
+      nonio::long_table::reader(),    nonio::ecmc_iso230::reader(),  nonio::camonitor::reader(),
       nonio::linuxcnc_probe::reader()};
   return all;
 }
