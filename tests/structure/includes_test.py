@@ -31,6 +31,7 @@ MAY = {
     "engine/campaign/evaluation": {"sdk", "math", "model"},
     "engine/certificates": {"sdk", "sign"},
     "engine/laboratory": {"sdk"},
+    "engine/laboratory/statistics": {"sdk", "math"},
     "engine/laboratory/assessment": {"sdk", "math", "reports"},
     "engine/batch": {"sdk", "sign", "reports"},
     "engine/live": {"sdk", "math", "model", "sign", "reports", "workbench"},
@@ -50,15 +51,15 @@ ENGINE = {f"engine/{product}" for product in PRODUCTS}
 # third-party header -> the parts that may include it
 HOMES = {
     "Poco/": {"engine/batch", "engine/live", "plugins/readers"},
-    "boost/dll": {"engine/campaign/loader"}, "boost/math": {"engine/math", "engine/laboratory/statistics"},
-    "boost/": {"engine/campaign/loader", "engine/math", "engine/laboratory/statistics"},
+    "boost/dll": {"engine/campaign/loader"}, "boost/math": {"engine/math"},
+    "boost/": {"engine/campaign/loader", "engine/math"},
     "toml++": {"engine/campaign", "engine/certificates", "engine/laboratory/store"}, "muParser": {"engine/campaign/config"},
     "hpdf": {"engine/pdf"}, "qrencode": {"reports"}, "libdeflate": {"engine/pdf"},
     "openssl/": {"engine/pdf", "engine/sign", "engine/platform/storage"}, "xmlsec/": {"engine/sign"},
     "libxml/": {"engine/sign"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"},
     "nlohmann": ENGINE | {"engine/app", "plugins/outputs"},
-    "Eigen": {"engine/math", "engine/laboratory/statistics", "engine/model", "plugins/analyses", "plugins/effects"},
-    "tl/": {"engine/sdk"}, "sqlite3": {"engine/platform/storage"}, "libpq": {"engine/platform/storage"},
+    "Eigen": {"engine/math", "engine/model", "plugins/analyses", "plugins/effects"},
+    "math/eigen/": {"engine/laboratory/statistics"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/platform/storage"}, "libpq": {"engine/platform/storage"},
 }
 THIRD_PARTY = r"include\s*<(Eigen|Poco|boost|toml|muParser|nlohmann|hpdf|openssl|libxml|xmlsec|sqlite|simdjson)"
 
@@ -131,7 +132,7 @@ def complaint(path, line):
     if own:
         part = longest(path, MAY)
         return None if own.group(1) in MAY[part] else f"{part} may not include nonio/{own.group(1)}"
-    if header.group(1) == '"' and not name.startswith("reports/"):
+    if header.group(1) == '"' and not name.startswith("math/eigen/") and not name.startswith("reports/"):
         return of_neighbour(path, name)
     for library, homes in HOMES.items():
         if name.startswith(library):

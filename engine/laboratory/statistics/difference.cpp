@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "laboratory/statistics/difference.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "laboratory/statistics/gls.h"
 #include "laboratory/statistics/trend.h"
+#include "nonio/math/distributions.h"
 
 namespace nonio::statistics {
 namespace {
@@ -55,16 +55,16 @@ MatrixXd covariance_of_difference(const Curve& before, const Curve& after) {
 void put_chi2(const VectorXd& d, const MatrixXd& V, CurveDifference& out) {
   constexpr double rank = 1e-9;
   const VectorXd scale = V.diagonal().cwiseSqrt().cwiseInverse();
-  const MatrixXd R = scale.asDiagonal() * V * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> of_R(R);
-  const VectorXd along = of_R.eigenvectors().transpose() * scale.cwiseProduct(d);
+  const MatrixXd R = math::scaled_columns(math::scaled_rows(scale, V), scale);
+  const math::Spectrum of_R = math::spectrum(R);
+  const VectorXd along = math::transposed_times(of_R.vectors, scale.cwiseProduct(d));
   for (Index k = 0; k < along.size(); ++k) {
-    const double l = of_R.eigenvalues()(k);
-    if (!(l > rank * of_R.eigenvalues()(along.size() - 1))) continue;
+    const double l = of_R.values(k);
+    if (!(l > rank * of_R.values(along.size() - 1))) continue;
     out.chi2 += along(k) * along(k) / l;
     out.dof += 1.0;
   }
-  out.p = chi2_upper(out.chi2, out.dof);
+  out.p = math::chi2_upper(out.chi2, out.dof);
 }
 
 }  // namespace
@@ -95,14 +95,15 @@ Expected<Curve> seen_through(const Curve& coefficients,
       return fail("expected a number of each coefficient at place " + std::to_string(i + 1));
     B.row(i) = vector_of(row).transpose();
   }
-  const MatrixXd C = B * vector_of(coefficients.covariance).reshaped(n, n) * B.transpose();
-  const VectorXd y = B * vector_of(coefficients.values);
+  const MatrixXd C = math::product_transposed(
+      math::product(B, vector_of(coefficients.covariance).reshaped(n, n)), B);
+  const VectorXd y = math::times(B, vector_of(coefficients.values));
   Curve out;
   out.values.assign(y.begin(), y.end());
   for (Index i = 0; i < C.rows(); ++i)
     for (Index j = 0; j < C.cols(); ++j) out.covariance.push_back(C(i, j));
   for (const Curve::Shared& s : coefficients.common) {
-    const VectorXd u = B * vector_of(s.u);
+    const VectorXd u = math::times(B, vector_of(s.u));
     out.common.push_back({s.source, {u.begin(), u.end()}});
   }
   return out;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "laboratory/statistics/gls.h"
 
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -32,7 +30,7 @@ Whitened::Whitened(const Series& s) : spread(s.spread), factor(covariance_of(s))
 
 VectorXd Whitened::column(const VectorXd& x) const {
   VectorXd out = VectorXd::Zero(x.size() + (spread > 0.0 ? 1 : 0));
-  out.head(x.size()) = factor.matrixL().solve(x);
+  out.head(x.size()) = math::whitened(factor, x);
   return out;
 }
 
@@ -47,24 +45,17 @@ std::optional<Gls> gls(const Whitened& w, const MatrixXd& X) {
   if (ranked.rank() < X.cols() || X.rows() < X.cols()) return std::nullopt;
   const Eigen::HouseholderQR<MatrixXd> qr(X);
   Gls out;
-  out.basis = qr.householderQ() * MatrixXd::Identity(X.rows(), X.cols());
-  const MatrixXd R = qr.matrixQR().topRows(X.cols()).triangularView<Eigen::Upper>();
-  out.b = R.triangularView<Eigen::Upper>().solve(out.basis.transpose() * w.y);
-  const MatrixXd inverse =
-      R.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(X.cols(), X.cols()));
-  out.C = inverse * inverse.transpose();
-  out.chi2 = (w.y - out.basis * (out.basis.transpose() * w.y)).squaredNorm();
+  out.basis = math::orthonormal(qr, X.cols());
+  const MatrixXd R = math::upper(qr, X.cols());
+  out.b = math::solution_of_upper(R, math::transposed_times(out.basis, w.y));
+  const MatrixXd inverse = math::inverse_of_upper(R);
+  out.C = math::product_transposed(inverse, inverse);
+  out.chi2 = math::orthogonal_part(out.basis, w.y).squaredNorm();
   out.dof = static_cast<double>(X.rows() - X.cols());
   return out;
 }
 
-double chi2_upper(double chi2, double dof) {
-  if (!(dof > 0.0)) return 1.0;
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof), chi2));
-}
-
 double normal_two_sided(double z) { return std::erfc(std::fabs(z) / std::numbers::sqrt2); }
 double normal_upper(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
-double normal_quantile(double p) { return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * p); }
 
 }  // namespace nonio::statistics

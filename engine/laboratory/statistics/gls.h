@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Dense>
 #include <optional>
 
 #include "laboratory/statistics/series.h"
+#include "math/eigen/dense.h"
 
 namespace nonio::statistics {
 
@@ -37,9 +37,7 @@ struct Gls {
 /// None if the points cannot tell the columns apart.
 std::optional<Gls> gls(const Whitened&, const MatrixXd& whitened_columns);
 
-double chi2_upper(double chi2, double dof);  ///< P(chi-square > chi2)
-double normal_two_sided(double z);           ///< P(|N| > |z|)
-double normal_upper(double z);               ///< P(N > z)
-double normal_quantile(double p);            ///< z with P(N < z) = p
+double normal_two_sided(double z);  ///< P(|N| > |z|)
+double normal_upper(double z);      ///< P(N > z)
 
 }  // namespace nonio::statistics

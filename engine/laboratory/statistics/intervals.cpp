@@ -2,8 +2,9 @@
 #include "laboratory/statistics/intervals.h"
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
+
+#include "nonio/math/distributions.h"
 
 namespace nonio::statistics {
 namespace {
@@ -25,7 +26,7 @@ bool is_time(double t) { return std::isfinite(t) && t > 0.0; }
 /// P(passed or fewer).
 double cdf(int passed, int machines, double target) {
   if (passed < 0) return 0.0;
-  return boost::math::cdf(boost::math::binomial(machines, target), passed);
+  return math::binomial_lower(passed, machines, target);
 }
 
 }  // namespace

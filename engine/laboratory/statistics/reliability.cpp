@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Intervals of many like machines: who was in tolerance after how long, and how they drift.
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "laboratory/statistics/gls.h"
 #include "laboratory/statistics/intervals.h"
+#include "nonio/math/distributions.h"
 
 namespace nonio::statistics {
 namespace {
@@ -171,14 +171,14 @@ std::optional<Drift> drift_since_adjustment(const std::vector<double>& t,
   if (!T.allFinite() || !y.allFinite()) return std::nullopt;
   const VectorXd unit = T.colwise().norm();  // of each power, for the rank
   if (!(unit.minCoeff() > 0.0)) return std::nullopt;
-  const MatrixXd X = T * unit.cwiseInverse().asDiagonal();
+  const MatrixXd X = math::scaled_columns(T, unit.cwiseInverse());
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(X);
   if (qr.rank() < degree) return std::nullopt;
   Drift out;
-  const VectorXd b = qr.solve(y).cwiseQuotient(unit);
+  const VectorXd b = math::solution(qr, y).cwiseQuotient(unit);
   out.dof = static_cast<double>(n - degree);
-  out.s = std::sqrt((y - T * b).squaredNorm() / out.dof);
-  const MatrixXd scaled = (X.transpose() * X).inverse();
+  out.s = std::sqrt(math::squared_residual(y, T, b) / out.dof);
+  const MatrixXd scaled = math::inverse(math::transposed_product(X, X));
   out.b.assign(b.begin(), b.end());
   for (Index i = 0; i < degree; ++i)
     for (Index j = 0; j < degree; ++j)
@@ -211,8 +211,7 @@ std::optional<double> until_limit(const Drift& d, double value, double u0, Limit
       !(confidence < 1.0))
     return std::nullopt;
   const double sides = limits.lower && limits.upper ? 2.0 : 1.0;
-  const double k = boost::math::quantile(
-      boost::math::complement(boost::math::students_t(d.dof), (1.0 - confidence) / sides));
+  const double k = math::t_upper_quantile((1.0 - confidence) / sides, d.dof);
   return first_time(longest, [&](double t) {
     const double at = value + d.at(t), bound = k * std::hypot(u0, d.u_prediction(t));
     return (limits.upper && at + bound >= *limits.upper) ||

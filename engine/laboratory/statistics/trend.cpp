@@ -8,6 +8,7 @@
 
 #include "laboratory/statistics/gls.h"
 #include "laboratory/statistics/walk.h"
+#include "nonio/math/distributions.h"
 #include "nonio/sdk/splitmix64.h"
 
 namespace nonio::statistics {
@@ -135,7 +136,7 @@ class Trending {
     for (std::size_t k = 0; k + 1 < s_.points.size(); ++k) {
       if (taken(k)) continue;
       const VectorXd z = w_.column(columns_.step(k));
-      const VectorXd rest = z - base.basis * (base.basis.transpose() * z);
+      const VectorXd rest = math::orthogonal_part(base.basis, z);
       const double length = rest.norm();
       if (!(length > 1e-9 * z.norm())) continue;
       out.after.push_back(k);
@@ -166,7 +167,9 @@ class Trending {
         const double angle = 2.0 * std::numbers::pi * random.uniform();
         noise(i) = r * std::cos(angle), noise(i + 1) = r * std::sin(angle);
       }
-      beyond += (places.direction.transpose() * noise.head(w_.y.size())).cwiseAbs2().maxCoeff() > G;
+      beyond +=
+          math::transposed_times(places.direction, noise.head(w_.y.size())).cwiseAbs2().maxCoeff() >
+          G;
       if ((draw % batch == 0 && is_surely_more(beyond, draw)) ||
           (draw < batch && is_surely_more(beyond, batch)))  // as it will be then
         return std::min(bound, (beyond + 1.0) / (draw + 1.0));
@@ -189,7 +192,7 @@ class Trending {
     const Places at = places(*base);
     if (!s_.steps && !at.after.empty() && steps_ < most_steps) {
       Index best = 0;
-      const double G = (at.direction.transpose() * w_.y).cwiseAbs2().maxCoeff(&best);
+      const double G = math::transposed_times(at.direction, w_.y).cwiseAbs2().maxCoeff(&best);
       p_step = p_of_largest(at, G);
       stepped.changes.push_back({at.after[static_cast<std::size_t>(best)],
                                  0.0,
@@ -305,8 +308,8 @@ class Trending {
     const Places at = places(*base);
     if (at.after.empty()) return;
     const double critical =
-        normal_quantile(1.0 - named_below / 2.0 / static_cast<double>(at.after.size()));
-    out.smallest_change = (critical + normal_quantile(0.8)) / at.length(at.length.size() - 1);
+        math::normal_quantile(1.0 - named_below / 2.0 / static_cast<double>(at.after.size()));
+    out.smallest_change = (critical + math::normal_quantile(0.8)) / at.length(at.length.size() - 1);
   }
 
   /// Of a level that does not hold, and of two steps or more that nobody declared: local level, its
@@ -314,7 +317,7 @@ class Trending {
   /// price. At the border q = 0 the likelihood ratio is half a chi-square with 1 degree of freedom.
   void walk(Trend& out) const {
     constexpr double at_border = 5.412;  // its quantile of 1 %
-    const bool restless = chi2_upper(out.chi2, out.dof) < named_below;
+    const bool restless = math::chi2_upper(out.chi2, out.dof) < named_below;
     if (s_.steps && !s_.steps->empty()) return;
     if (s_.points.size() < fewest_for_walk || static_cast<int>(shape_.changes.size()) > steps_ ||
         !(steps_ > 1 || (steps_ == 0 && out.model == Model::level && restless)))
@@ -385,7 +388,7 @@ double spread_of_slopes(const std::vector<Slope>& slopes) {
     for (const Slope& s : slopes) sum += std::min(most, s.b * s.b / (sigma * sigma + s.u * s.u));
     return sum / n;
   };
-  if (mean(0.0) <= expected + normal_quantile(0.97) * std::sqrt(variance / n)) return 0.0;
+  if (mean(0.0) <= expected + math::normal_quantile(0.97) * std::sqrt(variance / n)) return 0.0;
   double low = 0.0, high = 0.0;
   for (const Slope& s : slopes) high = std::max(high, 2.0 * std::fabs(s.b));
   for (int step = 0; step < 60; ++step) {

@@ -128,16 +128,15 @@ PeriodicError periodic_error(std::span<const Pass> passes, double period) {
   out.answer = Answer::given;
   Design d = design_of(passes, period, step);
   const PathNoise noise = path_noise(d.X, d.y * 1e6, d.place);
-  Eigen::MatrixXd white(d.X.rows(), d.X.cols() + 1);
-  white << d.X, d.y;
+  Eigen::MatrixXd white = with_column(d.X, d.y);
   whiten(white, d.place, noise);
   const Eigen::Index k = d.X.cols();
-  const Eigen::MatrixXd W = white.leftCols(k);
-  const Eigen::LDLT<Eigen::MatrixXd> normal(W.transpose() * W);
-  const Eigen::VectorXd beta = normal.solve(W.transpose() * white.col(k));
-  const double rss = (white.col(k) - W * beta).squaredNorm();
-  const Eigen::MatrixXd C =
-      normal.solve(Eigen::MatrixXd::Identity(k, k)) * (rss / static_cast<double>(W.rows() - k));
+  const Eigen::MatrixXd W = left_columns(white, k);
+  const Eigen::VectorXd y = white.col(k);
+  const Eigen::LDLT<Eigen::MatrixXd> normal(transposed_product(W, W));
+  const Eigen::VectorXd beta = solution(normal, transposed_times(W, y));
+  const double rss = squared_residual(y, W, beta);
+  const Eigen::MatrixXd C = inverse(normal) * (rss / static_cast<double>(W.rows() - k));
   for (std::size_t h = 0; h < out.harmonics.size(); ++h) {
     const Eigen::Index c = k - waves + 2 * at(h);
     auto& wave = out.harmonics[h];
@@ -150,7 +149,7 @@ PeriodicError periodic_error(std::span<const Pass> passes, double period) {
     wave.u = std::sqrt(std::max(0.0, along.dot(C.block<2, 2>(c, c) * along)));
     if (wave.amplitude < noise_alone * wave.u) wave.u *= of_noise;
   }
-  const Eigen::VectorXd left = d.y - d.X.leftCols(k - waves) * beta.head(k - waves);
+  const Eigen::VectorXd left = residual(d.y, left_columns(d.X, k - waves), beta.head(k - waves));
   // At least twenty, as the step allows.
   const auto bins =
       static_cast<std::size_t>(std::max(steps_of_period, std::floor(period / step + 1e-3)));

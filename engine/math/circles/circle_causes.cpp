@@ -135,14 +135,13 @@ class Fit {
       X.col(at(k)) = block.X.col(here[k]) / block.X.col(here[k]).norm();
     const Eigen::VectorXd scaled = block.y * 1e6;
     if (model_.correlated) block.noise = path_noise(X, scaled, block.place);
-    Eigen::MatrixXd white(X.rows(), X.cols() + 1);
-    white << X, block.y;
+    Eigen::MatrixXd white = with_column(X, block.y);
     whiten(white, block.place, block.noise);
-    const Eigen::MatrixXd W = white.leftCols(X.cols());
+    const Eigen::MatrixXd W = left_columns(white, X.cols());
     const Eigen::VectorXd v = white.col(X.cols());
-    const Eigen::VectorXd beta = W.colPivHouseholderQr().solve(v);
+    const Eigen::VectorXd beta = least_squares(W, v);
     const double dof = static_cast<double>(std::max<Eigen::Index>(1, X.rows() - X.cols()));
-    block.variance = std::max((v - W * beta).squaredNorm() / dof, 1e-26);
+    block.variance = std::max(squared_residual(v, W, beta) / dof, 1e-26);
     const double n = static_cast<double>(X.rows()) / block.noise.slow() -
                      static_cast<double>(X.cols()) / std::max(1.0, block.noise.slow());
     const double effective = std::max(1.0, n);
@@ -166,8 +165,8 @@ class Fit {
       const double scale = 1.0 / std::sqrt(b.variance);
       white.middleRows(row, n) = all.leftCols(k) * scale;
       plain.middleRows(row, n) = b.X;
-      filters.push_back(all.rightCols(n) * scale);
-      y.segment(row, n) = filters.back() * b.y;
+      filters.push_back(columns(all, k, n) * scale);
+      y.segment(row, n) = times(filters.back(), b.y);
       row += n;
     }
     Eigen::VectorXd norm(k);
@@ -176,9 +175,9 @@ class Fit {
       white.col(c) /= norm[c];
     }
     const Eigen::MatrixXd C =
-        (white.transpose() * white).ldlt().solve(Eigen::MatrixXd::Identity(k, k));
-    const Eigen::MatrixXd G = C * white.transpose();
-    const Eigen::VectorXd beta = (G * y).cwiseQuotient(norm);
+        inverse(Eigen::LDLT<Eigen::MatrixXd>(transposed_product(white, white)));
+    const Eigen::MatrixXd G = product_transposed(C, white);
+    const Eigen::VectorXd beta = times(G, y).cwiseQuotient(norm);
     put(beta, C, G, norm, filters);
     residuals(beta);
   }
@@ -205,13 +204,14 @@ class Fit {
   void by_bins(CauseFit::Value& v, const Eigen::RowVectorXd& G,
                const std::vector<Eigen::MatrixXd>& filters) const {
     const Eigen::Index n = at(places_.size());
-    Eigen::RowVectorXd first = G.head(n) * filters[0];
+    Eigen::RowVectorXd first = transposed_times(filters[0], G.head(n).transpose()).transpose();
     if (!both_) {
       if (only_ == 1) first.reverseInPlace();
       v.by_bin.assign(first.data(), first.data() + n);
       return;
     }
-    const Eigen::RowVectorXd second = G.tail(n) * filters[1];
+    const Eigen::RowVectorXd second =
+        transposed_times(filters[1], G.tail(n).transpose()).transpose();
     const Eigen::RowVectorXd plus = (first + second) / 2.0;
     Eigen::RowVectorXd minus = (first - second) / 2.0;
     minus.reverseInPlace();

@@ -87,10 +87,12 @@ Alike alike(Index m, double r) {
     X(i, 1) = static_cast<double>(i) - static_cast<double>(m - 1) / 2.0;
   }
   X.col(1).normalize();
-  const MatrixXd M = MatrixXd::Identity(m, m) - X * X.transpose(), e = M * R * M;
+  MatrixXd M = MatrixXd::Identity(m, m);
+  M -= product_transposed(X, X);
+  const MatrixXd e = product(product(M, R), M);
   const double n = static_cast<double>(m);
   return {e.diagonal(1).sum() / (n - 1.0) / (e.trace() / n), e.trace() / (n - 2.0),
-          X.col(0).dot(R * X.col(0)), X.col(1).dot(R * X.col(1)),
+          X.col(0).dot(times(R, X.col(0))), X.col(1).dot(times(R, X.col(1))),
           squared(e.trace()) / e.squaredNorm() / (n - 2.0)};
 }
 

@@ -70,14 +70,14 @@ TargetFit fit_columns(const AxisTest& test, const RunComponents& c, const Matrix
   const MatrixXd rows = fit_rows(own);  // p x n
   TargetFit out;
   out.dof = static_cast<double>(n - own.cols());
-  const VectorXd rest = y - own * (rows * y);
+  const VectorXd rest = residual(y, own, times(rows, y));
   out.residuals.assign(rest.begin(), rest.end());
   double noise = 0.0;
   for (Index k = 0; k < n; ++k)
     noise += variance_at(test, c, seen[static_cast<std::size_t>(k)], reversal) *
              (1.0 - own.row(k).dot(rows.col(k)));
   if (out.dof > 0.0) out.beyond = (rest.squaredNorm() - noise) / out.dof;
-  const VectorXd b = rows * y;
+  const VectorXd b = times(rows, y);
   const auto weights_of = [&](Index j) {
     VectorXd t = VectorXd::Zero(at(test.targets.size()));
     for (Index k = 0; k < n; ++k) t(at(seen[static_cast<std::size_t>(k)])) = rows(j, k);
@@ -130,9 +130,9 @@ MatrixXd with_sinusoid(const MatrixXd& beside, const AxisTest& test, double peri
 
 MatrixXd fit_rows(const MatrixXd& X) {
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(X);
-  const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(X.rows(), X.cols());
-  const auto R = qr.matrixR().topRows(X.cols()).triangularView<Eigen::Upper>();
-  return qr.colsPermutation() * MatrixXd(R.solve(Q.transpose()));
+  const MatrixXd Q = orthonormal(qr, X.cols());
+  const MatrixXd R = qr.matrixR().topRows(X.cols());
+  return qr.colsPermutation() * solutions_of_upper(R, Q.transpose());
 }
 
 TargetWeights of_means(const AxisTest& test, const VectorXd& t) {

@@ -82,21 +82,25 @@ Matrix columns_for(const Means& m, const std::vector<double>& log_tau) {
 
 /// Linear part at given time constants.
 Curve linear(const Means& m, const std::vector<double>& log_tau, const PathNoise& noise) {
-  Matrix both(m.t.size(), at(2 + log_tau.size()));
-  both << columns_for(m, log_tau), m.d;
+  Matrix both = with_column(columns_for(m, log_tau), m.d);
   whiten(both, m.place, noise);
   const Eigen::Index k = both.cols() - 1;
-  const Eigen::ColPivHouseholderQR<Matrix> qr(both.leftCols(k));
-  Curve out{log_tau, qr.solve(both.col(k)), {}, 0.0};
-  out.rss = (both.col(k) - both.leftCols(k) * out.beta).squaredNorm();
+  const Matrix X = left_columns(both, k);
+  const Vector y = both.col(k);
+  Curve out{log_tau, least_squares(X, y), {}, 0.0};
+  out.rss = squared_residual(y, X, out.beta);
   if (!std::isfinite(out.rss)) out.rss = INFINITY;
   return out;
+}
+
+Vector left_of(const Means& m, const Curve& c) {
+  return residual(m.d, columns_for(m, c.log_tau), c.beta);
 }
 
 Matrix jacobian_of(const Means& m, const Curve& c) {
   Matrix J(m.t.size(), at(1 + 2 * c.log_tau.size()));
   const Matrix X = columns_for(m, c.log_tau);
-  J.leftCols(X.cols()) = X;
+  for (Eigen::Index k = 0; k < X.cols(); ++k) J.col(k) = X.col(k);
   for (std::size_t k = 0; k < c.log_tau.size(); ++k) {
     const double tau = std::exp(c.log_tau[k]), size = c.beta[at(k + 1)];
     J.col(X.cols() + at(k)) = m.t.binaryExpr(m.v, [tau, size](double t, double v) {
@@ -136,11 +140,9 @@ void refine(const Means& m, const PathNoise& noise, Curve& c) {
   const std::size_t parts = c.log_tau.size();
   for (int step = 0; step < most; ++step) {
     const Matrix J = jacobian_of(m, c);
-    Matrix both(J.rows(), J.cols() + 1);
-    both << J, m.d - columns_for(m, c.log_tau) * c.beta;
+    Matrix both = with_column(J, left_of(m, c));
     whiten(both, m.place, noise);
-    const Eigen::ColPivHouseholderQR<Matrix> qr(both.leftCols(J.cols()));
-    const Vector move = qr.solve(both.col(J.cols()));
+    const Vector move = least_squares(left_columns(both, J.cols()), both.col(J.cols()));
     bool better = false;
     double largest = 0.0;
     for (double share = 1.0; share > 0.02 && !better; share /= 2.0) {
@@ -170,7 +172,7 @@ Fitted fitted(const Means& m, std::size_t parts) {
   for (int round = 0; round < 3; ++round) {
     Curve c = searched(m, parts, out.noise);
     refine(m, out.noise, c);
-    const Vector linearised = m.d - columns_for(m, c.log_tau) * c.beta;
+    const Vector linearised = left_of(m, c);
     out.curve = std::move(c);
     if (round == 2) break;
     const PathNoise before = out.noise;
@@ -181,7 +183,7 @@ Fitted fitted(const Means& m, std::size_t parts) {
 }
 
 double rss_with(const Means& m, const Curve& c, const PathNoise& noise) {
-  Matrix rest = m.d - columns_for(m, c.log_tau) * c.beta;
+  Matrix rest = left_of(m, c);
   whiten(rest, m.place, noise);
   return rest.squaredNorm();
 }
@@ -207,8 +209,7 @@ void put_parts(const Means& m, const Fitted& f, TimeConstants& out) {
   out.dof = std::max(1.0, (n - p) / g);
   const double s2 = rss_with(m, c, f.noise) / std::max(1.0, n - p);
   out.s = std::sqrt(s2);
-  const Matrix cov = s2 * Eigen::ColPivHouseholderQR<Matrix>(J.transpose() * J)
-                              .solve(Matrix::Identity(J.cols(), J.cols()));
+  const Matrix cov = s2 * inverse(Eigen::ColPivHouseholderQR<Matrix>(transposed_product(J, J)));
   const std::size_t parts = c.log_tau.size();
   std::vector<std::size_t> order(parts);
   for (std::size_t k = 0; k < parts; ++k) order[k] = k;

@@ -99,7 +99,7 @@ class Descent {
     VectorXd left = residual(state_);
     for (int round = 0; round < most_steps; ++round) {
       solve();
-      VectorXd by = scale_.cwiseProduct(V_ * (U_.transpose() * left).cwiseQuotient(size_));
+      VectorXd by = scale_.cwiseProduct(times(V_, transposed_times(U_, left).cwiseQuotient(size_)));
       double most = 0.0;
       for (std::size_t l = 0; l < order_.axes(); ++l)
         most = std::max(most, by.segment<2>(4 * at(l) + 2).cwiseAbs().maxCoeff());
@@ -161,16 +161,16 @@ class Descent {
     const MatrixXd J = jacobian();
     const Eigen::HouseholderQR<MatrixXd> qr(J);
     const Index small = std::min(J.rows(), J.cols());
-    const MatrixXd R = qr.matrixQR().topRows(small).triangularView<Eigen::Upper>();
+    const MatrixXd R = upper(qr, small);
     const Eigen::JacobiSVD<MatrixXd> svd(R, Eigen::ComputeFullV);
     all_sizes_ = VectorXd::Zero(J.cols());
     all_sizes_.head(small) = svd.singularValues();
     Index rank = 0;
     while (rank < small && all_sizes_[rank] > chain_rank * all_sizes_[0]) ++rank;
-    V_ = svd.matrixV().leftCols(rank);
-    open_ = svd.matrixV().rightCols(J.cols() - rank);
+    V_ = left_columns(svd.matrixV(), rank);
+    open_ = columns(svd.matrixV(), rank, J.cols() - rank);
     size_ = all_sizes_.head(rank);
-    U_ = J * V_ * size_.cwiseInverse().asDiagonal();
+    U_ = scaled_columns(product(J, V_), size_.cwiseInverse());
   }
 
   void put_followed(ChainFit& out) const;
@@ -239,16 +239,16 @@ ChainFit Descent::fit() const {
   const VectorXd own_left = left_.cwiseQuotient(root_);
   for (std::size_t i = 0; i < all_.size(); ++i)
     out.residual.push_back(as_array(own_left.segment<3>(3 * at(i))));
-  const MatrixXd inverse = scale_.asDiagonal() * V_ * size_.cwiseInverse().asDiagonal() *
-                           U_.transpose() * root_.asDiagonal();
+  const MatrixXd inverse = scaled_columns(
+      product_transposed(scaled_columns(scaled_rows(scale_, V_), size_.cwiseInverse()), U_), root_);
   for (Index k = 0; k < inverse.rows(); ++k)
     out.by.push_back(by_coordinate(inverse.row(k).transpose()));
   if (all_.size() <= most_residual_rows) {
-    const MatrixXd U = root_.cwiseInverse().asDiagonal() * U_;
-    const MatrixXd W = U_.transpose() * root_.asDiagonal();
+    const MatrixXd U = scaled_rows(root_.cwiseInverse(), U_);
+    const MatrixXd W = scaled_rows(root_, U_);
     for (Index k = 0; k < 3; ++k)
       for (Index i = k; i < root_.size(); i += 3) {
-        VectorXd row = -(U.row(i) * W).transpose();
+        VectorXd row = -times(W, U.row(i).transpose());
         row[i] += 1.0;
         out.residual_by.push_back(by_coordinate(row));
       }

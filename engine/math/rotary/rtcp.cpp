@@ -234,16 +234,16 @@ Solved solved(const MatrixXd& j) {
   Solved out;
   MatrixXd v = svd.matrixV(), u = svd.matrixU();
   while (out.rank < s.size() && s[out.rank] > least_share * s[0]) ++out.rank;
-  const MatrixXd row_space = v.leftCols(out.rank);
-  out.inverse =
-      row_space * s.head(out.rank).cwiseInverse().asDiagonal() * u.leftCols(out.rank).transpose();
+  const MatrixXd row_space = left_columns(v, out.rank);
+  out.inverse = product_transposed(scaled_columns(row_space, s.head(out.rank).cwiseInverse()),
+                                   left_columns(u, out.rank));
   for (Eigen::Index k = 0; k < scale.size(); ++k)
     out.inverse.row(k) *= scale[k] > 0.0 ? 1.0 / scale[k] : 0.0;
   for (std::size_t k = 0; k < 4; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     VectorXd unit = VectorXd::Zero(j.cols());
     unit[i] = 1.0;
-    const VectorXd left = unit - row_space * row_space.transpose() * unit;
+    const VectorXd left = residual(unit, product_transposed(row_space, row_space), unit);
     out.told[k] = scale[i] > 0.0 && left.norm() < in_row_space;
   }
   return out;
@@ -261,7 +261,7 @@ tl::expected<RtcpFit, RtcpRefusal> fit_rtcp(const std::vector<RtcpReading>& all,
   // of 1e-3 rad leave 1e-3 of the rest in each round.
   const MatrixXd j = readings.jacobian(x);
   const Solved solution = solved(j);
-  for (int round = 0; round < 6; ++round) x += solution.inverse * (y - readings.predicted(x));
+  for (int round = 0; round < 6; ++round) x += times(solution.inverse, y - readings.predicted(x));
   RtcpFit fit;
   fit.point = plain(readings.point());
   fit.direction = plain(readings.direction());
@@ -287,8 +287,8 @@ tl::expected<RtcpFit, RtcpRefusal> fit_rtcp(const std::vector<RtcpReading>& all,
   }
   constexpr std::size_t most_residuals = 1000;
   if (all.size() <= most_residuals) {
-    const MatrixXd left =
-        MatrixXd::Identity(readings.count(), readings.count()) - j * solution.inverse;
+    MatrixXd left = MatrixXd::Identity(readings.count(), readings.count());
+    left -= product(j, solution.inverse);
     for (Eigen::Index i = 0; i < readings.count(); ++i) {
       const VectorXd row = left.row(i).transpose();
       fit.residual_by.emplace_back(row.data(), row.data() + row.size());

@@ -31,7 +31,7 @@ std::optional<Sphere> start(const MatrixXd& points) {
   const VectorXd squares = points.rowwise().squaredNorm();
   const auto qr = columns.colPivHouseholderQr();
   if (qr.rank() < 4) return std::nullopt;
-  const VectorXd x = qr.solve(squares);
+  const VectorXd x = solution(qr, squares);
   const Vector3d centre = x.head<3>();
   const double square = x(3) + centre.squaredNorm();
   if (!(square > 0.0)) return std::nullopt;
@@ -80,14 +80,14 @@ Expected<SphereFit> fit_sphere(std::span<const std::array<double, 3>> touches,
   bool done = false;
   for (int i = 0; i < 100 && !done; ++i) {
     if (!linearise(points, *sphere, J, e)) return fail(not_fixed);
-    const VectorXd step = J.colPivHouseholderQr().solve(-e);
+    const VectorXd step = least_squares(J, -e);
     if (!step.allFinite()) return fail(not_fixed);
     sphere->centre += step.head<3>();
     if (!radius) sphere->radius += step(3);
     done = step.norm() <= 1e-13 * extent;
   }
   if (!done || !linearise(points, *sphere, J, e)) return fail(not_fixed);
-  const MatrixXd cofactor = (J.transpose() * J).inverse();
+  const MatrixXd cofactor = inverse(transposed_product(J, J));
   SphereFit fit;
   for (Index k = 0; k < 3; ++k) {
     fit.centre[static_cast<std::size_t>(k)] = sphere->centre(k) + mean(k);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/math/distributions.h"
 
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/policies/policy.hpp>
+#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -34,6 +37,23 @@ double t_two_sided(double t, double dof) {
   if (std::isinf(t)) return 0.0;
   return 2.0 *
          cdf(complement(boost::math::students_t_distribution<double, Quiet>(dof), std::fabs(t)));
+}
+
+double chi2_upper(double chi2, double dof) {
+  if (!(dof > 0.0)) return 1.0;
+  return cdf(complement(boost::math::chi_squared_distribution<double, Quiet>(dof), chi2));
+}
+
+double normal_quantile(double p) {
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * p, Quiet());
+}
+
+double binomial_lower(int count, int trials, double p) {
+  return cdf(boost::math::binomial_distribution<double, Quiet>(trials, p), count);
+}
+
+double t_upper_quantile(double p, double dof) {
+  return quantile(complement(boost::math::students_t_distribution<double, Quiet>(dof), p));
 }
 
 double test_ratio(double found, double scatter) {

@@ -43,7 +43,7 @@ Harmonic fit_harmonic(std::span<const double> angle, std::span<const double> y) 
     design.row(i) << 1.0, std::cos(a), std::sin(a);
     right(i) = y[static_cast<std::size_t>(i)] - y_mean;
   }
-  const Eigen::Vector3d fit = design.colPivHouseholderQr().solve(right);
+  const Eigen::Vector3d fit = least_squares(design, right);
   const double left = (right - design * fit).squaredNorm();
   const double all = right.squaredNorm();
   if (!std::isfinite(left) || !std::isfinite(all)) return h;

@@ -33,14 +33,14 @@ double criterion(const Eigen::MatrixXd& both, const std::vector<int>& place,
   Eigen::MatrixXd white = both;
   const double determinant = whiten(white, place, noise);
   const Eigen::Index k = both.cols() - 1;
-  const Eigen::MatrixXd X = white.leftCols(k);
-  const Eigen::LLT<Eigen::MatrixXd> N(X.transpose() * X);
+  const Eigen::MatrixXd X = left_columns(white, k);
+  const Eigen::VectorXd y = white.col(k);
+  const Eigen::LLT<Eigen::MatrixXd> N(transposed_product(X, X));
   if (N.info() != Eigen::Success) return INFINITY;
-  const Eigen::VectorXd beta = N.solve(X.transpose() * white.col(k));
-  const double rss = (white.col(k) - X * beta).squaredNorm();
-  const Eigen::MatrixXd L = N.matrixL();
+  const Eigen::VectorXd beta = solution(N, transposed_times(X, y));
+  const double rss = squared_residual(y, X, beta);
   double log_information = 0.0;
-  for (Eigen::Index i = 0; i < k; ++i) log_information += 2.0 * std::log(L(i, i));
+  for (Eigen::Index i = 0; i < k; ++i) log_information += 2.0 * std::log(N.matrixLLT()(i, i));
   return determinant + log_information +
          static_cast<double>(both.rows() - k) * std::log(std::max(rss, 1e-300));
 }
@@ -49,8 +49,7 @@ double criterion(const Eigen::MatrixXd& both, const std::vector<int>& place,
 
 PathNoise path_noise(const Eigen::MatrixXd& X, const Eigen::VectorXd& y,
                      const std::vector<int>& place) {
-  Eigen::MatrixXd both(X.rows(), X.cols() + 1);
-  both << X, y;
+  const Eigen::MatrixXd both = with_column(X, y);
   PathNoise best;
   double least = criterion(both, place, best);
   const auto attempt = [&](double rho, double w) {

@@ -48,13 +48,11 @@ Expected<Eigen::MatrixXd> coefficients(const Eigen::MatrixXd& b,
   line.col(1) = Eigen::Map<const Eigen::VectorXd>(targets.data(), b.rows());
   line.col(1).array() -= line.col(1).mean();
   line.col(1) /= line.col(1).cwiseAbs().maxCoeff();
-  const Eigen::MatrixXd constraint = b.transpose() * line;
+  const Eigen::MatrixXd constraint = transposed_product(b, line);
   const Eigen::HouseholderQR<Eigen::MatrixXd> split(constraint);
-  const Eigen::MatrixXd n =
-      Eigen::MatrixXd(split.householderQ() * Eigen::MatrixXd::Identity(b.cols(), b.cols()))
-          .rightCols(b.cols() - 2);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(b * n);
-  const Eigen::MatrixXd r = qr.matrixQR().topRows(n.cols()).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd n = columns(orthonormal(split, b.cols()), 2, b.cols() - 2);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(product(b, n));
+  const Eigen::MatrixXd r = upper(qr, n.cols());
   const Eigen::VectorXd size = r.diagonal().cwiseAbs();
   if (!(size.minCoeff() > 1e-6 * size.maxCoeff()))
     return fail("the targets lie so that they do not determine a curve of " +

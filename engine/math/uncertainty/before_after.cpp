@@ -88,7 +88,7 @@ BeforeAfter before_after(std::span<const double> before, std::span<const double>
   const double freedom = static_cast<double>(m);
   const auto p_of = [&](double k, const Eigen::MatrixXd& covariance) {
     const Eigen::VectorXd r = a - k * b;
-    const double chi2 = r.dot(covariance.ldlt().solve(r));
+    const double chi2 = r.dot(solution(Eigen::LDLT<Eigen::MatrixXd>(covariance), r));
     return f_upper(chi2 / freedom, freedom, std::min(dof, 1e6));
   };
   const Eigen::MatrixXd of_other_readings =
@@ -106,7 +106,7 @@ BeforeAfter before_after(std::span<const double> before, std::span<const double>
         std::fabs(out.rest[i]) * out.u[out.worst] > std::fabs(out.rest[out.worst]) * out.u[i])
       out.worst = i;
   const Eigen::LDLT<Eigen::MatrixXd> inverse(V);
-  const Eigen::VectorXd weighted = inverse.solve(b);
+  const Eigen::VectorXd weighted = solution(inverse, b);
   out.f = weighted.dot(a) / weighted.dot(b);
   out.u_f = 1.0 / std::sqrt(weighted.dot(b));
   const auto fits = [&](std::size_t k) { return !significant(out.p[k], table_level); };

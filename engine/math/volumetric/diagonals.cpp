@@ -142,7 +142,10 @@ class System {
   }
   bool noise_known() const { return noise_known_; }
   std::size_t unknowns() const { return unknowns_; }
-  Matrix covariance() const { return scaled(sigma_) * scaled(sigma_).transpose(); }
+  Matrix covariance() const {
+    const Matrix root = scaled(sigma_);
+    return product_transposed(root, root);
+  }
   /// Rows' noise if every reading of a line, or of a direct straightness, scatters by 1.
   Matrix unit_noise() const { return scaled(unit_); }
 
@@ -161,7 +164,7 @@ class System {
     return row;
   }
   Matrix scaled(const std::vector<double>& sigma) const {
-    return N_ * Eigen::Map<const Vector>(sigma.data(), at(sigma.size())).asDiagonal();
+    return scaled_columns(N_, Eigen::Map<const Vector>(sigma.data(), at(sigma.size())));
   }
 
   /// Y, X, yaw, then lines and direct straightness. False if some noise is not known: all lengths
@@ -289,21 +292,22 @@ class Solution {
   Solution(const System& system, const ReadingModel* model) : model_(model) {
     const Matrix C = system.covariance();
     const Eigen::LLT<Matrix> llt(C);
-    const Matrix A = llt.matrixL().solve(system.A());
-    const Vector y = llt.matrixL().solve(system.y());
+    const Matrix A = whitened(llt, system.A());
+    const Vector y = whitened(llt, system.y());
     Eigen::CompleteOrthogonalDecomposition<Matrix> cod;
     cod.setThreshold(rank_threshold);
     cod.compute(A);
     rank_ = static_cast<std::size_t>(cod.rank());
     const Matrix inverse = cod.pseudoInverse();
-    theta_ = inverse * y;
-    projector_ = inverse * A;
+    theta_ = times(inverse, y);
+    projector_ = product(inverse, A);
     root_ = inverse;
-    gain_ = inverse * llt.matrixL().solve(system.unit_noise());
-    if (model_ != nullptr) jacobian_ = inverse * llt.matrixL().solve(system.N());
+    gain_ = product(inverse, whitened(llt, system.unit_noise()));
+    if (model_ != nullptr) jacobian_ = product(inverse, whitened(llt, system.N()));
     const auto rows = static_cast<std::size_t>(A.rows());
     dof_ = rows > rank_ ? rows - rank_ : 0;
-    if (dof_ > 0) scale_ = (y - A * theta_).norm() / std::sqrt(static_cast<double>(dof_));
+    if (dof_ > 0)
+      scale_ = std::sqrt(squared_residual(y, A, theta_)) / std::sqrt(static_cast<double>(dof_));
     if (!system.noise_known()) factor_ = scale_;
   }
 
@@ -312,15 +316,15 @@ class Solution {
   double scale() const { return scale_; }
   double factor() const { return factor_; }
 
-  bool determined(const Row& h) const { return (h * projector_ - h).norm() <= 1e-6 * h.norm(); }
+  bool determined(const Row& h) const { return (by(h, projector_) - h).norm() <= 1e-6 * h.norm(); }
   double value(const Row& h) const { return h * theta_; }
-  double u(const Row& h) const { return factor_ * (h * root_).norm(); }
-  double gain(const Row& h) const { return (h * gain_).norm(); }
+  double u(const Row& h) const { return factor_ * by(h, root_).norm(); }
+  double gain(const Row& h) const { return by(h, gain_).norm(); }
   Shares shares(const Row& h) const {
-    return model_ == nullptr ? Shares{} : shares_of_readings(h * jacobian_);
+    return model_ == nullptr ? Shares{} : shares_of_readings(by(h, jacobian_));
   }
   /// Derivative of a functional by the readings; there is a model.
-  Row by_readings(const Row& h) const { return h * jacobian_; }
+  Row by_readings(const Row& h) const { return by(h, jacobian_); }
   /// Of what is made of the readings directly.
   Shares shares_of_readings(const Row& J) const {
     if (model_ == nullptr) return {};
@@ -328,6 +332,10 @@ class Solution {
   }
 
  private:
+  static Row by(const Row& h, const Matrix& A) {
+    return transposed_times(A, h.transpose()).transpose();
+  }
+
   const ReadingModel* model_;
   Vector theta_;
   Matrix projector_, root_, gain_, jacobian_;
@@ -520,7 +528,7 @@ Agreement agreement(const System& system, const Solution& s, const Functional& e
               ? out.u[a] * out.u[a]
               : (variance_of(system, s, J[a] + J[b]) - variance_of(system, s, J[a] - J[b])) / 4.0;
   const Eigen::Map<const Vector> d(out.difference.data(), at(m));
-  out.chi2 = d.dot(V.ldlt().solve(d));
+  out.chi2 = d.dot(solution(Eigen::LDLT<Matrix>(V), d));
   out.p = f_upper(out.chi2 / static_cast<double>(m), static_cast<double>(m), dof);
   for (std::size_t k = 1; k < m; ++k)
     if (std::fabs(out.difference[k]) * out.u[out.worst] >

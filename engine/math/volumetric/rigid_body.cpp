@@ -49,7 +49,7 @@ void find_combinations(const RigidFit& f, RigidSolution& out) {
 Combination weakest_of(const RigidFit& f) {
   Combination out;
   if (f.solved.rank == 0) return out;
-  const VectorXd v = f.solved.V.rightCols(1);
+  const VectorXd v = f.solved.V.col(f.solved.V.cols() - 1);
   Index largest = 0;
   const double most = v.cwiseAbs().maxCoeff(&largest);
   std::vector<std::pair<double, std::size_t>> order;
@@ -68,7 +68,7 @@ class Results {
     const MatrixXd& V = f.solved.V;
     const VectorXd variance = f.solved.sigma.head(f.solved.rank).cwiseAbs2().cwiseInverse();
     e_.x = f.solved.x;
-    e_.covariance = V * variance.asDiagonal() * V.transpose();
+    e_.covariance = product_transposed(scaled_columns(V, variance), V);
     e_.model = model;
     if (model == nullptr) return;
     e_.of_readings = f.solved.map;
@@ -85,7 +85,7 @@ class Results {
   bool told(const RowVectorXd& row) const {
     const double size = row.norm();
     return !(size > 0.0) ||
-           (row - row * f_.solved.V * f_.solved.V.transpose()).norm() < changes_nothing * size;
+           orthogonal_part(f_.solved.V, VectorXd(row.transpose())).norm() < changes_nothing * size;
   }
 
   /// Row of an error at a place of its axis: of a length less that at the start where it is

@@ -65,7 +65,7 @@ MatrixXd basis_of(MatrixXd columns) {
     if (const double size = columns.col(k).norm(); size > 0.0) columns.col(k) /= size;
   Eigen::ColPivHouseholderQR<MatrixXd> qr(columns);
   qr.setThreshold(1e-9);
-  return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
+  return orthonormal(qr, qr.rank());
 }
 
 RigidSolved solve_once(const RigidTable& t, const std::vector<double>& scatter) {
@@ -74,26 +74,26 @@ RigidSolved solve_once(const RigidTable& t, const std::vector<double>& scatter) 
     const auto row = static_cast<std::size_t>(i);
     root[i] = 1.0 / (t.stated[row] > 0.0 ? t.stated[row] : scatter[t.group[row]]);
   }
-  const MatrixXd Q = basis_of(root.asDiagonal() * t.set_up);
-  MatrixXd A = root.asDiagonal() * t.terms;
+  const MatrixXd Q = basis_of(scaled_rows(root, t.set_up));
+  MatrixXd A = scaled_rows(root, t.terms);
   VectorXd y = root.cwiseProduct(t.value);
-  A -= Q * (Q.transpose() * A).eval();
-  y -= Q * (Q.transpose() * y).eval();
+  A = orthogonal_part(Q, A);
+  y = orthogonal_part(Q, y);
   // A = H R with few columns: the singular values of R are those of A.
   const Eigen::HouseholderQR<MatrixXd> qr(A);
   const Index small = std::min(A.rows(), A.cols());
-  const MatrixXd R = qr.matrixQR().topRows(small).triangularView<Eigen::Upper>();
+  const MatrixXd R = upper(qr, small);
   const Eigen::JacobiSVD<MatrixXd> svd(R, Eigen::ComputeFullV);
   RigidSolved s;
   s.sigma = VectorXd::Zero(A.cols());
   s.sigma.head(svd.singularValues().size()) = svd.singularValues();
   while (s.rank < small && s.sigma[s.rank] > rank_below * s.sigma[0]) ++s.rank;
-  s.V = svd.matrixV().leftCols(s.rank);
-  const VectorXd inverse = s.sigma.head(s.rank).cwiseInverse();
-  const MatrixXd U = A * s.V * inverse.asDiagonal();
-  s.x = s.V * inverse.cwiseProduct(U.transpose() * y);
-  s.residual = y - A * s.x;
-  s.map = s.V * inverse.asDiagonal() * U.transpose() * root.asDiagonal();
+  s.V = left_columns(svd.matrixV(), s.rank);
+  const VectorXd by_size = s.sigma.head(s.rank).cwiseInverse();
+  const MatrixXd U = scaled_columns(product(A, s.V), by_size);
+  s.x = times(s.V, by_size.cwiseProduct(transposed_times(U, y)));
+  s.residual = residual(y, A, s.x);
+  s.map = scaled_columns(product_transposed(scaled_columns(s.V, by_size), U), root);
   s.leverage = U.rowwise().squaredNorm() + Q.rowwise().squaredNorm();
   s.set_up = Q.cols();
   return s;

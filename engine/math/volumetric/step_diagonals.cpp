@@ -145,21 +145,21 @@ struct Factor {
 };
 
 Factor factor(const Design& design) {
-  const auto [values, vectors] = spectrum(design.A.transpose() * design.A);
+  const auto [values, vectors] = spectrum(transposed_product(design.A, design.A));
   const Index size = values.size();
   const double least = undetermined * values[size - 1];
   Index open = 0;
   while (open < size && values[open] <= least) ++open;
-  const auto V = vectors.rightCols(size - open);
+  const MatrixXd V = columns(vectors, open, size - open);
   Factor f;
   f.rank = size - open;
-  f.open = vectors.leftCols(open);
-  f.inverse = V * values.tail(size - open).cwiseInverse().asDiagonal() * V.transpose();
+  f.open = left_columns(vectors, open);
+  f.inverse = product_transposed(scaled_columns(V, values.tail(size - open).cwiseInverse()), V);
   return f;
 }
 
 VectorXd solve(const Design& design, const Factor& f, const VectorXd& b) {
-  return f.inverse * (design.A.transpose() * b);
+  return times(f.inverse, transposed_times(design.A, b));
 }
 
 /// Error of the point after some moves of a pass, less that of its start.
@@ -207,7 +207,7 @@ struct Scatter {
 };
 
 Scatter scatter_of(const Design& design, const Factor& f) {
-  const VectorXd e = design.b - design.A * solve(design, f, design.b);
+  const VectorXd e = residual(design.b, design.A, solve(design, f, design.b));
   const auto readings = static_cast<Index>(design.readings.size());
   const double dof = static_cast<double>(design.A.rows() - f.rank);
   return {dof > 0.0 ? std::sqrt(e.head(readings).squaredNorm() / dof) : 0.0, dof};
@@ -245,7 +245,7 @@ Sensitivity sensitivity_of(const StepDiagonals& d, const Design& design, const F
   const auto each = static_cast<Index>(3 * d.n + 1);
   const auto passes = each * static_cast<Index>(d.passes.size());
   const auto read = static_cast<Index>(design.readings.size());
-  const MatrixXd G = f.inverse.topRows(design.layout.functions) * design.A.transpose();
+  const MatrixXd G = product_transposed(f.inverse.topRows(design.layout.functions), design.A);
   out.of_readings = MatrixXd::Zero(G.rows(), passes + design.series_weight.size());
   for (Index r = 0; r < read; ++r) {
     const ReadingRow& row = design.readings[static_cast<std::size_t>(r)];
@@ -270,11 +270,11 @@ ShapeContrast against_line(const AxisSeries& s, const MatrixXd& C, const VectorX
   MatrixXd line(y.size(), 2);
   for (Index i = 0; i < y.size(); ++i)
     line.row(i) << 1.0, s.position[static_cast<std::size_t>(i)] - s.position.front();
-  const MatrixXd white = llt.matrixL().solve(line);
-  const VectorXd seen = llt.matrixL().solve(y);
-  const Eigen::Vector2d fit = white.colPivHouseholderQr().solve(seen);
-  const VectorXd e = y - line * line.colPivHouseholderQr().solve(y).eval();
-  const double f = (seen - white * fit).squaredNorm() / static_cast<double>(y.size() - 2);
+  const MatrixXd white = whitened(llt, line);
+  const VectorXd seen = whitened(llt, y);
+  const VectorXd fit = least_squares(white, seen);
+  const VectorXd e = residual(y, line, least_squares(line, y));
+  const double f = squared_residual(seen, white, fit) / static_cast<double>(y.size() - 2);
   out.p = f_upper(f, static_cast<double>(y.size() - 2), dof);
   out.rms = std::sqrt(e.squaredNorm() / static_cast<double>(y.size()));
   Index worst = 0;
@@ -316,7 +316,8 @@ std::vector<ShapeContrast> contrast_shapes(const StepDiagonals& d,
       y[i] = row.dot(x.head(T.cols())) - s.deviation[k];
     }
     const double u_axis = s.u > 0.0 ? s.u : u;
-    MatrixXd C = u * u * (T * f.inverse.topLeftCorner(T.cols(), T.cols()) * T.transpose());
+    MatrixXd C =
+        u * u * product_transposed(product(T, f.inverse.topLeftCorner(T.cols(), T.cols())), T);
     C.diagonal().array() += u_axis * u_axis;
     out.push_back(against_line(s, C, y, choices.u_reading > 0.0 ? 1e6 : scatter.dof));
   }

@@ -62,7 +62,7 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
     MatrixXd own = root.asDiagonal() * blocks[t];
     take_out_zeros(o, root, own);
     const double size = own.norm();
-    for (int twice = 0; twice < 2; ++twice) own -= before * (before.transpose() * own);
+    for (int twice = 0; twice < 2; ++twice) math::take_out(before, own);
     const Eigen::JacobiSVD<MatrixXd> svd(own, Eigen::ComputeThinU | Eigen::ComputeThinV);
     Index rank = 0;
     while (rank < own.cols() && svd.singularValues()(rank) > curve_threshold * size) ++rank;

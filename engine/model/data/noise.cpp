@@ -28,12 +28,13 @@ MatrixXd powers_of_order(Index m, Index k) {
   MatrixXd columns(m, k);
   const VectorXd z = VectorXd::LinSpaced(m, -1.0, 1.0);
   for (Index c = 0; c < k; ++c) columns.col(c) = z.array().pow(static_cast<double>(c));
-  return Eigen::HouseholderQR<MatrixXd>(columns).householderQ() * MatrixXd::Identity(m, k);
+  return math::orthonormal(Eigen::HouseholderQR<MatrixXd>(columns), k);
 }
 
 MatrixXd without_powers(const MatrixXd& q, const MatrixXd& v) {
-  const MatrixXd half = v - q * (q.transpose() * v);
-  return half - (half * q) * q.transpose();
+  MatrixXd half = math::orthogonal_part(q, v);
+  half -= math::product_transposed(math::product(half, q), q);
+  return half;
 }
 
 MatrixXd correlations(Index m, double rho) {

@@ -165,7 +165,7 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
       const auto rows = passes[p];
       part.resize(static_cast<Index>(rows.size()));
       for (std::size_t i = 0; i < rows.size(); ++i) part(static_cast<Index>(i)) = out.e[rows[i]];
-      part -= shared[p].plain * (shared[p].weighted.transpose() * part);
+      part -= math::product(shared[p].plain, math::transposed_product(shared[p].weighted, part));
       for (std::size_t i = 0; i < rows.size(); ++i) {
         out.e[rows[i]] = part(static_cast<Index>(i));
         squares += w(rows[i]) * out.e[rows[i]] * out.e[rows[i]];

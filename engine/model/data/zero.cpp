@@ -40,8 +40,7 @@ class Likelihood {
     double squares = y.squaredNorm(), log_det = white.log_det();
     if (x.cols() > 0) {
       const Eigen::HouseholderQR<MatrixXd> qr(x);
-      VectorXd rotated = y.col(0);
-      rotated.applyOnTheLeft(qr.householderQ().transpose());
+      const VectorXd rotated = math::rotated(qr, y.col(0));
       squares = rotated.tail(rotated.size() - x.cols()).squaredNorm();
       log_det += 2.0 * qr.matrixQR().diagonal().cwiseAbs().array().log().sum();
     }
@@ -68,10 +67,8 @@ class Signs {
     white_.take_out_zeros(x);
     white_.take_out_zeros(y);
     basis_ = x;
-    if (x.cols() > 0)
-      basis_ =
-          Eigen::HouseholderQR<MatrixXd>(x).householderQ() * MatrixXd::Identity(x.rows(), x.cols());
-    left_ = y.col(0) - basis_ * (basis_.transpose() * y.col(0));
+    if (x.cols() > 0) basis_ = math::orthonormal(Eigen::HouseholderQR<MatrixXd>(x), x.cols());
+    left_ = math::orthogonal_part(basis_, VectorXd(y.col(0)));
     const auto used = static_cast<double>((white_.root().array() > 0.0).count());
     dof_ = used - static_cast<double>(x.cols()) - static_cast<double>(lines_of(o));
     variance_ = left_.squaredNorm() / dof_;
@@ -81,12 +78,12 @@ class Signs {
   double of(const MatrixXd& columns) const {
     MatrixXd z = white_(columns);
     white_.take_out_zeros(z);
-    z -= basis_ * (basis_.transpose() * z);
-    const MatrixXd products = z.transpose() * z;
+    math::take_out(basis_, z);
+    const MatrixXd products = math::transposed_product(z, z);
     const double trace = products.trace();
     const double spread = 2.0 * (products.squaredNorm() - trace * trace / dof_);
     if (!(spread > 0.0) || !(variance_ > 0.0)) return 0.0;
-    return ((z.transpose() * left_).squaredNorm() / variance_ - trace) / std::sqrt(spread);
+    return (math::transposed_times(z, left_).squaredNorm() / variance_ - trace) / std::sqrt(spread);
   }
 
   /// Of neighbours that are alike.
@@ -250,7 +247,7 @@ double deviance(const Observations& o, const std::vector<double>& weight, const 
   VectorXd y = whole.rightCols(1);
   double squares = y.squaredNorm();
   if (x.cols() > 0) {
-    y.applyOnTheLeft(Eigen::HouseholderQR<MatrixXd>(x).householderQ().transpose());
+    y = math::rotated(Eigen::HouseholderQR<MatrixXd>(x), y);
     squares = y.tail(y.size() - x.cols()).squaredNorm();
   }
   return n * std::log(squares / n) + white.log_det();

@@ -122,7 +122,7 @@ double taken_by(const Fit& fit, std::size_t term, const Observations& o,
   if (others.cols() == 0) return own.squaredNorm();
   white.take_out_zeros(others);
   const Eigen::HouseholderQR<MatrixXd> qr(of_unit_length(others));
-  const VectorXd turned = qr.householderQ().transpose() * own.col(0);
+  const VectorXd turned = math::rotated(qr, own.col(0));
   return turned.tail(turned.size() - others.cols()).squaredNorm();
 }
 

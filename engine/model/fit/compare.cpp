@@ -58,8 +58,8 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
   // Each run's share of the normal equations; it is left out by taking its share away.
   const auto share_of = [&](const std::vector<Index>& rows, MatrixXd& normal, VectorXd& right) {
     const MatrixXd here = root(rows).asDiagonal() * a(rows, Eigen::all);
-    normal.noalias() = here.transpose() * here;
-    right.noalias() = here.transpose() * root(rows).cwiseProduct(y(rows));
+    normal = math::transposed_product(here, here);
+    right = math::transposed_times(here, root(rows).cwiseProduct(y(rows)));
   };
   MatrixXd normal = MatrixXd::Zero(columns, columns), share;
   VectorXd right = VectorXd::Zero(columns), right_share;
@@ -72,11 +72,11 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
   for (const auto& [run, rows] : runs) {
     if (of_line[run.first] < 2) continue;
     share_of(rows, share, right_share);
-    const Eigen::LDLT<MatrixXd> ldlt(normal - share);
+    const Eigen::LDLT<MatrixXd> ldlt(MatrixXd(normal - share));
     if (ldlt.info() != Eigen::Success ||
         !(ldlt.vectorD().minCoeff() > 1e-10 * ldlt.vectorD().maxCoeff()))
       continue;
-    const VectorXd x = ldlt.solve(right - right_share);
+    const VectorXd x = math::solution(ldlt, right - right_share);
     for (const Index i : rows) out[static_cast<std::size_t>(i)] = y(i) - a.row(i).dot(x);
   }
   return out;
@@ -123,7 +123,7 @@ MatrixXd basis_of(const Observations& o, const std::vector<Term>& terms, const W
   white.take_out_zeros(a);
   a = of_unit_length(std::move(a));
   const Eigen::HouseholderQR<MatrixXd> qr(a);
-  return qr.householderQ() * MatrixXd::Identity(a.rows(), a.cols());
+  return math::orthonormal(qr, a.cols());
 }
 
 /// Whitened residuals of a fit.

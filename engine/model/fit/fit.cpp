@@ -58,7 +58,8 @@ Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms
 
 /// The names in the first null direction of a rank-deficient design.
 std::string inseparable(const MatrixXd& scaled, const std::vector<std::string>& names) {
-  const Eigen::JacobiSVD<MatrixXd> svd(scaled.transpose() * scaled, Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<MatrixXd> svd(math::transposed_product(scaled, scaled),
+                                       Eigen::ComputeThinV);
   const VectorXd direction = svd.matrixV().col(scaled.cols() - 1).cwiseAbs();
   std::string text;
   for (Index k = 0; k < direction.size(); ++k) {
@@ -82,23 +83,20 @@ Expected<Solution> solve(const Design& d, const VectorXd& weighted) {
   for (Index k = 0; k < unknowns; ++k)
     if (!(scale(k) > 0.0))
       return fail("the readings cannot show " + d.names[static_cast<std::size_t>(k)]);
-  const MatrixXd a = d.a * scale.cwiseInverse().asDiagonal();
+  const MatrixXd a = math::scaled_columns(d.a, scale.cwiseInverse());
   Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
   qr.setThreshold(rank_threshold);
   if (qr.rank() < unknowns)
     return fail("the readings cannot tell these apart: " + inseparable(a, d.names));
   Solution s;
-  VectorXd scaled = qr.solve(weighted);
-  scaled += qr.solve(weighted - a * scaled);  // one step of refinement
+  VectorXd scaled = math::solution(qr, weighted);
+  scaled += math::solution(qr, math::residual(weighted, a, scaled));  // one step of refinement
   s.x = scaled.cwiseQuotient(scale);
-  s.squares = (weighted - a * scaled).squaredNorm();
+  s.squares = math::squared_residual(weighted, a, scaled);
   // (A^T A)^-1 = P R^-1 R^-T P^T
-  const MatrixXd r_inverse = qr.matrixR()
-                                 .topLeftCorner(unknowns, unknowns)
-                                 .triangularView<Eigen::Upper>()
-                                 .solve(MatrixXd::Identity(unknowns, unknowns));
-  const MatrixXd half = scale.cwiseInverse().asDiagonal() * (qr.colsPermutation() * r_inverse);
-  s.cofactor = half * half.transpose();
+  const MatrixXd r_inverse = math::inverse_of_upper(qr.matrixR().topLeftCorner(unknowns, unknowns));
+  const MatrixXd half = math::scaled_rows(scale.cwiseInverse(), qr.colsPermutation() * r_inverse);
+  s.cofactor = math::product_transposed(half, half);
   return s;
 }
 
@@ -126,8 +124,8 @@ class SquaresOf {
     if (!d) return;
     const MatrixXd scaled = of_unit_length(std::move(d->a));
     const Eigen::HouseholderQR<MatrixXd> qr(scaled);
-    others_ = qr.householderQ() * MatrixXd::Identity(scaled.rows(), scaled.cols());
-    left_ -= others_ * (others_.transpose() * left_);
+    others_ = math::orthonormal(qr, scaled.cols());
+    math::take_out(others_, left_);
   }
 
   /// Infinite where the term has no columns.
@@ -135,9 +133,9 @@ class SquaresOf {
     auto block = columns_of(o_, term, term.shape);
     if (!block) return std::numeric_limits<double>::infinity();
     *block = white_(*block);
-    if (others_.cols() > 0) *block -= others_ * (others_.transpose() * *block);
+    if (others_.cols() > 0) math::take_out(others_, *block);
     const Eigen::HouseholderQR<MatrixXd> qr(*block);
-    const VectorXd rotated = qr.householderQ().transpose() * left_;
+    const VectorXd rotated = math::rotated(qr, left_);
     return rotated.tail(rotated.size() - block->cols()).squaredNorm();
   }
 
@@ -325,8 +323,8 @@ bool more_than_weights(const Noise& noise) {
 MatrixXd spread(const MatrixXd& design, const MatrixXd& cofactor, const Whitening& white,
                 const MatrixXd& covariance) {
   const MatrixXd both = white(white(covariance).transpose());
-  const MatrixXd map = design * cofactor;
-  return map.transpose() * both * map;
+  const MatrixXd map = math::product(design, cofactor);
+  return math::product(math::transposed_product(map, both), map);
 }
 
 /// s of a fit, as its uncertainties have it: where the noise has more than its weights, of what
@@ -358,9 +356,9 @@ void add_interpolation(MatrixXd& cofactor, const MatrixXd& plain, const Observat
     return;
   }
   if (wrong->cols() == 0 || !(s_of_fit > 0.0)) return;
-  const auto a = design.a.leftCols(cofactor.rows());
-  const MatrixXd of_parameters = plain * (a.transpose() * white(*wrong));
-  cofactor += of_parameters * of_parameters.transpose() / (s_of_fit * s_of_fit);
+  const MatrixXd a = math::left_columns(design.a, cofactor.rows());
+  const MatrixXd of_parameters = math::product(plain, math::transposed_product(a, white(*wrong)));
+  cofactor += math::product_transposed(of_parameters, of_parameters) / (s_of_fit * s_of_fit);
 }
 
 /// What one standard uncertainty of a shape that another measurement states makes of the unknowns.
@@ -369,7 +367,7 @@ VectorXd by_stated(const Term& term, const VectorXd& linear, const Observations&
   const auto column = shape_column(o, term, term.stated->shape, linear);
   if (!column) return VectorXd::Zero(plain.rows());
   const MatrixXd wrong = *column * term.stated->u;
-  return plain * (a.transpose() * white(wrong));
+  return math::product(plain, math::transposed_product(a, white(wrong)));
 }
 
 /// A stated shape among the parameters, and what its error makes of the unknowns.

@@ -258,7 +258,7 @@ MatrixXd orthonormal(MatrixXd columns) {
   if (columns.cols() == 0 || !(norm.maxCoeff() > 0.0)) return MatrixXd(columns.rows(), 0);
   Eigen::ColPivHouseholderQR<MatrixXd> qr(columns / norm.maxCoeff());
   qr.setThreshold(1e-4);
-  return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
+  return math::orthonormal(qr, qr.rank());
 }
 
 /// Takes out of whitened columns what is the same in all repeats of a cell.
@@ -268,14 +268,15 @@ class Cells {
     constexpr std::size_t most = 400;  // beyond, their means do
     if (white.independent() || r.cells > most) return;
     columns_ = white(dummies({r.cell.begin(), r.cell.end()}, r.cells));
-    MatrixXd products = columns_.transpose() * columns_;
+    MatrixXd products = math::transposed_product(columns_, columns_);
     for (double& x : products.diagonal())
       if (!(x > 0.0)) x = 1.0;  // all its readings are suspected
     products_.compute(products);
   }
   void take_out(MatrixXd& columns) const {
     if (columns_.cols() > 0)
-      columns -= columns_ * products_.solve(columns_.transpose() * columns);
+      columns -= math::product(
+          columns_, math::solutions(products_, math::transposed_product(columns_, columns)));
     else
       take_out_means(columns);
   }
@@ -307,7 +308,7 @@ class Cells {
 bool tells_repeats_apart(const Cells& cells, const MatrixXd& basis, const VectorXd& residual) {
   // docs/dev/constants.md, M19.
   constexpr double least = 0.1;  // of its squares; of a line in time over two runs, a fifth
-  MatrixXd said = basis * (basis.transpose() * residual);
+  MatrixXd said = math::times(basis, math::transposed_times(basis, residual));
   const double all = said.squaredNorm();
   cells.take_out(said);
   return said.squaredNorm() > least * all;
@@ -325,11 +326,10 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
     white.take_out_zeros(columns);
     if (f.repeated) cells.take_out(columns);
     const VectorXd before = columns.colwise().norm().transpose();
-    if (model.cols() > 0) columns -= model * (model.transpose() * columns);
+    if (model.cols() > 0) math::take_out(model, columns);
     if (f.of.second)
       for (const auto& of : {std::pair{f.of.first, std::string()}, std::pair{*f.of.second, f.line}})
-        if (const MatrixXd& one = single[of]; one.cols() > 0)
-          columns -= one * (one.transpose() * columns);
+        if (const MatrixXd& one = single[of]; one.cols() > 0) math::take_out(one, columns);
     // A column that the model says already leaves rounding, not a direction.
     for (Index k = 0; k < columns.cols(); ++k)
       if (!(columns.col(k).norm() > 1e-3 * before(k))) columns.col(k).setZero();
@@ -395,7 +395,7 @@ std::vector<Place> PlaceTests::operator()(const VectorXd& residual,
   for (std::size_t f = 0; f < tests_->bases.size(); ++f) {
     const auto k = static_cast<double>(tests_->bases[f].cols());
     if (k == 0.0) continue;
-    const double here = (tests_->bases[f].transpose() * residual).squaredNorm();
+    const double here = math::transposed_times(tests_->bases[f], residual).squaredNorm();
     const double dof = known ? floor->dof : tests_->dof - k;
     if (!(dof >= 3.0)) continue;
     ++tested;
@@ -427,7 +427,7 @@ std::vector<Place> seats_of(const Residuals& left) {
   for (const FactorColumns& f : factors.all()) {
     MatrixXd columns = left.white(factors.whole(f));
     left.white.take_out_zeros(columns);
-    if (left.basis.cols() > 0) columns -= left.basis * (left.basis.transpose() * columns);
+    if (left.basis.cols() > 0) math::take_out(left.basis, columns);
     bases.push_back(orthonormal(std::move(columns)));
   }
   VectorXd rest = left.residual;
@@ -438,7 +438,7 @@ std::vector<Place> seats_of(const Residuals& left) {
     for (std::size_t f = 0; f < bases.size(); ++f) {
       const auto k = static_cast<double>(bases[f].cols());
       if (k == 0.0 || k >= left.dof / 2.0) continue;
-      const double here = (bases[f].transpose() * rest).squaredNorm();
+      const double here = math::transposed_times(bases[f], rest).squaredNorm();
       const double value = -n * std::log1p(-std::min(here / rest.squaredNorm(), 1.0 - 1e-12)) -
                            k * std::log(n) - 10.0;  // 10: one place in a hundred by chance
       if (value > gain &&
@@ -459,10 +459,10 @@ std::vector<Place> seats_of(const Residuals& left) {
                (rest.squaredNorm() - fall) / dof, left.floor ? left.floor->dof : left.dof, seat);
     seats.push_back(std::move(seat));
     const MatrixXd chosen = bases[best];
-    rest -= chosen * (chosen.transpose() * rest);
+    math::take_out(chosen, rest);
     for (MatrixXd& basis : bases) {
       if (basis.cols() == 0) continue;
-      basis -= chosen * (chosen.transpose() * basis);
+      math::take_out(chosen, basis);
       basis = orthonormal(std::move(basis));
     }
   }
@@ -478,7 +478,7 @@ FactorsOf::FactorsOf(const Part& part, const Repeats& repeats, const Whitening& 
 std::vector<Where> FactorsOf::operator()(const VectorXd& signal) const {
   std::vector<Where> out;
   for (std::size_t f = 0; f < bases_.size(); ++f)
-    if ((bases_[f].transpose() * signal).squaredNorm() > 0.05 * signal.squaredNorm())
+    if (math::transposed_times(bases_[f], signal).squaredNorm() > 0.05 * signal.squaredNorm())
       out.push_back(of_[f]);
   return out;
 }

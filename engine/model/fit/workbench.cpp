@@ -108,7 +108,7 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
     columns += part.cols();
   }
   products_.resize(blocks_.size());
-  xy_ = x_.transpose() * y_;
+  xy_ = math::transposed_times(x_, y_);
   yy_ = y_.squaredNorm();
 }
 
@@ -151,7 +151,7 @@ void Workbench::add_shape(const Observations& o, std::size_t effect,
 
 void Workbench::push(Block block, const MatrixXd& columns) {
   block.count = columns.cols();
-  block.own.noalias() = columns.transpose() * columns;
+  block.own = math::transposed_product(columns, columns);
   instances_[block.effect].blocks.push_back(blocks_.size());
   blocks_.push_back(std::move(block));
 }
@@ -207,11 +207,11 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
     const Eigen::LLT<MatrixXd> llt(own);
     if (llt.info() == Eigen::Success &&
         llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent)) {
-      const VectorXd z = llt.matrixL().solve(xy_(columns));
+      const VectorXd z = math::whitened(llt, VectorXd(xy_(columns)));
       out.squares = z.allFinite() ? std::max(yy_ - z.squaredNorm(), 0.0) : nan;
     } else {
       const Directions d = directions(out.blocks, own);
-      const VectorXd z = d.of_columns.transpose() * xy_(columns);
+      const VectorXd z = math::transposed_times(d.of_columns, xy_(columns));
       out.squares = d.sound && z.allFinite() ? std::max(yy_ - z.squaredNorm(), 0.0) : nan;
       out.price = 0.0, out.parameters = 0;
       for (std::size_t i = 0; i < out.blocks.size(); ++i) {
@@ -233,13 +233,13 @@ double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
   const Eigen::LLT<MatrixXd> llt(s);
   if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > std::sqrt(least)))
     return nan;
-  return llt.matrixL().solve(t).squaredNorm();
+  return math::whitened(llt, t).squaredNorm();
 }
 
 /// The same in those directions of the block that are independent.
 double fall_of_some(const MatrixXd& s, const VectorXd& t) {
   const auto [values, vectors] = math::spectrum(s);
-  const VectorXd along = vectors.transpose() * t;
+  const VectorXd along = math::transposed_times(vectors, t);
   double fall = 0.0;
   bool any = false;
   for (Index k = 0; k < along.size(); ++k) {
@@ -323,13 +323,13 @@ Workbench::Projection Workbench::projection(const State& state, MatrixXd product
   const Eigen::LLT<MatrixXd> llt(own);
   if (!reducible_ || (llt.info() == Eigen::Success &&
                       llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent))) {
-    out.z = llt.matrixL().solve(xy_(columns_of_state(state)));
+    out.z = math::whitened(llt, VectorXd(xy_(columns_of_state(state))));
     llt.matrixU().solveInPlace<Eigen::OnTheRight>(out.products);
     return out;
   }
   const Directions d = directions(state.blocks, own);
-  out.z = d.of_columns.transpose() * xy_(columns_of_state(state));
-  out.products = out.products * d.of_columns;
+  out.z = math::transposed_times(d.of_columns, xy_(columns_of_state(state)));
+  out.products = math::product(out.products, d.of_columns);
   return out;
 }
 
@@ -347,15 +347,16 @@ Workbench::Directions Workbench::directions(const std::vector<std::size_t>& bloc
   for (const std::size_t b : blocks) {
     const Block& block = blocks_[b];
     const Index k = block.count, had = out.of_columns.cols();
-    const MatrixXd inside = out.of_columns.transpose() * gram.middleCols(first, k);
-    const math::Spectrum own = math::spectrum(block.own - inside.transpose() * inside);
+    const MatrixXd inside = math::transposed_product(out.of_columns, gram.middleCols(first, k));
+    const math::Spectrum own = math::spectrum(block.own - math::transposed_product(inside, inside));
     const Index rank = (own.values.array() > least_of(block)).count();
     out.sound = out.sound && rank > 0 && (rank == k || reducible(block));
     MatrixXd fresh = -out.of_columns * inside;
     fresh.middleRows(first, k) += MatrixXd::Identity(k, k);
     out.of_columns.conservativeResize(Eigen::NoChange, had + rank);
-    out.of_columns.rightCols(rank) = fresh * own.vectors.rightCols(rank) *
-                                     own.values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+    out.of_columns.rightCols(rank) =
+        math::scaled_columns(math::product(fresh, own.vectors.rightCols(rank)),
+                             own.values.tail(rank).cwiseSqrt().cwiseInverse());
     out.rank.push_back(rank);
     first += k;
   }
@@ -525,11 +526,11 @@ MatrixXd Workbench::basis(const State& state) const {
   if (columns.empty()) return MatrixXd(y_.size(), 0);
   if (!reducible_) {
     const Eigen::HouseholderQR<MatrixXd> qr(x_(Eigen::all, columns));
-    return qr.householderQ() * MatrixXd::Identity(y_.size(), static_cast<Index>(columns.size()));
+    return math::orthonormal(qr, static_cast<Index>(columns.size()));
   }
   const Directions d = directions(state.blocks, gram(state.blocks));
-  const Eigen::HouseholderQR<MatrixXd> qr(x_(Eigen::all, columns) * d.of_columns);
-  return qr.householderQ() * MatrixXd::Identity(y_.size(), d.of_columns.cols());
+  const Eigen::HouseholderQR<MatrixXd> qr(math::product(x_(Eigen::all, columns), d.of_columns));
+  return math::orthonormal(qr, d.of_columns.cols());
 }
 
 }  // namespace nonio::model

@@ -29,7 +29,8 @@ class Sizes {
       const Workbench::Block& block = f.bench->blocks()[b];
       if (!are_usual(f.terms[effect], block.shape)) continue;
       const auto columns = f.bench->columns().middleCols(block.first, block.count);
-      const double hidden = (basis.transpose() * columns).squaredNorm() / columns.squaredNorm();
+      const double hidden =
+          math::transposed_product(basis, columns).squaredNorm() / columns.squaredNorm();
       shown_.push_back({std::max(1.0 - hidden, 1e-12), wanted(block),
                         static_cast<double>(Workbench::unknowns_of(block))});
     }

@@ -387,7 +387,7 @@ double Finding::price_of_zero() const {
 
 VectorXd Finding::residual(const State& state) const {
   const MatrixXd basis = bench->basis(state);
-  return bench->y() - basis * (basis.transpose() * bench->y());
+  return math::orthogonal_part(basis, bench->y());
 }
 
 Expected<Finding> find_best(const Part& part, const std::vector<Term>& model,

@@ -135,7 +135,7 @@ SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd
       out.noise(i, s) = sign(block[static_cast<std::size_t>(i)], s) * residual(i);
   bench.white().take_out_zeros(out.noise);
   const MatrixXd basis = bench.basis(complete);
-  const MatrixXd said = basis.transpose() * out.noise;
+  const MatrixXd said = math::transposed_product(basis, out.noise);
   out.noise.noalias() -= basis * said;
   out.squares = out.noise.colwise().squaredNorm().transpose();
   // Products with the columns (which hold no zeros) by stretches: a fifth of the work.
@@ -144,11 +144,11 @@ SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd
   for (Index k = 0; k < x.cols(); ++k)
     for (Index i = 0; i < residual.size(); ++i)
       of_stretch(block[static_cast<std::size_t>(i)], k) += x(i, k) * residual(i);
-  out.in_complete.noalias() = basis.transpose() * x;
+  out.in_complete = math::transposed_product(basis, x);
   of_stretch.bottomRows(basis.cols()) = -out.in_complete;
   MatrixXd factors(blocks + basis.cols(), shuffles);
   factors << sign, said;
-  out.products.noalias() = factors.transpose() * of_stretch;
+  out.products = math::transposed_product(factors, of_stretch);
   return out;
 }
 
@@ -176,7 +176,7 @@ class ChanceOf {
     for (const std::size_t b : instance.blocks) {
       const Workbench::Block& block = bench_.blocks()[b];
       const auto w = shuffles_.in_complete.middleCols(block.first, block.count);
-      const Eigen::LLT<MatrixXd> llt(block.own - w.transpose() * w);
+      const Eigen::LLT<MatrixXd> llt(MatrixXd(block.own - math::transposed_product(w, w)));
       if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > 1e-4)) continue;
       MatrixXd t = shuffles_.products.middleCols(block.first, block.count);
       llt.matrixU().solveInPlace<Eigen::OnTheRight>(t);

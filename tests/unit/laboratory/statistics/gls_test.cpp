@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "made.h"
+#include "nonio/math/distributions.h"
 
 namespace nonio::statistics::gls_test {
 namespace {
@@ -32,7 +33,7 @@ void expect(const Series& s, const Expected5& e) {
   EXPECT_NEAR(std::sqrt(fit->C(1, 1)), e.u1, 6e-6);
   EXPECT_NEAR(fit->chi2, e.chi2, 6e-5);
   EXPECT_EQ(fit->dof, 6.0);
-  EXPECT_NEAR(chi2_upper(fit->chi2, fit->dof), e.p, 6e-5);
+  EXPECT_NEAR(math::chi2_upper(fit->chi2, fit->dof), e.p, 6e-5);
   const Eigen::Vector2d x(1.0, 4.5);
   EXPECT_NEAR(x.dot(fit->b), e.at, 6e-5);
   EXPECT_NEAR(std::sqrt(x.dot(fit->C * x)), e.u_at, 6e-5);

@@ -9,6 +9,14 @@ double f_upper(double f, double dof1, double dof2);
 /// P(|T| > |t|) of Student's distribution; 1 if the degree of freedom is not positive, NaN as
 /// above.
 double t_two_sided(double t, double dof);
+/// P(chi-square > chi2); 1 if the degree of freedom is not positive.
+double chi2_upper(double chi2, double dof);
+/// z with P(N < z) = p
+double normal_quantile(double p);
+/// P(count or fewer) of so many trials that succeed with probability p.
+double binomial_lower(int count, int trials, double p);
+/// t with P(T > t) = p
+double t_upper_quantile(double p, double dof);
 /// What a test divides by: 0 where there is nothing of either (readings without scatter that do not
 /// differ), so that only what is really unknown is NaN.
 double test_ratio(double found, double scatter);
