@@ -23,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace nonio;
-using namespace nonio;
 
 double now() {
   timespec t{};
@@ -64,10 +63,10 @@ evaluation::Evaluated sent(const evaluation::Evaluated& evaluated) {
 }
 
 /// One campaign to its staged files; false if something is wrong with it.
-bool do_one(const fs::path& folder, const fs::path& out, const readers::Context& context,
+bool do_one(const fs::path& folder, const fs::path& out, const reading::Context& context,
             Clock& clock, std::vector<batch::Staged>& staged) {
-  const readers::Stage tell = [&](const std::string& words) { clock.begin(words); };
-  auto read = readers::read_campaign(folder, context, tell);
+  const reading::Stage tell = [&](const std::string& words) { clock.begin(words); };
+  auto read = reading::read_campaign(folder, context, tell);
   if (!read.manifest) return false;
   const std::string id = read.manifest->campaign.id;
   clock.begin("between the stages");
@@ -106,9 +105,9 @@ int main(int argc, char** argv) {
   const fs::path out = argv[2];
   const int rounds = argc > 5 ? std::atoi(argv[5]) : 1;
   if (campaigns.empty()) return std::fputs("no campaign\n", stderr), 2;
-  auto place = readers::open_workplace(campaigns.front(), {argv[3]}, {argv[4]}, "bench");
+  auto place = reading::open_workplace(campaigns.front(), {argv[3]}, {argv[4]}, "bench");
   if (!place) return std::fprintf(stderr, "%s\n", place.error().message.c_str()), 2;
-  const readers::Context& context = (*place)->context;
+  const reading::Context& context = (*place)->context;
   for (const Output& output : context.plugins->outputs())
     if (output.prepare != nullptr) output.prepare(context.templates);
   fs::create_directories(out);

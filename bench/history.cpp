@@ -50,8 +50,8 @@ class Clock {
 
 int update(const std::string& what, const char* out, const std::vector<std::string>& campaigns) {
   const Clock clock;
-  const auto done = what == "rebuild" ? store::rebuild(out, {}, [] {})
-                                      : store::update(out, false, campaigns, {}, [] {});
+  const auto done = what == "rebuild" ? nonio::store::rebuild(out, {}, [] {})
+                                      : nonio::store::update(out, false, campaigns, {}, [] {});
   const std::string took = clock.text();
   if (!done) return complain(done.error());
   std::printf("%s: %llu evaluations in %s%s, %zu left out\n", what.c_str(),
@@ -62,7 +62,7 @@ int update(const std::string& what, const char* out, const std::vector<std::stri
 
 /// As the end of a night makes it.
 int morning(const char* out, const char* templates) {
-  nonio::readers::Context context;
+  nonio::reading::Context context;
   auto read = nonio::config::read_templates({templates}, context.templates_sha256);
   if (!read) return complain(read.error());
   context.templates = std::move(*read);
@@ -84,7 +84,8 @@ int main(int argc, char** argv) {
   if (argc < 3) return 2;
   const std::string what = argv[1];
   if (what == "server")
-    return argc == 4 && store::note_place(argv[2], nonio::storage::Server{argv[3], "bench", {}})
+    return argc == 4 &&
+                   nonio::store::note_place(argv[2], nonio::storage::Server{argv[3], "bench", {}})
                ? 0
                : 2;
   if (what == "morning") return argc == 4 ? morning(argv[2], argv[3]) : 2;

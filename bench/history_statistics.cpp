@@ -19,7 +19,7 @@
 namespace {
 
 namespace history = nonio::statistics;
-using store::Series, store::Trend, store::Model;
+using nonio::statistics::Series, nonio::statistics::Trend, nonio::statistics::Model;
 
 constexpr unsigned seed = 20261126;
 constexpr double u = 0.3, years = 0.5, next_in = 0.5;
@@ -31,7 +31,7 @@ struct Kind {
   const char* name;
   std::size_t campaigns;
   Truth truth;
-  std::vector<store::Declared> declared{};
+  std::vector<nonio::statistics::Declared> declared{};
   bool slope = false;  ///< that of the last segment is known: 1 per year
 };
 
@@ -67,11 +67,11 @@ void run(const Kind& kind, int trials) {
   for (int i = 0; i < trials; ++i) {
     const auto truth = kind.truth(kind.campaigns, random);
     const Series s = observed(kind, truth, random);
-    const auto t = store::trend_of(s);
+    const auto t = nonio::statistics::trend_of(s);
     if (!t) std::exit(1);
     news += t->model == Model::step, drifts += t->model == Model::drift;
     walks += t->model == Model::walk;
-    const auto f = store::forecast(s, *t, s.points.back().time + next_in, std::nullopt);
+    const auto f = nonio::statistics::forecast(s, *t, s.points.back().time + next_in, std::nullopt);
     const double is = truth.back(), read = is + u * normal(random);
     state += std::fabs(is - f.value) < 1.959964 * f.u;
     reading += std::fabs(read - f.value) < 1.959964 * f.u_reading;
@@ -93,7 +93,7 @@ void time_them(int count, const char* file) {
   for (int i = 0; i < count; ++i) all.push_back(observed(quiet, quiet.truth(12, random), random));
   std::vector<Trend> trends;
   const auto begin = std::chrono::steady_clock::now();
-  for (const Series& s : all) trends.push_back(*store::trend_of(s));
+  for (const Series& s : all) trends.push_back(*nonio::statistics::trend_of(s));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   std::printf("%d series of 12 campaigns: %.3f s\n", count, took.count());
   if (file == nullptr) return;
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
   std::printf("seed %u, %d histories each, half-yearly, u %g; in %%\n", seed, trials, u);
   std::printf("%-34s %3s %6s %6s %6s %8s %8s %8s\n", "", "n", "step", "drift", "walk", "state",
               "reading", "slope");
-  const store::Declared event{5, store::Declared::Kind::event};
+  const nonio::statistics::Declared event{5, nonio::statistics::Declared::Kind::event};
   for (const std::size_t n : {4U, 6U, 8U, 12U})
     run({"quiet", n, of_time([](std::size_t, double) { return 1.0; })}, trials);
   run({"wear, 1 a year", 8, of_time([](std::size_t, double t) { return t; }), {}, true}, trials);

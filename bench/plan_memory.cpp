@@ -19,7 +19,6 @@
 #include "platform/storage/digest.h"
 
 using namespace nonio;
-using namespace nonio;
 using batch::CampaignState, batch::KeptText;
 
 namespace {

@@ -81,7 +81,7 @@ class Writer {
   template <class... T>
   void put(const std::variant<T...>& value) {
     put(value.index());
-    std::visit([this](const auto& one) { put(one); }, value);
+    std::visit([this](const auto& one) { this->put(one); }, value);
   }
   template <class T>
   requires std::is_aggregate_v<T>

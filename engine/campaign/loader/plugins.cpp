@@ -107,6 +107,13 @@ Probed probe_in_child(std::span<const fs::path> paths) {
   return probed;
 }
 
+/// SIGKILL comes from outside (a person, the system without memory), so it says nothing about the
+/// plugin.
+bool is_killed(const Probed& p) {
+  return p.refusals.empty() && !p.end.well && !p.end.overdue &&
+         p.end.words.starts_with("signal 9 ");
+}
+
 /// Why each must be refused. All together, since a child takes longer than a plugin; one that the
 /// child did not survive is tried again alone, so that none pays for those before it.
 std::vector<std::string> probe(std::span<const fs::path> paths) {
@@ -119,7 +126,9 @@ std::vector<std::string> probe(std::span<const fs::path> paths) {
       refusals.push_back("did not survive loading: " + together.end.words);
       continue;
     }
-    const Probed alone = probe_in_child(paths.subspan(refusals.size(), 1));
+    Probed alone = probe_in_child(paths.subspan(refusals.size(), 1));
+    for (int again = 0; again < 4 && is_killed(alone); ++again)
+      alone = probe_in_child(paths.subspan(refusals.size(), 1));
     const std::string end = alone.end.well ? "ended the process" : alone.end.words;
     refusals.push_back(alone.refusals.empty() ? "did not survive loading: " + end
                                               : alone.refusals.front());
