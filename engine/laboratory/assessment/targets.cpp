@@ -140,7 +140,7 @@ std::vector<double> drawn_anew(const std::vector<PointTargets>& targets, double 
   for (const auto& [kind, at] : kinds) {
     if (at.size() < fewest) continue;
     const double dof = kind.second, median = std::pow(1.0 - 2.0 / (9.0 * dof), 3);
-    const auto half = [&](std::size_t a, std::size_t b, double divisor) {
+    const auto half = [&targets, &at = at](std::size_t a, std::size_t b, double divisor) {
       return half_difference(targets[at[a]].fit, targets[at[b]].fit, divisor);
     };
     std::vector<double> halves;
