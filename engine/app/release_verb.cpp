@@ -113,7 +113,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
       for (const std::string& key : done.without_reason)
         complain(release_name,
                  key +
-                     " requires action and no reason is given why it may stand; expected "
+                     " requires action and no reason is given for accepting it; expected "
                      "--reason \"" +
                      key + "=TEXT\"");
       return exit_failed;

@@ -7,7 +7,7 @@
 #include "batch/close/history_update.h"
 #include "batch/state/night.h"
 #include "batch/state/night_state.h"
-#include "batch/work/runner.h"
+#include "batch/workers/runner.h"
 
 namespace nonio::batch {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "batch/state/night_state.h"
-#include "batch/work/runner.h"
+#include "batch/workers/runner.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/spool.h"

@@ -272,10 +272,10 @@ void check_members(TableReader& reader, const Measurement& m) {
                                 ", which moves: along it the deviation is one of positioning");
   if (!m.square.empty() && !m.reversal_of.empty())
     reader.error("square",
-                 "stands beside reversal_of; expected one of them: a square that was "
+                 "is given together with reversal_of; expected one of them: a square that was "
                  "turned over has square_turned = true");
   if (m.square_turned && m.square.empty())
-    reader.error("square_turned", "expected the key square beside it");
+    reader.error("square_turned", "expected the key square as well");
 }
 
 /// The keys of every method.

@@ -399,7 +399,7 @@ std::string ModelWords::not_told(const std::string& effect, std::size_t paramete
               {{"effect", effect}});
 }
 
-std::string ModelWords::has_unstated_position() const { return says("stood-somewhere", {}, {}); }
+std::string ModelWords::has_unstated_position() const { return says("unstated-position", {}, {}); }
 
 std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartModel& part) const {
   using Zero = model::Noise::Zero;

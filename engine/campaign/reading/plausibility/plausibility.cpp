@@ -123,7 +123,7 @@ class Size {
                             .evidence = {{"share", slope_, Quantity::ratio},
                                          {"range", range_, deviation_},
                                          {"travel", travel_, position_}}});
-    // A straightedge or mirror may stand at any angle.
+    // A straightedge or mirror can have any angle.
     const double range = position ? range_ : range_of_rest_;
     const bool of_travel =
         same_unit() &&

@@ -9,7 +9,7 @@
 
 /// What looks like a mistake of the person or program that wrote the files: a unit, a sign, an
 /// order, a copy, a date. A finding that requires action names the numbers that betray it; no
-/// table is written and no number drawn until a person says why it may stand. One that another
+/// table is written and no number drawn until a person states why it is accepted. One that another
 /// cause explains as well is information. Sources: none, these
 /// are orders of magnitude of machine tools and instruments (docs/dev/wrong-inputs.md lists them).
 namespace nonio::reading {

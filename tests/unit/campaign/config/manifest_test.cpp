@@ -216,9 +216,9 @@ TEST(Manifest, ALineOnASquareIsOnceInEachOfItsPositions) {
             "", line("A", on), "square: expected the id of a [[square]], found \"Q\""},
         {Q + Q, line("A", on), "id: \"Q\" is there twice"},
         {Q, line("A", on) + line("B", on), "square: expected one line of Y towards C"},
-        {Q, line("A", turned), "square_turned: expected the key square beside it"},
+        {Q, line("A", turned), "square_turned: expected the key square as well"},
         {Q, line("A", "") + line("B", on + "reversal_of = \"A\"\n"),
-         "square: stands beside reversal_of"},
+         "square: is given together with reversal_of"},
         {Q + "U_urad = 0\n", line("A", on), "U_urad: expected an uncertainty above 0"}})
     EXPECT_NE(with(squares, lines).find(words), std::string::npos) << words << with(squares, lines);
 }

@@ -75,7 +75,7 @@ struct Comparison {
   std::optional<NoiseFloor> floor{};
   std::optional<LackOfFit> lack_of_fit{};
   std::vector<Place> places{};  ///< all that were looked at, largest share first
-  /// Where something fails: the fewest places that hold what is left, each beside those before it,
+  /// Where something fails: the fewest places that hold what is left, each in addition to those before it,
   /// so that nothing is counted twice; no share below 2 %.
   std::vector<Place> seats{};
   std::size_t means = 0;  ///< long tables: of how many means the places tell; else 0
@@ -88,7 +88,7 @@ struct Comparison {
 inline constexpr double place_p = 0.01;
 
 /// What is found out of the readings before any model of them: how they repeat each other, which
-/// are misread, how their noise hangs together. Kept where many models are held against the same
+/// are misread, how their noise is correlated. Kept where many models are held against the same
 /// readings.
 class Groundwork {
  public:

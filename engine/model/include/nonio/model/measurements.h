@@ -53,7 +53,7 @@ struct Part {
   std::vector<TimeConstant> time_constants{};  ///< of its axes
 };
 
-/// Which shape of an effect is the time constant of a growth: continuous, named "tau", a time, beside
+/// Which shape of an effect is the time constant of a growth: continuous, named "tau", a time, next to
 /// one growth per length.
 std::optional<std::size_t> time_constant_shape(const Effect& effect);
 /// Whether a term has the value that another measurement states.

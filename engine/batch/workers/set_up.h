@@ -8,7 +8,7 @@
 
 #include "batch/state/night.h"
 #include "batch/survey/site_parts.h"
-#include "batch/work/plugin_host.h"
+#include "batch/workers/plugin_host.h"
 #include "certificates/signer.h"
 
 namespace nonio::batch {

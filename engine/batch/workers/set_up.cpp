@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/work/set_up.h"
+#include "batch/workers/set_up.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <ctime>
 
 #include "batch/state/read_apart.h"
-#include "batch/work/runner.h"
+#include "batch/workers/runner.h"
 #include "campaign/config/secret_files.h"
 #include "campaign/config/site_files.h"
 #include "campaign/config/template_files.h"

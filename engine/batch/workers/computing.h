@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/work/worker.h"
+#include "batch/workers/worker.h"
 #include "campaign/evaluation/evaluate.h"
 #include "nonio/sdk/history.h"
 #include "platform/process/prints.h"

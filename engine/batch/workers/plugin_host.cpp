@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/work/plugin_host.h"
+#include "batch/workers/plugin_host.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -19,7 +19,7 @@
 #include <iostream>
 
 #include "batch/state/wire.h"
-#include "batch/work/computing.h"
+#include "batch/workers/computing.h"
 #include "platform/process/child.h"
 #include "platform/process/confine.h"
 #include "platform/process/prints.h"

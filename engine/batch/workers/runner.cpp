@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/work/runner.h"
+#include "batch/workers/runner.h"
 
 #include <unistd.h>
 
@@ -13,8 +13,8 @@
 #include "batch/commit/store.h"
 #include "batch/state/read_apart.h"
 #include "batch/survey/twins.h"
-#include "batch/work/one_campaign.h"
-#include "batch/work/worker.h"
+#include "batch/workers/one_campaign.h"
+#include "batch/workers/worker.h"
 #include "campaign/config/secret_files.h"
 #include "certificates/certificates.h"
 #include "platform/process/child.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/work/computing.h"
+#include "batch/workers/computing.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -7,8 +7,8 @@
 
 #include "batch/state/night.h"
 #include "batch/state/night_state.h"
-#include "batch/work/computing.h"
-#include "batch/work/worker.h"
+#include "batch/workers/computing.h"
+#include "batch/workers/worker.h"
 #include "certificates/numbering.h"
 #include "certificates/signer.h"
 #include "laboratory/assessment/history_so_far.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/work/worker.h"
+#include "batch/workers/worker.h"
 
 #include <poll.h>
 #include <sys/mman.h>
@@ -13,7 +13,7 @@
 #include <iostream>
 #include <utility>
 
-#include "batch/work/plugin_host.h"
+#include "batch/workers/plugin_host.h"
 #include "platform/process/channel.h"
 
 namespace nonio::batch {

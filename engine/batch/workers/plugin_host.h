@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/work/worker.h"
+#include "batch/workers/worker.h"
 #include "campaign/evaluation/evaluate.h"
 #include "platform/process/channel.h"
 #include "platform/process/prints.h"

@@ -8,7 +8,7 @@
 
 #include "batch/state/night.h"
 #include "batch/state/night_state.h"
-#include "batch/work/plugin_host.h"
+#include "batch/workers/plugin_host.h"
 #include "certificates/numbering.h"
 #include "certificates/signer.h"
 #include "laboratory/assessment/history_so_far.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/work/one_campaign.h"
+#include "batch/workers/one_campaign.h"
 
 #include <algorithm>
 #include <cerrno>
