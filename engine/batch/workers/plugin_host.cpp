@@ -133,8 +133,10 @@ Expected<loader::Catalogue> PluginHost::load_once() {
   const std::string where = progress.get();
   Error error{where.empty() ? std::string(loading_process) + " died: " + why : why};
   error.key = where.empty() ? died : preparing;
-  // Who dies once may have been killed, or refused memory; who hangs has cost its limit.
-  if (!where.empty() && (!hung.empty() || !suspected_.insert(where).second)) leave_out(where, why);
+  // Who dies once may have been refused memory, who is killed was so from outside; who hangs has
+  // cost its limit.
+  const int most_deaths = why.starts_with("signal 9 ") ? 5 : 1;
+  if (!where.empty() && (!hung.empty() || ++died_at_[where] > most_deaths)) leave_out(where, why);
   return fail(error);
 }
 

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -70,7 +69,7 @@ class PluginHost {
   std::vector<std::string> notes_;
   std::map<std::filesystem::path, std::string> refused_;  ///< and why
   std::map<std::string, std::string> unprepared_;         ///< outputs, and why
-  std::set<std::string> suspected_;                       ///< where it died once
+  std::map<std::string, int> died_at_;                    ///< how often it died where
   std::vector<pid_t> children_before_;
   pid_t pid_ = -1;
   process::Handle control_, prints_;
