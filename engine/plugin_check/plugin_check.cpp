@@ -185,6 +185,7 @@ class Checker {
       check_plugin(list.substr(i, end - i), at);
       i = end + 1;
     }
+    pure_again();
   }
 
   /// The names of all plugins of the files that were loaded.
@@ -250,34 +251,45 @@ class Checker {
          [this, kind, index](Bench& b) { return kit::fingerprint((brought_.*kind)[index], b); });
   }
 
-  /// The same work twice, the second time elsewhere and later, without files, sockets or processes.
-  void pure(const std::string& plugin, const std::function<Verdict(Bench&)>& digest) {
+  /// The same work twice, the second time elsewhere and later, without files, sockets or processes:
+  /// here the first time.
+  void pure(const std::string& plugin, std::function<Verdict(Bench&)> digest) {
     if ((!request_.only.empty() && request_.only != "pure") || hung_ >= most_hanging) return;
     zone_ = first_zone;
     PluginCheck result = in_child(plugin, "pure", digest);
-    if (result.state == CheckState::passed) {
-      const std::string here = std::exchange(result.says, {});
-      elsewhere_ = true;
+    zone_ = nullptr;
+    if (result.state == CheckState::passed)
+      once_.push_back({plugin, std::move(digest), std::move(result.says), wants_results_,
+                       std::chrono::steady_clock::now()});
+    else
+      tell_(result);
+  }
+
+  /// The second time, of all plugins of a file: so that they need not wait one after the other.
+  void pure_again() {
+    for (const Once& once : std::exchange(once_, {})) {
+      hung_ = 0;
+      wants_results_ = once.wants_results;
+      std::this_thread::sleep_until(once.ended + a_second);
       zone_ = second_zone;
-      result = in_child(plugin, "pure", [&](Bench& b) {
+      const PluginCheck result = in_child(once.plugin, "pure", [&](Bench& b) {
         std::string why;
         b.only_plugin = [&] {
           go_elsewhere();  // only now: what the host calls before puts the folder back
           speak_otherwise();
           why = process::confine_pure(tell_impurity);
         };
-        Verdict v = digest(b);
+        Verdict v = once.digest(b);
         if (!why.empty()) return kit::skipped("it cannot be confined: " + why);
         if (v.state != Verdict::State::passed) return v;
-        return v.says == here ? kit::passed()
-                              : kit::failed(
-                                    "another home, folder, locale, time zone and a second "
-                                    "later it makes something else of the same input");
+        return v.says == once.says ? kit::passed()
+                                   : kit::failed(
+                                         "another home, folder, locale, time zone and a second "
+                                         "later it makes something else of the same input");
       });
-      elsewhere_ = false;
+      zone_ = nullptr;
+      tell_(result);
     }
-    zone_ = nullptr;
-    tell_(result);
   }
 
   template <class Plugin>
@@ -366,7 +378,6 @@ class Checker {
       bench_.stage = [&stage](const std::string& words) { stage.set(words); };
       if (zone_ != nullptr) set_zone(zone_);
       if (!first) set_up();
-      if (elsewhere_) std::this_thread::sleep_for(std::chrono::milliseconds(1100));
       v = work(bench_);
     } catch (const std::bad_alloc&) {
       v = kit::failed("out of memory in: " + stage.get());
@@ -452,8 +463,17 @@ class Checker {
   std::vector<std::string> names_;
   fs::path path_, shown_path_;  ///< the second as it was given
   std::size_t hung_ = 0;        ///< checks of one plugin that did not come back
-  bool elsewhere_ = false;      ///< the next child is the second of `pure`
   const char* zone_ = nullptr;  ///< of time, of the next child
+  /// What `pure` made the first time of a plugin.
+  struct Once {
+    std::string plugin;
+    std::function<Verdict(Bench&)> digest;
+    std::string says;
+    bool wants_results;
+    std::chrono::steady_clock::time_point ended;
+  };
+  static constexpr std::chrono::milliseconds a_second{1100};
+  std::vector<Once> once_;
   Brought brought_;             ///< in a child only
 };
 
