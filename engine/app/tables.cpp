@@ -55,9 +55,11 @@ const char* head_of(const model::Part& part) {
     case model::Part::Kind::space:
       return "head.axes";
     case model::Part::Kind::balls:
+      return "head.balls";
+    case model::Part::Kind::course:
       break;
   }
-  return "head.balls";
+  return "head.course";
 }
 
 void print_head(std::ostream& out, const modelling::PartModel& part,

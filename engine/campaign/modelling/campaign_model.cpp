@@ -36,6 +36,18 @@ bool can_be_in_space(const std::string& of) {
   return !of.empty() && of.find_first_not_of("EXYZABC0123456789") == std::string::npos;
 }
 
+/// "heat:t4@x1+x2": a channel, and displacements, that a measurement over time has.
+std::string mistake_of_channel(const std::string& effect, const Effect& known,
+                               const reading::ReadCampaign& read) {
+  for (const model::Part& part : model::parts_of(read.manifest->campaign, read.observations)) {
+    auto terms = model::terms_of(part, read.manifest->campaign.machine, {effect}, {known});
+    if (terms && !terms->empty()) return {};
+  }
+  return "\"" + effect + "\": no measurement over time has this channel" +
+         (effect.find('@') == std::string::npos ? "" : " and these displacements") +
+         storage::suggestion(effect, known_names(read));
+}
+
 std::string mistake_of(const std::string& effect, const reading::ReadCampaign& read) {
   const auto [kind, axis] = split(effect);
   const auto is_kind = [&, &k = kind](const Effect& e) { return e.info.name == k; };
@@ -47,6 +59,7 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
   if (known == read.effects.end()) return "there is no effect \"" + kind + "\"" + nearest();
   if (known->is_nuisance)
     return "\"" + effect + "\" belongs to the set-up: it is in every model, and not written";
+  if (known->of_channels) return mistake_of_channel(effect, *known, read);
   if (known->instances)
     return can_be_in_space(axis)
                ? ""
@@ -69,9 +82,13 @@ std::vector<std::string> PartModel::names() const {
 
 bool PartModel::shows(const std::string& effect) const {
   if (part.kind == model::Part::Kind::axis && split(effect).second == part.name) return true;
+  // Of a course "heat:t4@x1" is its heat:t4 where it is among the terms.
+  const std::string name = part.kind == model::Part::Kind::course
+                               ? effect.substr(0, effect.find('@'))
+                               : effect;
   for (const auto* list : {&terms, &catalogue})
     for (const model::Term& t : *list)
-      if (t.name() == effect) return true;
+      if (t.name() == name) return true;
   return false;
 }
 
@@ -82,9 +99,11 @@ std::string kind_of(const model::Part& part) {
     case model::Part::Kind::space:
       return "space";
     case model::Part::Kind::balls:
+      return "balls";
+    case model::Part::Kind::course:
       break;
   }
-  return "balls";
+  return "course";
 }
 
 ReadingPlace place_of(const PartModel& part, const Campaign& campaign, std::size_t row) {
@@ -165,7 +184,8 @@ Error nothing_to_compare(const reading::ReadCampaign& read) {
   const auto kinds = kinds_measured(read);
   if (kinds.empty()) return {"no measurement of this campaign has readings"};
   return {
-      "effects explain runs of an axis, straightness, diagonals, circles and ball centres; this "
+      "effects explain runs of an axis, straightness, diagonals, circles, ball centres and "
+      "displacements over time; this "
       "campaign has readings of another kind: " +
       storage::listed(kinds)};
 }

@@ -25,8 +25,9 @@ struct PartModel {
   RowsPlace interpolated{};                  ///< readings whose temperature is interpolated
 
   Quantity deviation() const { return deviation_of(part.table.angular); }
-  /// Of what readings are told apart by along their line: a position or an angle.
+  /// Of what readings are told apart by along their line: a position, an angle or a time.
   Quantity position() const {
+    if (part.kind == model::Part::Kind::course) return Quantity::time;
     return position_of(part.kind != model::Part::Kind::space && part.axes.front().rotary);
   }
   /// Of the model as it is written: without what is always there.
@@ -35,7 +36,7 @@ struct PartModel {
   bool shows(const std::string& effect) const;
 };
 
-/// What a part is called in words: "axis", "space", "balls" (templates/words, term.part).
+/// What a part is called in words: "axis", "space", "balls", "course" (templates/words, term.part).
 std::string kind_of(const model::Part& part);
 
 /// A reading of a part, as a person finds it again.

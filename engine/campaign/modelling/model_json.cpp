@@ -143,6 +143,7 @@ storage::Json model_json(const PartModel& part, const model::Comparison& c) {
 
 void put_part(storage::Json& json, const PartModel& part) {
   json["axis"] = part.part.name;
+  if (part.part.kind == model::Part::Kind::course) json["part"] = part.part.name;
   json["measurements"] = part.part.measurements;
   json["observations"] = part.part.table.size();
 }
@@ -383,8 +384,15 @@ std::size_t most_severe_of(const std::vector<Told>& parts) {
 std::vector<Told> told_of(const std::vector<Explained>& all) {
   std::vector<Told> told;
   for (const Explained& e : all)
-    told.push_back(
-        {to_text(e.explanation.verdict.kind), e.explanation.verdict.effect, e.explanation.certain});
+  {
+    const auto& part = e.part.part;
+    std::vector<std::string> certain;
+    for (const std::string& effect : e.explanation.certain)
+      certain.push_back(model::written_for(part, effect));
+    const std::string& effect = e.explanation.verdict.effect;
+    told.push_back({to_text(e.explanation.verdict.kind),
+                    effect.empty() ? effect : model::written_for(part, effect), certain});
+  }
   return told;
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "balls.h"
+#include "course/course.h"
 #include "design.h"
 #include "lines.h"
 #include "nonio/math/rotary.h"
@@ -28,6 +29,8 @@ class Parts {
     for (const std::size_t m : order_) {
       if (const auto& what = kind_.at(m); what == Kind::balls)
         add_balls(m);
+      else if (what == Kind::course)
+        append_courses(measurement(m), read_[m], parts_);
       else if (what == Kind::across)
         add_space(m);
       else if (!in_space(m))
@@ -37,7 +40,7 @@ class Parts {
   }
 
  private:
-  enum class Kind { axis, across, balls };
+  enum class Kind { axis, across, balls, course };
 
   const Measurement& measurement(std::size_t m) const { return campaign_.measurements[m]; }
 
@@ -45,6 +48,11 @@ class Parts {
     const Observations& o = read_[m];
     if (o.size() == 0 || o.axes.empty() || !check(o)) return;
     const std::string& kind = measurement(m).kind;
+    if (kind == "thermal" && measurement(m).axis.empty()) {
+      kind_[m] = Kind::course;
+      order_.push_back(m);
+      return;
+    }
     // No effects of the model: the first two run over time and angle, the third has no places.
     if (kind == "thermal" || kind == "spindle" || kind == "lengths") return;
     if (kind.starts_with("artefact")) return;  // rigid-body has where it stood
@@ -103,7 +111,7 @@ class Parts {
     part.kind = Part::Kind::space;
     std::vector<std::size_t> members;
     for (const std::size_t other : order_)
-      if (kind_.at(other) != Kind::balls && belongs(other, m, state)) members.push_back(other);
+      if (belongs(other, m, state)) members.push_back(other);
     append_space(part, campaign_, read_, members);
     done_.insert(members.begin(), members.end());
     part.name = oblique_ ? "" : "E" + measurement(m).lateral + measurement(m).axis;
@@ -116,6 +124,7 @@ class Parts {
   }
 
   bool belongs(std::size_t other, std::size_t m, const std::string& state) const {
+    if (kind_.at(other) == Kind::balls || kind_.at(other) == Kind::course) return false;
     const std::string its = state_of(measurement(other));
     if (oblique_)
       return (its == state || its.empty()) && (kind_.at(other) == Kind::across || in_space(other));
@@ -138,7 +147,8 @@ class Parts {
 /// Whether an effect of one axis has anything to say in this part.
 bool concerns(const Part& part, const Axis& axis) {
   if (part.kind == Part::Kind::axis) return true;
-  if (part.kind == Part::Kind::balls || axis.rotary) return false;
+  if (part.kind == Part::Kind::balls || part.kind == Part::Kind::course || axis.rotary)
+    return false;
   const std::size_t k = coordinate_of(axis.name);
   const auto* column = part.table.axis(axis.name);
   if (k > 2 || column == nullptr || column->approach.size() != part.table.size()) return false;
@@ -147,15 +157,28 @@ bool concerns(const Part& part, const Axis& axis) {
   return false;
 }
 
+/// "x1" of "x1+x2"
+bool lists(const std::string& names, const std::string& name) {
+  return ("+" + names + "+").find("+" + name + "+") != std::string::npos;
+}
+
 /// The term of an effect in this part; none if it is not of anything here.
-std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& of) {
+std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& written) {
+  if (effect.of_channels != (part.kind == Part::Kind::course)) return std::nullopt;
   if (effect.instances) {
+    std::string of = written;
+    if (const std::size_t only = written.find('@');
+        part.kind == Part::Kind::course && only != std::string::npos) {
+      if (!lists(written.substr(only + 1), part.displacement)) return std::nullopt;
+      of.resize(only);
+    }
     const auto places = effect.instances(part.table);
     if (std::find(places.begin(), places.end(), of) == places.end()) return std::nullopt;
     Axis place;
-    place.name = of;
+    place.name = std::move(of);
     return Term{&effect, std::move(place), {}};
   }
+  const std::string& of = written;
   for (const Axis& axis : part.axes)
     if (axis.name == of && concerns(part, axis)) {
       Term term{&effect, axis, {}};
@@ -166,6 +189,7 @@ std::optional<Term> term_of(const Part& part, const Effect& effect, const std::s
 }
 
 std::vector<std::string> offered_by(const Part& part, const Effect& effect) {
+  if (effect.of_channels != (part.kind == Part::Kind::course)) return {};
   if (effect.instances) return effect.instances(part.table);
   std::vector<std::string> names;
   for (const Axis& axis : part.axes)
@@ -179,6 +203,17 @@ std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observati
   std::vector<Part> parts = Parts(campaign, read).made();
   put_time_constants(campaign, read, parts);
   return parts;
+}
+
+std::string written_for(const Part& part, const std::string& effect) {
+  if (part.kind != Part::Kind::course || part.companions.size() + 1 >= part.displacements)
+    return effect;
+  std::vector<std::string> names = part.companion_names;
+  names.push_back(part.displacement);
+  std::sort(names.begin(), names.end());
+  std::string of;
+  for (const std::string& name : names) of += (of.empty() ? "@" : "+") + name;
+  return effect + of;
 }
 
 std::vector<std::string> names_of(const Part& part, const Effect& effect) {

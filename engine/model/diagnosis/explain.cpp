@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/model/explain.h"
 
+#include "course/course.h"
 #include <algorithm>
 #include <optional>
 
@@ -68,6 +69,7 @@ Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed,
                               const Groundwork* known) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to explain");
+  if (part.kind == Part::Kind::course) return explain_course(part, model, catalogue, seed);
   std::optional<Groundwork> made;
   if (known == nullptr) known = &made.emplace(part, model);
   const Groundwork::Found& ground = known->found();

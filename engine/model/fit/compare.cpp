@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "course/course.h"
 #include "data/noise.h"
 #include "data/thin.h"
 #include "data/whitening.h"
@@ -226,6 +227,8 @@ Ground ground_of(const Part& part, Repeats repeats, std::vector<Suspect> suspect
 }
 
 Groundwork::Found found_in(const Part& part, const std::vector<Term>& model) {
+  // Of a course successive readings are the repeats.
+  if (part.kind == Part::Kind::course) return {Ground{Repeats(Observations{})}};
   Repeats repeats(part.table);
   auto suspects = suspects_of(part.table, repeats, model);
   Groundwork::Found out{ground_of(part, std::move(repeats), std::move(suspects))};
@@ -254,6 +257,7 @@ Expected<Comparison> compare_on(const Part& part, const std::vector<Term>& model
 Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
                              const Groundwork* known, const Fitted& fitted) {
   if (part.table.size() == 0) return fail("there are no readings of an axis to compare with");
+  if (part.kind == Part::Kind::course) return compare_course(part, model);
   const GroundworkOf ground(part, model, known);
   auto out = compare_on(part, model, ground->whole, ground->thin ? &ground->thin->table : nullptr);
   if (!out) return out;

@@ -41,9 +41,11 @@ const char* name_of(Factor factor) {
     case Factor::time:
       return "time";
     case Factor::temperature:
+      return "temperature";
+    case Factor::channel:
       break;
   }
-  return "temperature";
+  return "channel";
 }
 
 }  // namespace

@@ -17,6 +17,15 @@ Option sensor_distance() {
           .expected = "expected a distance from 1 to 10000 mm"};
 }
 
+Option period() {
+  return {.name = "period",
+          .default_value = std::vector<double>{},
+          .unit = "s",
+          .help = "From and to (time_s) of the readings that are used, the end not included; "
+                  "temperatures and speeds before it still count for what lags behind them.",
+          .expected = "expected two times, the first one earlier"};
+}
+
 }  // namespace
 
 NONIO_PLUGIN(registry) {
@@ -28,7 +37,7 @@ NONIO_PLUGIN(registry) {
                                  .unit = "",
                                  .help = "The linear axis that is exercised; without it the "
                                          "columns are those of sensors."},
-                                sensor_distance()}}});
+                                period(), sensor_distance()}}});
   registry.add(Method{.info = {"spindle",
                                "1.0",
                                "Displacement of a rotating test mandrel over its angle",

@@ -27,6 +27,43 @@ constexpr Sensor nest[] = {{"x_um", "X", 0}, {"x1_um", "X1", 0}, {"x2_um", "X2",
                            {"y_um", "Y", 1}, {"y1_um", "Y1", 1}, {"y2_um", "Y2", 1},
                            {"z_um", "Z", 2}};
 
+/// What a column holds, by its end.
+struct Ending {
+  std::string_view end, unit;
+};
+constexpr Ending channel_endings[] = {
+    {"_c", "degC"}, {"_rpm", "rpm"}, {"_pct", "%"}, {"_kw", "kW"}, {"_a", "A"}};
+constexpr std::string_view displacement_end = "_um";
+
+/// Any displacements, temperatures, speeds and loads of a test over time.
+std::vector<ColumnSpec> with_channels(std::vector<ColumnSpec> columns) {
+  columns.push_back({"*" + std::string(displacement_end)});
+  for (const Ending& e : channel_endings) columns.push_back({"*" + std::string(e.end)});
+  return columns;
+}
+
+std::string without(std::string_view name, std::string_view end) {
+  return std::string(name.substr(0, name.size() - end.size()));
+}
+
+/// Each with the rows in which it was recorded. The humidity of the air is none.
+std::vector<Observations::Channel> channels_of(const Table& table) {
+  std::vector<Observations::Channel> out;
+  const auto& time = *table.column("time_s");
+  for (const auto& [name, values] : table.numbers)
+    for (const Ending& e : channel_endings) {
+      if (!name.ends_with(e.end) || name == "humidity_pct") continue;
+      Observations::Channel c{without(name, e.end), std::string(e.unit), {}, {}};
+      for (std::size_t row = 0; row < time.size(); ++row) {
+        if (!std::isfinite(values[row])) continue;
+        c.time.push_back(time[row]);
+        c.value.push_back(values[row]);
+      }
+      if (!c.value.empty()) out.push_back(std::move(c));
+    }
+  return out;
+}
+
 std::vector<ColumnSpec> with_sensors(std::vector<ColumnSpec> columns) {
   for (const Sensor& s : nest) columns.push_back({s.column});
   for (const char* name : {"material_c", "air_c", "pressure_hpa", "humidity_pct"})
@@ -34,14 +71,41 @@ std::vector<ColumnSpec> with_sensors(std::vector<ColumnSpec> columns) {
   return columns;
 }
 
-/// Those that the file has; none: an error that names them.
-Expected<std::vector<Sensor>> sensors_of(const Table& table) {
+/// Those of the nest that the file has.
+std::vector<Sensor> nest_of(const Table& table) {
   std::vector<Sensor> out;
   for (const Sensor& s : nest)
     if (table.column(s.column) != nullptr) out.push_back(s);
+  return out;
+}
+
+/// The same; none: an error that names them.
+Expected<std::vector<Sensor>> sensors_of(const Table& table) {
+  std::vector<Sensor> out = nest_of(table);
   if (out.empty())
     return fail(
         "missing column: expected a sensor: x_um, y_um, z_um, x1_um, x2_um, y1_um or y2_um");
+  return out;
+}
+
+/// A column of displacements: of a sensor of the nest, or of one whose direction nobody knows.
+struct Displacement {
+  std::string column, name;
+  Sense sense{};
+};
+
+Expected<std::vector<Displacement>> displacements_of(const Table& table) {
+  std::vector<Displacement> out;
+  for (const Sensor& s : nest_of(table)) {
+    out.push_back({s.column, s.name, {}});
+    out.back().sense[s.coordinate] = 1.0;
+  }
+  for (const auto& [name, values] : table.numbers)
+    if (name.ends_with(displacement_end) &&
+        std::none_of(out.begin(), out.end(), [&, &n = name](const auto& d) { return d.column == n; }))
+      out.push_back({name, without(name, displacement_end), {}});
+  if (out.empty())
+    return fail("missing column: expected a displacement, a column whose name ends with _um");
   return out;
 }
 
@@ -79,22 +143,29 @@ Expected<Turning> turning_of(const Table& table) {
   return out;
 }
 
-/// Sensors against time, the machine not moving or its spindle turning.
+/// What lies outside the period of a measurement is only known of its channels.
+bool in_period(const Measurement& m, double time) {
+  const std::vector<double> period = m.settings.numbers("period");
+  return period.size() != 2 || (time >= period[0] && time < period[1]);
+}
+
+/// Displacements against time, the machine not moving or its spindle turning.
 Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
-  const auto sensors = sensors_of(table);
+  const auto sensors = displacements_of(table);
   if (!sensors) return fail(sensors.error());
   if (auto error = times_grow(table)) return fail(std::move(*error));
   Observations obs = begin(input.measurement, table);
   const auto turning = turning_of(table);
   if (!turning) return fail(turning.error());
+  const auto& time = *table.column("time_s");
   obs.axes = {{"S", true, {}, {}}};
-  for (const Sensor& s : *sensors) {
-    Observations::Line line{s.name, {}};
-    line.sense[s.coordinate] = 1.0;
+  obs.channels = channels_of(table);
+  for (const Displacement& s : *sensors) {
     const auto number = static_cast<std::uint32_t>(obs.lines.size());
-    obs.lines.push_back(std::move(line));
+    obs.lines.push_back({s.name, s.sense});
     const auto& deviation = *table.column(s.column);
     for (std::size_t row = 0; row < table.size(); ++row) {
+      if (!in_period(input.measurement, time[row])) continue;
       if (!std::isfinite(deviation[row])) {
         ++obs.missing;
         continue;
@@ -247,7 +318,7 @@ Expected<Observations> read_thermal(const ReadInput& input) {
       columns.push_back({name});
   } else {
     columns.push_back({"speed_rpm", Kind::place});
-    columns = with_sensors(std::move(columns));
+    columns = with_channels(with_sensors(std::move(columns)));
   }
   auto table = read_table(input.bytes, columns);
   auto obs = !table      ? Expected<Observations>(fail(table.error()))

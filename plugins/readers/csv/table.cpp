@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <limits>
 #include <optional>
 
@@ -15,10 +16,23 @@ namespace {
 
 using Kind = ColumnSpec::Kind;
 
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         c == '-' || c == '.';
+}
+
+/// "t4_c" by "*_c".
+bool fits(std::string_view pattern, std::string_view name) {
+  if (!pattern.starts_with('*')) return pattern == name;
+  return name.size() >= pattern.size() && name.size() <= 64 && name.ends_with(pattern.substr(1)) &&
+         std::all_of(name.begin(), name.end(), is_letter);
+}
+
 const ColumnSpec* find(const std::vector<ColumnSpec>& columns, std::string_view name) {
-  const auto it =
-      std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
-  return it == columns.end() ? nullptr : &*it;
+  const ColumnSpec* found = nullptr;
+  for (const ColumnSpec& c : columns)
+    if (fits(c.name, name) && (found == nullptr || c.name == name)) found = &c;
+  return found;
 }
 
 class TableReader {
@@ -77,19 +91,24 @@ class TableReader {
     for (const std::string_view name : fields_) {
       const ColumnSpec* spec = find(columns_, name);
       if (spec == nullptr) return unknown(name);
-      if (std::find(own_.begin(), own_.end(), spec) != own_.end())
-        return Error{"column \"" + spec->name + "\" occurs twice; expected it once"};
-      own_.push_back(spec);
+      if (has(name))
+        return Error{"column \"" + std::string(name) + "\" occurs twice; expected it once"};
+      found_.push_back(*spec);
+      found_.back().name = name;
+      own_.push_back(&found_.back());
     }
     for (const ColumnSpec& spec : columns_)
-      if (spec.required && std::find(own_.begin(), own_.end(), &spec) == own_.end())
-        return missing(spec.name);
+      if (spec.required && !has(spec.name)) return missing(spec.name);
     for (const ColumnSpec* spec : own_)
       if (spec->kind == Kind::word)
         words_.push_back(&table_.words[spec->name]), numbers_.push_back(nullptr);
       else
         numbers_.push_back(&table_.numbers[spec->name]), words_.push_back(nullptr);
     return std::nullopt;
+  }
+
+  bool has(std::string_view name) const {
+    return std::any_of(own_.begin(), own_.end(), [&](const auto* own) { return own->name == name; });
   }
 
   Error unknown(std::string_view name) const {
@@ -99,7 +118,8 @@ class TableReader {
       return Error{"expected a header row with the names of the columns, found the number " +
                    shown(name)};
     std::vector<std::string_view> names;
-    for (const ColumnSpec& c : columns_) names.push_back(c.name);
+    for (const ColumnSpec& c : columns_)
+      if (!c.name.starts_with('*')) names.push_back(c.name);
     return Error{"unknown column " + shown(name) + "; did you mean \"" +
                  std::string(nearest(name, names)) + "\"?"};
   }
@@ -203,7 +223,8 @@ class TableReader {
   }
 
   const std::vector<ColumnSpec>& columns_;
-  std::vector<const ColumnSpec*> own_;  ///< of each column of the file
+  std::deque<ColumnSpec> found_;
+  std::vector<const ColumnSpec*> own_;  ///< of each column of the file, in `found_`
   std::vector<std::vector<double>*> numbers_;
   std::vector<std::vector<std::string>*> words_;
   std::vector<std::string_view> fields_;

@@ -12,7 +12,8 @@
 
 namespace nonio::csv {
 
-/// A column that a file may have.
+/// A column that a file may have. A name "*_c" is that of every column which ends so and is no other
+/// one: the table has them by their own names.
 struct ColumnSpec {
   enum class Kind : std::uint8_t {
     number,  ///< a reading: NaN where it was not taken

@@ -31,7 +31,7 @@ struct LackOfFit {
 };
 
 /// What readings are split by.
-enum class Factor : char { direction, position, screw_phase, angle, run, time, temperature };
+enum class Factor : char { direction, position, screw_phase, angle, run, time, temperature, channel };
 
 /// One factor, or the product of two.
 struct Where {

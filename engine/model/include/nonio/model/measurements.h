@@ -36,9 +36,10 @@ struct Part {
   enum class Kind {
     axis,   ///< runs of one axis, sensed along it
     space,  ///< several linear axes: their runs, straightness, diagonals, step diagonals
-    balls   ///< centres of a ball that turns with a rotary axis: radial and axial, m
+    balls,  ///< centres of a ball that turns with a rotary axis: radial and axial, m
+    course  ///< a displacement over time, with channels that were recorded next to it
   };
-  std::string name;                       ///< "X", "XY", "EYX", "C centres"
+  std::string name;                       ///< "X", "XY", "EYX", "C centres", "warm/x1"
   std::vector<std::string> measurements;  ///< ids
   std::vector<Axis> axes;                 ///< one of an axis or balls; else the linear ones
   Observations table;                     ///< lines named by their measurements
@@ -51,6 +52,14 @@ struct Part {
   /// of ISO 230-2 is assumed.
   std::vector<std::string> order_assumed{};
   std::vector<TimeConstant> time_constants{};  ///< of its axes
+
+  // Of a course.
+  std::string displacement{};    ///< its name
+  std::size_t displacements{};   ///< how many the measurement has
+  /// Displacements of the same measurement that move with this one, at the same times: m. Their
+  /// effects are searched together; each has sizes of its own.
+  std::vector<std::vector<double>> companions{};
+  std::vector<std::string> companion_names{};
 };
 
 /// Which shape of an effect is the time constant of a growth: continuous, named "tau", a time, next to
@@ -78,6 +87,10 @@ std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects
 
 /// The names that an effect has in this part: "backlash:X", "straightness:EYX".
 std::vector<std::string> names_of(const Part& part, const Effect& effect);
+
+/// An effect of the model as it is written for this part: of a course that is one of several
+/// displacements "heat:t4@x1" or "heat:t4@x1+x2" ("only of these"), else its name.
+std::string written_for(const Part& part, const std::string& effect);
 
 /// The effects that a model names, then those that are always there, then its descriptions; an
 /// unknown kind or axis is an error with the nearest name. Effects of axes that other parts hold

@@ -40,6 +40,17 @@ struct Observations {
     std::array<double, 3> sense{};  ///< unit vector; all 0 on a rotary axis (deviation is an angle)
   };
 
+  /// What was recorded next to the deviations: a temperature at some place, a speed, a load. With
+  /// times of its own: it may begin before the first reading and end after the last one.
+  struct Channel {
+    std::string name;           ///< of its column without the unit: "t4", "speed"
+    std::string unit;           ///< "degC", "rpm", "%", "kW", "A"
+    std::vector<double> time;   ///< s, ascending
+    std::vector<double> value;  ///< in this unit; finite
+
+    bool is_temperature() const { return unit == "degC"; }
+  };
+
   std::string measurement;  ///< its id in the manifest
   bool angular = false;     ///< deviation is an angle (rad), else a length (m)
   std::vector<AxisColumn> axes;
@@ -53,6 +64,8 @@ struct Observations {
   std::vector<double> time;                ///< s; NaN where blank
   std::vector<double> material, air;       ///< degC; NaN where blank
   std::vector<double> pressure, humidity;  ///< hPa, % ; NaN where blank
+
+  std::vector<Channel> channels{};  ///< of a measurement over time
 
   /// Direction of sensing of each reading, where it differs within a line; else empty.
   std::vector<std::array<double, 3>> sense{};
@@ -70,6 +83,11 @@ struct Observations {
   std::vector<Finding> doubts{};
 
   std::size_t size() const { return deviation.size(); }
+  const Channel* channel(std::string_view name) const {
+    for (const Channel& c : channels)
+      if (c.name == name) return &c;
+    return nullptr;
+  }
   const AxisColumn* axis(std::string_view name) const {
     for (const AxisColumn& a : axes)
       if (a.axis == name) return &a;
@@ -105,8 +123,8 @@ template <class Table, class F>
 void for_each_column(Table& o, F f) {
   // A new member of Observations stops the compiler here: is it a column?
   [[maybe_unused]] const auto& [measurement, angular, axes, lines, deviation, u, run, line,
-                                source_line, time, material, air, pressure, humidity, sense,
-                                structure, order_known, missing, notes, doubts] = o;
+                                source_line, time, material, air, pressure, humidity, channels,
+                                sense, structure, order_known, missing, notes, doubts] = o;
   for (auto& axis : o.axes) {
     f(axis.position);
     f(axis.approach);
@@ -119,7 +137,7 @@ void for_each_column(Table& o, F f) {
 
 /// Adds the readings of `more` behind those of `to`: the deviations, and what was measured beside
 /// them. In a column that only one of the two has, the rows of the other are NaN; run 1, source
-/// line 0. Axes and lines are the caller's.
+/// line 0. Axes, lines and channels are the caller's.
 void append_measured(Observations& to, const Observations& more);
 /// The rows that `kept` has something at, in their order, and nothing of the others.
 void keep_rows(Observations& o, const std::vector<char>& kept);

@@ -192,6 +192,9 @@ struct Effect {
   /// A curve that says what is left and not why ("a reversal for each target"): never a candidate,
   /// offered where no effect explains. Beside other effects it is what they leave of it.
   bool description = false;
+  /// Its instances are channels of a measurement over time (`Observations::channels`): it explains
+  /// displacements over time and nothing else. Other effects do not.
+  bool of_channels = false;
   /// Optional: why it does not apply, where it does not.
   std::function<WhyNot(const Observations&, const Axis&)> why_not{};
 };
@@ -317,7 +320,7 @@ class Registry {
 };
 
 /// The version of this interface: the one place that it stands in.
-#define NONIO_SDK_VERSION 15
+#define NONIO_SDK_VERSION 16
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "course_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nonio::model {
+
+CourseData::CourseData(const Part& part) : part_(part) {
+  const std::size_t n = part.table.size();
+  const std::size_t bins = std::min<std::size_t>(n, most_bins);
+  for (std::size_t b = 0; b <= bins; ++b) first_.push_back(b * n / std::max<std::size_t>(bins, 1));
+  displacements_.resize(size(), static_cast<Index>(1 + part.companions.size()));
+  displacements_.col(0) = means(part.table.deviation);
+  for (std::size_t k = 0; k < part.companions.size(); ++k)
+    displacements_.col(static_cast<Index>(k) + 1) = means(part.companions[k]);
+}
+
+VectorXd CourseData::means(const std::vector<double>& column) const {
+  VectorXd out(size());
+  for (Index b = 0; b < size(); ++b) {
+    const std::size_t from = first_[static_cast<std::size_t>(b)],
+                      to = first_[static_cast<std::size_t>(b) + 1];
+    double sum = 0.0;
+    for (std::size_t i = from; i < to; ++i) sum += column[i];
+    out(b) = sum / static_cast<double>(to - from);
+  }
+  return out;
+}
+
+MatrixXd CourseData::means(const Effect::Columns& columns) const {
+  MatrixXd out(size(), static_cast<Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Index>(k)) = means(columns[k]);
+  return out;
+}
+
+MatrixXd CourseData::without_zeros(MatrixXd columns) const {
+  for (Index b = 0; b < blocks; ++b) {
+    const Index from = begin_of(b), rows = begin_of(b + 1) - from;
+    if (rows == 0) continue;
+    for (Index k = 0; k < columns.cols(); ++k)
+      columns.col(k).segment(from, rows).array() -= columns.col(k).segment(from, rows).mean();
+  }
+  return columns;
+}
+
+double successive(const VectorXd& residual) {
+  const Index n = residual.size();
+  if (n < 3) return 0.0;
+  const VectorXd r = residual.array() - residual.mean();
+  const double squares = r.squaredNorm();
+  return squares > 0.0 ? r.head(n - 1).dot(r.tail(n - 1)) / squares : 0.0;
+}
+
+double repetition(double correlation) {
+  constexpr double largest = 0.999;
+  const double r = std::clamp(correlation, 0.0, largest);
+  return (1.0 + r) / (1.0 - r);
+}
+
+std::vector<CourseColumns> columns_on_grid(const CourseData& data, const Term& term) {
+  std::vector<CourseColumns> out;
+  for (std::vector<double>& shape : shapes_of(data.part().table, term)) {
+    const auto columns = term.effect->columns(data.part().table, term.axis, shape);
+    if (!columns || columns->empty()) continue;
+    out.push_back({std::move(shape), data.means(*columns)});
+  }
+  return out;
+}
+
+}  // namespace nonio::model

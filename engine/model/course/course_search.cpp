@@ -1,0 +1,467 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which effects a course is missing: sets of at most six, grown and kept three at a time, judged by
+// blocks in time that are left out. What such a search finds in noise of the same kind is found by
+// the same search in copies of the remainder whose phases are random (Theiler et al. 1992).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+#include "course.h"
+#include "course_data.h"
+#include "nonio/sdk/splitmix64.h"
+
+namespace nonio::model {
+
+namespace {
+
+using Set = std::vector<std::size_t>;  // of entries, ascending
+
+// docs/dev/constants.md, M40.
+constexpr std::size_t most_terms = 6, kept_sets = 3, copies = 100;
+constexpr double worth_a_term = 0.9;   // of the RMS of what is left out
+constexpr double same_rms = 1.05;         // RMS of two explanations that cannot be separated
+constexpr double named_p = 0.01;
+constexpr double of_floor = 1.5;       // what noise explains
+constexpr std::size_t most_instances = 64;
+
+/// A shape of an effect that is not in the model.
+struct Entry {
+  std::size_t term;
+  std::vector<double> shape;
+  std::vector<Index> columns;  ///< of the pool
+};
+
+/// Columns of all entries, each once and of unit length, and their products in each block.
+class Pool {
+ public:
+  explicit Pool(const CourseData& data) : data_(data) {}
+
+  std::vector<Index> add(MatrixXd columns) {
+    columns = of_unit_length(data_.without_zeros(std::move(columns)));
+    std::vector<Index> places;
+    for (Index k = 0; k < columns.cols(); ++k) places.push_back(add_one(columns.col(k)));
+    return places;
+  }
+
+  void finish() {
+    all_.resize(data_.size(), static_cast<Index>(columns_.size()));
+    for (std::size_t k = 0; k < columns_.size(); ++k) all_.col(static_cast<Index>(k)) = columns_[k];
+    columns_.clear();
+    whole_ = MatrixXd::Zero(all_.cols(), all_.cols());
+    for (Index b = 0; b < CourseData::blocks; ++b) {
+      const MatrixXd rows = block(all_, b);
+      of_block_.push_back(math::transposed_product(rows, rows));
+      whole_ += of_block_.back();
+    }
+  }
+
+  MatrixXd block(const MatrixXd& of, Index b) const {
+    const Index from = data_.begin_of(b);
+    return of.middleRows(from, data_.begin_of(b + 1) - from);
+  }
+  const MatrixXd& all() const { return all_; }
+  const MatrixXd& whole() const { return whole_; }
+  const MatrixXd& of_block(Index b) const { return of_block_[static_cast<std::size_t>(b)]; }
+  const CourseData& data() const { return data_; }
+
+ private:
+  Index add_one(const VectorXd& column) {
+    const auto key = std::pair(column(column.size() / 3), column(column.size() - 1));
+    for (const Index known : places_[key])
+      if (columns_[static_cast<std::size_t>(known)] == column) return known;
+    places_[key].push_back(static_cast<Index>(columns_.size()));
+    columns_.push_back(column);
+    return static_cast<Index>(columns_.size()) - 1;
+  }
+
+  const CourseData& data_;
+  std::vector<VectorXd> columns_;
+  std::map<std::pair<double, double>, std::vector<Index>> places_;
+  MatrixXd all_, whole_;
+  std::vector<MatrixXd> of_block_;
+};
+
+/// Products of the pool with displacements: the same for many displacements at once.
+struct Sides {
+  std::vector<MatrixXd> of_block;  ///< pool x displacements
+  MatrixXd whole;
+  std::vector<Eigen::RowVectorXd> squares;  ///< in each block
+
+  Sides(const Pool& pool, const MatrixXd& displacements) {
+    whole = MatrixXd::Zero(pool.all().cols(), displacements.cols());
+    for (Index b = 0; b < CourseData::blocks; ++b) {
+      const MatrixXd rows = pool.block(displacements, b);
+      of_block.push_back(math::transposed_product(pool.block(pool.all(), b), rows));
+      whole += of_block.back();
+      squares.push_back(rows.colwise().squaredNorm());
+    }
+  }
+};
+
+/// Mean squares of what is left out, of each displacement; infinite where the columns do not say
+/// what they are.
+Eigen::RowVectorXd left_out(const Pool& pool, const Sides& sides, const std::vector<Index>& columns) {
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(sides.whole.cols());
+  const auto p = static_cast<Index>(columns.size());
+  MatrixXd normal(p, p), own(p, p), right(p, sum.size()), here(p, sum.size());
+  for (Index b = 0; b < CourseData::blocks; ++b) {
+    const MatrixXd& block = pool.of_block(b);
+    const MatrixXd& side = sides.of_block[static_cast<std::size_t>(b)];
+    for (Index i = 0; i < p; ++i) {
+      const Index at = columns[static_cast<std::size_t>(i)];
+      here.row(i) = side.row(at);
+      right.row(i) = sides.whole.row(at) - here.row(i);
+      for (Index k = 0; k <= i; ++k) {
+        const Index other = columns[static_cast<std::size_t>(k)];
+        own(i, k) = own(k, i) = block(at, other);
+        normal(i, k) = normal(k, i) = pool.whole()(at, other) - own(i, k);
+      }
+    }
+    sum += sides.squares[static_cast<std::size_t>(b)];
+    if (p == 0) continue;
+    const Eigen::LLT<MatrixXd> llt(normal);
+    constexpr double least = 1e-4;  // of a column of unit length, beside the others
+    if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > least))
+      return Eigen::RowVectorXd::Constant(sum.size(), std::numeric_limits<double>::infinity());
+    const MatrixXd x = math::solutions(llt, right);
+    sum += (x.cwiseProduct(math::product(own, x) - 2.0 * here)).colwise().sum();
+  }
+  return sum.cwiseMax(1e-300) / static_cast<double>(pool.data().size());
+}
+
+/// Half the mean logarithm over displacements that are searched together: ln of an RMS.
+double level(const Eigen::RowVectorXd& squares) { return 0.5 * squares.array().log().mean(); }
+
+/// What a search finds in copies of a remainder: improvements, in logarithms of the RMS. Largest of
+/// many: a Gumbel distribution.
+struct InCopies {
+  double at = 0.0, width = 0.0;
+  std::vector<double> found;
+
+  double p(double improvement) const {
+    if (!(width > 0.0)) return 1.0;
+    return -std::expm1(-std::exp(-(improvement - at) / width));
+  }
+};
+
+class CourseSearch {
+ public:
+  CourseSearch(const Part& part, const Fit& model, const std::vector<Term>& catalogue,
+               std::uint64_t seed)
+      : data_(part), pool_(data_), catalogue_(catalogue), seed_(seed) {
+    for (const Term& term : model.terms) {
+      auto columns = term.effect->columns(part.table, term.axis, term.shape);
+      if (!columns) continue;
+      for (const Index at : pool_.add(data_.means(*columns))) base_.push_back(at);
+    }
+    std::map<std::string, std::size_t> instances;
+    for (const Term& term : catalogue) ++instances[term.effect->info.name];
+    for (std::size_t t = 0; t < catalogue.size(); ++t) {
+      const Term& term = catalogue[t];
+      if (std::any_of(model.terms.begin(), model.terms.end(),
+                      [&](const Term& m) { return m.name() == term.name(); }) ||
+          instances[term.effect->info.name] > most_instances)
+        continue;
+      for (CourseColumns& one : columns_on_grid(data_, term))
+        entries_.push_back({t, std::move(one.shape), pool_.add(std::move(one.columns))});
+    }
+    pool_.finish();
+    displacements_ = data_.without_zeros(data_.displacements());
+    sides_.emplace(pool_, displacements_);
+  }
+
+  std::vector<Index> columns_of(const Set& set) const {
+    std::vector<Index> out = base_;
+    for (const std::size_t e : set)
+      out.insert(out.end(), entries_[e].columns.begin(), entries_[e].columns.end());
+    std::sort(out.begin(), out.end());
+    const bool twice = std::adjacent_find(out.begin(), out.end()) != out.end();
+    if (twice) out.push_back(-1);
+    return out;
+  }
+
+  double level_of(const Set& set) const {
+    const auto columns = columns_of(set);
+    if (!columns.empty() && columns.back() < 0) return std::numeric_limits<double>::infinity();
+    return level(left_out(pool_, *sides_, columns));
+  }
+
+  bool has_term(const Set& set, std::size_t term) const {
+    return std::any_of(set.begin(), set.end(),
+                       [&](std::size_t e) { return entries_[e].term == term; });
+  }
+
+  /// The best entry of each term beside `set`: {entry, level}.
+  std::map<std::size_t, std::pair<std::size_t, double>> best_beside(const Set& set) const {
+    std::map<std::size_t, std::pair<std::size_t, double>> out;
+    for (std::size_t e = 0; e < entries_.size(); ++e) {
+      if (has_term(set, entries_[e].term)) continue;
+      const double l = level_of(with(set, e));
+      const auto [place, first] = out.try_emplace(entries_[e].term, e, l);
+      if (!first && l < place->second.second) place->second = {e, l};
+    }
+    return out;
+  }
+
+  /// The smallest set that no larger one betters by a tenth for each term more.
+  Set best() const {
+    std::vector<Set> beam{{}};
+    std::vector<std::pair<Set, double>> best{{{}, level_of({})}};
+    for (std::size_t size = 1; size <= most_terms; ++size) {
+      std::map<Set, double> grown;
+      for (const Set& set : beam)
+        for (std::size_t e = 0; e < entries_.size(); ++e)
+          if (!has_term(set, entries_[e].term)) {
+            Set more = with(set, e);
+            if (!grown.contains(more)) {
+              const double l = level_of(more);
+              grown.emplace(std::move(more), l);
+            }
+          }
+      std::vector<std::pair<Set, double>> all(grown.begin(), grown.end());
+      if (all.empty()) break;
+      const auto last = all.begin() + static_cast<std::ptrdiff_t>(std::min(kept_sets, all.size()));
+      std::partial_sort(all.begin(), last, all.end(),
+                        [](const auto& a, const auto& b) { return a.second < b.second; });
+      if (!std::isfinite(all.front().second)) break;
+      beam.clear();
+      for (auto it = all.begin(); it != last; ++it) beam.push_back(it->first);
+      best.push_back(all.front());
+    }
+    std::size_t chosen = 0;
+    for (bool better = true; better;) {
+      better = false;
+      for (std::size_t k = chosen + 1; k < best.size() && !better; ++k)
+        if (best[k].second <
+            best[chosen].second + std::log(worth_a_term) * static_cast<double>(k - chosen)) {
+          chosen = k;
+          better = true;
+        }
+    }
+    return best[chosen].first;
+  }
+
+  /// What one term more would seem to improve beside `set` if the remainder had nothing to do with
+  /// any of them.
+  InCopies chance_beside(const Set& set) const {
+    const std::vector<Index> columns = columns_of(set);
+    MatrixXd rest = displacements_;
+    if (!columns.empty()) {
+      MatrixXd a(data_.size(), static_cast<Index>(columns.size()));
+      for (std::size_t k = 0; k < columns.size(); ++k)
+        a.col(static_cast<Index>(k)) = pool_.all().col(columns[k]);
+      const Eigen::HouseholderQR<MatrixXd> qr(a);
+      math::take_out(math::orthonormal(qr, a.cols()), rest);
+    }
+    const Index q = rest.cols();
+    MatrixXd made(data_.size(), q * static_cast<Index>(copies));
+    SplitMix64 random(seed_);
+    for (std::size_t c = 0; c < copies; ++c)
+      made.middleCols(q * static_cast<Index>(c), q) = data_.without_zeros(copy_of(rest, random));
+    const Sides sides(pool_, made);
+    const Eigen::RowVectorXd before = left_out(pool_, sides, columns);
+    InCopies out;
+    out.found.assign(copies, 0.0);
+    for (std::size_t e = 0; e < entries_.size(); ++e) {
+      if (has_term(set, entries_[e].term)) continue;
+      const auto more = columns_of(with(set, e));
+      if (more.back() < 0) continue;
+      const Eigen::RowVectorXd after = left_out(pool_, sides, more);
+      for (std::size_t c = 0; c < copies; ++c) {
+        const auto at = q * static_cast<Index>(c);
+        const double improvement = level(before.segment(at, q)) - level(after.segment(at, q));
+        out.found[c] = std::max(out.found[c], improvement);
+      }
+    }
+    double mean = 0.0, squares = 0.0;
+    for (const double x : out.found) mean += x / static_cast<double>(copies);
+    for (const double x : out.found) squares += (x - mean) * (x - mean);
+    constexpr double euler = 0.5772156649015329;
+    out.width = std::sqrt(squares / static_cast<double>(copies - 1) * 6.0) / std::numbers::pi;
+    out.at = mean - euler * out.width;
+    return out;
+  }
+
+  static Set with(const Set& set, std::size_t e) {
+    Set out = set;
+    out.insert(std::lower_bound(out.begin(), out.end(), e), e);
+    return out;
+  }
+  static Set without(const Set& set, std::size_t e) {
+    Set out = set;
+    std::erase(out, e);
+    return out;
+  }
+
+  Term term_of(std::size_t e) const { return catalogue_[entries_[e].term]; }
+  const Entry& entry(std::size_t e) const { return entries_[e]; }
+  std::size_t size() const { return entries_.size(); }
+  /// Of this displacement alone, m.
+  double left_out_with(const Set& set) const {
+    return std::sqrt(left_out(pool_, *sides_, columns_of(set))(0));
+  }
+
+ private:
+  /// The same spectrum of changes and the same coherence of displacements, other phases.
+  MatrixXd copy_of(const MatrixXd& rest, SplitMix64& random) const {
+    const Index n = rest.rows() - 1;
+    std::vector<double> angle(static_cast<std::size_t>(n / 2 + 1));
+    for (double& a : angle) a = 2.0 * std::numbers::pi * random.uniform();
+    MatrixXd out(rest.rows(), rest.cols());
+    Eigen::FFT<double> fft;
+    for (Index k = 0; k < rest.cols(); ++k) {
+      std::vector<double> change(static_cast<std::size_t>(n));
+      for (Index i = 0; i < n; ++i)
+        change[static_cast<std::size_t>(i)] = rest(i + 1, k) - rest(i, k);
+      std::vector<std::complex<double>> spectrum;
+      fft.fwd(spectrum, change);
+      for (Index f = 1; 2 * f < n; ++f) {
+        const auto turn = std::polar(1.0, angle[static_cast<std::size_t>(f)]);
+        spectrum[static_cast<std::size_t>(f)] *= turn;
+        spectrum[static_cast<std::size_t>(n - f)] *= std::conj(turn);
+      }
+      std::vector<std::complex<double>> back;
+      fft.inv(back, spectrum);
+      out(0, k) = 0.0;
+      for (Index i = 0; i < n; ++i)
+        out(i + 1, k) = out(i, k) + back[static_cast<std::size_t>(i)].real();
+    }
+    return out;
+  }
+
+  CourseData data_;
+  Pool pool_;
+  const std::vector<Term>& catalogue_;
+  std::uint64_t seed_;
+  std::vector<Index> base_;
+  std::vector<Entry> entries_;
+  MatrixXd displacements_;
+  std::optional<Sides> sides_;
+};
+
+/// Candidates and verdict from the best set.
+class CourseExplanation {
+ public:
+  CourseExplanation(const Part& part, const std::vector<Term>& model,
+                    const std::vector<Term>& catalogue, std::uint64_t seed, Comparison comparison)
+      : part_(part), model_(model), search_(part, comparison.fit, catalogue, seed) {
+    out_.comparison = std::move(comparison);
+  }
+
+  Explanation made() {
+    const double alone = search_.level_of({});
+    const InCopies by_chance = search_.chance_beside({});
+    set_ = search_.best();
+    const auto singles = search_.best_beside({});
+    double improvement = 0.0;
+    for (const auto& [term, one] : singles) improvement = std::max(improvement, alone - one.second);
+    if (!(by_chance.p(improvement) < named_p)) set_.clear();
+    const double all = search_.level_of(set_);
+    // Evidence in units of independent bins: 2 ln of a likelihood ratio.
+    weight_ = static_cast<double>(out_.comparison.fit.redundancy) /
+              repetition(out_.comparison.fit.noise.measured);
+    weight_ = std::max(weight_, 1.0) * 2.0;
+    const InCopies further = set_.empty() ? by_chance : search_.chance_beside(set_);
+    for (const std::size_t e : set_) add_member(e, all);
+    const auto beside = set_.empty() ? singles : search_.best_beside(set_);
+    for (const auto& [term, one] : singles) {
+      if (search_.has_term(set_, term)) continue;
+      const auto more = beside.find(term);
+      const double gain = more == beside.end() ? 0.0 : all - more->second.second;
+      add(one.first, alone, gain, further.p(gain));
+    }
+    std::stable_sort(out_.candidates.begin(), out_.candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    judge(by_chance);
+    return std::move(out_);
+  }
+
+ private:
+  void add_member(std::size_t e, double all) {
+    const Set others = CourseSearch::without(set_, e);
+    const double loss = search_.level_of(others) - all;
+    const double p = search_.chance_beside(others).p(loss);
+    add(e, 0.0, loss, p);
+    Candidate& c = out_.candidates.back();
+    // What takes its place as well, cannot be separated from it.
+    for (const auto& [term, one] : search_.best_beside(others))
+      if (term != search_.entry(e).term && !search_.has_term(set_, term) &&
+          one.second < all + std::log(same_rms))
+        c.aliases.push_back(search_.term_of(one.first).name());
+    if (p < named_p) certain_.emplace_back(loss, c.term.name());
+  }
+
+  void add(std::size_t e, double, double gain, double p) {
+    Candidate c;
+    c.term = search_.term_of(e);
+    c.cv_rms = search_.left_out_with({e});
+    c.p = p;
+    c.score = weight_ * gain;
+    std::vector<Term> terms = model_;
+    terms.push_back(c.term);
+    terms.back().shape = search_.entry(e).shape;
+    const bool member = std::find(set_.begin(), set_.end(), e) != set_.end();
+    if (member || set_.empty()) terms.back().shape.clear();
+    if (const auto fit = fit_course(part_, terms)) {
+      c.rms = fit->rms;
+      c.term.shape = fit->terms.back().shape;
+      for (const Parameter& parameter : fit->parameters)
+        if (parameter.effect == c.term.name()) c.parameters.push_back(parameter);
+    } else {
+      c.visible = false;
+      c.why = "aliased";
+    }
+    if (c.visible && !(gain > -std::log(worth_a_term)) && !member) c.score = std::min(c.score, 0.0);
+    out_.candidates.push_back(std::move(c));
+  }
+
+  void judge(const InCopies& by_chance) {
+    std::sort(certain_.begin(), certain_.end(), std::greater<>());
+    for (const auto& [loss, name] : certain_) out_.certain.push_back(name);
+    std::vector<Term> terms = model_;
+    for (const std::size_t e : set_) {
+      out_.together.push_back(search_.term_of(e).name());
+      terms.push_back(search_.term_of(e));
+    }
+    out_.best_rms = out_.certain_rms = out_.comparison.fit.rms;
+    out_.fails = out_.comparison.seats;
+    Verdict& v = out_.verdict;
+    v.trials = copies;
+    std::size_t alarms = 0;
+    for (const double x : by_chance.found)
+      if (by_chance.p(x) < named_p && x > -std::log(worth_a_term)) ++alarms;
+    v.false_alarms = static_cast<double>(alarms) / static_cast<double>(copies);
+    if (!set_.empty()) {
+      if (const auto fit = fit_course(part_, terms)) out_.best_rms = out_.certain_rms = fit->rms;
+      v.kind = Verdict::Kind::missing;
+      v.effect = out_.candidates.front().term.name();
+      return;
+    }
+    const auto& floor = out_.comparison.floor;
+    v.kind = floor && out_.comparison.fit.rms <= of_floor * floor->s ? Verdict::Kind::nothing
+                                                                    : Verdict::Kind::unknown;
+  }
+
+  const Part& part_;
+  const std::vector<Term>& model_;
+  CourseSearch search_;
+  Set set_;
+  double weight_ = 1.0;
+  std::vector<std::pair<double, std::string>> certain_;
+  Explanation out_;
+};
+
+}  // namespace
+
+Expected<Explanation> explain_course(const Part& part, const std::vector<Term>& model,
+                                     const std::vector<Term>& catalogue, std::uint64_t seed) {
+  auto comparison = compare_course(part, model);
+  if (!comparison) return fail(comparison.error());
+  return CourseExplanation(part, model, catalogue, seed, std::move(*comparison)).made();
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// Displacements over time that follow recorded channels. L(x, tau): first-order lag of x, s
+// (sdk/channels.h); T, T1, T2: temperatures, degC; n: a speed or a load; t: time since the first reading, s.
+//
+//     heat:T               g L(T, tau)                      g: m/K
+//     heat-two-lags:T      g1 L(T, tau1) + g2 L(T, tau2)    g1, g2: m/K
+//     heat-difference:T1-T2   g (L(T1, tau) - L(T2, tau))   g: m/K
+//     heat-source:n        a L(|n/n0|^m, tau)               a: m at the largest n0; m: 1 or 2
+//     drift:time           v t                              v: m/s
+//     settling:time        z exp(-t/tau)                    z: m
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/sdk/channels.h"
+#include "nonio/sdk/plugin.h"
+
+namespace nonio::heat {
+
+namespace {
+
+using Channel = Observations::Channel;
+using Columns = Effect::Columns;
+
+/// K; a channel that changes less is its own noise.
+constexpr double least_range = 0.05;
+
+bool varies(const Channel& c, double least) {
+  const auto [low, high] = std::minmax_element(c.value.begin(), c.value.end());
+  return low != c.value.end() && *high - *low > least;
+}
+
+bool is_source(const Channel& c) { return !c.is_temperature(); }
+
+template <class Kind>
+std::vector<std::string> names(const Observations& o, const Kind& kind) {
+  std::vector<std::string> out;
+  for (const Channel& c : o.channels)
+    if (kind(c)) out.push_back(c.name);
+  return out;
+}
+
+std::vector<std::string> temperatures(const Observations& o) {
+  return names(o, [](const Channel& c) { return c.is_temperature() && varies(c, least_range); });
+}
+
+std::vector<std::string> sources(const Observations& o) {
+  return names(o, [](const Channel& c) { return is_source(c) && varies(c, 0.0); });
+}
+
+/// Every pair once; a name that is one of two has no "-" of its own.
+std::vector<std::string> differences(const Observations& o) {
+  std::vector<std::string> out;
+  const std::vector<std::string> all = temperatures(o);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size(); ++j)
+      if (all[i].find('-') == std::string::npos && all[j].find('-') == std::string::npos)
+        out.push_back(all[i] + "-" + all[j]);
+  return out;
+}
+
+std::vector<std::string> of_time(const Observations& o) {
+  return o.time.size() == o.size() && o.size() > 2 ? std::vector<std::string>{"time"}
+                                                   : std::vector<std::string>{};
+}
+
+bool applies(const Observations& o, const Axis&) { return o.time.size() == o.size(); }
+
+Effect::Shape lag(const char* name, const char* help) {
+  return {.parameter = {name, help, Quantity::time},
+          .grid = [](const Observations& o, const Axis&) { return time_constants_for(o.time); }};
+}
+
+/// A time constant that is not 0.
+Effect::Shape decay(const char* name, const char* help) {
+  return {.parameter = {name, help, Quantity::time},
+          .grid = [](const Observations& o, const Axis&) {
+            std::vector<double> all = time_constants_for(o.time);
+            if (!all.empty()) all.erase(all.begin());
+            return all;
+          }};
+}
+
+/// The shorter or the longer half of the lags: two that are equal cannot be separated.
+Effect::Shape half(const char* name, const char* help, bool slow) {
+  return {.parameter = {name, help, Quantity::time},
+          .grid = [slow](const Observations& o, const Axis&) {
+            const std::vector<double> all = time_constants_for(o.time);
+            const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+            return slow ? std::vector<double>(middle, all.end())
+                        : std::vector<double>(all.begin(), middle);
+          }};
+}
+
+tl::unexpected<Error> no_channel(const std::string& name) {
+  return fail("there is no channel \"" + name + "\"");
+}
+
+Expected<Columns> heat(const Observations& o, const Axis& of, const std::vector<double>& shape) {
+  const Channel* c = o.channel(of.name);
+  if (c == nullptr) return no_channel(of.name);
+  Columns out;
+  for (const double tau : shape) out.push_back(lagged(*c, tau, o.time));
+  return out;
+}
+
+Expected<Columns> difference(const Observations& o, const Axis& of,
+                             const std::vector<double>& shape) {
+  const std::size_t dash = of.name.find('-');
+  const Channel* one = o.channel(of.name.substr(0, dash));
+  const Channel* two = dash == std::string::npos ? nullptr : o.channel(of.name.substr(dash + 1));
+  if (one == nullptr || two == nullptr || shape.size() != 1) return no_channel(of.name);
+  std::vector<double> column = lagged(*one, shape[0], o.time);
+  const std::vector<double> less = lagged(*two, shape[0], o.time);
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] -= less[i];
+  return Columns{std::move(column)};
+}
+
+Expected<Columns> source(const Observations& o, const Axis& of, const std::vector<double>& shape) {
+  const Channel* c = o.channel(of.name);
+  if (c == nullptr || shape.size() != 2) return no_channel(of.name);
+  Channel power = *c;
+  double largest = 0.0;
+  for (const double n : power.value) largest = std::max(largest, std::fabs(n));
+  if (!(largest > 0.0)) return fail("channel \"" + of.name + "\" is 0 everywhere");
+  for (double& n : power.value) n = std::pow(std::fabs(n) / largest, shape[1]);
+  return Columns{lagged(power, shape[0], o.time)};
+}
+
+Expected<Columns> over_time(const Observations& o, double (*f)(double, double), double tau) {
+  const double first = o.time.empty() ? 0.0 : *std::min_element(o.time.begin(), o.time.end());
+  std::vector<double> column;
+  for (const double t : o.time) column.push_back(f(t - first, tau));
+  return Columns{std::move(column)};
+}
+
+Expected<Columns> drift(const Observations& o, const Axis&, const std::vector<double>&) {
+  return over_time(o, [](double t, double) { return t; }, 0.0);
+}
+
+Expected<Columns> settling(const Observations& o, const Axis&, const std::vector<double>& shape) {
+  if (shape.size() != 1 || !(shape[0] > 0.0)) return fail("settling: expected a time constant");
+  return over_time(o, [](double t, double tau) { return std::exp(-t / tau); }, shape[0]);
+}
+
+Effect effect(const char* name, const char* summary, std::vector<Effect::Parameter> linear,
+              std::vector<Effect::Shape> shapes,
+              std::vector<std::string> (*instances)(const Observations&),
+              Expected<Columns> (*columns)(const Observations&, const Axis&,
+                                           const std::vector<double>&)) {
+  Effect e;
+  e.info = {name, "1.0.0", summary};
+  e.linear = std::move(linear);
+  e.shapes = std::move(shapes);
+  e.applies = applies;
+  e.columns = columns;
+  e.instances = instances;
+  e.of_channels = true;
+  return e;
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) {
+  const Quantity per_kelvin = Quantity::deviation_per_kelvin;
+  registry.add(effect("heat", "A displacement follows a measured temperature with a lag",
+                      {{"g", "displacement per kelvin", per_kelvin}},
+                      {lag("tau", "time constant of the lag")}, temperatures, heat));
+  registry.add(effect(
+      "heat-two-lags", "A displacement follows a measured temperature fast and slowly",
+      {{"g1", "displacement per kelvin that follows fast", per_kelvin},
+       {"g2", "displacement per kelvin that follows slowly", per_kelvin}},
+      {half("tau1", "time constant of the fast part", false),
+       half("tau2", "time constant of the slow part", true)},
+      temperatures, heat));
+  registry.add(effect("heat-difference", "A structure bends with the difference of two temperatures",
+                      {{"g", "displacement per kelvin of difference", per_kelvin}},
+                      {lag("tau", "time constant of the lag")}, differences, difference));
+  registry.add(effect(
+      "heat-source", "A displacement follows a speed or a load with a lag",
+      {{"a", "displacement at the largest value, settled", Quantity::deviation}},
+      {decay("tau", "time constant"),
+       {.parameter = {"m", "power of the channel", Quantity::number},
+        .grid = [](const Observations&, const Axis&) { return std::vector<double>{1.0, 2.0}; },
+        .continuous = false}},
+      sources, source));
+  registry.add(effect("drift", "A displacement grows in proportion to time",
+                      {{"v", "rate", Quantity::deviation_per_time}}, {}, of_time, drift));
+  registry.add(effect("settling", "A displacement that dies away from the first reading on",
+                      {{"z", "displacement at the start", Quantity::deviation}},
+                      {decay("tau", "time constant")}, of_time, settling));
+}
+
+}  // namespace nonio::heat
