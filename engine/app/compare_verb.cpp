@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
 
+#include "campaign/modelling/model_prediction.h"
 #include "campaign_verb.h"
 #include "tables.h"
 #include "verbs.h"
@@ -8,6 +9,10 @@
 namespace nonio::app {
 
 namespace {
+
+struct PredictOptions {
+  std::string model_of, zero = "free";
+};
 
 int compare(const std::string& folder, const Common& common) {
   const char* const verb = "nonio compare";
@@ -42,14 +47,47 @@ int compare(const std::string& folder, const Common& common) {
   return errors.empty() ? exit_done : exit_failed;
 }
 
+/// The model of another campaign, applied to this one.
+int predict(const std::string& folder, const PredictOptions& options, const Common& common) {
+  const char* const verb = "nonio compare";
+  auto unseen = open_campaign(verb, folder, common, reading::TemplatesFor::terminal);
+  if (!unseen) return unseen.error();
+  auto seen = open_campaign(verb, options.model_of, common, reading::TemplatesFor::terminal);
+  if (!seen) return seen.error();
+  const bool kept = options.zero == "kept";
+  const auto all = modelling::predictions(seen->read, unseen->read, kept);
+  if (!all) return complain(verb, text_of(all.error()));
+  const modelling::ModelWords words = words_for(*unseen, common);
+  if (common.json) {
+    std::cout << modelling::predict_json(*all, seen->campaign(), unseen->campaign(), words, kept);
+    return exit_done;
+  }
+  for (const modelling::Predicted& one : *all)
+    std::cout << words.prediction(one.prediction, one.unseen) << '\n';
+  return exit_done;
+}
+
 }  // namespace
 
 Verb compare_verb(Common& common) {
   auto folder = std::make_shared<std::string>();
+  auto options = std::make_shared<PredictOptions>();
   return {
       .name = "compare",
       .summary = "Compares the model in campaign.toml with the measurements",
-      .arguments = campaign_arguments(*folder, common),
+      .arguments = joined(
+          campaign_arguments(*folder, common),
+          {{.name = "--model-of",
+            .target = &options->model_of,
+            .help = "Predict this campaign with the model of another one, fitted there; displacements\n"
+                    "over time only",
+            .takes = Argument::Takes::folder,
+            .exists = true},
+           one_of({"free", "kept"}, {.name = "--zero",
+                                     .target = &options->zero,
+                                     .help = "With --model-of: the zero is a new unknown, or that of "
+                                             "the model",
+                                     .shows_default = true})}),
       .footer =
           "Shows for each axis the residuals (RMS, largest residual, RMS of left-out runs), the "
           "noise\n"
@@ -57,7 +95,11 @@ Verb compare_verb(Common& common) {
           "the\n"
           "residuals depend on: direction, position, run, time, temperature, screw or angle.\n\n"
           "Example: nonio compare samples/site/02-constant-reversal",
-      .run = [folder, &common] { return compare(*folder, common); }};
+      .run =
+          [folder, options, &common] {
+            return options->model_of.empty() ? compare(*folder, common)
+                                             : predict(*folder, *options, common);
+          }};
 }
 
 }  // namespace nonio::app

@@ -262,6 +262,21 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   return f;
 }
 
+std::string ModelWords::prediction(const model::Prediction& p, const PartModel& part) const {
+  const Quantity q = part.deviation();
+  double u = 0.0;
+  for (const double one : p.u) u += one / static_cast<double>(p.u.size());
+  std::vector<Number> numbers = {{"rms", p.rms, q},
+                                 {"sd", p.sd, q},
+                                 {"U", 2.0 * u, q},
+                                 percent("inside", p.inside)};
+  std::string text = says("prediction", numbers, {{"part", part.part.name}});
+  if (p.fails_from)
+    text += " " + says("prediction.fails", {{"from", *p.fails_from, Quantity::time}}, {});
+  if (p.outside) text += " " + says("prediction.outside", {}, {});
+  return text;
+}
+
 std::string ModelWords::place(const model::Place& place, Quantity deviation) const {
   Finding f = place_finding(place, deviation);
   std::string text = finding_text(templates_, language_, f, "says");

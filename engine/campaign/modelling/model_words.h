@@ -5,6 +5,7 @@
 
 #include "campaign/config/terminal_words.h"
 #include "campaign/modelling/campaign_model.h"
+#include "nonio/model/prediction.h"
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
 #include "platform/storage/nearest.h"
@@ -20,6 +21,8 @@ class ModelWords {
   /// Labels and phrases of the terminal in the same language.
   config::TerminalWords terminal() const { return {templates_, language_}; }
 
+  /// How far a model holds for readings that it has not seen.
+  std::string prediction(const model::Prediction& p, const PartModel& part) const;
   std::string place(const model::Place& place, Quantity deviation) const;
   std::string verdict(const model::Explanation& explanation, const PartModel& part) const;
   std::string candidate(const model::Candidate& candidate, const PartModel& part,

@@ -6,9 +6,24 @@
 
 namespace nonio::model {
 
+namespace {
+
+/// The largest number up to `n` without other factors than 2, 3 and 5.
+std::size_t smooth(std::size_t n) {
+  for (; n > 1; --n) {
+    std::size_t rest = n;
+    for (const std::size_t factor : {2U, 3U, 5U})
+      while (rest % factor == 0) rest /= factor;
+    if (rest == 1) break;
+  }
+  return n;
+}
+
+}  // namespace
+
 CourseData::CourseData(const Part& part) : part_(part) {
   const std::size_t n = part.table.size();
-  const std::size_t bins = std::min<std::size_t>(n, most_bins);
+  const std::size_t bins = n < 3 ? n : smooth(std::min<std::size_t>(n, most_bins) - 1) + 1;
   for (std::size_t b = 0; b <= bins; ++b) first_.push_back(b * n / std::max<std::size_t>(bins, 1));
   displacements_.resize(size(), static_cast<Index>(1 + part.companions.size()));
   displacements_.col(0) = means(part.table.deviation);

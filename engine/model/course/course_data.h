@@ -9,11 +9,12 @@
 /// Displacements over time. What the fit and the search of a course have in common.
 namespace nonio::model {
 
-/// Rows of a course, averaged to at most `most_bins` of equal length, in blocks that follow each
+/// Rows of a course, averaged to at most `most_bins` of equal length (one more than a product of 2, 3
+/// and 5, for the Fourier transform of their changes), in blocks that follow each
 /// other in time. Each block has a zero of its own: what wanders slowly stays out of the gains.
 class CourseData {
  public:
-  static constexpr Index blocks = 6, most_bins = 1500;
+  static constexpr Index blocks = 6, most_bins = 1501;
 
   explicit CourseData(const Part& part);
 

@@ -27,6 +27,7 @@ constexpr double same_rms = 1.05;         // RMS of two explanations that cannot
 constexpr double named_p = 0.01;
 constexpr double of_floor = 1.5;       // what noise explains
 constexpr std::size_t most_instances = 64;
+constexpr double most_per_kelvin = 50e-6;  // m/K: two metres of aluminium
 
 /// A shape of an effect that is not in the model.
 struct Entry {
@@ -40,10 +41,18 @@ class Pool {
  public:
   explicit Pool(const CourseData& data) : data_(data) {}
 
-  std::vector<Index> add(MatrixXd columns) {
-    columns = of_unit_length(data_.without_zeros(std::move(columns)));
+  /// `per_kelvin`: their coefficients are displacements per kelvin.
+  std::vector<Index> add(MatrixXd columns, const std::vector<Effect::Parameter>& of) {
+    columns = data_.without_zeros(std::move(columns));
+    const VectorXd length = columns.colwise().norm().cwiseMax(1e-300).transpose();
+    columns = of_unit_length(std::move(columns));
     std::vector<Index> places;
-    for (Index k = 0; k < columns.cols(); ++k) places.push_back(add_one(columns.col(k)));
+    for (Index k = 0; k < columns.cols(); ++k) {
+      const auto p = std::min(static_cast<std::size_t>(k), of.size() - 1);
+      const bool per_kelvin = of[p].quantity == Quantity::deviation_per_kelvin;
+      places.push_back(add_one(columns.col(k), per_kelvin ? most_per_kelvin * length(k)
+                                                          : std::numeric_limits<double>::infinity()));
+    }
     return places;
   }
 
@@ -63,23 +72,27 @@ class Pool {
     const Index from = data_.begin_of(b);
     return of.middleRows(from, data_.begin_of(b + 1) - from);
   }
+  /// Largest coefficient of a column that a body can have.
+  double most(Index k) const { return most_[static_cast<std::size_t>(k)]; }
   const MatrixXd& all() const { return all_; }
   const MatrixXd& whole() const { return whole_; }
   const MatrixXd& of_block(Index b) const { return of_block_[static_cast<std::size_t>(b)]; }
   const CourseData& data() const { return data_; }
 
  private:
-  Index add_one(const VectorXd& column) {
+  Index add_one(const VectorXd& column, double most) {
     const auto key = std::pair(column(column.size() / 3), column(column.size() - 1));
     for (const Index known : places_[key])
       if (columns_[static_cast<std::size_t>(known)] == column) return known;
     places_[key].push_back(static_cast<Index>(columns_.size()));
     columns_.push_back(column);
+    most_.push_back(most);
     return static_cast<Index>(columns_.size()) - 1;
   }
 
   const CourseData& data_;
   std::vector<VectorXd> columns_;
+  std::vector<double> most_;
   std::map<std::pair<double, double>, std::vector<Index>> places_;
   MatrixXd all_, whole_;
   std::vector<MatrixXd> of_block_;
@@ -128,6 +141,11 @@ Eigen::RowVectorXd left_out(const Pool& pool, const Sides& sides, const std::vec
     if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > least))
       return Eigen::RowVectorXd::Constant(sum.size(), std::numeric_limits<double>::infinity());
     const MatrixXd x = math::solutions(llt, right);
+    for (Index i = 0; i < p; ++i) {
+      const double most = pool.most(columns[static_cast<std::size_t>(i)]);
+      for (Index k = 0; k < x.cols() && std::isfinite(most); ++k)
+        if (!(std::fabs(x(i, k)) <= most)) sum(k) = std::numeric_limits<double>::infinity();
+    }
     sum += (x.cwiseProduct(math::product(own, x) - 2.0 * here)).colwise().sum();
   }
   return sum.cwiseMax(1e-300) / static_cast<double>(pool.data().size());
@@ -156,7 +174,8 @@ class CourseSearch {
     for (const Term& term : model.terms) {
       auto columns = term.effect->columns(part.table, term.axis, term.shape);
       if (!columns) continue;
-      for (const Index at : pool_.add(data_.means(*columns))) base_.push_back(at);
+      for (const Index at : pool_.add(data_.means(*columns), term.effect->linear))
+        base_.push_back(at);
     }
     std::map<std::string, std::size_t> instances;
     for (const Term& term : catalogue) ++instances[term.effect->info.name];
@@ -167,7 +186,7 @@ class CourseSearch {
           instances[term.effect->info.name] > most_instances)
         continue;
       for (CourseColumns& one : columns_on_grid(data_, term))
-        entries_.push_back({t, std::move(one.shape), pool_.add(std::move(one.columns))});
+        entries_.push_back({t, std::move(one.shape), pool_.add(std::move(one.columns), term.effect->linear)});
     }
     pool_.finish();
     displacements_ = data_.without_zeros(data_.displacements());
@@ -274,7 +293,7 @@ class CourseSearch {
       for (std::size_t c = 0; c < copies; ++c) {
         const auto at = q * static_cast<Index>(c);
         const double improvement = level(before.segment(at, q)) - level(after.segment(at, q));
-        out.found[c] = std::max(out.found[c], improvement);
+        if (std::isfinite(improvement)) out.found[c] = std::max(out.found[c], improvement);
       }
     }
     double mean = 0.0, squares = 0.0;
@@ -353,26 +372,23 @@ class CourseExplanation {
   }
 
   Explanation made() {
-    const double alone = search_.level_of({});
     const InCopies by_chance = search_.chance_beside({});
     set_ = search_.best();
     const auto singles = search_.best_beside({});
-    double improvement = 0.0;
-    for (const auto& [term, one] : singles) improvement = std::max(improvement, alone - one.second);
-    if (!(by_chance.p(improvement) < named_p)) set_.clear();
+    judge_members();
     const double all = search_.level_of(set_);
     // Evidence in units of independent bins: 2 ln of a likelihood ratio.
     weight_ = static_cast<double>(out_.comparison.fit.redundancy) /
               repetition(out_.comparison.fit.noise.measured);
     weight_ = std::max(weight_, 1.0) * 2.0;
     const InCopies further = set_.empty() ? by_chance : search_.chance_beside(set_);
-    for (const std::size_t e : set_) add_member(e, all);
+    for (const Member& member : members_) add_member(member, all);
     const auto beside = set_.empty() ? singles : search_.best_beside(set_);
     for (const auto& [term, one] : singles) {
       if (search_.has_term(set_, term)) continue;
       const auto more = beside.find(term);
       const double gain = more == beside.end() ? 0.0 : all - more->second.second;
-      add(one.first, alone, gain, further.p(gain));
+      add(one.first, gain, further.p(gain));
     }
     std::stable_sort(out_.candidates.begin(), out_.candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
@@ -381,21 +397,41 @@ class CourseExplanation {
   }
 
  private:
-  void add_member(std::size_t e, double all) {
+  /// What the best set loses without one of its effects, and the chance that noise shows as much.
+  struct Member {
+    std::size_t entry;
+    double loss, p;
+  };
+
+  /// A set in which noise could replace every single effect shows nothing.
+  void judge_members() {
+    const double all = search_.level_of(set_);
+    for (const std::size_t e : set_) {
+      const Set others = CourseSearch::without(set_, e);
+      const double loss = search_.level_of(others) - all;
+      members_.push_back({e, loss, search_.chance_beside(others).p(loss)});
+    }
+    if (std::none_of(members_.begin(), members_.end(),
+                     [](const Member& m) { return m.p < named_p; })) {
+      set_.clear();
+      members_.clear();
+    }
+  }
+
+  void add_member(const Member& member, double all) {
+    const std::size_t e = member.entry;
     const Set others = CourseSearch::without(set_, e);
-    const double loss = search_.level_of(others) - all;
-    const double p = search_.chance_beside(others).p(loss);
-    add(e, 0.0, loss, p);
+    add(e, member.loss, member.p);
     Candidate& c = out_.candidates.back();
     // What takes its place as well, cannot be separated from it.
     for (const auto& [term, one] : search_.best_beside(others))
       if (term != search_.entry(e).term && !search_.has_term(set_, term) &&
           one.second < all + std::log(same_rms))
         c.aliases.push_back(search_.term_of(one.first).name());
-    if (p < named_p) certain_.emplace_back(loss, c.term.name());
+    if (member.p < named_p) certain_.emplace_back(member.loss, c.term.name());
   }
 
-  void add(std::size_t e, double, double gain, double p) {
+  void add(std::size_t e, double gain, double p) {
     Candidate c;
     c.term = search_.term_of(e);
     c.cv_rms = search_.left_out_with({e});
@@ -438,7 +474,7 @@ class CourseExplanation {
     if (!set_.empty()) {
       if (const auto fit = fit_course(part_, terms)) out_.best_rms = out_.certain_rms = fit->rms;
       v.kind = Verdict::Kind::missing;
-      v.effect = out_.candidates.front().term.name();
+      v.effect = out_.certain.front();
       return;
     }
     const auto& floor = out_.comparison.floor;
@@ -450,6 +486,7 @@ class CourseExplanation {
   const std::vector<Term>& model_;
   CourseSearch search_;
   Set set_;
+  std::vector<Member> members_;
   double weight_ = 1.0;
   std::vector<std::pair<double, std::string>> certain_;
   Explanation out_;

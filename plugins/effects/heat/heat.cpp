@@ -98,6 +98,10 @@ tl::unexpected<Error> no_channel(const std::string& name) {
 Expected<Columns> heat(const Observations& o, const Axis& of, const std::vector<double>& shape) {
   const Channel* c = o.channel(of.name);
   if (c == nullptr) return no_channel(of.name);
+  // Two lags that are nearly the same are the slope of one.
+  constexpr double least_ratio = 4.0;
+  if (shape.size() == 2 && !(shape[1] >= least_ratio * shape[0]))
+    return fail("expected a slow time constant of at least four times the fast one");
   Columns out;
   for (const double tau : shape) out.push_back(lagged(*c, tau, o.time));
   return out;

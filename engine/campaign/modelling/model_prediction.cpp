@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/modelling/model_prediction.h"
+
+#include <algorithm>
+
+#include "platform/storage/json_values.h"
+#include "platform/storage/nearest.h"
+
+namespace nonio::modelling {
+
+namespace {
+
+const PartModel* same_part(const std::vector<PartModel>& parts, const PartModel& wanted) {
+  const PartModel* found = nullptr;
+  for (const PartModel& part : parts) {
+    if (part.part.kind != model::Part::Kind::course) continue;
+    if (part.part.name == wanted.part.name) return &part;
+    if (part.part.displacement == wanted.part.displacement && found == nullptr) found = &part;
+  }
+  return found;
+}
+
+std::string listed_parts(const std::vector<PartModel>& parts) {
+  std::vector<std::string> names;
+  for (const PartModel& part : parts)
+    if (part.part.kind == model::Part::Kind::course) names.push_back(part.part.name);
+  return names.empty() ? "none" : storage::listed(names);
+}
+
+std::size_t named_terms(const PartModel& part) { return part.names().size(); }
+
+}  // namespace
+
+Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
+                                             const reading::ReadCampaign& unseen, bool zero_kept) {
+  auto known = part_models(seen, seen.manifest->campaign.model);
+  if (!known) return fail(known.error());
+  std::vector<PartModel> others = bare_parts(unseen);
+  std::vector<Predicted> out;
+  for (PartModel& other : others) {
+    if (other.part.kind != model::Part::Kind::course) continue;
+    const PartModel* part = same_part(*known, other);
+    if (part == nullptr) continue;
+    auto predicted = model::predict(part->part, part->terms, other.part, zero_kept);
+    if (!predicted) return fail(other.part.name + ": " + predicted.error().message);
+    out.push_back({*part, std::move(other), std::move(*predicted)});
+  }
+  if (out.empty())
+    return fail("no displacement over time is in both campaigns: " +
+                seen.manifest->campaign.id + " has " + listed_parts(*known) + ", " +
+                unseen.manifest->campaign.id + " has " + listed_parts(others));
+  return out;
+}
+
+std::string predict_json(const std::vector<Predicted>& all, const Campaign& seen,
+                         const Campaign& unseen, const ModelWords& words, bool zero_kept) {
+  storage::Json json = {{"schema", "nonio-predict/1"},
+                        {"campaign", unseen.id},
+                        {"model_of", seen.id},
+                        {"zero", zero_kept ? "kept" : "free"}};
+  storage::Json parts = storage::Json::array();
+  for (const Predicted& one : all) {
+    const model::Prediction& p = one.prediction;
+    const Quantity q = one.unseen.deviation();
+    storage::Json part = {{"part", one.unseen.part.name},
+                          {"observations", one.unseen.part.table.size()},
+                          {"effects", one.seen.names()},
+                          {"terms", named_terms(one.seen)}};
+    storage::put(part, "rms", p.rms, q);
+    storage::put(part, "sd", p.sd, q);
+    storage::put(part, "inside_U", p.inside, Quantity::ratio);
+    double u = 0.0;
+    for (const double one_u : p.u) u += one_u / static_cast<double>(p.u.size());
+    storage::put(part, "U", 2.0 * u, q);
+    if (p.fails_from)
+      storage::put(part, "holds_until", *p.fails_from, Quantity::time);
+    else
+      part["holds_until_s"] = nullptr;
+    part["outside_range"] = p.outside;
+    part["says"] = words.prediction(p, one.unseen);
+    parts.push_back(std::move(part));
+  }
+  json["parts"] = std::move(parts);
+  return storage::dump(json);
+}
+
+}  // namespace nonio::modelling
