@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Least squares with a zero for each block of time, on means of bins: coefficients by QR, shapes one
-// after the other on their grids and then between the grid's values.
+// Least squares with a zero for each block of time, on means of bins. Shapes are those that predict
+// blocks which are left out best, on their grids and then between the grid's values.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "course.h"
-#include "course_data.h"
+#include "course_pool.h"
 #include "nonio/math/golden_section.h"
 
 namespace nonio::model {
@@ -24,7 +25,6 @@ class CourseFit {
       searched_.push_back(term.shape.empty() && !term.effect->shapes.empty());
       auto grid = columns_on_grid(data_, term);
       if (grid.empty()) return fail("effect \"" + term.name() + "\": these readings cannot show it");
-      for (CourseColumns& one : grid) one.columns = data_.without_zeros(std::move(one.columns));
       chosen_.push_back(grid.front());
       term.shape = grid.front().shape;
       grids_.push_back(std::move(grid));
@@ -46,49 +46,70 @@ class CourseFit {
     return out;
   }
 
-  /// Sum of squares that columns leave of the displacement (and of its companions, each in its own
-  /// scale) beside an orthonormal basis.
-  double left(const MatrixXd& basis, MatrixXd columns) const {
-    MatrixXd rest = y_;
-    if (basis.cols() > 0) {
-      math::take_out(basis, columns);
-      math::take_out(basis, rest);
-    }
-    columns = of_unit_length(std::move(columns));
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(columns);
-    const MatrixXd q = math::orthonormal(qr, qr.rank());
-    math::take_out(q, rest);
-    double sum = 0.0;
-    for (Index k = 0; k < rest.cols(); ++k)
-      sum += std::log(std::max(rest.col(k).squaredNorm(), 1e-300));
-    return sum;
+  /// The level of left-out blocks with these shapes, each given by its place in the pool.
+  double level_with(const std::vector<std::size_t>& at) const {
+    std::vector<Index> columns;
+    for (std::size_t k = 0; k < at.size(); ++k)
+      columns.insert(columns.end(), places_[k][at[k]].begin(), places_[k][at[k]].end());
+    std::sort(columns.begin(), columns.end());
+    if (std::adjacent_find(columns.begin(), columns.end()) != columns.end())
+      return std::numeric_limits<double>::infinity();
+    return level(left_out(*pool_, *sides_, columns));
   }
 
-  MatrixXd basis_without(std::size_t k) const {
-    MatrixXd others = all_but(k);
-    if (others.cols() == 0) return others;
-    others = of_unit_length(std::move(others));
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(others);
-    return math::orthonormal(qr, qr.rank());
-  }
-
+  /// The shapes with which blocks that are left out are predicted best: one term after the other, from
+  /// several beginnings.
   void search() {
-    constexpr int most_rounds = 6;
+    pool_.emplace(data_);
+    for (std::size_t k = 0; k < terms_.size(); ++k) {
+      places_.emplace_back();
+      for (const CourseColumns& one : grids_[k])
+        places_.back().push_back(pool_->add(one.columns, terms_[k].effect->linear));
+    }
+    pool_->finish();
+    sides_.emplace(*pool_, y_);
+    std::vector<std::size_t> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double share : {0.0, 0.5, 1.0}) {
+      std::vector<std::size_t> at;
+      for (std::size_t k = 0; k < terms_.size(); ++k)  // neighbours begin apart
+        at.push_back(static_cast<std::size_t>(
+            (k % 2 == 0 ? share : 1.0 - share) * static_cast<double>(grids_[k].size() - 1)));
+      const double l = descend(at);
+      if (best.empty() || l < least) least = l, best = at;
+    }
+    for (std::size_t k = 0; k < terms_.size(); ++k) {
+      chosen_[k] = grids_[k][best[k]];
+      chosen_[k].columns = data_.without_zeros(std::move(chosen_[k].columns));
+      terms_[k].shape = chosen_[k].shape;
+    }
+  }
+
+  double descend(std::vector<std::size_t>& at) const {
+    constexpr int most_rounds = 8;
+    double least = level_with(at);
     for (int round = 0; round < most_rounds; ++round) {
       bool changed = false;
-      for (std::size_t k = 0; k < terms_.size(); ++k) {
-        if (grids_[k].size() < 2) continue;
-        const MatrixXd basis = basis_without(k);
-        std::size_t best = 0;
-        double least = std::numeric_limits<double>::infinity();
-        for (std::size_t g = 0; g < grids_[k].size(); ++g)
-          if (const double s = left(basis, grids_[k][g].columns); s < least) least = s, best = g;
-        changed = changed || terms_[k].shape != grids_[k][best].shape;
-        terms_[k].shape = grids_[k][best].shape;
-        chosen_[k] = grids_[k][best];
-      }
+      for (std::size_t k = 0; k < at.size(); ++k)
+        for (std::size_t g = 0; g < grids_[k].size(); ++g) {
+          std::vector<std::size_t> other = at;
+          other[k] = g;
+          if (const double l = level_with(other); l < least) least = l, at = other, changed = true;
+        }
       if (!changed) break;
     }
+    return least;
+  }
+
+  /// The same with columns that are in no pool.
+  double level_of_chosen(std::size_t k, const MatrixXd& instead) const {
+    CoursePool pool(data_);
+    std::vector<Index> columns;
+    for (std::size_t t = 0; t < terms_.size(); ++t)
+      for (const Index at : pool.add(t == k ? instead : chosen_[t].columns, terms_[t].effect->linear))
+        columns.push_back(at);
+    pool.finish();
+    return level(left_out(pool, CourseSides(pool, y_), columns));
   }
 
   MatrixXd columns_at(const Term& term, const std::vector<double>& shape) const {
@@ -102,12 +123,11 @@ class CourseFit {
     for (int round = 0; round < 2; ++round)
       for (std::size_t k = 0; k < terms_.size(); ++k) {
         if (searched_[k] == 0) continue;
-        const MatrixXd basis = basis_without(k);
-        for (std::size_t s = 0; s < terms_[k].shape.size(); ++s) refine(k, s, basis);
+        for (std::size_t s = 0; s < terms_[k].shape.size(); ++s) refine(k, s);
       }
   }
 
-  void refine(std::size_t k, std::size_t s, const MatrixXd& basis) {
+  void refine(std::size_t k, std::size_t s) {
     const Effect::Shape& shape = terms_[k].effect->shapes[s];
     if (!shape.continuous) return;
     const std::vector<double> grid = shape.grid(data_.part().table, terms_[k].axis);
@@ -123,11 +143,11 @@ class CourseFit {
       at[s] = value;
       return at;
     };
-    const auto f = [&](double v) { return left(basis, columns_at(terms_[k], with(v))); };
+    const auto f = [&](double v) { return level_of_chosen(k, columns_at(terms_[k], with(v))); };
     constexpr int steps = 12;
     const auto bracket = math::golden_section(f, low, high, steps);
     const double best = 0.5 * (bracket.low + bracket.high);
-    if (f(best) < left(basis, chosen_[k].columns)) {
+    if (f(best) < level_of_chosen(k, chosen_[k].columns)) {
       terms_[k].shape = with(best);
       chosen_[k] = {terms_[k].shape, columns_at(terms_[k], terms_[k].shape)};
     }
@@ -262,7 +282,10 @@ class CourseFit {
   MatrixXd y_;
   std::vector<char> searched_;
   std::vector<std::vector<CourseColumns>> grids_;
-  std::vector<CourseColumns> chosen_;
+  std::vector<CourseColumns> chosen_;  ///< columns without zeros
+  std::optional<CoursePool> pool_;
+  std::vector<std::vector<std::vector<Index>>> places_;  ///< in the pool: of each term and shape
+  std::optional<CourseSides> sides_;
 };
 
 }  // namespace

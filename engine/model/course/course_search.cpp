@@ -11,7 +11,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "course.h"
-#include "course_data.h"
+#include "course_pool.h"
 #include "nonio/sdk/splitmix64.h"
 
 namespace nonio::model {
@@ -21,13 +21,12 @@ namespace {
 using Set = std::vector<std::size_t>;  // of entries, ascending
 
 // docs/dev/constants.md, M40.
-constexpr std::size_t most_terms = 6, kept_sets = 3, copies = 100;
+constexpr std::size_t most_terms = 6, kept_sets = 12, copies = 100;
 constexpr double worth_a_term = 0.9;   // of the RMS of what is left out
 constexpr double same_rms = 1.05;         // RMS of two explanations that cannot be separated
 constexpr double named_p = 0.01;
 constexpr double of_floor = 1.5;       // what noise explains
 constexpr std::size_t most_instances = 64;
-constexpr double most_per_kelvin = 50e-6;  // m/K: two metres of aluminium
 
 /// A shape of an effect that is not in the model.
 struct Entry {
@@ -35,124 +34,6 @@ struct Entry {
   std::vector<double> shape;
   std::vector<Index> columns;  ///< of the pool
 };
-
-/// Columns of all entries, each once and of unit length, and their products in each block.
-class Pool {
- public:
-  explicit Pool(const CourseData& data) : data_(data) {}
-
-  /// `per_kelvin`: their coefficients are displacements per kelvin.
-  std::vector<Index> add(MatrixXd columns, const std::vector<Effect::Parameter>& of) {
-    columns = data_.without_zeros(std::move(columns));
-    const VectorXd length = columns.colwise().norm().cwiseMax(1e-300).transpose();
-    columns = of_unit_length(std::move(columns));
-    std::vector<Index> places;
-    for (Index k = 0; k < columns.cols(); ++k) {
-      const auto p = std::min(static_cast<std::size_t>(k), of.size() - 1);
-      const bool per_kelvin = of[p].quantity == Quantity::deviation_per_kelvin;
-      places.push_back(add_one(columns.col(k), per_kelvin ? most_per_kelvin * length(k)
-                                                          : std::numeric_limits<double>::infinity()));
-    }
-    return places;
-  }
-
-  void finish() {
-    all_.resize(data_.size(), static_cast<Index>(columns_.size()));
-    for (std::size_t k = 0; k < columns_.size(); ++k) all_.col(static_cast<Index>(k)) = columns_[k];
-    columns_.clear();
-    whole_ = MatrixXd::Zero(all_.cols(), all_.cols());
-    for (Index b = 0; b < CourseData::blocks; ++b) {
-      const MatrixXd rows = block(all_, b);
-      of_block_.push_back(math::transposed_product(rows, rows));
-      whole_ += of_block_.back();
-    }
-  }
-
-  MatrixXd block(const MatrixXd& of, Index b) const {
-    const Index from = data_.begin_of(b);
-    return of.middleRows(from, data_.begin_of(b + 1) - from);
-  }
-  /// Largest coefficient of a column that a body can have.
-  double most(Index k) const { return most_[static_cast<std::size_t>(k)]; }
-  const MatrixXd& all() const { return all_; }
-  const MatrixXd& whole() const { return whole_; }
-  const MatrixXd& of_block(Index b) const { return of_block_[static_cast<std::size_t>(b)]; }
-  const CourseData& data() const { return data_; }
-
- private:
-  Index add_one(const VectorXd& column, double most) {
-    const auto key = std::pair(column(column.size() / 3), column(column.size() - 1));
-    for (const Index known : places_[key])
-      if (columns_[static_cast<std::size_t>(known)] == column) return known;
-    places_[key].push_back(static_cast<Index>(columns_.size()));
-    columns_.push_back(column);
-    most_.push_back(most);
-    return static_cast<Index>(columns_.size()) - 1;
-  }
-
-  const CourseData& data_;
-  std::vector<VectorXd> columns_;
-  std::vector<double> most_;
-  std::map<std::pair<double, double>, std::vector<Index>> places_;
-  MatrixXd all_, whole_;
-  std::vector<MatrixXd> of_block_;
-};
-
-/// Products of the pool with displacements: the same for many displacements at once.
-struct Sides {
-  std::vector<MatrixXd> of_block;  ///< pool x displacements
-  MatrixXd whole;
-  std::vector<Eigen::RowVectorXd> squares;  ///< in each block
-
-  Sides(const Pool& pool, const MatrixXd& displacements) {
-    whole = MatrixXd::Zero(pool.all().cols(), displacements.cols());
-    for (Index b = 0; b < CourseData::blocks; ++b) {
-      const MatrixXd rows = pool.block(displacements, b);
-      of_block.push_back(math::transposed_product(pool.block(pool.all(), b), rows));
-      whole += of_block.back();
-      squares.push_back(rows.colwise().squaredNorm());
-    }
-  }
-};
-
-/// Mean squares of what is left out, of each displacement; infinite where the columns do not say
-/// what they are.
-Eigen::RowVectorXd left_out(const Pool& pool, const Sides& sides, const std::vector<Index>& columns) {
-  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(sides.whole.cols());
-  const auto p = static_cast<Index>(columns.size());
-  MatrixXd normal(p, p), own(p, p), right(p, sum.size()), here(p, sum.size());
-  for (Index b = 0; b < CourseData::blocks; ++b) {
-    const MatrixXd& block = pool.of_block(b);
-    const MatrixXd& side = sides.of_block[static_cast<std::size_t>(b)];
-    for (Index i = 0; i < p; ++i) {
-      const Index at = columns[static_cast<std::size_t>(i)];
-      here.row(i) = side.row(at);
-      right.row(i) = sides.whole.row(at) - here.row(i);
-      for (Index k = 0; k <= i; ++k) {
-        const Index other = columns[static_cast<std::size_t>(k)];
-        own(i, k) = own(k, i) = block(at, other);
-        normal(i, k) = normal(k, i) = pool.whole()(at, other) - own(i, k);
-      }
-    }
-    sum += sides.squares[static_cast<std::size_t>(b)];
-    if (p == 0) continue;
-    const Eigen::LLT<MatrixXd> llt(normal);
-    constexpr double least = 1e-4;  // of a column of unit length, beside the others
-    if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > least))
-      return Eigen::RowVectorXd::Constant(sum.size(), std::numeric_limits<double>::infinity());
-    const MatrixXd x = math::solutions(llt, right);
-    for (Index i = 0; i < p; ++i) {
-      const double most = pool.most(columns[static_cast<std::size_t>(i)]);
-      for (Index k = 0; k < x.cols() && std::isfinite(most); ++k)
-        if (!(std::fabs(x(i, k)) <= most)) sum(k) = std::numeric_limits<double>::infinity();
-    }
-    sum += (x.cwiseProduct(math::product(own, x) - 2.0 * here)).colwise().sum();
-  }
-  return sum.cwiseMax(1e-300) / static_cast<double>(pool.data().size());
-}
-
-/// Half the mean logarithm over displacements that are searched together: ln of an RMS.
-double level(const Eigen::RowVectorXd& squares) { return 0.5 * squares.array().log().mean(); }
 
 /// What a search finds in copies of a remainder: improvements, in logarithms of the RMS. Largest of
 /// many: a Gumbel distribution.
@@ -186,7 +67,7 @@ class CourseSearch {
           instances[term.effect->info.name] > most_instances)
         continue;
       for (CourseColumns& one : columns_on_grid(data_, term))
-        entries_.push_back({t, std::move(one.shape), pool_.add(std::move(one.columns), term.effect->linear)});
+        entries_.push_back({t, std::move(one.shape), pool_.add(one.columns, term.effect->linear)});
     }
     pool_.finish();
     displacements_ = data_.without_zeros(data_.displacements());
@@ -226,6 +107,20 @@ class CourseSearch {
     return out;
   }
 
+  /// Effects of the same channel, which show only together: fast one way and slowly back.
+  void add_pairs(std::map<Set, double>& grown) const {
+    for (std::size_t a = 0; a < entries_.size(); ++a)
+      for (std::size_t b = a + 1; b < entries_.size(); ++b) {
+        if (entries_[a].term == entries_[b].term ||
+            catalogue_[entries_[a].term].axis.name != catalogue_[entries_[b].term].axis.name)
+          continue;
+        Set pair{a, b};
+        if (grown.contains(pair)) continue;
+        const double l = level_of(pair);
+        grown.emplace(std::move(pair), l);
+      }
+  }
+
   /// The smallest set that no larger one betters by a tenth for each term more.
   Set best() const {
     std::vector<Set> beam{{}};
@@ -241,6 +136,7 @@ class CourseSearch {
               grown.emplace(std::move(more), l);
             }
           }
+      if (size == 2) add_pairs(grown);
       std::vector<std::pair<Set, double>> all(grown.begin(), grown.end());
       if (all.empty()) break;
       const auto last = all.begin() + static_cast<std::ptrdiff_t>(std::min(kept_sets, all.size()));
@@ -268,20 +164,13 @@ class CourseSearch {
   /// any of them.
   InCopies chance_beside(const Set& set) const {
     const std::vector<Index> columns = columns_of(set);
-    MatrixXd rest = displacements_;
-    if (!columns.empty()) {
-      MatrixXd a(data_.size(), static_cast<Index>(columns.size()));
-      for (std::size_t k = 0; k < columns.size(); ++k)
-        a.col(static_cast<Index>(k)) = pool_.all().col(columns[k]);
-      const Eigen::HouseholderQR<MatrixXd> qr(a);
-      math::take_out(math::orthonormal(qr, a.cols()), rest);
-    }
+    const MatrixXd rest = pool_.remainder(columns, data_.displacements());
     const Index q = rest.cols();
     MatrixXd made(data_.size(), q * static_cast<Index>(copies));
     SplitMix64 random(seed_);
     for (std::size_t c = 0; c < copies; ++c)
       made.middleCols(q * static_cast<Index>(c), q) = data_.without_zeros(copy_of(rest, random));
-    const Sides sides(pool_, made);
+    const CourseSides sides(pool_, made);
     const Eigen::RowVectorXd before = left_out(pool_, sides, columns);
     InCopies out;
     out.found.assign(copies, 0.0);
@@ -353,13 +242,13 @@ class CourseSearch {
   }
 
   CourseData data_;
-  Pool pool_;
+  CoursePool pool_;
   const std::vector<Term>& catalogue_;
   std::uint64_t seed_;
   std::vector<Index> base_;
   std::vector<Entry> entries_;
   MatrixXd displacements_;
-  std::optional<Sides> sides_;
+  std::optional<CourseSides> sides_;
 };
 
 /// Candidates and verdict from the best set.
@@ -376,13 +265,17 @@ class CourseExplanation {
     set_ = search_.best();
     const auto singles = search_.best_beside({});
     judge_members();
-    const double all = search_.level_of(set_);
+    const double alone = search_.level_of({}), all = search_.level_of(set_);
     // Evidence in units of independent bins: 2 ln of a likelihood ratio.
     weight_ = static_cast<double>(out_.comparison.fit.redundancy) /
               repetition(out_.comparison.fit.noise.measured);
     weight_ = std::max(weight_, 1.0) * 2.0;
     const InCopies further = set_.empty() ? by_chance : search_.chance_beside(set_);
-    for (const Member& member : members_) add_member(member, all);
+    for (Member& member : members_) {
+      const auto single = singles.find(search_.entry(member.entry).term);
+      if (single != singles.end()) member.alone = alone - single->second.second;
+      add_member(member, all);
+    }
     const auto beside = set_.empty() ? singles : search_.best_beside(set_);
     for (const auto& [term, one] : singles) {
       if (search_.has_term(set_, term)) continue;
@@ -401,6 +294,7 @@ class CourseExplanation {
   struct Member {
     std::size_t entry;
     double loss, p;
+    double alone = 0.0;  ///< what it improves by itself
   };
 
   /// A set in which noise could replace every single effect shows nothing.
@@ -421,14 +315,14 @@ class CourseExplanation {
   void add_member(const Member& member, double all) {
     const std::size_t e = member.entry;
     const Set others = CourseSearch::without(set_, e);
-    add(e, member.loss, member.p);
+    add(e, std::max(member.loss, member.alone), member.p);
     Candidate& c = out_.candidates.back();
     // What takes its place as well, cannot be separated from it.
     for (const auto& [term, one] : search_.best_beside(others))
       if (term != search_.entry(e).term && !search_.has_term(set_, term) &&
           one.second < all + std::log(same_rms))
         c.aliases.push_back(search_.term_of(one.first).name());
-    if (member.p < named_p) certain_.emplace_back(member.loss, c.term.name());
+    if (member.p < named_p) certain_.emplace_back(member.alone, c.term.name());
   }
 
   void add(std::size_t e, double gain, double p) {

@@ -56,7 +56,7 @@ std::vector<double> lagged(const Observations::Channel& channel, double tau,
 }
 
 std::vector<double> time_constants_for(const std::vector<double>& time) {
-  constexpr std::size_t least_times = 12, most = 12;
+  constexpr std::size_t least_times = 12, most = 18;
   std::vector<double> t = time;
   std::sort(t.begin(), t.end());
   t.erase(std::unique(t.begin(), t.end()), t.end());
@@ -64,7 +64,7 @@ std::vector<double> time_constants_for(const std::vector<double>& time) {
   const double duration = t.back() - t.front();
   const double interval = duration / static_cast<double>(t.size() - 1);
   std::vector<double> out;
-  for (double tau = duration / 6.0; tau >= 4.0 * interval && out.size() + 1 < most; tau *= 0.5)
+  for (double tau = duration / 6.0; tau >= 4.0 * interval && out.size() + 1 < most; tau *= std::sqrt(0.5))
     out.push_back(tau);
   out.push_back(0.0);
   std::reverse(out.begin(), out.end());

@@ -3,9 +3,10 @@
 // (sdk/channels.h); T, T1, T2: temperatures, degC; n: a speed or a load; t: time since the first reading, s.
 //
 //     heat:T               g L(T, tau)                      g: m/K
-//     heat-two-lags:T      g1 L(T, tau1) + g2 L(T, tau2)    g1, g2: m/K
+//     heat-slow:T          g L(T, tau), tau longer than that of heat:T    g: m/K
 //     heat-difference:T1-T2   g (L(T1, tau) - L(T2, tau))   g: m/K
 //     heat-source:n        a L(|n/n0|^m, tau)               a: m at the largest n0; m: 1 or 2
+//     heat-source-slow:n   a L(|n/n0|^m, tau), tau longer than that of heat-source:n
 //     drift:time           v t                              v: m/s
 //     settling:time        z exp(-t/tau)                    z: m
 #include <algorithm>
@@ -80,15 +81,20 @@ Effect::Shape decay(const char* name, const char* help) {
           }};
 }
 
-/// The shorter or the longer half of the lags: two that are equal cannot be separated.
-Effect::Shape half(const char* name, const char* help, bool slow) {
+/// The longer half of the lags.
+Effect::Shape slow(const char* name, const char* help) {
   return {.parameter = {name, help, Quantity::time},
-          .grid = [slow](const Observations& o, const Axis&) {
+          .grid = [](const Observations& o, const Axis&) {
             const std::vector<double> all = time_constants_for(o.time);
-            const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-            return slow ? std::vector<double>(middle, all.end())
-                        : std::vector<double>(all.begin(), middle);
+            return std::vector<double>(
+                all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
           }};
+}
+
+Effect::Shape power() {
+  return {.parameter = {"m", "power of the channel", Quantity::number},
+          .grid = [](const Observations&, const Axis&) { return std::vector<double>{1.0, 2.0}; },
+          .continuous = false};
 }
 
 tl::unexpected<Error> no_channel(const std::string& name) {
@@ -98,13 +104,8 @@ tl::unexpected<Error> no_channel(const std::string& name) {
 Expected<Columns> heat(const Observations& o, const Axis& of, const std::vector<double>& shape) {
   const Channel* c = o.channel(of.name);
   if (c == nullptr) return no_channel(of.name);
-  // Two lags that are nearly the same are the slope of one.
-  constexpr double least_ratio = 4.0;
-  if (shape.size() == 2 && !(shape[1] >= least_ratio * shape[0]))
-    return fail("expected a slow time constant of at least four times the fast one");
-  Columns out;
-  for (const double tau : shape) out.push_back(lagged(*c, tau, o.time));
-  return out;
+  if (shape.size() != 1) return fail("heat: expected a time constant");
+  return Columns{lagged(*c, shape[0], o.time)};
 }
 
 Expected<Columns> difference(const Observations& o, const Axis& of,
@@ -169,24 +170,21 @@ NONIO_PLUGIN(registry) {
   registry.add(effect("heat", "A displacement follows a measured temperature with a lag",
                       {{"g", "displacement per kelvin", per_kelvin}},
                       {lag("tau", "time constant of the lag")}, temperatures, heat));
-  registry.add(effect(
-      "heat-two-lags", "A displacement follows a measured temperature fast and slowly",
-      {{"g1", "displacement per kelvin that follows fast", per_kelvin},
-       {"g2", "displacement per kelvin that follows slowly", per_kelvin}},
-      {half("tau1", "time constant of the fast part", false),
-       half("tau2", "time constant of the slow part", true)},
-      temperatures, heat));
+  registry.add(effect("heat-slow",
+                      "A second, slower displacement follows a measured temperature too",
+                      {{"g", "displacement per kelvin", per_kelvin}},
+                      {slow("tau", "time constant of the slow part")}, temperatures, heat));
   registry.add(effect("heat-difference", "A structure bends with the difference of two temperatures",
                       {{"g", "displacement per kelvin of difference", per_kelvin}},
                       {lag("tau", "time constant of the lag")}, differences, difference));
   registry.add(effect(
       "heat-source", "A displacement follows a speed or a load with a lag",
       {{"a", "displacement at the largest value, settled", Quantity::deviation}},
-      {decay("tau", "time constant"),
-       {.parameter = {"m", "power of the channel", Quantity::number},
-        .grid = [](const Observations&, const Axis&) { return std::vector<double>{1.0, 2.0}; },
-        .continuous = false}},
-      sources, source));
+      {decay("tau", "time constant"), power()}, sources, source));
+  registry.add(effect(
+      "heat-source-slow", "A second, slower displacement follows a speed or a load too",
+      {{"a", "displacement at the largest value, settled", Quantity::deviation}},
+      {slow("tau", "time constant of the slow part"), power()}, sources, source));
   registry.add(effect("drift", "A displacement grows in proportion to time",
                       {{"v", "rate", Quantity::deviation_per_time}}, {}, of_time, drift));
   registry.add(effect("settling", "A displacement that dies away from the first reading on",

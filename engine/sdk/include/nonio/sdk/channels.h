@@ -15,8 +15,8 @@ namespace nonio {
 std::vector<double> lagged(const Observations::Channel& channel, double tau,
                            const std::vector<double>& time);
 
-/// Time constants that readings at these times can show: 0, then by factors of 2 from four sampling
-/// intervals to a sixth of the duration, s; at most 12. Empty for fewer than 12 different times.
+/// Time constants that readings at these times can show: 0, then by factors of the root of 2 to a sixth
+/// of the duration, not below four sampling intervals, s; at most 18. Empty for fewer than 12 different times.
 std::vector<double> time_constants_for(const std::vector<double>& time);
 
 }  // namespace nonio

@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tests over time with a hidden cause, from the heat equation on rods and blocks: what does `explain` name?
+
+  heat_stories.py NONIO [--count N] [--seed S] [--story NAME ...] [--auto]
+
+Every story states which first names are right; a verdict `missing` with another name is wrong. Stories without a
+recorded cause must end as `unknown`, those without any as `nothing`. Temperatures are those of places on a body, by
+explicit finite differences; the program knows only first-order lags. Prints each share with its 95 % interval (Wilson).
+"""
+import argparse
+import json
+import math
+import pathlib
+import random
+import subprocess
+import tempfile
+
+STEP = 30.0  # s, of the file
+ALPHA = 11.5  # um/(m K)
+
+
+def wilson(hits, count):
+    z = 1.959964
+    if count == 0:
+        return 0.0, 1.0
+    p, n = hits / count, count
+    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
+    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+    return middle - half, middle + half
+
+
+def speeds(rng, rows):
+    """A spindle that runs in steps with rests between."""
+    out, level = [], 0.0
+    while len(out) < rows:
+        level = rng.choice([0, 0, 2000, 4000, 6000, 8000, 10000])
+        out += [level] * int(rng.uniform(40, 180) * 60 / STEP)
+    return out[:rows]
+
+
+def shop(rng, rows):
+    """Air of a shop: a day, weather, a slow wandering."""
+    phase, size, walk, out = rng.uniform(0, 2 * math.pi), rng.uniform(0.8, 3.0), 0.0, []
+    for i in range(rows):
+        walk = 0.999 * walk + rng.gauss(0, 0.02)
+        out.append(21.0 + size * math.sin(2 * math.pi * i * STEP / 86400 + phase) + walk)
+    return out
+
+
+def rod(rng, air, power, length, diffusivity, loss, nodes=24):
+    """Temperatures of a rod heated at its first node, cooled along its side by the air: rows x nodes."""
+    dx = length / nodes
+    inner = max(1, math.ceil(STEP * diffusivity / (0.4 * dx * dx)))
+    dt = STEP / inner
+    t, out = [air[0]] * nodes, []
+    for a, p in zip(air, power):
+        for _ in range(inner):
+            left = [t[0]] + t[:-1]
+            right = t[1:] + [t[-1]]
+            t = [x + dt * (diffusivity * (u + v - 2 * x) / (dx * dx) + loss * (a - x))
+                 for x, u, v in zip(t, left, right)]
+            t[0] += dt * p
+        out.append(t)
+    return out
+
+
+def block(air, rate):
+    """A block that follows the air."""
+    t, out = air[0], []
+    for a in air:
+        t += STEP * rate * (a - t)
+        out.append(t)
+    return out
+
+
+def growth(rows, first, last, length):
+    """Of the stretch between two nodes, um."""
+    nodes = len(rows[0])
+    return [ALPHA * length / nodes * sum(x - y for x, y in zip(row[first:last], rows[0][first:last])) for row in rows]
+
+
+def story(name, rng):
+    rows = int(rng.uniform(10, 20) * 3600 / STEP)
+    air = shop(rng, rows)
+    speed = speeds(rng, rows)
+    top = max(speed) or 1.0
+    power = [rng_power * (s / top) ** 1.5 for s in speed for rng_power in [0.02]]
+    spindle = rod(rng, air, power, 0.6, 1.2e-5, rng.uniform(2e-4, 6e-4))
+    column = block(air, rng.uniform(5e-5, 3e-4))
+    back_air = [a + rng_b for a, rng_b in zip(air, shop(rng, rows))]
+    back = block([b - 20.0 for b in back_air], rng.uniform(5e-5, 3e-4))
+    coolant = [24 + rng.uniform(0.8, 1.2) * (1 if (i * STEP // 1500) % 2 else -1) for i in range(rows)]
+    coolant = block(coolant, 2e-3)
+    channels = {"speed_rpm": speed, "bearing_c": [r[1] for r in spindle], "nose_c": [r[9] for r in spindle],
+                "air_c": air, "column_c": column, "back_c": back, "coolant_c": coolant}
+    size = rng.uniform(0.3, 1.0)
+    heated = {"heat:bearing", "heat-slow:bearing", "heat-source:speed", "heat:nose", "heat-slow:nose"}
+    y, right = [0.0] * rows, set()
+    if name == "spindle":
+        y, right = growth(spindle, 0, 8, 0.6), heated
+    elif name == "nose":
+        y, right = growth(spindle, 8, 12, 2.0), {"heat:nose", "heat-slow:nose"}
+    elif name == "column":
+        y = [ALPHA * 3 * size * (c - column[0]) for c in column]
+        right = {"heat:column", "heat-slow:column", "heat:air", "heat-slow:air"}
+    elif name == "bending":
+        y = [12 * size * ((c - column[0]) - (b - back[0])) for c, b in zip(column, back)]
+        right = {"heat-difference:back-column", "heat:column", "heat:back", "heat-slow:column",
+                 "heat-slow:back"}
+    elif name == "coolant":
+        y = [6 * size * (c - coolant[0]) for c in block(coolant, 1e-3)]
+        right = {"heat:coolant", "heat-slow:coolant"}
+    elif name == "source-unsensed":
+        y, right = growth(spindle, 0, 10, 0.8), {"heat-source:speed"}
+        del channels["bearing_c"], channels["nose_c"]
+    elif name == "air-unsensed":
+        place, hidden = 0.0, []
+        for _ in range(rows):
+            place += rng.gauss(0, 0.1)
+            hidden.append(place)
+        hidden = block(hidden, 1e-4)
+        y = [30 * size * (h - hidden[0]) for h in hidden]
+    elif name == "door":
+        level, cold = 0.0, []
+        left = 0
+        for _ in range(rows):
+            if left == 0 and rng.random() < 0.004:
+                left = rng.randint(20, 160)
+            level += STEP * 5e-4 * ((-4.0 if left else 0.0) - level)
+            left = max(0, left - 1)
+            cold.append(level)
+        y = [8 * size * c for c in cold]
+    elif name == "cycle-unsensed":
+        period = rng.uniform(900, 2400)
+        y = [3 * size * math.sin(2 * math.pi * i * STEP / period) for i in range(rows)]
+        del channels["coolant_c"]
+    elif name == "two":
+        a, b = growth(spindle, 0, 8, 0.6), [ALPHA * 2 * (c - column[0]) for c in column]
+        y = [p + q for p, q in zip(a, b)]
+        right = heated | {"heat:column", "heat-slow:column", "heat:air", "heat-slow:air"}
+    noise = rng.uniform(0.03, 0.15)
+    y = [v + rng.gauss(0, noise) for v in y]
+    for key in channels:
+        if key.endswith("_c"):
+            channels[key] = [v + rng.gauss(0, 0.02) for v in channels[key]]
+    return channels, y, right
+
+
+STORIES = {"spindle": "missing", "nose": "missing", "column": "missing", "bending": "missing", "coolant": "missing",
+           "source-unsensed": "missing", "two": "missing", "air-unsensed": "unknown", "door": "unknown",
+           "cycle-unsensed": "unknown", "none": "nothing"}
+
+MANIFEST = """format = 1
+[campaign]
+id = "{id}"
+date = 2026-11-03
+[machine]
+maker = "M"
+model = "T"
+serial = "1"
+structure = "other"
+[[measurement]]
+id = "warm"
+kind = "thermal"
+file = "warm.csv"
+"""
+
+
+def explain(nonio, folder, name, seed, auto):
+    rng = random.Random(f"{seed} {name}")
+    channels, y, right = story(name, rng)
+    folder.mkdir()
+    (folder / "campaign.toml").write_text(MANIFEST.format(id=folder.name))
+    with open(folder / "warm.csv", "w", encoding="utf-8") as out:
+        out.write(",".join(["time_s", "d_um", *channels]) + "\n")
+        for i, row in enumerate(zip(y, *channels.values())):
+            out.write(f"{i * STEP:.0f}," + ",".join(f"{v:.4f}" for v in row) + "\n")
+    done = subprocess.run([nonio, "explain", folder, "--json", *(["--auto"] if auto else [])], capture_output=True,
+                          text=True, check=False)
+    return json.loads(done.stdout), right
+
+
+def main():
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("nonio")
+    arguments.add_argument("--count", type=int, default=20)
+    arguments.add_argument("--seed", type=int, default=random.randrange(10**6))
+    arguments.add_argument("--story", nargs="+", default=list(STORIES))
+    arguments.add_argument("--auto", action="store_true")
+    options = arguments.parse_args()
+    print(f"seed {options.seed}, {options.count} tests of each story\n")
+    print("| story | right verdict | a wrong name | verdicts |\n|---|---|---|---|")
+    sums = {}
+    with tempfile.TemporaryDirectory() as top:
+        for name in options.story:
+            hits, wrong, seen = 0, 0, {}
+            for k in range(options.count):
+                folder = pathlib.Path(top) / f"{name}-{k}"
+                answer, right = explain(options.nonio, folder, name, options.seed * 1000 + k, options.auto)
+                verdict = answer["verdict"]
+                text = verdict.get("effect") or verdict["kind"]
+                seen[text] = seen.get(text, 0) + 1
+                good = verdict["kind"] == STORIES[name] and (not right or verdict.get("effect") in right)
+                hits += good
+                wrong += verdict["kind"] == "missing" and verdict.get("effect") not in right
+            low, high = wilson(hits, options.count)
+            most = ", ".join(f"{v} {k}" for k, v in sorted(seen.items(), key=lambda item: -item[1])[:4])
+            print(f"| {name} | {hits}/{options.count} ({100 * low:.0f} .. {100 * high:.0f} %) | {wrong} | {most} |",
+                  flush=True)
+            group = sums.setdefault(STORIES[name], [0, 0, 0])
+            group[0] += hits
+            group[1] += wrong
+            group[2] += options.count
+    for kind, (hits, wrong, count) in sums.items():
+        low, high = wilson(hits, count)
+        print(f"\n{kind}: right {hits}/{count} ({100 * low:.1f} .. {100 * high:.1f} %), wrong names {wrong}")
+
+
+if __name__ == "__main__":
+    main()
