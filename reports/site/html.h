@@ -2,10 +2,12 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "nonio/reports/font.h"
 #include "nonio/reports/site.h"
 #include "nonio/reports/wording.h"
 
@@ -16,7 +18,8 @@ struct Page {
   const SiteHistory& site;
   const Templates& templates;
   const Wording& words;
-  std::string to_root;  ///< "" or "../"
+  std::string to_root;                   ///< "" or "../"
+  std::shared_ptr<const Fonts> fonts{};  ///< that charts are measured with
 };
 
 std::string html(std::string_view text);

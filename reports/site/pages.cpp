@@ -1,12 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pages.h"
 
+#include <array>
+
 namespace nonio::reports {
+
+namespace {
+
+Expected<std::shared_ptr<const Fonts>> fonts_of(const Templates& templates) {
+  std::array<FontFile, 2> files{
+      {{"", "fonts/LiberationSans-Regular.ttf"}, {"", "fonts/LiberationSans-Bold.ttf"}}};
+  for (auto& [bytes, name] : files) {
+    const auto file = templates.files.find(name);
+    if (file == templates.files.end())
+      return fail(Error{"this font is missing", "templates/" + std::string(name)});
+    bytes = file->second;
+  }
+  return shared_fonts(files[0], files[1]);
+}
+
+}  // namespace
 
 Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Templates& templates,
                                            const std::string& language) {
   const Wording words(templates, language, {"site"});
-  const site::Page root{history, templates, words, ""};
+  const auto fonts = fonts_of(templates);
+  if (!fonts) return fail(fonts.error());
+  const site::Page root{history, templates, words, "", *fonts};
   std::vector<Artifact> out{{"index.html", site::index_page(root)},
                             {"due.html", site::due_page(root)},
                             {"due.ics", site::due_calendar(root)},
@@ -19,7 +39,9 @@ Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Tem
 Expected<Artifact> machine_page_of(const SiteHistory& history, const MachineHistory& machine,
                                    const Templates& templates, const std::string& language) {
   const Wording words(templates, language, {"site"});
-  const site::Page below{history, templates, words, "../"};
+  const auto fonts = fonts_of(templates);
+  if (!fonts) return fail(fonts.error());
+  const site::Page below{history, templates, words, "../", *fonts};
   Artifact page{std::string(machines_folder) + "/" + machine.file,
                 site::machine_page(below, machine)};
   if (auto complete = words.complete(); !complete) return fail(complete.error());
