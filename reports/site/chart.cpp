@@ -53,11 +53,11 @@ Style style() {
 }
 
 /// One thing to those who do not see it, but with links in it a group, so that they reach them.
-std::string picture(const Page& page, const std::string& label, const Plot& plot) {
+Html picture(const Page& page, const std::string& label, const Plot& plot) {
   const Drawing drawn = drawing_of(plot, width, style(), *page.fonts, named);
-  return "<svg class=\"chart\" role=\"" + std::string(drawn.has_links ? "group" : "img") +
-         "\" viewBox=\"0 0 " + fixed_text(width, 0) + ' ' + fixed_text(drawn.height, 0) +
-         "\" aria-label=\"" + html(label) + "\">" + drawn.elements + "</svg>\n";
+  return {"<svg class=\"chart\" role=\"" + std::string(drawn.has_links ? "group" : "img") +
+          "\" viewBox=\"0 0 " + fixed_text(width, 0) + ' ' + fixed_text(drawn.height, 0) +
+          "\" aria-label=\"" + html_of(label).text + "\">" + drawn.elements + "</svg>\n"};
 }
 
 double days(Day day) { return static_cast<double>(day.time_since_epoch().count()); }
@@ -104,7 +104,7 @@ class HistoryPlot {
     fit();
   }
 
-  std::string svg() {
+  Html svg() {
     if (x_.empty()) return {};
     plot_.y_title = unit_text(series_.unit);
     plot_.language = page_.words.language();
@@ -127,7 +127,7 @@ class HistoryPlot {
   }
 
   /// Without rules and words.
-  std::string spark() const {
+  Html spark() const {
     if (x_.empty()) return {};
     const auto y = [this](double v) {
       return fixed_text(22 - 20 * (v - y_.low) / (y_.high - y_.low), 1);
@@ -144,7 +144,7 @@ class HistoryPlot {
       const std::string at = y(limit);
       out += "<line class=\"limit\" x1=\"0\" y1=\"" + at + "\" x2=\"120\" y2=\"" + at + "\"/>";
     }
-    return "<svg class=\"spark\" viewBox=\"0 0 120 24\" aria-hidden=\"true\">" + out + "</svg>";
+    return {"<svg class=\"spark\" viewBox=\"0 0 120 24\" aria-hidden=\"true\">" + out + "</svg>"};
   }
 
  private:
@@ -293,17 +293,16 @@ Curves curves_of(const Page& page, const MachineHistory& machine, const std::str
 
 }  // namespace
 
-std::string history_chart(const Page& page, const MachineHistory& machine,
-                          const HistorySeries& series) {
+Html history_chart(const Page& page, const MachineHistory& machine, const HistorySeries& series) {
   return HistoryPlot(page, machine, series).svg();
 }
 
-std::string spark_line(const Page& page, const HistorySeries& series) {
+Html spark_line(const Page& page, const HistorySeries& series) {
   static const MachineHistory none{};
   return HistoryPlot(page, none, series).spark();
 }
 
-std::string curves_chart(const Page& page, const MachineHistory& machine, const std::string& axis) {
+Html curves_chart(const Page& page, const MachineHistory& machine, const std::string& axis) {
   Curves curves = curves_of(page, machine, axis);
   if (curves.all.empty()) return {};
   for (const ErrorCurve* c : curves.all) {
@@ -318,8 +317,7 @@ std::string curves_chart(const Page& page, const MachineHistory& machine, const 
   return picture(page, page.words.get("site.curves", {{"axis", axis}}), curves.plot);
 }
 
-std::string difference_chart(const Page& page, const MachineHistory& machine,
-                             const std::string& axis) {
+Html difference_chart(const Page& page, const MachineHistory& machine, const std::string& axis) {
   Curves curves = curves_of(page, machine, axis);
   if (curves.all.size() < 2) return {};
   const ErrorCurve &last = *curves.all.back(), &before = *curves.all[curves.all.size() - 2];
@@ -339,7 +337,7 @@ std::string difference_chart(const Page& page, const MachineHistory& machine,
   return picture(page, page.words.get("site.difference", {{"axis", axis}}), curves.plot);
 }
 
-std::string comparison_chart(const Page& page, const ModelComparison& comparison) {
+Html comparison_chart(const Page& page, const ModelComparison& comparison) {
   Plot plot;
   plot.language = page.words.language();
   plot.y_title = unit_text(comparison.unit);

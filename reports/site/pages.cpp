@@ -27,11 +27,17 @@ Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Tem
   const auto fonts = fonts_of(templates);
   if (!fonts) return fail(fonts.error());
   const site::Page root{history, templates, words, "", *fonts};
-  std::vector<Artifact> out{{"index.html", site::index_page(root)},
-                            {"due.html", site::due_page(root)},
-                            {"due.ics", site::due_calendar(root)},
-                            {"instruments.html", site::instruments_page(root)},
-                            {"compare.html", site::compare_page(root)}};
+  using Written = Expected<std::string> (*)(const site::Page&);
+  constexpr std::pair<const char*, Written> pages[] = {{"index.html", site::index_page},
+                                                       {"due.html", site::due_page},
+                                                       {"instruments.html", site::instruments_page},
+                                                       {"compare.html", site::compare_page}};
+  std::vector<Artifact> out{{"due.ics", site::due_calendar(root)}};
+  for (const auto& [name, write] : pages) {
+    auto bytes = write(root);
+    if (!bytes) return fail(bytes.error());
+    out.push_back({name, std::move(*bytes)});
+  }
   if (auto complete = words.complete(); !complete) return fail(complete.error());
   return out;
 }
@@ -42,10 +48,10 @@ Expected<Artifact> machine_page_of(const SiteHistory& history, const MachineHist
   const auto fonts = fonts_of(templates);
   if (!fonts) return fail(fonts.error());
   const site::Page below{history, templates, words, "../", *fonts};
-  Artifact page{std::string(machines_folder) + "/" + machine.file,
-                site::machine_page(below, machine)};
+  auto bytes = site::machine_page(below, machine);
+  if (!bytes) return fail(bytes.error());
   if (auto complete = words.complete(); !complete) return fail(complete.error());
-  return page;
+  return Artifact{std::string(machines_folder) + "/" + machine.file, std::move(*bytes)};
 }
 
 Expected<std::vector<Artifact>> site_pages(const SiteHistory& history, const Templates& templates,
