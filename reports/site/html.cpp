@@ -51,7 +51,7 @@ View page_view(const Page& page, const std::string& title, std::string beside_na
 }
 
 Expected<std::string> written(const Page& page, const std::string& name, const View& view) {
-  return page_text(page.templates, "site/" + name, view, page.words);
+  return page_text("site/" + name, view, page.words);
 }
 
 std::string value_text(const Page& page, double value, std::optional<double> u, Quantity q) {

@@ -2,9 +2,11 @@
 #include "nonio/reports/page.h"
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "nonio/sdk/text.h"
+#include "page_files.h"
 
 namespace nonio::reports {
 
@@ -36,14 +38,13 @@ const View::Value* View::find(std::string_view name) const {
 /// Writes while it reads; what is within a list is read again for each of its views.
 class PageWriter {
  public:
-  PageWriter(const Templates& templates, const Wording& words)
-      : templates_(templates), words_(words) {}
+  PageWriter(const PageFiles& files, const Wording& words) : files_(files), words_(words) {}
 
   std::string out;
 
   Expected<void> file(const std::string& name) {
-    const auto file = templates_.files.find("pages/" + name + ".html");
-    if (file == templates_.files.end()) return fail(Error{"this page is missing", path_of(name)});
+    const auto file = files_.find(name);
+    if (file == files_.end()) return fail(Error{"this page is missing", path_of(name)});
     constexpr std::size_t deepest = 8;
     if (open_.size() >= deepest) return fail(Error{"the page contains itself", path_of(name)});
     open_.push_back({name, file->second});
@@ -149,15 +150,20 @@ class PageWriter {
     return {};
   }
 
-  const Templates& templates_;
+  const PageFiles& files_;
   const Wording& words_;
   std::vector<Open> open_;
   std::vector<const View*> views_;
 };
 
-Expected<std::string> page_text(const Templates& templates, const std::string& name,
-                                const View& view, const Wording& words) {
-  PageWriter writer(templates, words);
+const PageFiles& page_files() {
+  static const PageFiles all(std::begin(embedded_pages), std::end(embedded_pages));
+  return all;
+}
+
+Expected<std::string> page_text(const std::string& name, const View& view, const Wording& words,
+                                const PageFiles& files) {
+  PageWriter writer(files, words);
   writer.enter(view);
   if (auto done = writer.file(name); !done) return fail(done.error());
   return std::move(writer.out);

@@ -187,7 +187,7 @@ Expected<std::string> page_of(const Source& source) {
   view.set("toggling", Html{typeset_html(words.get("page.toggling"))});
   view.set("legend", legend(source, kept));
   view.set("data", Html{workbench::data_of(drawn, kept, false)});
-  return page_text(source.in.templates, "model", view, words);
+  return page_text("model", view, words);
 }
 
 }  // namespace nonio::model_html

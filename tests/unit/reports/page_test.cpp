@@ -11,10 +11,9 @@ using namespace reports;
 
 Expected<std::string> written(const std::string& page, const View& view) {
   Templates templates;
-  templates.files["pages/page.html"] = page;
-  templates.files["pages/part.html"] = "[{{name}}]";
   templates.tables["words/en/site"].values["site.due"] = std::string("Due & paid");
-  return page_text(templates, "page", view, Wording(templates, "en", {"site"}));
+  return page_text("page", view, Wording(templates, "en", {"site"}),
+                   {{"page", page}, {"part", "[{{name}}]"}});
 }
 
 TEST(Page, TextIsEscapedAndMarkupIsNot) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <list>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,7 +37,11 @@ class View {
   std::vector<std::pair<const char*, Value>> values_;
 };
 
-/// The page templates/pages/`name`.html with its values:
+using PageFiles = std::map<std::string, std::string_view, std::less<>>;
+/// The files of templates/pages, which are part of the program: "site/index".
+const PageFiles& page_files();
+
+/// The page `name` with its values:
 ///
 ///     {{name}}              a value, escaped; one that is missing is an error
 ///     {{words.KEY}}         a word in the language of the page
@@ -44,7 +50,7 @@ class View {
 ///     {{>name}}             another file, with the same values
 ///
 /// Within a list a name that its view lacks is that of the view around it.
-Expected<std::string> page_text(const Templates&, const std::string& name, const View&,
-                                const Wording&);
+Expected<std::string> page_text(const std::string& name, const View&, const Wording&,
+                                const PageFiles& = page_files());
 
 }  // namespace nonio::reports
