@@ -85,6 +85,15 @@ TEST(SitePages, AChartShowsCharactersThatTheFontsLack) {
   EXPECT_TRUE(has(pages.at("compare.html"), ">\u05D0-7 &lt;b&gt;\uFFFD</text>"));
 }
 
+TEST(SitePages, ChartsNeedNoFonts) {
+  Templates words_only = templates();
+  words_only.files.clear();
+  const auto pages = site_pages(made_site(), words_only, "en");
+  ASSERT_TRUE(pages) << pages.error().message;
+  for (const Artifact& page : *pages)
+    if (page.name == "compare.html") EXPECT_TRUE(has(page.bytes, ">S-0042</text>"));
+}
+
 TEST(SitePages, PointsOfAChartLeadToTheirReports) {
   const auto pages = pages_of(made_site());
   const std::string& page = pages.at("machines/S-0042.html");
