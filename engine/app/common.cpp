@@ -45,14 +45,11 @@ std::vector<fs::path> Common::template_folders() const {
 
 std::vector<Argument> common_arguments(Common& common) {
   using Takes = Argument::Takes;
-  return {
-      existing(
-          Takes::folder,
-          {"--plugin-path", &common.plugin_paths,
-           "A folder with more plugins; may be given several times. NONIO_PLUGIN_PATH lists such\n"
-           "folders too, separated by ':'."}),
-      {"--json", &common.json, "Machine-readable output on stdout"},
-      {"--quiet", &common.quiet, "No progress; only errors"}};
+  return {existing(Takes::folder, {"--plugin-path", &common.plugin_paths,
+                                   "A folder with more plugins; may be given several times. "
+                                   "NONIO_PLUGIN_PATH lists such folders too, separated by ':'."}),
+          {"--json", &common.json, "Machine-readable output on stdout"},
+          {"--quiet", &common.quiet, "No progress; only errors"}};
 }
 
 Argument templates_argument(Common& common) {
@@ -102,8 +99,8 @@ std::string text_of(const Error& e) {
          (e.column.empty() ? "" : " (" + e.column + ")") + (e.file.empty() ? "" : ": ") + e.message;
 }
 
-int complain(const std::string& verb, const std::string& message, int status) {
-  std::cerr << verb << ": " << message << "\n";
+int complain(const std::string& message, int status) {
+  std::cerr << command_words() << ": " << message << "\n";
   return status;
 }
 

@@ -38,7 +38,8 @@ bool is_day(const std::string& text);
 
 /// "campaign.toml:12 (target_mm): ..."
 std::string text_of(const Error& error);
-/// "nonio compare: ..." on stderr; returns the exit status.
-int complain(const std::string& verb, const std::string& message, int status = exit_usage);
+/// "nonio run: ..." on stderr, with the words of the command as they were typed; returns the
+/// exit status.
+int complain(const std::string& message, int status = exit_usage);
 
 }  // namespace nonio::app

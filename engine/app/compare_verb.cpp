@@ -10,12 +10,11 @@ namespace nonio::app {
 namespace {
 
 int compare(const std::string& folder, const Common& common) {
-  const char* const verb = "nonio compare";
-  auto opened = open_campaign(verb, folder, common, reading::TemplatesFor::terminal);
+  auto opened = open_campaign(folder, common, reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   auto parts = modelling::part_models(open.read, open.campaign().model);
-  if (!parts) return complain(verb, text_of(parts.error()));
+  if (!parts) return complain(text_of(parts.error()));
   const modelling::ModelWords words = words_for(open, common);
   std::vector<std::string> warnings;
   for (const std::string& effect : modelling::unmeasured(open.campaign().model, *parts))
@@ -27,13 +26,13 @@ int compare(const std::string& folder, const Common& common) {
     if (comparison) {
       all.push_back({std::move(part), std::move(*comparison)});
     } else {
-      complain(verb, text_of(comparison.error()));
+      complain(text_of(comparison.error()));
       errors.push_back(comparison.error());
     }
   }
   if (parts->empty())
-    complain(verb, text_of(errors.emplace_back(modelling::nothing_to_compare(open.read))));
-  for (const std::string& warning : warnings) complain(verb, warning);
+    complain(text_of(errors.emplace_back(modelling::nothing_to_compare(open.read))));
+  for (const std::string& warning : warnings) complain(warning);
   if (common.json)
     std::cout << modelling::compare_json(all, open.campaign(), words, warnings, errors);
   else
@@ -46,18 +45,16 @@ int compare(const std::string& folder, const Common& common) {
 
 Verb compare_verb(Common& common) {
   auto folder = std::make_shared<std::string>();
-  return {
-      .name = "compare",
-      .summary = "Compares the model in campaign.toml with the measurements",
-      .arguments = campaign_arguments(*folder, common),
-      .footer =
-          "Shows for each axis the residuals (RMS, largest residual, RMS of left-out runs), the "
-          "noise\n"
-          "floor of repeated readings, the parameters with their uncertainty, and the factors that "
-          "the\n"
-          "residuals depend on: direction, position, run, time, temperature, screw or angle.\n\n"
-          "Example: nonio compare samples/site/02-constant-reversal",
-      .run = [folder, &common] { return compare(*folder, common); }};
+  return {.name = "compare",
+          .summary = "Compares the model in campaign.toml with the measurements",
+          .arguments = campaign_arguments(*folder, common),
+          .footer =
+              "Shows for each axis the residuals (RMS, largest residual, RMS of left-out runs), "
+              "the noise floor of repeated readings, the parameters with their uncertainty, and "
+              "the factors that the residuals depend on: direction, position, run, time, "
+              "temperature, screw or angle.",
+          .examples = {"nonio compare samples/site/02-constant-reversal"},
+          .run = [folder, &common] { return compare(*folder, common); }};
 }
 
 }  // namespace nonio::app

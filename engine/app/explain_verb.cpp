@@ -24,8 +24,7 @@ class Explain {
       : options_(options), common_(common) {}
 
   int run() {
-    auto opened =
-        open_campaign("nonio explain", options_.folder, common_, reading::TemplatesFor::terminal);
+    auto opened = open_campaign(options_.folder, common_, reading::TemplatesFor::terminal);
     if (!opened) return opened.error();
     open_ = std::move(*opened);
     words_.emplace(words_for(open_, common_));
@@ -47,7 +46,7 @@ class Explain {
   }
 
  private:
-  static void tell(const std::string& text) { complain("nonio explain", text); }
+  static void tell(const std::string& text) { complain(text); }
 
   int explain() {
     all_.clear();
@@ -130,7 +129,7 @@ Verb explain_verb(Common& common) {
       .arguments = joined(
           campaign_arguments(options->folder, common),
           {{"--what-if", &options->what_if,
-            "Also predicts what one run more, in each order of directions, would do to the\n"
+            "Also predicts what one run more, in each order of directions, would do to the "
             "uncertainties and to the evidence"},
            {"--auto", &options->automatic,
             "While an effect is missing or certain, add it to campaign.toml; show each step"},
@@ -140,15 +139,11 @@ Verb explain_verb(Common& common) {
             .shows_default = true}}),
       .footer =
           "Tries every effect of the catalogue (`nonio plugins`) that is not in the model. "
-          "Verdicts:\n"
-          "missing (an effect belongs in the model), complete (nothing missing: the model "
-          "explains\n"
-          "everything down to the noise; `nothing` in JSON), unknown (no effect explains the "
-          "remaining\n"
-          "error; it states where), unrepeatable (the readings contradict each other: check the "
-          "machine\n"
-          "first).\n\n"
-          "Example: nonio explain samples/site/02-constant-reversal",
+          "Verdicts: missing (an effect belongs in the model), complete (nothing missing: the "
+          "model explains everything down to the noise; `nothing` in JSON), unknown (no effect "
+          "explains the remaining error; it states where), unrepeatable (the readings contradict "
+          "each other: check the machine first).",
+      .examples = {"nonio explain samples/site/02-constant-reversal"},
       .run = [options, &common] { return Explain(*options, common).run(); }};
 }
 

@@ -79,12 +79,11 @@ void prepare_run(batch::RunOptions& options, const std::string& site, const std:
                  "(the package's service runs as nonio), or --root to say that it is meant\n";
 }
 
-std::optional<int> exit_of_unfinished(const batch::Night& night, const char* verb) {
-  if (night.end == batch::Night::End::refused) return complain(verb, night.error);
+std::optional<int> exit_of_unfinished(const batch::Night& night) {
+  if (night.end == batch::Night::End::refused) return complain(night.error);
   if (night.end == batch::Night::End::interrupted)
-    return complain(verb, "interrupted; the same command goes on where it stopped",
-                    exit_interrupted);
-  if (!night.error.empty()) return complain(verb, night.error, exit_failed);
+    return complain("interrupted; the same command goes on where it stopped", exit_interrupted);
+  if (!night.error.empty()) return complain(night.error, exit_failed);
   return std::nullopt;
 }
 

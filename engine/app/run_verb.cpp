@@ -77,11 +77,10 @@ std::string take_shard(RunWish& wish) {
 
 /// One shard of a planned night.
 int run_part(const batch::RunOptions& options, const Common& common) {
-  const char* const verb = "nonio run --shard";
   Progress progress(common.quiet, common.json);
   const batch::Night night = batch::run_shard(options, progress.events());
   progress.end();
-  if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
+  if (const auto exit = exit_of_unfinished(night)) return *exit;
   const auto left = static_cast<std::size_t>(
       std::count_if(night.campaigns.begin(), night.campaigns.end(),
                     [](const auto& c) { return c.action == batch::CampaignState::Action::todo; }));
@@ -104,20 +103,19 @@ int run_part(const batch::RunOptions& options, const Common& common) {
 }
 
 int run_night(RunWish& wish, const Common& common) {
-  const char* const verb = "nonio run";
-  if (wish.out.empty()) return complain(verb, "--out is empty; expected a folder");
+  if (wish.out.empty()) return complain("--out is empty; expected a folder");
   batch::RunOptions& options = wish.options;
   if (!options.date.empty() && !is_day(options.date))
-    return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
+    return complain("--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   if (!options.only.empty() && (options.force || !options.date.empty()))
-    return complain(verb, "--only goes with neither --force nor --date");
+    return complain("--only goes with neither --force nor --date");
   if (wish.shard == not_given && (options.pack || !wish.scratch.empty()))
-    return complain(verb, "--pack and --scratch are of a shard; expected --shard i/S with them");
+    return complain("--pack and --scratch are of a shard; expected --shard i/S with them");
   if (!wish.scratch.empty() && !options.pack)
-    return complain(verb, "--scratch is where a packed shard works; expected --pack with it");
+    return complain("--scratch is where a packed shard works; expected --pack with it");
   options.scratch = wish.scratch;
   if (wish.shard != not_given) {
-    if (const auto wrong = take_shard(wish); !wrong.empty()) return complain(verb, wrong);
+    if (const auto wrong = take_shard(wish); !wrong.empty()) return complain(wrong);
     prepare_run(options, wish.site, wish.out, common);
     return run_part(options, common);
   }
@@ -125,7 +123,7 @@ int run_night(RunWish& wish, const Common& common) {
   Progress progress(common.quiet, common.json);
   const batch::Night night = batch::run_site(options, progress.events());
   progress.end();
-  if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
+  if (const auto exit = exit_of_unfinished(night)) return *exit;
   // What a night before has already said is said again: a failed campaign is never silent.
   if (!common.json && !options.dry_run) progress.still_failed(night);
   if (options.dry_run)
@@ -154,35 +152,32 @@ Verb run_verb(Common& common) {
            jobs_argument(options),
            {"--force", &options.force, "Do every campaign again, changed or not"},
            {"--only", &options.only,
-            "One campaign (its folder, or its id) of the last night again, changed or\n"
-            "not; all others stay as the night left them, and the night keeps its number"},
+            "One campaign (its folder, or its id) of the last night again, changed or not; all "
+            "others stay as the night left them, and the night keeps its number"},
            {"--verify-results", &options.verify_results,
-            "Compare the digests of all result files, not only of those that look modified; a\n"
+            "Compare the digests of all result files, not only of those that look modified; a "
             "campaign with a modified file is evaluated again"},
            {"--date", &options.date,
-            "Date of the night, YYYY-MM-DD, for the summary (default: today; a resumed run keeps\n"
+            "Date of the night, YYYY-MM-DD, for the summary (default: today; a resumed run keeps "
             "its date)"},
            {"--dry-run", &options.dry_run, "Print what would be done and why; do nothing"},
            {"--shard", &wish->shard,
-            "i/S: only part i = 0 .. S-1 of a night that `nonio night plan` has planned for S\n"
+            "i/S: only part i = 0 .. S-1 of a night that `nonio night plan` has planned for S "
             "parts; on any host that has SITE and DIR, in any order, also several times"},
            {"--pack", &options.pack,
             "With --shard: do the campaigns in a folder of this host and hand their results over "
-            "as\n"
-            "one file in DIR/.nonio/packs. Every verb reads them there; `nonio get` writes them "
+            "as one file in DIR/.nonio/packs. Every verb reads them there; `nonio get` writes them "
             "out"},
-           existing(Takes::folder,
-                    {"--scratch", &wish->scratch,
-                     "With --pack: the folder of this host (default: TMPDIR, or /tmp). "
-                     "It needs room\nfor the results of the shard, twice"}),
+           existing(Takes::folder, {"--scratch", &wish->scratch,
+                                    "With --pack: the folder of this host (default: TMPDIR, or "
+                                    "/tmp). It needs room for the results of the shard, twice"}),
            root_argument(options),
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "A campaign is evaluated again only if its files, site.toml, a plugin, a template or "
-          "the\n"
-          "program have changed. A run that was killed resumes where it stopped.\n\n"
-          "Example: nonio run samples/site --out out",
+          "A campaign is evaluated again only if its files, site.toml, a plugin, a template or the "
+          "program have changed. A run that was killed resumes where it stopped.",
+      .examples = {"nonio run samples/site --out out"},
       .run = [wish, &common] { return run_night(*wish, common); }};
 }
 

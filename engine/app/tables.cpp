@@ -8,20 +8,13 @@
 
 #include "campaign/modelling/after_table.h"
 #include "nonio/sdk/format.h"
+#include "text_layout.h"
 
 namespace nonio::app {
 
 namespace {
 
 constexpr std::size_t bar_width = 40;
-
-/// Columns of characters, not bytes.
-std::string padded(std::string text, std::size_t width) {
-  const auto columns = static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-  if (columns < width) text.append(width - columns, ' ');
-  return text;
-}
 
 /// `part` of `whole` as a bar of at most `width`, with "|" at `mark`.
 std::string bar(double part, double whole, std::size_t width, std::optional<double> mark = {}) {

@@ -102,7 +102,7 @@ int verify(const VerifyWish& wanted, const Common& common) {
       certificates::verifier_of({wanted.site, wanted.signer_roots, wanted.time_stamp_roots,
                                  wanted.trust, wanted.revoked, wanted.signers});
   if (!verifier) {
-    for (const Error& e : verifier.error()) complain("nonio verify", text_of(e));
+    for (const Error& e : verifier.error()) complain(text_of(e));
     return exit_usage;
   }
   // Before it: what is confined opens no connection to a server.
@@ -122,7 +122,7 @@ int verify(const VerifyWish& wanted, const Common& common) {
   std::vector<Verdict> verdicts;
   for (const std::string& file : wanted.files) {
     const auto v = certificates::verify_file(file, *verifier, open, rows);
-    if (!v) return complain("nonio verify", v.error().message);
+    if (!v) return complain(v.error().message);
     verdicts.push_back(certificates::verdict_of(*v));
     std::ostream& out = place ? std::cout : early;
     if (common.json)
@@ -145,13 +145,14 @@ Verb verify_verb(Common& common) {
       .arguments = joined(
           {required(
                takes(Takes::file, {"FILE", &wanted->files, "Certificates (PDF) and DCC (XML)"})),
-           existing(Takes::folder, {"--site", &wanted->site,
-                                    "Site whose site.toml, [signing], names trusted roots and the "
-                                    "expected signer, and\n"
-                                    "whose register lists the numbers in force"}),
-           takes(Takes::file, {"--signer-roots", &wanted->signer_roots,
-                               "PEM file with the trusted root certificates of signers (no others "
-                               "are trusted)"}),
+           existing(Takes::folder,
+                    {"--site", &wanted->site,
+                     "Site whose site.toml, [signing], names trusted roots and the expected "
+                     "signer, and whose register lists the numbers in force"}),
+           takes(
+               Takes::file,
+               {"--signer-roots", &wanted->signer_roots,
+                "PEM file with the trusted root certificates of signers (no others are trusted)"}),
            takes(Takes::file, {"--time-stamp-roots", &wanted->time_stamp_roots,
                                "PEM file with the trusted root certificates of time servers"}),
            takes(Takes::file,
@@ -163,16 +164,13 @@ Verb verify_verb(Common& common) {
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "Prints the verdict, then one line per check. Without roots and --signer (or --site) a\n"
+          "Prints the verdict, then one line per check. Without roots and --signer (or --site) a "
           "signature proves nothing: the verdict is that you do not trust the signer. No network "
-          "is needed.\n\n"
-          "Exit status: 0 valid; 3 valid, but not every check was made; 4 signer not trusted by "
-          "you; 5 not\n"
-          "in force; 8 other words than installed; 1 altered or broken; 6 not a certificate; 7 no "
-          "such\n"
-          "file; 2 usage, configuration, or a register that cannot be read. Of several files the\n"
-          "gravest: 1, 4, 5, 8, 6, 7, 3, 0.\n\n"
-          "Example: nonio verify --site site out/c1/certificate.pdf",
+          "is needed.\n\nExit status: 0 valid; 3 valid, but not every check was made; 4 signer not "
+          "trusted by you; 5 not in force; 8 other words than installed; 1 altered or broken; 6 "
+          "not a certificate; 7 no such file; 2 usage, configuration, or a register that cannot be "
+          "read. Of several files the gravest: 1, 4, 5, 8, 6, 7, 3, 0.",
+      .examples = {"nonio verify --site site out/c1/certificate.pdf"},
       .run = [wanted, &common] { return verify(*wanted, common); }};
 }
 

@@ -11,14 +11,12 @@ namespace nonio::app {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-namespace {
-
-int check_template(const std::string& site, const Common& common) {
+int check_templates(const std::string& site, const Common& common) {
   std::vector<fs::path> folders = common.template_folders();
   if (!site.empty() && fs::is_directory(fs::path(site) / "templates"))
     folders.push_back(fs::path(site) / "templates");
   const auto found = plugin_check::check_templates(folders, common.plugin_folders());
-  if (!found) return complain("nonio template check", text_of(found.error()));
+  if (!found) return complain(text_of(found.error()));
   if (common.json) {
     Json errors = Json::array();
     for (const Error& e : found->errors)
@@ -38,31 +36,6 @@ int check_template(const std::string& site, const Common& common) {
                 << " in the templates of " << outputs << "\n";
   }
   return found->errors.empty() ? exit_done : exit_failed;
-}
-
-}  // namespace
-
-Verb template_verb(Common& common) {
-  auto site = std::make_shared<std::string>();
-  Verb check{
-      .name = "check",
-      .summary =
-          "Checks layouts, the texts of every language and their placeholders, and missing "
-          "characters",
-      .arguments = joined({existing(Argument::Takes::folder,
-                                    {"SITE", site.get(),
-                                     "Site whose templates/ folder replaces installed templates"}),
-                           templates_argument(common)},
-                          common_arguments(common)),
-      .footer =
-          "To change the look or the words for one site, copy the file from the installed "
-          "templates to\n"
-          "SITE/templates, edit it, and check it with this command before the nightly run.\n\n"
-          "Example: nonio template check site",
-      .run = [site, &common] { return check_template(*site, common); }};
-  return {.name = "template",
-          .summary = "Checks the templates of reports and certificates",
-          .verbs = {std::move(check)}};
 }
 
 }  // namespace nonio::app

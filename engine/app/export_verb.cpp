@@ -21,8 +21,6 @@ namespace evaluation = evaluation;
 
 namespace {
 
-constexpr const char* get_name = "nonio get";
-
 struct GetWish {
   std::vector<std::string> ids;
   std::string out, to;
@@ -115,13 +113,13 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
 bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
   fs::path folder;
   const auto files = files_of(wish, id, folder);
-  if (!files) return complain(get_name, files.error().message), false;
+  if (!files) return complain(files.error().message), false;
   if (wish.list) return print_list(id, folder, *files, !wish.ids.empty(), common.json), true;
   const fs::path to = wish.to.empty() ? storage::own_folder(wish.out, id) : fs::path(wish.to) / id;
   std::error_code error;
   const bool in_place = to == folder || fs::equivalent(to, folder, error);
   const auto written = in_place ? Expected<std::size_t>(0) : write_out(folder, to, *files);
-  if (!written) return complain(get_name, written.error().message), false;
+  if (!written) return complain(written.error().message), false;
   if (common.json)
     std::cout << Json{{"schema", "nonio-get/1"},
                       {"id", id},
@@ -138,17 +136,17 @@ bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
 
 int get(const GetWish& wish, const Common& common) {
   if (wish.ids.empty() && !wish.all && !wish.list)
-    return complain(get_name, "expected the ids of campaigns, --all, or --list");
+    return complain("expected the ids of campaigns, --all, or --list");
   if (!wish.ids.empty() && wish.all)
-    return complain(get_name, "--all is every campaign; expected no ids with it");
+    return complain("--all is every campaign; expected no ids with it");
   if (!wish.to.empty() && wish.list)
-    return complain(get_name, "--list writes nothing; expected no --to with it");
+    return complain("--list writes nothing; expected no --to with it");
   const auto ids = ids_of(wish);
-  if (!ids) return complain(get_name, ids.error().message);
+  if (!ids) return complain(ids.error().message);
   std::optional<batch::OutputLock> lock;
   if (!wish.list && wish.to.empty()) {  // the folders count from then on
     auto taken = batch::OutputLock::take(wish.out);
-    if (!taken) return complain(get_name, taken.error().message);
+    if (!taken) return complain(taken.error().message);
     lock.emplace(std::move(*taken));
   }
   bool well = true;
@@ -158,11 +156,11 @@ int get(const GetWish& wish, const Common& common) {
 
 }  // namespace
 
-Verb get_verb(Common& common) {
+Verb export_verb(Common& common) {
   auto wish = std::make_shared<GetWish>();
   using Takes = Argument::Takes;
   return {
-      .name = "get",
+      .name = "export",
       .summary = "Writes the results of campaigns out of packs into folders, or lists them",
       .arguments =
           {{"ID", &wish->ids, "Ids of campaigns"},
@@ -170,29 +168,25 @@ Verb get_verb(Common& common) {
            takes(
                Takes::folder,
                {"--to", &wish->to,
-                "Write FOLDER/ID, and leave the output folder as it is. Without it: OUT/ID, where\n"
+                "Write FOLDER/ID, and leave the output folder as it is. Without it: OUT/ID, where "
                 "the links of the pages lead; that folder counts from then on, not the pack"}),
            {"--all", &wish->all, "Every campaign that lies in a pack; with --to every campaign"},
            {"--list", &wish->list,
-            "Write nothing: say where the results lie; with ids also each file, its size "
-            "and\nSHA-256"},
+            "Write nothing: say where the results lie; with ids also each file, its size and "
+            "SHA-256"},
            {"--json", &common.json, "Machine-readable output on stdout"},
            {"--quiet", &common.quiet, "No output unless something is wrong"}},
       .footer =
-          "A shard with --pack hands the results of its campaigns over as one file. `nonio show`,\n"
+          "A shard with --pack hands the results of its campaigns over as one file. `nonio show`, "
           "`query`, `history`, `morning`, `live` and the next night read them there. A program "
-          "that\n"
-          "wants files, or a person who follows a link of a page, needs them in folders.\n\n"
-          "Each file is compared with its SHA-256 in run.json; a damaged one is named, with its "
-          "pack\n"
-          "and campaign, and its campaign is not written. A file that is there with other bytes "
-          "stays.\n"
-          "Without Nonio: sqlite3 -A -xf OUT/.nonio/packs/NAME.sqlar (compare the digests "
-          "yourself).\n\n"
-          "Exit status: 0 done; 1 some campaign was not written; 2 usage or configuration.\n\n"
-          "Examples: nonio get 09-tolerances --out out --to /tmp/to-look-at\n"
-          "          nonio get --list --out out\n"
-          "          nonio get --all --out out",
+          "that wants files, or a person who follows a link of a page, needs them in "
+          "folders.\n\nEach file is compared with its SHA-256 in run.json; a damaged one is named, "
+          "with its pack and campaign, and its campaign is not written. A file that is there with "
+          "other bytes stays. Without Nonio: sqlite3 -A -xf OUT/.nonio/packs/NAME.sqlar (compare "
+          "the digests yourself).\n\nExit status: 0 done; 1 some campaign was not written; 2 usage "
+          "or configuration.",
+      .examples = {"nonio get 09-tolerances --out out --to /tmp/to-look-at  nonio get --list --out "
+                   "out  nonio get --all --out out"},
       .run = [wish, &common] { return get(*wish, common); }};
 }
 
