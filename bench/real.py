@@ -25,7 +25,7 @@ SIZES = (3.5, 9.0)  # of an effect, in standard deviations of the scatter, as in
 
 
 def explained(nonio, folder):
-    done = subprocess.run([nonio, "explain", str(folder), "--json", "--quiet"], capture_output=True, text=True)
+    done = subprocess.run([nonio, "model", "explain", str(folder), "--json", "--quiet"], capture_output=True, text=True)
     if not done.stdout:
         sys.exit(f"{folder}: {done.stderr}")
     return json.loads(done.stdout)

@@ -24,7 +24,9 @@ std::string& typed_words() {
 }
 
 CLI::Option* bind(CLI::App& app, const Argument& a) {
-  const std::string names = a.name + (a.old.empty() ? "" : "," + a.old);
+  std::string names = a.name;
+  for (const std::string& other : {a.brief, a.old})
+    if (!other.empty()) names += "," + other;
   if (auto* const* flag = std::get_if<bool*>(&a.target)) return app.add_flag(names, **flag);
   if (auto* const* list = std::get_if<Words*>(&a.target)) {
     CLI::Option* option = app.add_option(names, **list);
@@ -173,7 +175,7 @@ std::string unknown_option(const Verb& verb, const Words& options, bool at_top) 
   for (const Argument& a : verb.arguments) {
     if (a.is_positional()) continue;
     (a.hidden ? accepted : own).push_back(a.name);
-    accepted.push_back(a.old);
+    accepted.insert(accepted.end(), {a.brief, a.old});
   }
   accepted.insert(accepted.end(), own.begin(), own.end());
   for (const std::string& option : options)
@@ -216,7 +218,7 @@ std::string value_of(const Argument& a) {
 
 std::string left_column(const Argument& a) {
   if (a.is_positional()) return a.name + (a.is_list() ? "..." : "");
-  if (a.is_flag()) return a.name;
+  if (a.is_flag()) return (a.brief.empty() ? "" : a.brief + ", ") + a.name;
   return a.bare.empty() ? a.name + " " + value_of(a) : a.name + "[=" + value_of(a) + "]";
 }
 

@@ -39,6 +39,7 @@ struct Argument {
   std::optional<std::pair<double, double>> range{};  ///< of a number, both ends included
   std::string bare{};          ///< the value of `--name` without one; empty: it needs one
   bool shows_default = false;  ///< help states the value that it has if it is not given
+  std::string brief{};         ///< "-v"
   std::string old{};           ///< former name, still accepted
   bool hidden = false;         ///< accepted, and not listed: it belongs to a former command
 

@@ -53,7 +53,7 @@ Verb compare_verb(Common& common) {
               "the noise floor of repeated readings, the parameters with their uncertainty, and "
               "the factors that the residuals depend on: direction, position, run, time, "
               "temperature, screw or angle.",
-          .examples = {"nonio compare samples/site/02-constant-reversal"},
+          .examples = {"nonio model compare samples/site/02-constant-reversal"},
           .run = [folder, &common] { return compare(*folder, common); }};
 }
 

@@ -151,9 +151,9 @@ Verb controls_verb(Common& common) {
               "square: an axis by the position of another. volume: all errors of the machine in "
               "one file. sign: whether an entry is the measured error (actual - nominal) or the "
               "correction. If it is undocumented, no table is written before a sign probe has "
-              "shown it (`nonio plan sign-probe`). Name the control in the campaign:\n    "
+              "shown it (`nonio table probe`). Name the control in the campaign:\n    "
               "[machine]\n    control = \"fagor-8055\"",
-          .examples = {"nonio controllers pmac ecmc"},
+          .examples = {"nonio table controls pmac ecmc"},
           .run = [names, &common] { return list_controls(*names, common); }};
 }
 

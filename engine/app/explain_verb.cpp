@@ -14,7 +14,7 @@ constexpr std::size_t most_steps = 12;
 struct ExplainOptions {
   std::string folder;
   bool automatic = false;
-  bool what_if = false;
+  bool what_if = false, all = false;
   std::uint64_t seed = 1;
 };
 
@@ -103,7 +103,7 @@ class Explain {
       return;
     }
     for (const modelling::Explained& e : all_) {
-      print_explanation(std::cout, e, open_.campaign(), *words_);
+      print_explanation(std::cout, e, open_.campaign(), options_.folder, options_.all, *words_);
       if (e.what_if) print_foresight(std::cout, e, words_->terminal());
     }
   }
@@ -128,7 +128,8 @@ Verb explain_verb(Common& common) {
       .summary = "Finds the effect that is missing from the model: ranked candidates and a verdict",
       .arguments = joined(
           campaign_arguments(options->folder, common),
-          {{"--what-if", &options->what_if,
+          {{"--all", &options->all, "Every candidate, and why an effect could not be tested"},
+           {"--what-if", &options->what_if,
             "Also predicts what one run more, in each order of directions, would do to the "
             "uncertainties and to the evidence"},
            {"--auto", &options->automatic,
@@ -138,12 +139,12 @@ Verb explain_verb(Common& common) {
             .help = "Random seed of the false-alarm estimate",
             .shows_default = true}}),
       .footer =
-          "Tries every effect of the catalogue (`nonio plugins`) that is not in the model. "
+          "Tries every effect of the catalogue (`nonio plugin list`) that is not in the model. "
           "Verdicts: missing (an effect belongs in the model), complete (nothing missing: the "
           "model explains everything down to the noise; `nothing` in JSON), unknown (no effect "
           "explains the remaining error; it states where), unrepeatable (the readings contradict "
           "each other: check the machine first).",
-      .examples = {"nonio explain samples/site/02-constant-reversal"},
+      .examples = {"nonio model explain samples/site/02-constant-reversal"},
       .run = [options, &common] { return Explain(*options, common).run(); }};
 }
 

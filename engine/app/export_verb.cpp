@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio get`: the results of campaigns out of packs, or from wherever they lie, into folders.
+// `nonio export`: the results of campaigns out of packs, or from wherever they lie, into folders.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -185,8 +185,9 @@ Verb export_verb(Common& common) {
           "other bytes stays. Without Nonio: sqlite3 -A -xf OUT/.nonio/packs/NAME.sqlar (compare "
           "the digests yourself).\n\nExit status: 0 done; 1 some campaign was not written; 2 usage "
           "or configuration.",
-      .examples = {"nonio get 09-tolerances --out out --to /tmp/to-look-at  nonio get --list --out "
-                   "out  nonio get --all --out out"},
+      .examples =
+          {"nonio export 09-tolerances --out out --to /tmp/to-look-at  nonio export --list --out "
+           "out  nonio export --all --out out"},
       .run = [wish, &common] { return get(*wish, common); }};
 }
 

@@ -89,7 +89,7 @@ Verb history_verb(Common& common) {
           "change was too small to be seen: from which size on one would have been stands below. "
           "A, E and R are shown, no line is drawn through them.\n\n--json writes schema "
           "nonio-history/1 (docs/history.md).",
-      .examples = {"nonio history out S-0042 --axis X --quantity B_mean"},
+      .examples = {"nonio machine history out S-0042 --axis X --quantity B_mean"},
       .run = [wish, &common] { return history(*wish, common); }};
 }
 

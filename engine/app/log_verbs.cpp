@@ -209,7 +209,8 @@ Verb event_verb(Common& common) {
       .summary = "Record an event of a machine: a crash, a repair, a new table",
       .arguments = joined(
           {site_argument(wish->site),
-           {"--machine", &e.machine, "Its asset, or maker and serial, as `nonio query` names it"},
+           {"--machine", &e.machine,
+            "Its asset, or maker and serial, as `nonio machine list` names it"},
            {"--axis", &e.axis, "The axis concerned; default: the whole machine"},
            one_of({"crash", "repair", "compensation", "moved", "instrument", "software", "other"},
                   {"--kind", &e.kind, "Kind of event"}),
@@ -226,8 +227,9 @@ Verb event_verb(Common& common) {
           "SITE/events.toml. You can also edit this file; comments stay. Correct a wrong entry "
           "there. The machine's history contains the event from the next night on: a step of its "
           "values on that day then counts as its effect.",
-      .examples = {"nonio event site --machine S-0042 --axis X --kind crash --date 2026-03-04 "
-                   "--text \"tool hit the vice\""},
+      .examples =
+          {"nonio machine event site --machine S-0042 --axis X --kind crash --date 2026-03-04 "
+           "--text \"tool hit the vice\""},
       .run = [wish, &common] { return event(*wish, common); }};
 }
 
@@ -240,7 +242,7 @@ Verb ack_verb(Common& common) {
       .arguments =
           joined({site_argument(wish->site),
                   {"--finding", &a.finding, "Id of the finding, as the night's summary has it"},
-                  {"--machine", &a.machine, "As `nonio query` names it"},
+                  {"--machine", &a.machine, "As `nonio machine list` names it"},
                   {"--axis", &a.axis, "The axis; default: all"},
                   {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
                   {"--until", &a.until, "Last day on which it counts as known, YYYY-MM-DD"},
@@ -259,8 +261,9 @@ Verb ack_verb(Common& common) {
           "Without --finding, --until and --why: lists those that count, of one machine or all. "
           "Appends to SITE/acknowledged.toml; comments stay. It hides nothing: the finding stays "
           "in the results and in the history. What was withdrawn stays in the file too.",
-      .examples = {"nonio ack site --finding reversal.constant --machine S-0042 --axis X --until "
-                   "2026-06-30 --by \"B. Sample\" --why \"nut is ordered\""},
+      .examples =
+          {"nonio machine ack site --finding reversal.constant --machine S-0042 --axis X --until "
+           "2026-06-30 --by \"B. Sample\" --why \"nut is ordered\""},
       .run = [wish, &common] { return acknowledge(*wish, common); }};
 }
 
@@ -281,8 +284,8 @@ Verb remove_verb(Common& common) {
           "The nightly run reports a campaign that has vanished every night, with exit status 1, "
           "until it is back or forgotten. Appends to SITE/forgotten.toml. The results of the "
           "campaign stay in the output folder and in the history.",
-      .examples =
-          {"nonio forget site 2021-03-02-rossi --by \"B. Sample\" --why \"machine was sold\""},
+      .examples = {"nonio machine remove site 2021-03-02-rossi --by \"B. Sample\" --why \"machine "
+                   "was sold\""},
       .run = [wish, &common] { return forget(*wish, common); }};
 }
 

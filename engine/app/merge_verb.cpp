@@ -97,7 +97,7 @@ Verb insert_verb(Common& common) {
            {"--axis", &w->axis, "The axis (default: the measured axis, if there is only one)"},
            takes(Takes::folder, {"--out", &w->out,
                                  "Folder for the changed files (default: only print the changes)"}),
-           {"--control", &w->control, "The control of the files (`nonio controllers`)"},
+           {"--control", &w->control, "The control of the files (`nonio table controls`)"},
            settings_argument(w->settings,
                              "NAME=VALUE: an option of that control; may be given several times")},
           common_arguments(common)),
@@ -107,7 +107,8 @@ Verb insert_verb(Common& common) {
           "backup, or free ones. Every other byte stays unchanged. If the control would read a "
           "different table for another axis, nothing is written.\n\nExit status: 0 merged; 1 "
           "refused; 2 usage or configuration.",
-      .examples = {"nonio merge backup/CNCPARAM.TXT --with site/2026-11-rossi --axis Z --out load"},
+      .examples =
+          {"nonio table insert backup/CNCPARAM.TXT --with site/2026-11-rossi --axis Z --out load"},
       .run = [w, &common] { return merge(*w, common); }};
 }
 

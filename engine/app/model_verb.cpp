@@ -86,7 +86,7 @@ Verb change_verb(const std::shared_ptr<ModelOptions>& options, Common& common, b
                          : "Removes an effect from the model",
           .arguments = joined(campaign_arguments(options->folder, common),
                               {required({"EFFECT", &options->effect,
-                                         "kind:axis, such as backlash:X (`nonio plugins`)"})}),
+                                         "kind:axis, such as backlash:X (`nonio plugin list`)"})}),
           .footer = keeps_the_rest,
           .examples = {"nonio model " + name + " samples/site/02-constant-reversal backlash:X"},
           .run = [options, &common, add] { return change(*options, common, add); }};

@@ -131,7 +131,7 @@ int open_document(const std::string& folder, const std::string& out, const Commo
   const fs::path path = fs::absolute(*found).lexically_normal();
   if (const auto packed = storage::in_pack(path))
     return complain(path.filename().string() + " is in the pack " + packed->pack.string() +
-                        "; `nonio get " + path.parent_path().filename().string() +
+                        "; `nonio export " + path.parent_path().filename().string() +
                         " --out OUT` writes it out",
                     exit_failed);
   if (!fs::is_regular_file(path, error))

@@ -210,7 +210,7 @@ std::vector<Argument> program_arguments(Programs& p) {
            "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"},
           settings_argument(
               p.settings,
-              "NAME=VALUE: an option of that writer (`nonio plugins` lists them), such as "
+              "NAME=VALUE: an option of that writer (`nonio plugin list` lists them), such as "
               "dwell_s=3, runs=2, programs=axes,diagonals; may be given several times")};
 }
 

@@ -225,7 +225,7 @@ Verb probe_verb(Common& common) {
           "Twice the error: it is wrong. The error itself: no table is active. DRY RUN FIRST: the "
           "program moves the axis in coordinates of the machine.\n\nExit status: 0 the test works "
           "for every axis; 1 the error of an axis is too small for it; 2 usage.",
-      .examples = {"nonio plan sign-probe site/2026-11-rossi --out p"},
+      .examples = {"nonio table probe site/2026-11-rossi --out p"},
       .run = [w, &common] { return probe(*w, common); }};
 }
 

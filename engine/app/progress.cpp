@@ -77,10 +77,10 @@ void Progress::finished(const batch::CampaignState& c) {
     if (failed) event["message"] = message_of(c);
     return print_event(event);
   }
-  if (bar_ ? failed : failed || !quiet_) {
+  if (failed) {
     clear();
-    std::cerr << status_word(to_text(c.status), STDERR_FILENO) << " " << c.id
-              << (failed ? ": " + message_of(c) : "") << "\n";
+    std::cerr << status_word(to_text(c.status), STDERR_FILENO) << " " << c.id << ": "
+              << message_of(c) << "\n";
   }
   if (bar_) draw();
 }

@@ -220,7 +220,7 @@ Verb machine_list_verb(Common& common) {
               "digit for digit. The history is OUT/history.sqlite, or a schema on the PostgreSQL "
               "server of [database] in site.toml; any tool for them reads it: tables `evaluation`, "
               "`result`, ..., view `point`.",
-          .examples = {"nonio query out S-0042 --axis X --quantity B_mean --csv"},
+          .examples = {"nonio machine list out S-0042 --axis X --quantity B_mean --csv"},
           .run = [wish, &common] { return query(*wish, common); }};
 }
 

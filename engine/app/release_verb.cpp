@@ -117,7 +117,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
     case State::approved:
       if (!common.json)
         std::cout << done.draft->campaign << " approved by " << wish.by
-                  << "; an authoriser releases it with nonio release " << wish.folder
+                  << "; an authoriser releases it with nonio certificate approve " << wish.folder
                   << " --by NAME --as authoriser\n";
       return exit_done;
     case State::failed:
@@ -189,7 +189,8 @@ Verb approve_verb(Common& common) {
           "site with your name, the time and the reasons. If data, plugins or templates have "
           "changed since the draft was made, repeat the nightly run first. Exit status 1 if a "
           "reason is missing.",
-      .examples = {"nonio release site/c1 --by \"B. Sample\" --reason \"X: drift=agreed with the "
+      .examples = {"nonio certificate approve site/c1 --by \"B. Sample\" --reason \"X: "
+                   "drift=agreed with the "
                    "customer\""},
       .run = [wanted, &common] { return release(*wanted, common); }};
 }

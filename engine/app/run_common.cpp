@@ -3,16 +3,54 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "platform/process/stop.h"
+#include "platform/storage/files.h"
+#include "text_layout.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
+
+namespace {
+
+/// One line per campaign that requires action, as far as they fit a screen: from summary.json, which
+/// the run has just written.
+void print_actions(const fs::path& out) {
+  constexpr std::size_t most_campaigns = 20;
+  const auto text = storage::read_file(out / "summary.json");
+  const Json summary = text ? Json::parse(*text, nullptr, false) : Json();
+  if (!summary.is_object() || !summary.contains("lines")) return;
+  std::vector<std::pair<std::string, std::string>> campaigns;
+  for (const Json& line : summary["lines"]) {
+    if (line.value("state", "") != "new" || line.value("kind", "") == "note" ||
+        line.value("kind", "") == "failed")  // told when it failed
+      continue;
+    const std::string campaign = line.value("campaign", line.value("machine", ""));
+    std::string says = line.value("quantity", "");
+    if (const std::string axis = line.value("axis", ""); !axis.empty())
+      says = axis + (says.empty() ? "" : " " + says);
+    says += (says.empty() ? "" : ": ") + line.value("says", "");
+    const auto same = std::find_if(campaigns.begin(), campaigns.end(),
+                                   [&](const auto& one) { return one.first == campaign; });
+    if (same == campaigns.end())
+      campaigns.emplace_back(campaign, says);
+    else if (same->second.find(says) == std::string::npos)
+      same->second += " " + says;
+  }
+  for (std::size_t i = 0; i < std::min(campaigns.size(), most_campaigns); ++i)
+    std::cout << wrapped("action required  " + campaigns[i].first + ": " + campaigns[i].second, 0,
+                         line_width(STDOUT_FILENO), 4);
+  if (campaigns.size() > most_campaigns)
+    std::cout << "and " << campaigns.size() - most_campaigns << " more campaigns\n";
+}
+
+}  // namespace
 
 void print_summary(const batch::Night& night, const fs::path& out, bool json) {
   std::size_t done = 0, unchanged = 0, attention = 0, failed = 0;
@@ -25,7 +63,7 @@ void print_summary(const batch::Night& night, const fs::path& out, bool json) {
       ++unchanged;
     if (c.status == evaluation::Status::attention) ++attention;
   }
-  // Findings are counted by campaign; what somebody must decide, by line.
+  // Findings are counted by campaign; actions by line of the worklist.
   if (json) {
     Json end = {{"event", "end"},         {"done", done},     {"unchanged", unchanged},
                 {"attention", attention}, {"failed", failed}, {"vanished", night.vanished.size()}};
@@ -34,13 +72,11 @@ void print_summary(const batch::Night& night, const fs::path& out, bool json) {
     std::cout << end.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
     return;
   }
+  if (night.asking && *night.asking > 0) print_actions(out);
   std::cout << done << " done, " << unchanged << " unchanged, " << failed << " failed; "
             << (night.vanished.empty() ? "" : std::to_string(night.vanished.size()) + " vanished; ")
-            << attention << (attention == 1 ? " has findings" : " have findings");
-  if (night.asking)
-    std::cout << "; action required: " << *night.asking
-              << (*night.asking == 1 ? " line" : " lines");
-  std::cout << ": " << (out / "summary.txt").string() << "\n";
+            << (night.asking ? "actions required: " + std::to_string(*night.asking) + "; " : "")
+            << (out / "summary.txt").string() << "\n";
 }
 
 namespace {
@@ -75,8 +111,8 @@ void prepare_run(batch::RunOptions& options, const std::string& site, const std:
   options.as_root = options.as_root || std::getenv("NONIO_ALLOW_ROOT") != nullptr;
   catch_signals();
   if (::geteuid() == 0 && !options.as_root && !common.quiet)
-    std::cerr << "nonio: this runs as root, for whom nothing needs it: expected a user of its own "
-                 "(the package's service runs as nonio), or --root to say that it is meant\n";
+    std::cerr << "nonio: warning: running as root is not needed. Use a dedicated user (the service "
+                 "uses nonio), or pass --root.\n";
 }
 
 std::optional<int> exit_of_unfinished(const batch::Night& night) {

@@ -59,7 +59,7 @@ void tell_planned(const batch::Night& night, const batch::RunOptions& options, b
             << *least << (*least == *most ? "" : " to " + std::to_string(*most)) << ", "
             << to_do - in_shards << " left to the merge\n"
             << "next: nonio run SITE --out OUT --shard i/" << shards.size() << "  for i = 0 .. "
-            << shards.size() - 1 << ", then: nonio night merge " << options.out.string() << "\n";
+            << shards.size() - 1 << ", then: nonio run merge " << options.out.string() << "\n";
 }
 
 int plan_night(NightWish& wish, const Common& common) {
@@ -179,7 +179,7 @@ Verb plan_part(Common& common) {
           "the SHA-256 of its id (first 8 bytes) modulo S. Planning again takes the place of a "
           "plan that was not merged, and keeps what its shards have done. Until the merge, `nonio "
           "run` without --shard is refused.",
-      .examples = {"nonio night plan site --out out --shards 4"},
+      .examples = {"nonio run plan site --out out --shards 4"},
       .run = [wish, &common] { return plan_night(*wish, common); }};
 }
 
@@ -206,7 +206,7 @@ Verb merge_part(Common& common) {
           "and pages are equal byte for byte to those of a night that was not divided. Exit status "
           "1 also if a shard has not reported: the message names it. Run it, then merge again. "
           "What was merged is not done twice.",
-      .examples = {"nonio night merge out"},
+      .examples = {"nonio run merge out"},
       .run = [wish, &common] { return merge_night(*wish, common); }};
 }
 
@@ -218,7 +218,7 @@ Verb cancel_part(Common& common) {
           .footer =
               "Refused while a shard is running. The night stays open: `nonio run` without "
               "--shard, or another plan, goes on with it.",
-          .examples = {"nonio night cancel out"},
+          .examples = {"nonio run cancel out"},
           .run = [wish, &common] { return cancel_night(*wish, common); }};
 }
 
@@ -240,7 +240,7 @@ Verb unlock_part(Common& common) {
           "started anew. Another host cannot know whether the first one still writes: somebody who "
           "knows, or a script that asked the scheduler, says so here. Refused where the lock of "
           "the file system shows that the process lives.",
-      .examples = {"nonio night unlock out"},
+      .examples = {"nonio run unlock out"},
       .run = [wish, &common] { return unlock_night(*wish, common); }};
 }
 

@@ -63,7 +63,7 @@ std::string take_shard(RunWish& wish) {
       !options.only.empty())
     return "--shard goes with --jobs and --pack alone: whether and when campaigns are done is "
            "planned "
-           "(nonio night plan --help)";
+           "(nonio run plan --help)";
   const char* const end = wish.shard.data() + wish.shard.size();
   const auto number = std::from_chars(wish.shard.data(), end, options.shard);
   const bool is_number = number.ec == std::errc() && number.ptr != end && *number.ptr == '/';
@@ -162,11 +162,12 @@ Verb run_verb(Common& common) {
             "its date)"},
            {"--dry-run", &options.dry_run, "Print what would be done and why; do nothing"},
            {"--shard", &wish->shard,
-            "i/S: only part i = 0 .. S-1 of a night that `nonio night plan` has planned for S "
+            "i/S: only part i = 0 .. S-1 of a night that `nonio run plan` has planned for S "
             "parts; on any host that has SITE and DIR, in any order, also several times"},
            {"--pack", &options.pack,
             "With --shard: do the campaigns in a folder of this host and hand their results over "
-            "as one file in DIR/.nonio/packs. Every verb reads them there; `nonio get` writes them "
+            "as one file in DIR/.nonio/packs. Every verb reads them there; `nonio export` writes "
+            "them "
             "out"},
            existing(Takes::folder, {"--scratch", &wish->scratch,
                                     "With --pack: the folder of this host (default: TMPDIR, or "

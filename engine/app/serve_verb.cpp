@@ -71,7 +71,7 @@ Verb serve_verb(Common& common) {
           "before \"save\", which does what `nonio model add` does.\n\nOnly this computer can "
           "reach the page, and only with the token behind # in the address: it is a key, do not "
           "pass it on. From another computer: ssh -L (docs/howto-live.md).",
-      .examples = {"nonio live samples/site/02-constant-reversal  nonio live --edit --port 4711 "
+      .examples = {"nonio serve samples/site/02-constant-reversal  nonio serve --edit --port 4711 "
                    "--token-file ~/.nonio-token campaigns/c1"},
       .run = [options, &common] { return live(*options, common); }};
 }

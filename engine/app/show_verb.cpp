@@ -337,7 +337,7 @@ class Page {
       const std::string where =
           g.measurements.empty() ? "" : " (" + storage::listed(g.measurements) + ")";
       out_ << "  " << (is_warning ? paint(severity, Colour::yellow) : severity)
-           << wrapped(g.title + where, 11, width_).substr(9);
+           << wrapped(g.title + where, 11, width_).substr(11);
       if (!is_warning && !all_) continue;
       for (const std::string& says : g.says) {
         const bool is_only = g.says.size() == 1 && g.measurements.size() == 1;

@@ -174,7 +174,8 @@ Expected<std::vector<BacklashWas>> backlash_was(const std::vector<std::string>& 
     const bool number = end.ec == std::errc() && end.ptr == value.data() + value.size();
     if (value != "none" && !(number && std::isfinite(one.value) && std::fabs(one.value) <= 10.0))
       return fail(
-          "--backlash-was: expected a number of mm or deg, none, or AXIS= and one of these; found "
+          "--active-backlash: expected a number of mm or deg, none, or AXIS= and one of these; "
+          "found "
           "\"" +
           text + "\"");
     if (value == "none") one.value = 0.0;
@@ -198,7 +199,7 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
       const auto known =
           t.backlash ? t.backlash : tables::stated_backlash(options, t.output, t.rotary);
       if (known && std::fabs(*known * per - b.value) > 5e-7)
-        return fail("--backlash-was says " + short_text(b.value, 6) + " for axis " + t.output +
+        return fail("--active-backlash says " + short_text(b.value, 6) + " for axis " + t.output +
                     ", its files or the campaign say " + short_text(*known * per, 6));
       if (!known) tables::state_backlash(options, t.output, t.rotary, b.value / per);
     }
@@ -206,25 +207,25 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
     if (has_parameter && !t.backlash && !tables::stated_backlash(options, t.output, t.rotary))
       return fail(w.table + " does not say what was in " + present.control->table.backlash +
                   " of axis " + t.output +
-                  " while it was measured: give its file too, or --backlash-was VALUE|none, or "
+                  " while it was measured: give its file too, or --active-backlash VALUE|none, or "
                   "backlash_on_" +
                   (t.rotary ? "deg" : "mm") + " in [machine.axes." + t.output +
                   "] of campaign.toml, or the record of the machine");
   }
   for (std::size_t i = 0; i < used.size(); ++i)
     if (!used[i])
-      return fail("--backlash-was " + w.backlash_was[i] + ": " +
+      return fail("--active-backlash " + w.backlash_was[i] + ": " +
                   ((*said)[i].axis.empty() ? "these files hold several tables; expected AXIS=VALUE"
                                            : "these files hold no table of that axis"));
   return {};
 }
 
-/// --was-on and the campaign state the same thing: they must not state two.
+/// --active-table and the campaign state the same thing: they must not state two.
 Expected<void> was_on_unless_stated(const TableWish& w, const Loaded& present, const Campaign& c) {
   for (const LoadedTable& t : present.tables) {
     const Axis* axis = c.machine.axis(t.output);
     if (axis == nullptr || !axis->table_on || t.input != std::vector{t.output}) continue;
-    return fail("--was-on states that " + w.table +
+    return fail("--active-table states that " + w.table +
                 " was active, but the campaign states table_on = \"" +
                 (axis->table_on->empty() ? "none" : *axis->table_on) + "\" of axis " + t.output +
                 ": correct one of them");
@@ -236,9 +237,9 @@ int apply(const TableWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
   if (!w.out.empty() && !w.was_on)
-    return complain("--out writes the renewed table: it needs --was-on");
+    return complain("--out writes the renewed table: it needs --active-table");
   if (!w.backlash_was.empty() && !w.was_on)
-    return complain("--backlash-was is about a table that was on: it needs --was-on");
+    return complain("--active-backlash is about a table that was on: it needs --active-table");
   const auto opened = open_campaign(w.folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;
@@ -275,12 +276,13 @@ int apply(const TableWish& w, const Common& common) {
 }
 
 std::vector<Argument> table_arguments(TableWish& w) {
-  return {{"--control", &w.control,
-           "The control of the files (`nonio controllers`); else as the files are called, or the "
-           "only one that can read them"},
-          settings_argument(w.settings,
-                            "NAME=VALUE: an option of that control, such as type=1 or \"axes=X "
-                            "number=1,Y number=2\"; may be given several times")};
+  return {
+      {"--control", &w.control,
+       "The control of the files (`nonio table controls`); else as the files are called, or the "
+       "only one that can read them"},
+      settings_argument(w.settings,
+                        "NAME=VALUE: an option of that control, such as type=1 or \"axes=X "
+                        "number=1,Y number=2\"; may be given several times")};
 }
 
 }  // namespace
@@ -310,7 +312,7 @@ Verb diff_verb(Common& common) {
           "table the largest entry, the largest step between neighbouring points and the largest "
           "slope. If a step or slope is much larger than in the present table, find out why before "
           "you load it.\n\nExit status: 0 compared; 2 a file cannot be read.",
-      .examples = {"nonio diff backup/linuxcnc-X.comp out/c/linuxcnc-X.comp --axis X"},
+      .examples = {"nonio table diff backup/linuxcnc-X.comp out/c/linuxcnc-X.comp --axis X"},
       .run = [w, &common] { return diff(*w, common); }};
 }
 
@@ -326,23 +328,32 @@ Verb predict_verb(Common& common) {
                     {"TABLE", &w->table,
                      "The table: FILE, or FILE,FILE,... with the file of its backlash value"}))},
           campaign_arguments(w->folder, common), table_arguments(*w),
-          {{"--was-on", &w->was_on,
-            "TABLE was active during the measurement: it is removed from the readings, so that the "
-            "new table is complete"},
-           {"--backlash-was", &w->backlash_was,
-            "With --was-on: active backlash value in mm or deg, if TABLE does not contain it: "
-            "VALUE, none, or AXIS=VALUE; may be given several times"},
-           takes(Takes::folder,
-                 {"--out", &w->out, "With --was-on: folder for the files of the new table"})}),
+          {{.name = "--active-table",
+            .target = &w->was_on,
+            .help = "TABLE was active during the measurement: it is removed from the readings, so "
+                    "that the "
+                    "new table is complete",
+            .old = "--was-on"},
+           {.name = "--active-backlash",
+            .target = &w->backlash_was,
+            .help = "With --active-table: active backlash value in mm or deg, if TABLE does not "
+                    "contain it: "
+                    "VALUE, none, or AXIS=VALUE; may be given several times",
+            .old = "--backlash-was"},
+           takes(Takes::folder, {"--out", &w->out,
+                                 "With --active-table: folder for the files of the new table"})}),
       .footer =
-          "Without --was-on it prints E, B and M as measured, and after this table is loaded into "
+          "Without --active-table it prints E, B and M as measured, and after this table is loaded "
+          "into "
           "a control without a table (backlash parameter of the axis: option axes, backlash_mm). "
-          "With --was-on it prints the difference between this table and the new one, and E, B and "
+          "With --active-table it prints the difference between this table and the new one, and E, "
+          "B and "
           "M after the new one replaces it. Cross tables are not removed from the "
           "readings.\n\nExit status: 0 no axis gets worse; 1 an axis gets worse, or no prediction "
           "was possible; 2 usage or configuration.",
-      .examples = {"nonio apply backup/siemens-840d-X-EEC.ini,backup/siemens-840d-X-backlash.ini "
-                   "\\ site/2026-11-rossi --was-on --out new"},
+      .examples =
+          {"nonio table predict backup/siemens-840d-X-EEC.ini,backup/siemens-840d-X-backlash.ini "
+           "\\ site/2026-11-rossi --active-table --out new"},
       .run = [w, &common] { return apply(*w, common); }};
 }
 

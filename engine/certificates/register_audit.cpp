@@ -169,7 +169,7 @@ Expected<void> Register::check_journal(bool numbers) {
   return fail(
       "the register of certificates is not what was written: " + wrong.front() +
       (wrong.size() == 1 ? "" : ", and " + std::to_string(wrong.size() - 1) + " more") +
-      ". Nothing is issued from it; `nonio certificates SITE --audit` lists all. Restore it "
+      ". Nothing is issued from it; `nonio certificate audit SITE` lists all. Restore it "
       "from the newest backup");
 }
 

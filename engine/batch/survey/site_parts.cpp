@@ -187,7 +187,7 @@ void SiteParts::note_lost() {
     if (all && missing > 1) whole[folder] = missing;
   }
   const auto meant = [](const std::string& path) {
-    return "; restore it, or if it was removed on purpose, record that (nonio forget SITE " + path +
+    return "; restore it, or if it was removed on purpose, record that (nonio machine remove SITE " + path +
            " --by NAME --why TEXT)";
   };
   for (const auto& [folder, count] : whole)

@@ -34,7 +34,7 @@ std::string part_json(const Explained& explained, const Campaign& campaign,
                       const ModelWords& words);
 
 /// What belongs into the model beyond doubt, by the verdict that asks most; "": nothing more. This
-/// is one step of `nonio explain --auto`.
+/// is one step of `nonio model explain --auto`.
 struct Told {
   std::string kind, effect;          ///< of the verdict of one part
   std::vector<std::string> certain;  ///< most evidence first

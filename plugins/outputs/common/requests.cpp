@@ -276,7 +276,7 @@ class Requests {
     }
     return wrong(
         "programs",
-        "the stops of a sign probe are chosen by `nonio plan sign-probe CAMPAIGN --out p`");
+        "the stops of a sign probe are chosen by `nonio table probe CAMPAIGN --out p`");
   }
 
   void add(MeasuringPath path, const std::string& how) {

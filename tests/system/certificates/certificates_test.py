@@ -311,7 +311,7 @@ class Certificates(NumberedTest):
                 done, (answer,) = self.verify(path, **kwargs)
                 self.assertEqual((answer["verdict"], done.returncode), (verdict, status), done.stdout)
                 whom = ["--site", str(self.site)] if kwargs.get("site", True) else []
-                shown = run(NONIO, "verify", "--quiet", *whom, *kwargs.get("args", ()), path, check=False, env=self.environment)
+                shown = run(NONIO, "certificate", "verify", "--quiet", *whom, *kwargs.get("args", ()), path, check=False, env=self.environment)
                 self.assertEqual((shown.stdout, shown.returncode), (f"{path}: {words}\n", status))
                 self.assertEqual(answer["holds"], status in (0, 3))
         # The gravest of several.

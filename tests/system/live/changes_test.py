@@ -52,7 +52,7 @@ class Changes(LiveTest):
             self.assertEqual(s.post("/api/exclude", {"part": "Z", "rows": [100000], "why": "x"}, expect=422)["status"], 422)
             self.assertEqual(s.post("/api/exclude", {"part": "Q", "rows": [1], "why": "x"}, expect=404)["status"], 404)
             self.assertEqual(s.post("/api/cancel", {"job": 77}, expect=404)["status"], 404)
-            self.assertEqual(nonio("compare", self.folder, "--json").stdout, nonio("compare", self.folder, "--json").stdout)
+            self.assertEqual(nonio("model", "compare", self.folder, "--json").stdout, nonio("model", "compare", self.folder, "--json").stdout)
 
     def test_refusals_are_in_the_language_of_the_site(self):
         told, plain = {}, (self.site / "site.toml").read_text()

@@ -47,7 +47,7 @@ class Help(VerbTest):
         plain = self.nonio("version").stdout
         for text in (said["abi"], *said["plugins"], *said["templates"]):
             self.assertIn(text, plain)
-        self.assertEqual(said["abi"], json.loads(self.nonio("plugins", "--json").stdout)["abi"])
+        self.assertEqual(said["abi"], json.loads(self.nonio("plugin", "list", "--json").stdout)["abi"])
 
 
 class Mistyped(VerbTest):
@@ -70,26 +70,26 @@ class Mistyped(VerbTest):
         self.assertIn("there is no verb below it", self.refused("help", "run", "x"))
 
     def test_values_that_begin_with_a_dash_are_not_options(self):
-        self.assertIn("--why", self.refused("certificates", self.site, "--why", "--broken"))
-        self.assertNotIn("no option", self.refused("certificates", self.site, "--why", "--broken"))
+        self.assertIn("--why", self.refused("certificate", "list", self.site, "--why", "--broken"))
+        self.assertNotIn("no option", self.refused("certificate", "list", self.site, "--why", "--broken"))
 
     def test_plugins_effects_and_kinds(self):
         self.campaign(manifest(effects=[]), x=readings(backlash=-6.0))
         self.assertIn('nearest: "effect"', self.refused("plugin", "new", "efect", "mine"))
-        self.assertIn('nearest: "linuxcnc"', self.refused("controllers", "linuxnc"))
+        self.assertIn('nearest: "linuxcnc"', self.refused("table", "controls", "linuxnc"))
         self.assertIn('nearest: "backlash:X"', self.refused("model", "add", self.folder, "backlsh:X"))
         for control in ("simens", "program-simens"):
             self.assertIn('nearest: "siemens"', self.refused(
                 "plan", "program", "--axis", "X=0:8", "--control", control, "--out", self.site / "p"))
         table = self.site / "t.comp"
         table.write_text("0 0 0\n")
-        self.assertIn('nearest: "linuxcnc"', self.refused("diff", table, table, "--control", "linuxnc"))
+        self.assertIn('nearest: "linuxcnc"', self.refused("table", "diff", table, table, "--control", "linuxnc"))
 
     def test_one_plugin_of_a_library(self):
-        files = {pathlib.Path(f["path"]): f["plugins"] for f in json.loads(self.nonio("plugins", "--json").stdout)["files"]}
+        files = {pathlib.Path(f["path"]): f["plugins"] for f in json.loads(self.nonio("plugin", "list", "--json").stdout)["files"]}
         effects = next(path for path in files if path.name == "effects.so")
         self.assertIn("effect backlash 1.0.0", files[effects])
-        listed = self.nonio("plugins", "--quiet").stdout
+        listed = self.nonio("plugin", "list", "--quiet").stdout
         for path, plugins in files.items():
             self.assertIn("".join(f"\n    {plugin}" for plugin in plugins) + "\n", listed.split(str(path))[1])
         done = self.nonio("plugin", "check", effects, "--plugin", "backlash", "--only", "names", "--json")
@@ -125,8 +125,8 @@ t nonio plan ""
 t nonio plan triples --max-p
 t nonio plan triples --even = pr
 t nonio completion ""
-t nonio compare ""
-t nonio plan sign-probe c --out ""
+t nonio model compare ""
+t nonio table probe c --out ""
 """
 
     def test_bash(self):

@@ -111,7 +111,7 @@ class Show(Nights):
 
 class Open(Nights):
     def open(self, *words, expect=0, **environment):
-        done = subprocess.run([NONIO, "open", *map(str, words)], capture_output=True, text=True, check=False,
+        done = subprocess.run([NONIO, "show", "--open", *map(str, words)], capture_output=True, text=True, check=False,
                               cwd=self.site.parent, env={"PATH": "/usr/bin:/bin", **environment})
         self.assertEqual(done.returncode, expect, done.stderr)
         return done

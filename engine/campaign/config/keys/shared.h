@@ -172,7 +172,7 @@ inline constexpr Key run_key = {
 inline constexpr Key options_key = {.name = "options",
                                     .holds = options,
                                     .help =
-                                        "Options of plugins, [options.iso230-2]; `nonio plugins` "
+                                        "Options of plugins, [options.iso230-2]; `nonio plugin list` "
                                         "lists them."};
 
 }  // namespace nonio::config::declared
