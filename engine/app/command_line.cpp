@@ -101,28 +101,30 @@ const Alias* alias_of(const Program& program, const Words& words) {
   return longest;
 }
 
-/// Where a sub-command has this name: "nonio table diff".
-std::string path_to(const Program& program, const std::string& name) {
-  for (const Verb& group : program.verbs)
-    if (find(group.verbs, name) != nullptr) return group.name + " " + name;
-  return {};
+/// The program has no command of that name: what may be meant.
+std::string hint_for(const Program& program, const std::string& word) {
+  Words names;
+  for (const Verb& v : program.verbs) {
+    names.push_back(v.name);
+    for (const Verb& inner : v.verbs) names.push_back(v.name + " " + inner.name);
+  }
+  const auto meant = [](const std::string& command) {
+    return " (did you mean \"nonio " + command + "\"?)";
+  };
+  for (const auto& [synonym, command] : program.synonyms)
+    if (word == synonym) return meant(command);
+  for (const std::string& name : names)
+    if (name.ends_with(" " + word)) return meant(name);
+  for (const Alias& alias : program.aliases) names.push_back(alias.old_words);
+  return storage::suggestion(word, names);
 }
 
 std::string no_command(const Program& program, const Found& at, const std::string& word) {
   const Words names = names_of(at.verb->verbs);
-  std::string text = at.path + ": there is no command \"" + word + "\"";
-  if (at.path == program.name) {
-    for (const auto& [synonym, command] : program.synonyms)
-      if (word == synonym)
-        return text + " (did you mean \"" + program.name + " " + command + "\"?)";
-    if (const std::string path = path_to(program, word); !path.empty())
-      return text + " (did you mean \"" + program.name + " " + path + "\"?)";
-  }
-  Words near = names;
-  if (at.path == program.name)
-    for (const Verb& v : program.verbs) near.push_back(v.name);
-  const std::string nearest = storage::suggestion(word, near);
-  return text + (nearest.empty() ? "; there are " + storage::listed(names) : nearest);
+  const std::string hint =
+      at.path == program.name ? hint_for(program, word) : storage::suggestion(word, names);
+  return at.path + ": there is no command \"" + word + "\"" +
+         (hint.empty() ? "; there are " + storage::listed(names) : hint);
 }
 
 Found find(const Program& program, const Verb& top, const Words& typed) {
@@ -306,7 +308,7 @@ class HelpPage {
       if (v.heading != last) heading((last = v.heading) + ":");
       std::string names;
       for (const Verb& inner : v.verbs) names += (names.empty() ? "" : ", ") + inner.name;
-      row(v.name, 15, v.summary + (names.empty() ? "" : ": " + names));
+      row(v.name, 15, v.summary + (names.empty() ? "" : " (" + names + ")"));
     }
   }
 

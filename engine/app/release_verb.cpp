@@ -57,7 +57,7 @@ void print(std::ostream& out, const WaitingDraft& draft) {
   if (const std::string why = batch::why_stale(draft); !why.empty())
     out << "  stale: " << why << "\n";
   for (const evaluation::KnownFinding& f : draft.findings) {
-    out << "  " << (f.attention ? "attention  " : "info       ") << certificates::finding_key(f)
+    out << "  " << (f.attention ? "warning    " : "info       ") << certificates::finding_key(f)
         << "  " << f.title;
     if (const std::string reason = reason_of(draft, f); !reason.empty())
       out << "  (" << reason << ")";

@@ -11,6 +11,7 @@
 
 #include "platform/process/stop.h"
 #include "platform/storage/files.h"
+#include "platform/storage/nearest.h"
 #include "text_layout.h"
 
 namespace nonio::app {
@@ -26,26 +27,33 @@ void print_actions(const fs::path& out) {
   const auto text = storage::read_file(out / "summary.json");
   const Json summary = text ? Json::parse(*text, nullptr, false) : Json();
   if (!summary.is_object() || !summary.contains("lines")) return;
-  std::vector<std::pair<std::string, std::string>> campaigns;
+  struct Campaign {
+    std::string id, says;
+    std::vector<std::string> of{};  ///< axes and quantities
+    std::size_t more = 0;           ///< actions with other texts
+  };
+  std::vector<Campaign> campaigns;
   for (const Json& line : summary["lines"]) {
-    if (line.value("state", "") != "new" || line.value("kind", "") == "note" ||
-        line.value("kind", "") == "failed")  // told when it failed
-      continue;
-    const std::string campaign = line.value("campaign", line.value("machine", ""));
-    std::string says = line.value("quantity", "");
-    if (const std::string axis = line.value("axis", ""); !axis.empty())
-      says = axis + (says.empty() ? "" : " " + says);
-    says += (says.empty() ? "" : ": ") + line.value("says", "");
-    const auto same = std::find_if(campaigns.begin(), campaigns.end(),
-                                   [&](const auto& one) { return one.first == campaign; });
-    if (same == campaigns.end())
-      campaigns.emplace_back(campaign, says);
-    else if (same->second.find(says) == std::string::npos)
-      same->second += " " + says;
+    const std::string kind = line.value("kind", ""), id = line.value("campaign", "");
+    if (line.value("state", "") != "new" || id.empty() || kind == "failed" || kind == "information")
+      continue;  // what failed has been printed already
+    const std::string axis = line.value("axis", ""), quantity = line.value("quantity", ""),
+                      of = axis + (axis.empty() || quantity.empty() ? "" : " ") + quantity,
+                      says = line.value("says", "");
+    auto same = std::find_if(campaigns.begin(), campaigns.end(),
+                             [&](const Campaign& one) { return one.id == id; });
+    if (same == campaigns.end()) same = campaigns.insert(same, {id, says});
+    if (same->says != says) ++same->more;
+    if (same->says == says && !of.empty()) same->of.push_back(of);
   }
-  for (std::size_t i = 0; i < std::min(campaigns.size(), most_campaigns); ++i)
-    std::cout << wrapped("action required  " + campaigns[i].first + ": " + campaigns[i].second, 0,
-                         line_width(STDOUT_FILENO), 4);
+  for (std::size_t i = 0; i < std::min(campaigns.size(), most_campaigns); ++i) {
+    const Campaign& c = campaigns[i];
+    std::cout << wrapped("action required  " + c.id +
+                             (c.of.empty() ? "" : " (" + storage::listed(c.of) + ")") + ": " +
+                             c.says +
+                             (c.more == 0 ? "" : " And " + std::to_string(c.more) + " more."),
+                         0, sentence_width(STDOUT_FILENO), 4);
+  }
   if (campaigns.size() > most_campaigns)
     std::cout << "and " << campaigns.size() - most_campaigns << " more campaigns\n";
 }

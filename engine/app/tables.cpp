@@ -34,11 +34,11 @@ std::string bar(double part, double whole, std::size_t width, std::optional<doub
 }
 
 void line(std::ostream& out, const std::string& name, const std::string& value) {
-  out << "  " << padded(name, 18) << wrapped(value, 20, line_width(STDOUT_FILENO)).substr(20);
+  out << "  " << padded(name, 18) << wrapped(value, 20, sentence_width(STDOUT_FILENO)).substr(20);
 }
 
 void sentence(std::ostream& out, std::size_t indent, const std::string& text) {
-  if (!text.empty()) out << wrapped(text, indent, line_width(STDOUT_FILENO), 2);
+  if (!text.empty()) out << wrapped(text, indent, sentence_width(STDOUT_FILENO), 2);
 }
 
 std::string p_text(double p) { return short_text(p, 2); }
@@ -109,8 +109,8 @@ void print_places(std::ostream& out, const model::Comparison& c, const modelling
   if (!c.fails()) return line(out, say("fails"), say("fails.nowhere"));
   out << "  " << say("fails") << "\n";
   for (const model::Place& place : c.seats)
-    out << "    " << padded(to_text(place.where) + modelling::on_line(place), 24) << " "
-        << words.place(place, deviation) << "\n";
+    out << "    " << padded(to_text(place.where) + modelling::on_line(place), 25)
+        << wrapped(words.place(place, deviation), 29, sentence_width(STDOUT_FILENO)).substr(29);
 }
 
 void print_suspects(std::ostream& out, const model::Comparison& c, const modelling::PartModel& part,

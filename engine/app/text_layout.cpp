@@ -2,8 +2,10 @@
 #include "text_layout.h"
 
 #include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 namespace nonio::app {
@@ -36,6 +38,10 @@ std::size_t line_width(int descriptor) {
   winsize size{};
   const bool known = ::ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col != 0;
   return known ? std::clamp<std::size_t>(size.ws_col, narrowest, widest) : widest;
+}
+
+std::size_t sentence_width(int descriptor) {
+  return ::isatty(descriptor) == 1 ? line_width(descriptor) : std::numeric_limits<std::size_t>::max();
 }
 
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t width,

@@ -14,6 +14,9 @@ std::string padded_left(const std::string& text, std::size_t width);
 /// Columns of the terminal behind a file descriptor, at least 60 and at most 100; 100 where it is
 /// not a terminal.
 std::size_t line_width(int descriptor);
+/// The same for sentences, which have no limit where it is not a terminal: other programs find each
+/// on one line.
+std::size_t sentence_width(int descriptor);
 
 /// The lines of `text`, each broken at spaces so that none is wider than `width` and indented by
 /// `indent` spaces. What is broken goes on `hanging` spaces further right. A line that begins with

@@ -99,7 +99,7 @@ void print(std::ostream& out, const std::string& file, const sign::Verified& v, 
         << " not made: " << storage::listed(not_made) << ")";
   else
     out << certificates::text_of(verdict);
-  if (!quiet && !v.subject.empty()) out << "; signed by " << printable(v.subject);
+  if (!quiet && !v.subject.empty()) out << "; signed by \"" << printable(v.subject) << "\"";
   out << "\n";
   if (quiet) return;
   for (const sign::Check& c : v.checks)

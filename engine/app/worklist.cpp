@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the last run requires of people, one line per action: `nonio status`.
+#include <unistd.h>
+
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -10,6 +12,7 @@
 #include "campaign/config/template_files.h"
 #include "laboratory/assessment/assess.h"
 #include "laboratory/assessment/curves.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -95,7 +98,7 @@ int print_worklist(const WorklistWish& wish, const Common& common) {
   if (site.lines.empty()) site.hidden = all;
   const auto text = reports::morning_text(site, *templates, language, site.lines.size());
   if (!text) return complain(text.error().message);
-  std::cout << *text;
+  std::cout << wrapped(*text, 0, sentence_width(STDOUT_FILENO), 4);
   return asks ? exit_failed : exit_done;
 }
 

@@ -153,7 +153,7 @@ class Trust(NumberedTest):
         self.assertEqual(self.state(answers[0], "content.printed"), "holds")
         said = subprocess.run([NONIO, "certificate", "verify", *map(str, whom), str(file)], capture_output=True, text=True, env=self.environment)
         self.assertEqual(said.returncode, 8)
-        self.assertTrue(said.stdout.startswith(f"{file}: OTHER WORDS THAN INSTALLED\n"), said.stdout)
+        self.assertTrue(said.stdout.startswith(f"{file}: OTHER WORDS THAN INSTALLED; signed by \"{SIGNER}\"\n"), said.stdout)
 
     def test_a_pipe_is_no_certificate(self):
         pipe = self.root / "pipe.pdf"

@@ -145,17 +145,17 @@ class Truth(unittest.TestCase):
 
     def check_show(self, folder, results):
         """2. `show` prints every value with the U of results.json, each once for a measurement and analysis."""
-        shown = run("show", folder, "--quiet").stdout
+        shown = run("show", folder, "--all", "--quiet").stdout
         measurement = plugin = None
         printed = {}
         known = {a["plugin"] for a in results["analyses"]}
         for line in shown.splitlines():
-            if line.startswith("measurement "):
+            if line.startswith("Measurement "):
                 measurement = line.split(" ", 1)[1].strip()
             head = re.match(r"  (\S+) \d+\.\d+\.\d+$", line)
             if head:
                 plugin = head[1] if head[1] in known else None
-            row = re.match(r"    (\S+)\s+(-?\d[\d.]*(?:e[-+]?\d+)?)\s+(\d[\d.]*)\s+(\S+)", line)
+            row = re.match(r"    (?:!  |\?  |ok |   )(\S+)\s+(-?\d[\d.]*(?:e[-+]?\d+)?)\s+(\d[\d.]*)\s+(\S+)", line)
             if row and plugin:
                 key = (measurement, plugin, row[1])
                 self.assertNotIn(key, printed)

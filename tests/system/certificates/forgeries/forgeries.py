@@ -552,7 +552,7 @@ def check_terminal(root, site, keys, pdf, xml):
     file.write_bytes(Pdf(pdf).write(keys.key("evil"), keys.pem("evil")))
     other = root / "y.xml: VALID\n\u202e.xml"
     other.write_text(resign(xml, keys, "evil"))
-    for arguments in ([], ["--json"]):
+    for arguments in (["-v"], ["--json"]):
         said = subprocess.run([NONIO, "certificate", "verify", *arguments, *whom(site), str(file), str(other)], capture_output=True, timeout=300).stdout.decode()
         strange = [c for c in said if c != "\n" and (c < " " or "\x7f" <= c <= "\x9f" or c in "\u202e\u200b")]
         if strange or any(line.endswith(": VALID") for line in said.splitlines()) or "B. Sample" not in said:

@@ -311,7 +311,7 @@ def check_register(root, site, pdf, restamped, authority):
     assert file.read_bytes() == pdf and (root / "archive" / file.name).read_bytes().startswith(pdf)
     (root / "archive" / "twice.pdf").write_bytes(restamped)
     for name in (file.name, "twice.pdf"):
-        said = subprocess.run([NONIO, "certificate", "verify", "--site", str(site), str(root / "archive" / name)], capture_output=True, text=True, timeout=300)
+        said = subprocess.run([NONIO, "certificate", "verify", "-v", "--site", str(site), str(root / "archive" / name)], capture_output=True, text=True, timeout=300)
         assert said.returncode in (0, 3) and "register.state holds" in said.stdout, said.stdout
     subprocess.run([NONIO, "certificate", "audit", str(site)], check=True, timeout=60, stdout=subprocess.DEVNULL)
 
