@@ -59,12 +59,15 @@ int audit(const CertificateWish& wanted, const config::Numbering& numbering, con
   if (!found) return refuse(found.error());
   const certificates::Audit& a = *found;
   if (common.json) {
-    std::cout
-        << Json{{"schema", "nonio-audit/1"}, {"sound", a.wrong.empty()},       {"register", a.id},
-                {"entries", a.entries},      {"certificates", a.certificates}, {"files", a.files},
-                {"last_at", a.last_at},      {"last_sha256", a.last_sha256},   {"wrong", a.wrong}}
-               .dump(1, ' ', false, Json::error_handler_t::replace)
-        << "\n";
+    print_json(Json{{"schema", "nonio-audit/1"},
+                    {"sound", a.wrong.empty()},
+                    {"register", a.id},
+                    {"entries", a.entries},
+                    {"certificates", a.certificates},
+                    {"files", a.files},
+                    {"last_at", a.last_at},
+                    {"last_sha256", a.last_sha256},
+                    {"wrong", a.wrong}});
   } else {
     for (const std::string& what : a.wrong) std::cout << "WRONG: " << what << "\n";
     std::cout << "register " << a.id << ": " << a.entries << " entries, " << a.certificates
@@ -98,9 +101,7 @@ int certificates(const CertificateWish& wanted, const Common& common) {
   if (common.json) {
     Json all = Json::array();
     for (const RegisterEntry& e : *entries) all.push_back(to_json(e));
-    std::cout << Json{{"schema", "nonio-certificates/1"}, {"certificates", std::move(all)}}.dump(
-                     1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-certificates/1"}, {"certificates", std::move(all)}});
   } else {
     for (const RegisterEntry& e : *entries) print(e);
     if (entries->empty() && !common.quiet) std::cout << "no number was drawn yet\n";

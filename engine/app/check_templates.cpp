@@ -21,11 +21,9 @@ int check_templates(const std::string& site, const Common& common) {
     Json errors = Json::array();
     for (const Error& e : found->errors)
       errors.push_back({{"file", e.file}, {"message", e.message}});
-    std::cout << Json{{"schema", "nonio-template-check/1"},
-                      {"outputs", found->outputs},
-                      {"errors", std::move(errors)}}
-                     .dump(1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-template-check/1"},
+                    {"outputs", found->outputs},
+                    {"errors", std::move(errors)}});
   } else {
     for (const Error& e : found->errors)
       std::cout << e.file << (e.file.empty() ? "" : ": ") << e.message << "\n";

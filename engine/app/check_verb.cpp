@@ -95,12 +95,10 @@ class Check {
 
   int end() const {
     if (common_.json)
-      std::cout << Json{{"schema", "nonio-check/1"},
-                        {"campaigns", campaigns_},
-                        {"invalid", invalid_},
-                        {"errors", errors_}}
-                       .dump(1, ' ', false, Json::error_handler_t::replace)
-                << "\n";
+      print_json(Json{{"schema", "nonio-check/1"},
+                      {"campaigns", campaigns_},
+                      {"invalid", invalid_},
+                      {"errors", errors_}});
     else if (!common_.quiet)
       std::cout << campaigns_ << (campaigns_ == 1 ? " campaign" : " campaigns") << " checked: "
                 << (count_ == 0 ? "no error"

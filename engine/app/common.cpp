@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 namespace nonio::app {
@@ -72,6 +73,11 @@ Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::
     out[one.substr(0, equals)] = one.substr(equals + 1);
   }
   return out;
+}
+
+void print_json(const nlohmann::ordered_json& json, int indent) {
+  std::cout << json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+            << "\n";
 }
 
 std::string today() {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ Argument templates_argument(Common& common);
 Argument settings_argument(std::vector<std::string>& settings, std::string help);
 /// {"NAME", "VALUE"} of each --set.
 Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::string>& given);
+
+/// On stdout with a line feed; bytes that are not UTF-8 are replaced. `indent` -1: on one line.
+void print_json(const nlohmann::ordered_json& json, int indent = 1);
 
 /// YYYY-MM-DD, of the local clock.
 std::string today();

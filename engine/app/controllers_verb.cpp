@@ -129,7 +129,7 @@ int list_controls(const std::vector<std::string>& names, const Common& common) {
   if (common.json) {
     Json json = {{"schema", "nonio-controllers/1"}, {"controllers", Json::array()}};
     for (const Controller* o : all) json["controllers"].push_back(control_json(*o));
-    std::cout << json.dump(1) << "\n";
+    print_json(json);
     return exit_done;
   }
   print_head();

@@ -70,7 +70,7 @@ void print_list(const std::string& id, const fs::path& folder,
                  {"bytes", bytes},           {"files", Json::array()}};
     for (const auto& f : files)
       line["files"].push_back({{"name", f.name}, {"bytes", f.size}, {"sha256", f.sha256}});
-    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+    print_json(line, -1);
     return;
   }
   std::cout << id << ": " << files.size() << " files, " << bytes << " bytes, " << place_of(folder)
@@ -121,13 +121,12 @@ bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
   const auto written = in_place ? Expected<std::size_t>(0) : write_out(folder, to, *files);
   if (!written) return complain(written.error().message), false;
   if (common.json)
-    std::cout << Json{{"schema", "nonio-get/1"},
-                      {"id", id},
-                      {"place", folder.string()},
-                      {"folder", to.string()},
-                      {"written", *written}}
-                     .dump(-1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-get/1"},
+                    {"id", id},
+                    {"place", folder.string()},
+                    {"folder", to.string()},
+                    {"written", *written}},
+               -1);
   else if (!common.quiet)
     std::cout << to.string() << ": " << *written << " of " << files->size() << " files written"
               << (in_place ? ": the results lie there" : "") << "\n";
@@ -165,24 +164,23 @@ Verb export_verb(Common& common) {
       .arguments =
           {{"ID", &wish->ids, "Ids of campaigns"},
            required(existing(Takes::folder, {"--out", &wish->out, "Output folder of `nonio run`"})),
-           takes(
-               Takes::folder,
-               {"--to", &wish->to,
-                "Write FOLDER/ID, and leave the output folder as it is. Without it: OUT/ID, where "
-                "the links of the pages lead; that folder counts from then on, not the pack"}),
-           {"--all", &wish->all, "Every campaign that lies in a pack; with --to every campaign"},
+           takes(Takes::folder,
+                 {"--to", &wish->to,
+                  "Write into FOLDER/ID and leave the output folder unchanged. Without it: OUT/ID, "
+                  "which replaces the pack and is the target of the links of the pages"}),
+           {"--all", &wish->all, "All packed campaigns (with --to: all campaigns)"},
            {"--list", &wish->list,
-            "Write nothing: say where the results lie; with ids also each file, its size and "
-            "SHA-256"},
+            "Write nothing: list where the results are stored; with ids also each file with size "
+            "and SHA-256"},
            {"--json", &common.json, "Machine-readable output on stdout"},
            {"--quiet", &common.quiet, "No output unless something is wrong"}},
       .footer =
-          "A shard with --pack hands the results of its campaigns over as one file. `nonio show`, "
-          "`query`, `history`, `morning`, `live` and the next night read them there. A program "
-          "that wants files, or a person who follows a link of a page, needs them in "
-          "folders.\n\nEach file is compared with its SHA-256 in run.json; a damaged one is named, "
-          "with its pack and campaign, and its campaign is not written. A file that is there with "
-          "other bytes stays. Without Nonio: sqlite3 -A -xf OUT/.nonio/packs/NAME.sqlar (compare "
+          "A shard with --pack stores the results of its campaigns as one file. All commands and "
+          "the next run read them there. Programs that read files, and the links of the pages, "
+          "need them in folders.\n\nEach file is compared with its SHA-256 in run.json; a damaged "
+          "file is reported with its pack and campaign, and the campaign is not written. Existing "
+          "files with different content are not overwritten. Without Nonio: sqlite3 -A -xf "
+          "OUT/.nonio/packs/NAME.sqlar (compare "
           "the digests yourself).\n\nExit status: 0 done; 1 some campaign was not written; 2 usage "
           "or configuration.",
       .examples =

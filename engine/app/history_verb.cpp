@@ -72,22 +72,22 @@ Verb history_verb(Common& common) {
   auto wish = std::make_shared<HistoryWish>();
   return {
       .name = "history",
-      .summary = "What became of a machine over its campaigns: trends, changes, forecasts",
+      .summary = "Trends, changes and forecasts of a machine over its campaigns",
       .arguments = joined(
           {required(existing(Argument::Takes::folder,
                              {"OUT", &wish->out, "Output folder of `nonio run`"})),
            {"MACHINE", &wish->machine,
             "Its asset, or maker and serial with a space between them; without it all machines"},
-           {"--axis", &wish->axis, "As the control calls it: X, or X1 and X2 of a gantry"},
+           {"--axis", &wish->axis, "As the control names it: X, or X1 and X2 of a gantry"},
            {"--quantity", &wish->quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"}},
           common_arguments(common)),
       .footer =
-          "A line a campaign: o as found, x as left, + check, . not comparable, with U (k = 2) as "
-          "in its report, and in brackets U of comparison: what the scatter of the readings shows, "
-          "without what all campaigns with one instrument share. ! the limit, * what happened, ~ "
-          "what changed, with its U and p among all that its night asked. What is not told as a "
-          "change was too small to be seen: from which size on one would have been stands below. "
-          "A, E and R are shown, no line is drawn through them.\n\n--json writes schema "
+          "One line per campaign: o = as found, x = as left, + = check, . = not comparable, with U "
+          "(k = 2) as in its report and, in brackets, the U of the comparison (scatter of the "
+          "readings only, without the contributions that all campaigns with one instrument share). "
+          "! = tolerance limit, * = event, ~ = change, with U and adjusted p-value. Smaller "
+          "changes cannot be detected; the detection limit is given below each chart. A, E and R "
+          "are shown without a fitted line.\n\n--json writes schema "
           "nonio-history/1 (docs/history.md).",
       .examples = {"nonio machine history out S-0042 --axis X --quantity B_mean"},
       .run = [wish, &common] { return history(*wish, common); }};

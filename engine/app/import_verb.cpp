@@ -60,14 +60,12 @@ void print_json(const importing::ImportReport& report, bool dry_run) {
                          {"lacks", c.lacks},
                          {"files", std::move(files)}});
   }
-  std::cout << Json{{"schema", "nonio-import/1"},
-                    {"dry_run", dry_run},
-                    {"campaigns", std::move(campaigns)},
-                    {"duplicates", json_of(report.duplicates)},
-                    {"excluded", json_of(report.excluded)},
-                    {"unmatched", json_of(report.unmatched)}}
-                   .dump(1, ' ', false, Json::error_handler_t::replace)
-            << "\n";
+  print_json(Json{{"schema", "nonio-import/1"},
+                  {"dry_run", dry_run},
+                  {"campaigns", std::move(campaigns)},
+                  {"duplicates", json_of(report.duplicates)},
+                  {"excluded", json_of(report.excluded)},
+                  {"unmatched", json_of(report.unmatched)}});
 }
 
 void print(const char* title, const std::vector<importing::ImportReport::Passed>& list) {

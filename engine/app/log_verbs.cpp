@@ -42,7 +42,7 @@ int wrong_day(const std::string& day) {
 
 void say(const Common& common, const std::string& site, const char* file, const Json& entry) {
   if (common.json)
-    std::cout << entry.dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+    print_json(entry);
   else if (!common.quiet)
     std::cout << "entered in " << printable(site) << "/" << file << "\n";
 }
@@ -66,9 +66,7 @@ int list_events(const EventWish& wish, const Common& common) {
               << printable(e.text) << (e.by.empty() ? "" : "  (" + printable(e.by) + ")") << "\n";
   }
   if (common.json)
-    std::cout << Json{{"schema", "nonio-events/1"}, {"events", std::move(all)}}.dump(
-                     1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-events/1"}, {"events", std::move(all)}});
   else if (all.empty() && !common.quiet)
     std::cout << "no events yet\n";
   return exit_done;
@@ -128,9 +126,7 @@ int list_acknowledged(const AckWish& wish, const Common& common) {
               << printable(a.why) << "  (" << printable(a.by) << ")\n";
   }
   if (common.json)
-    std::cout << Json{{"schema", "nonio-acknowledged/1"}, {"acknowledged", std::move(all)}}.dump(
-                     1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-acknowledged/1"}, {"acknowledged", std::move(all)}});
   else if (all.empty() && !common.quiet)
     std::cout << "nothing is acknowledged\n";
   return exit_done;
@@ -214,7 +210,7 @@ Verb event_verb(Common& common) {
            {"--axis", &e.axis, "The axis concerned; default: the whole machine"},
            one_of({"crash", "repair", "compensation", "moved", "instrument", "software", "other"},
                   {"--kind", &e.kind, "Kind of event"}),
-           {"--text", &e.text, "Description in the words of a witness, one line"},
+           {"--text", &e.text, "Description, one line"},
            {"--date", &e.date, "The day, YYYY-MM-DD; default: today"},
            {"--by", &e.by, "Name of the author of the entry"},
            existing(Argument::Takes::folder,
@@ -245,7 +241,7 @@ Verb ack_verb(Common& common) {
                   {"--machine", &a.machine, "As `nonio machine list` names it"},
                   {"--axis", &a.axis, "The axis; default: all"},
                   {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
-                  {"--until", &a.until, "Last day on which it counts as known, YYYY-MM-DD"},
+                  {"--until", &a.until, "Last day of the acknowledgement, YYYY-MM-DD"},
                   {"--value", &wish->value,
                    "Present value of the quantity, in its unit: the finding returns if the value "
                    "changes by more than --U"},
@@ -254,13 +250,13 @@ Verb ack_verb(Common& common) {
                   {"--why", &a.why, "Reason why it is accepted until then"},
                   {"--date", &a.date, "Day of the entry, YYYY-MM-DD; default: today"},
                   {"--withdraw", &wish->withdraw,
-                   "Take back the acknowledgement that has exactly this --finding, --machine, "
-                   "--axis and --quantity"}},
+                   "Withdraw the acknowledgement with exactly this --finding, --machine, --axis "
+                   "and --quantity"}},
                  common_arguments(common)),
       .footer =
-          "Without --finding, --until and --why: lists those that count, of one machine or all. "
+          "Without options: lists the active acknowledgements, of one machine or of all. "
           "Appends to SITE/acknowledged.toml; comments stay. It hides nothing: the finding stays "
-          "in the results and in the history. What was withdrawn stays in the file too.",
+          "in the results and in the history. Withdrawn entries stay in the file.",
       .examples =
           {"nonio machine ack site --finding reversal.constant --machine S-0042 --axis X --until "
            "2026-06-30 --by \"B. Sample\" --why \"nut is ordered\""},

@@ -49,7 +49,7 @@ int tell_merged(const tables::MergedTables& merged, const Loaded& present, const
                       {"tables", TableJson::array()}};
     for (const auto& d : merged.differences) json["tables"].push_back(difference_json(d));
     json["files"] = written;
-    std::cout << json.dump(1) << "\n";
+    print_json(json);
     return exit_done;
   }
   for (const auto& d : merged.differences) print_difference(d);

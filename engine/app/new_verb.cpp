@@ -288,13 +288,11 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
     for (const Artifact& file : one.files) written.push_back((one.folder / file.name).string());
   }
   if (common.json) {
-    std::cout << Json{{"schema", "nonio-new/1"},
-                      {"kind", what},
-                      {"folder", all.front().folder.string()},
-                      {"example", example},
-                      {"files", written}}
-                     .dump(1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-new/1"},
+                    {"kind", what},
+                    {"folder", all.front().folder.string()},
+                    {"example", example},
+                    {"files", written}});
     return exit_done;
   }
   if (common.quiet) return exit_done;

@@ -139,11 +139,8 @@ int open_document(const std::string& folder, const std::string& out, const Commo
   std::string why_not = no_desktop();
   if (why_not.empty() && !open_in_background(path.string())) why_not = "xdg-open cannot be started";
   if (common.json)
-    std::cout << Json{{"schema", "nonio-open/1"},
-                      {"file", path.string()},
-                      {"opened", why_not.empty()}}
-                     .dump(1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(
+        Json{{"schema", "nonio-open/1"}, {"file", path.string()}, {"opened", why_not.empty()}});
   else
     std::cout << path.string() << "\n";
   if (!why_not.empty() && !common.quiet) complain("not opened: " + why_not);

@@ -64,7 +64,7 @@ void print_json(const RotaryWish& wish, const std::vector<RotaryRow>& rows, doub
                              {"U_two_points_um", two_points}};
   for (const RotaryRow& row : rows) out["plans"].push_back(json_of(row));
   if (fewest && *fewest) out["fewest_balls"] = **fewest;
-  std::cout << out.dump(1) << "\n";
+  print_json(out);
 }
 
 void print_plans_of(const RotaryWish& wish, const std::vector<RotaryRow>& rows, double two_points,

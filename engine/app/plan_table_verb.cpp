@@ -198,7 +198,7 @@ int plan_table(const TableWish& wish, const Common& common) {
     nlohmann::ordered_json out{{"schema", "nonio-triple-table/1"}, {"sort", sort}};
     out["rows"] = nlohmann::ordered_json::array();
     for (const TableRow& row : rows) out["rows"].push_back(json_of(row));
-    std::cout << out.dump(1) << "\n";
+    print_json(out);
   } else {
     print_table_rows(rows, wish);
   }

@@ -200,8 +200,7 @@ int plan_program(const ProgramWish& p, const Common& common) {
   std::vector<std::string> files;
   const int exit = write_programs(common, p.programs, machine, *rows, {}, &files);
   if (common.json && exit == exit_done)
-    std::cout << nlohmann::ordered_json{{"schema", "nonio-programs/1"}, {"files", files}}.dump(1)
-              << "\n";
+    print_json(nlohmann::ordered_json{{"schema", "nonio-programs/1"}, {"files", files}});
   return exit;
 }
 

@@ -53,16 +53,14 @@ class CheckReport {
   int end() const {
     const std::size_t passed = counts_[0], failed = counts_[1], crashed = counts_[2];
     if (common_.json)
-      std::cout << Json{{"schema", "nonio-plugin-check/1"},
-                        {"seed", options_.request.seed},
-                        {"seeds", options_.request.seeds},
-                        {"checks", checks_},
-                        {"passed", passed},
-                        {"failed", failed},
-                        {"crashed", crashed},
-                        {"skipped", counts_[3]}}
-                       .dump(1, ' ', false, Json::error_handler_t::replace)
-                << "\n";
+      print_json(Json{{"schema", "nonio-plugin-check/1"},
+                      {"seed", options_.request.seed},
+                      {"seeds", options_.request.seeds},
+                      {"checks", checks_},
+                      {"passed", passed},
+                      {"failed", failed},
+                      {"crashed", crashed},
+                      {"skipped", counts_[3]}});
     else
       std::cout << passed << " passed, " << failed << " failed, " << crashed << " crashed, "
                 << counts_[3] << " skipped; seed " << options_.request.seed << ", seeds "
@@ -115,7 +113,7 @@ int make_plugin(const SkeletonOptions& options, const Common& common) {
       plugin_check::new_plugin(skeletons, options.kind, options.name, fs::absolute(folder));
   if (!files) return complain(files.error().message);
   if (common.json)
-    std::cout << Json{{"folder", fs::absolute(folder).string()}, {"files", *files}}.dump(1) << "\n";
+    print_json(Json{{"folder", fs::absolute(folder).string()}, {"files", *files}});
   else if (!common.quiet)
     std::cout << "Written: " << folder.string() << "\n\n"
               << "    cmake -S " << folder.string() << " -B " << folder.string() << "/build\n"

@@ -61,11 +61,8 @@ void print_plugins_json(const loader::Plugins& plugins) {
       columns.push_back({{"name", name_in_file(c)}, {"required", c.required}, {"help", c.help}});
     all.back()["columns"] = std::move(columns);
   }
-  std::cout << Json{{"abi", NONIO_ABI_TAG},
-                    {"files", std::move(files)},
-                    {"plugins", std::move(all)}}
-                   .dump(1)
-            << "\n";
+  print_json(
+      Json{{"abi", NONIO_ABI_TAG}, {"files", std::move(files)}, {"plugins", std::move(all)}});
 }
 
 void print_plugins(const loader::Plugins& plugins, bool with_options) {

@@ -193,9 +193,7 @@ int probe(const ProbeWish& w, const Common& common) {
     if (auto done = storage::publish(std::filesystem::absolute(w.out), files); !done)
       return complain(text_of(done.error()), exit_failed);
   if (common.json)
-    std::cout << Json{{"schema", "nonio-sign-probe/1"}, {"campaign", campaign.id}, {"probes", all}}
-                     .dump(1)
-              << "\n";
+    print_json(Json{{"schema", "nonio-sign-probe/1"}, {"campaign", campaign.id}, {"probes", all}});
   if (!measured) return complain("no measurement of an axis with readings", exit_failed);
   return good ? exit_done : exit_failed;
 }

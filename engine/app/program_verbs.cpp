@@ -46,13 +46,11 @@ int version(const Common& common) {
   const auto plugins = texts_of(common.plugin_folders()),
              templates = texts_of(common.template_folders());
   if (common.json) {
-    std::cout << Json{{"schema", "nonio-version/1"},
-                      {"version", NONIO_VERSION},
-                      {"abi", NONIO_ABI_TAG},
-                      {"plugins", plugins},
-                      {"templates", templates}}
-                     .dump(1)
-              << "\n";
+    print_json(Json{{"schema", "nonio-version/1"},
+                    {"version", NONIO_VERSION},
+                    {"abi", NONIO_ABI_TAG},
+                    {"plugins", plugins},
+                    {"templates", templates}});
     return exit_done;
   }
   std::cout << "nonio " NONIO_VERSION "\nABI        " NONIO_ABI_TAG "\n";

@@ -146,11 +146,9 @@ int print_machines(const QueryWish& wish, const Common& common) {
     Json all = Json::array();
     for (const NamedMachine& m : *machines)
       all.push_back({{"machine", m.name}, {"campaigns", m.campaigns}});
-    std::cout << Json{{"schema", "nonio-query/1"},
-                      {"machines", std::move(all)},
-                      {"spellings", to_json(*spellings)}}
-                     .dump(1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-query/1"},
+                    {"machines", std::move(all)},
+                    {"spellings", to_json(*spellings)}});
     return exit_done;
   }
   std::vector<std::vector<std::string>> rows{{"machine", "campaigns"}};
@@ -177,9 +175,7 @@ int query(const QueryWish& wish, const Common& common) {
   if (common.json) {
     Json all = Json::array();
     for (const Point& p : *points) all.push_back(to_json(p));
-    std::cout << Json{{"schema", "nonio-query/1"}, {"points", std::move(all)}}.dump(
-                     1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-query/1"}, {"points", std::move(all)}});
   } else if (wish.csv) {
     print_csv(*points);
   } else if (points->empty()) {

@@ -48,11 +48,10 @@ void print_actions(const fs::path& out) {
   }
   for (std::size_t i = 0; i < std::min(campaigns.size(), most_campaigns); ++i) {
     const Campaign& c = campaigns[i];
-    std::cout << wrapped("action required  " + c.id +
-                             (c.of.empty() ? "" : " (" + storage::listed(c.of) + ")") + ": " +
-                             c.says +
-                             (c.more == 0 ? "" : " And " + std::to_string(c.more) + " more."),
-                         0, sentence_width(STDOUT_FILENO), 4);
+    std::cout << wrapped(
+        "action required  " + c.id + (c.of.empty() ? "" : " (" + storage::listed(c.of) + ")") +
+            ": " + c.says + (c.more == 0 ? "" : " And " + std::to_string(c.more) + " more."),
+        0, sentence_width(STDOUT_FILENO), 4);
   }
   if (campaigns.size() > most_campaigns)
     std::cout << "and " << campaigns.size() - most_campaigns << " more campaigns\n";
@@ -77,7 +76,7 @@ void print_summary(const batch::Night& night, const fs::path& out, bool json) {
                 {"attention", attention}, {"failed", failed}, {"vanished", night.vanished.size()}};
     if (night.asking) end["decisions"] = *night.asking;
     end["summary"] = (out / "summary.json").string();
-    std::cout << end.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+    print_json(end, -1);
     return;
   }
   if (night.asking && *night.asking > 0) print_actions(out);

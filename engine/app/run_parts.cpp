@@ -145,8 +145,8 @@ int unlock_night(const NightWish& wish, const Common& common) {
 }
 
 Argument out_argument(NightWish& wish) {
-  return required(existing(Argument::Takes::folder,
-                           {"OUT", &wish.out, "Output folder with the planned night"}));
+  return required(
+      existing(Argument::Takes::folder, {"OUT", &wish.out, "Output folder of the planned run"}));
 }
 
 Verb plan_part(Common& common) {
@@ -155,7 +155,7 @@ Verb plan_part(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "plan",
-      .summary = "Looks at every campaign in SITE, and divides what is to do into S shards",
+      .summary = "Divides the campaigns that have to be evaluated into S shards",
       .arguments = joined(
           {required(existing(Takes::folder,
                              {"SITE", &wish->site,
@@ -165,19 +165,19 @@ Verb plan_part(Common& common) {
            required(within(1, most_shards,
                            {"--shards", &options.shards,
                             "S, the number of shards; 4 to 8 times as many as run at a time"})),
-           {"--force", &options.force, "Do every campaign again, changed or not"},
+           {"--force", &options.force, "Evaluate every campaign again, changed or not"},
            {"--verify-results", &options.verify_results,
             "Compare the digests of all result files, not only of those that look modified"},
            {"--date", &options.date,
-            "Date of the night, YYYY-MM-DD, for the summary (default: today; a resumed night keeps "
-            "its date)"},
+            "Date of the run, YYYY-MM-DD, for the summary (default: today; a resumed run keeps its "
+            "date)"},
            root_argument(options),
            templates_argument(common)},
           common_arguments(common)),
       .footer =
           "Reads the site and the register of numbers; needs no key. The shard of a campaign is "
-          "the SHA-256 of its id (first 8 bytes) modulo S. Planning again takes the place of a "
-          "plan that was not merged, and keeps what its shards have done. Until the merge, `nonio "
+          "the SHA-256 of its id (first 8 bytes) modulo S. Re-planning replaces a plan that was "
+          "not merged; finished shards are kept. Until the merge, `nonio "
           "run` without --shard is refused.",
       .examples = {"nonio run plan site --out out --shards 4"},
       .run = [wish, &common] { return plan_night(*wish, common); }};
@@ -193,7 +193,7 @@ Verb merge_part(Common& common) {
   wait.shows_default = true;
   return {
       .name = "merge",
-      .summary = "Ends a planned night when its shards are done: history, pages, summary",
+      .summary = "Completes a planned run when its shards are done: history, pages, summary",
       .arguments = joined(
           {out_argument(*wish),
            existing(Argument::Takes::folder,
@@ -203,9 +203,9 @@ Verb merge_part(Common& common) {
       .footer =
           "Runs on the host that has the key and reaches the register: campaigns with a "
           "certificate or a signature are done here, in the order of their ids. Summary, history "
-          "and pages are equal byte for byte to those of a night that was not divided. Exit status "
-          "1 also if a shard has not reported: the message names it. Run it, then merge again. "
-          "What was merged is not done twice.",
+          "and pages have the same bytes as those of an undivided run. Exit status "
+          "1 also if a shard has not reported: the message names it. Run it, then merge again; "
+          "nothing is merged twice.",
       .examples = {"nonio run merge out"},
       .run = [wish, &common] { return merge_night(*wish, common); }};
 }
@@ -213,11 +213,11 @@ Verb merge_part(Common& common) {
 Verb cancel_part(Common& common) {
   auto wish = std::make_shared<NightWish>();
   return {.name = "cancel",
-          .summary = "Withdraws the plan of a night; what its shards have done stays",
+          .summary = "Withdraws a plan; the results of finished shards are kept",
           .arguments = joined({out_argument(*wish)}, common_arguments(common)),
           .footer =
-              "Refused while a shard is running. The night stays open: `nonio run` without "
-              "--shard, or another plan, goes on with it.",
+              "Refused while a shard is running. The run stays open: `nonio run` without --shard, "
+              "or another plan, continues it.",
           .examples = {"nonio run cancel out"},
           .run = [wish, &common] { return cancel_night(*wish, common); }};
 }
@@ -227,7 +227,7 @@ Verb unlock_part(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "unlock",
-      .summary = "Frees an output folder whose process, on another host, is known to be gone",
+      .summary = "Frees an output folder whose process on another host has ended",
       .arguments = joined(
           {required(existing(Takes::folder, {"OUT", &wish->out, "Output folder of `nonio run`"})),
            existing(Takes::file, {"--alive", &wish->alive,
@@ -235,11 +235,11 @@ Verb unlock_part(Common& common) {
                                   "its job (NONIO_JOB of its environment) is in it"})},
           common_arguments(common)),
       .footer =
-          "A night, a release and a merge leave their host and process in OUT/.nonio/user while "
-          "they work. After a crash the same host takes the folder over by itself, also after it "
-          "started anew. Another host cannot know whether the first one still writes: somebody who "
-          "knows, or a script that asked the scheduler, says so here. Refused where the lock of "
-          "the file system shows that the process lives.",
+          "A process that writes to the output folder stores its host and process id in "
+          "OUT/.nonio/user. After a crash the same host takes the folder over by itself, also "
+          "after a restart. Another host cannot know whether the process is still running; use "
+          "this command if you, or the scheduler, know that it has ended. Refused if the lock of "
+          "the file system shows that the process is running.",
       .examples = {"nonio run unlock out"},
       .run = [wish, &common] { return unlock_night(*wish, common); }};
 }

@@ -35,12 +35,11 @@ void print_night_plan(const batch::Night& night, bool json) {
         c.action == batch::CampaignState::Action::todo && c.status == evaluation::Status::failed;
     const std::string reason = collides ? c.errors().front().message : c.reason;
     if (json)
-      std::cout << Json{{"id", c.id},
-                        {"folder", storage::path_text(c.folder.view())},
-                        {"action", collides ? "refused" : to_text(c.action)},
-                        {"reason", reason}}
-                       .dump(-1, ' ', false, Json::error_handler_t::replace)
-                << "\n";
+      print_json(Json{{"id", c.id},
+                      {"folder", storage::path_text(c.folder.view())},
+                      {"action", collides ? "refused" : to_text(c.action)},
+                      {"reason", reason}},
+                 -1);
     else
       std::cout << (collides ? "refused" : to_text(c.action)) << "  " << c.id << ": " << reason
                 << "\n";
@@ -150,25 +149,24 @@ Verb run_verb(Common& common) {
                           {"--out", &wish->out,
                            "Folder for the results: one folder per campaign, and the summary"})),
            jobs_argument(options),
-           {"--force", &options.force, "Do every campaign again, changed or not"},
+           {"--force", &options.force, "Evaluate every campaign again, changed or not"},
            {"--only", &options.only,
-            "One campaign (its folder, or its id) of the last night again, changed or not; all "
-            "others stay as the night left them, and the night keeps its number"},
+            "Evaluate a single campaign (folder or id) of the last run again; all other results "
+            "are kept, and the run keeps its number"},
            {"--verify-results", &options.verify_results,
             "Compare the digests of all result files, not only of those that look modified; a "
             "campaign with a modified file is evaluated again"},
            {"--date", &options.date,
-            "Date of the night, YYYY-MM-DD, for the summary (default: today; a resumed run keeps "
+            "Date of the run, YYYY-MM-DD, for the summary (default: today; a resumed run keeps "
             "its date)"},
-           {"--dry-run", &options.dry_run, "Print what would be done and why; do nothing"},
+           {"--dry-run", &options.dry_run, "Print what would be evaluated and why; write nothing"},
            {"--shard", &wish->shard,
-            "i/S: only part i = 0 .. S-1 of a night that `nonio run plan` has planned for S "
-            "parts; on any host that has SITE and DIR, in any order, also several times"},
+            "i/S: only shard i = 0 .. S-1 of a run that `nonio run plan` has divided into S "
+            "shards; on any host that has SITE and OUT, in any order, also repeatedly"},
            {"--pack", &options.pack,
-            "With --shard: do the campaigns in a folder of this host and hand their results over "
-            "as one file in DIR/.nonio/packs. Every verb reads them there; `nonio export` writes "
-            "them "
-            "out"},
+            "With --shard: work in a folder of this host and store the results as one file in "
+            "OUT/.nonio/packs. Every command reads them there; `nonio export` writes them into "
+            "folders"},
            existing(Takes::folder, {"--scratch", &wish->scratch,
                                     "With --pack: the folder of this host (default: TMPDIR, or "
                                     "/tmp). It needs room for the results of the shard, twice"}),

@@ -82,7 +82,7 @@ int status(const StatusWish& wish, const Common& common) {
                                {"campaigns", found->last->seen},
                                {"failed", found->last->failed}};
     if (!wrong.empty()) json["wrong"] = wrong;
-    std::cout << json.dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+    print_json(json);
   } else if (!common.quiet || !wrong.empty()) {
     std::cout << line_of(*found, wrong) << "\n";
   }

@@ -72,7 +72,7 @@ int tell_differences(const std::string& control, const std::vector<tables::Table
   if (common.json) {
     Json json = {{"schema", "nonio-diff/1"}, {"control", control}, {"tables", Json::array()}};
     for (const auto& d : all) json["tables"].push_back(difference_json(d));
-    std::cout << json.dump(1) << "\n";
+    print_json(json);
   } else {
     for (const auto& d : all) print_difference(d);
   }
@@ -144,7 +144,7 @@ int tell(const Applied& a, const std::string& control, const OpenCampaign& open,
     if (!a.differences.empty()) json["tables"] = Json::array();
     for (const auto& d : a.differences) json["tables"].push_back(difference_json(d));
     if (!a.files.empty()) json["files"] = a.files;
-    std::cout << json.dump(1) << "\n";
+    print_json(json);
   } else {
     for (const auto& d : a.differences) print_difference(d);
     for (const auto& f : a.forecast) print_forecast(f);

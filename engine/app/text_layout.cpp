@@ -41,7 +41,8 @@ std::size_t line_width(int descriptor) {
 }
 
 std::size_t sentence_width(int descriptor) {
-  return ::isatty(descriptor) == 1 ? line_width(descriptor) : std::numeric_limits<std::size_t>::max();
+  return ::isatty(descriptor) == 1 ? line_width(descriptor)
+                                   : std::numeric_limits<std::size_t>::max();
 }
 
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t width,
