@@ -39,7 +39,7 @@ Json json_of(const std::vector<importing::ImportReport::Passed>& list) {
   return out;
 }
 
-void print_json(const importing::ImportReport& report, bool dry_run) {
+void print_import_json(const importing::ImportReport& report, bool dry_run) {
   Json campaigns = Json::array();
   for (const importing::ImportedCampaign& c : report.campaigns) {
     Json files = Json::array();
@@ -130,7 +130,7 @@ int import_files(const ImportArguments& arguments, const Common& common) {
       plugins);
   if (!report) return complain(report.error().message);
   if (common.json)
-    print_json(*report, arguments.dry_run);
+    print_import_json(*report, arguments.dry_run);
   else if (!common.quiet)
     print(*report);
   bool whole = !report->campaigns.empty();

@@ -56,8 +56,8 @@ nlohmann::ordered_json json_of(const RotaryRow& row) {
 
 using Fewest = std::optional<Expected<std::size_t>>;
 
-void print_json(const RotaryWish& wish, const std::vector<RotaryRow>& rows, double two_points,
-                const Fewest& fewest) {
+void print_rotary_json(const RotaryWish& wish, const std::vector<RotaryRow>& rows,
+                       double two_points, const Fewest& fewest) {
   nlohmann::ordered_json out{{"schema", "nonio-rotary-plan/1"}, {"axis", wish.axis},
                              {"probe_u_um", wish.probe_u},      {"arc_deg", wish.arc},
                              {"trials", wish.trials},           {"seed", wish.seed},
@@ -111,7 +111,7 @@ int plan_rotary(const RotaryWish& wish, const Common& common) {
     fewest = planning::fewest_balls(own, wish.want_centre / um_of_m, wish.want_direction / um_of_m);
   const double two_points = 2.0 * wish.probe_u / std::numbers::sqrt2;
   if (common.json)
-    print_json(wish, *rows, two_points, fewest);
+    print_rotary_json(wish, *rows, two_points, fewest);
   else
     print_plans_of(wish, *rows, two_points, fewest);
   if (fewest && !*fewest) return complain(fewest->error().message, exit_failed);

@@ -286,7 +286,7 @@ Verb program_verb(Common& common) {
           "Axis runs have random offsets of the targets, as ISO 230-2 requires; the same seed "
           "(--set seed=7) gives the same targets. With --n, --step-x and --step-y the diagonals "
           "are written too, and X and Y have the same stops as the diagonals.",
-      .examples = {"nonio plan program --axis X=0:800 --axis Y=0:600 --axis Z=0:600 \\ --control "
+      .examples = {"nonio plan program --axis X=0:800 --axis Y=0:600 --axis Z=0:600 --control "
                    "siemens --set programs=axes,step-diagonals --set steps=40 --out p"},
       .run = [program, &common] { return plan_program(*program, common); }};
 }

@@ -79,6 +79,7 @@ Verb version_verb(Common& common) {
       .name = "version",
       .summary = "Prints the version, the ABI tag, and the search paths of plugins and templates",
       .arguments = joined({templates_argument(common)}, common_arguments(common)),
+      .examples = {"nonio version --json"},
       .run = [&common] { return version(common); }};
 }
 
@@ -87,7 +88,7 @@ Verb completion_verb(const Program& program) {
   return {.name = "completion",
           .summary = "Prints the shell script that completes verbs, options and files",
           .arguments = {required(one_of({"bash", "zsh"}, {"SHELL", shell.get(), "bash or zsh"}))},
-          .examples = {"nonio completion bash > ~/.local/share/bash-completion/completions/nonio  "
+          .examples = {"nonio completion bash > ~/.local/share/bash-completion/completions/nonio",
                        "nonio completion zsh > ~/.zfunc/_nonio"},
           .run = [shell, &program] {
             write_completion(program, *shell, std::cout);

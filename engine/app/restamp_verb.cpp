@@ -98,14 +98,14 @@ Verb extend_verb(Common& common) {
           "data (revocation lists, OCSP responses), then a time stamp over the whole file (PAdES "
           "B-LTA). The issued bytes stay unchanged at the beginning of the file; `nonio "
           "certificate verify` "
-          "accepts this addition and no other. Restamp some days after the issue, and again before "
+          "accepts this addition and no other. Extend it some days after the issue, and again "
+          "before "
           "the certificate of the last time server expires: a later stamp protects the earlier "
           "ones. The register keeps the file as it was issued. Revocation data come from --revoked "
           "and --ocsp, otherwise from the addresses (http) in the certificates. If the status of a "
           "certificate cannot be determined, nothing is written. Exit status 0 only if all files "
           "were written.",
-      .examples = {"nonio certificate list site --out archive && nonio certificate extend --site "
-                   "site archive/*.pdf"},
+      .examples = {"nonio certificate extend --site site archive/S-0001.pdf archive/S-0002.pdf"},
       .run = [wanted, &common] { return restamp(*wanted, common); }};
 }
 

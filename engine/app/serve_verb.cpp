@@ -45,7 +45,7 @@ Verb serve_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "serve",
-      .summary = "Opens a page in the browser: the model of a campaign against its readings",
+      .summary = "Serves a page on this computer: the model of a campaign, or the work of a site",
       .arguments = joined(
           {required(existing(Takes::folder,
                              {"CAMPAIGN", &options->folder,
@@ -71,8 +71,8 @@ Verb serve_verb(Common& common) {
           "before \"save\", which does what `nonio model add` does.\n\nOnly this computer can "
           "reach the page, and only with the token behind # in the address: it is a key, do not "
           "pass it on. From another computer: ssh -L (docs/howto-live.md).",
-      .examples = {"nonio serve samples/site/02-constant-reversal  nonio serve --edit --port 4711 "
-                   "--token-file ~/.nonio-token campaigns/c1"},
+      .examples = {"nonio serve samples/site/02-constant-reversal",
+                   "nonio serve --edit --port 4711 --token-file ~/.nonio-token campaigns/c1"},
       .run = [options, &common] { return live(*options, common); }};
 }
 

@@ -203,9 +203,11 @@ class Page {
     if (!measurement.empty() && measurement != last)
       heading(say_("measurement", {{"id", measurement}}));
     last = measurement;
-    if (measurement.empty()) out_ << "\n";
-    out_ << "  " << a.at("plugin").get<std::string>() << " " << a.value("version", "") << "\n";
-    values(a.at("values"));
+    const Json& results = a.at("values");
+    if (measurement.empty() && (all_ || !results.empty())) out_ << "\n";
+    if (all_ || !results.empty())
+      out_ << "  " << a.at("plugin").get<std::string>() << " " << a.value("version", "") << "\n";
+    values(results);
     collect(a, measurement);
     if (!all_) return;
     if (a.contains("series"))
@@ -228,8 +230,10 @@ class Page {
 
   /// "4.82 ± 1.00 um"
   std::string result(const Json& v) const {
-    const std::string U = number(v, "U");
-    return joined_text({number(v, "value"), U.empty() ? "" : "± " + U, v.value("unit", "")}, " ");
+    const std::string U = number(v, "U"), unit = v.value("unit", "");
+    if (U.empty() && unit.empty() && v.at("value").is_number_float())
+      return local(short_text(v.at("value").get<double>(), 4));
+    return joined_text({number(v, "value"), U.empty() ? "" : "± " + U, unit}, " ");
   }
 
   void values(const Json& all) {
@@ -369,13 +373,14 @@ class Page {
 
   /// What each table would leave, by measurement, and how many files it has.
   void compensation(const Json& tables, const Json& written) {
-    if (tables.empty()) return;
-    heading(say_("compensation"));
+    bool is_first = true;
     for (const Json& t : tables) {
       const std::string plugin = t.at("plugin");
       const auto files = std::count_if(written.begin(), written.end(), [&](const Json& o) {
         return o.value("plugin", "") == plugin;
       });
+      if (files == 0 && !all_) continue;
+      if (std::exchange(is_first, false)) heading(say_("compensation"));
       out_ << "  " << plugin << ": " << say_("files") << " " << files << "\n";
       std::string last;
       std::vector<std::string> parts;

@@ -79,13 +79,13 @@ Verb simulate_verb(Common& common) {
                           {"--out", &wish->out, "Folder for campaign.toml and the readings"})),
            takes(Takes::file,
                  {"--truth", &wish->truth,
-                  "File for the true values (default: OUT.truth.json, beside the folder)"})},
+                  "File for the true values (default: OUT.truth.json, next to the folder)"})},
           common_arguments(common)),
       .footer =
           "The specification is a manifest with three additional tables:\n  [simulation]           "
           "seed = 7             the same seed gives the same bytes\n  [[cycle]]              "
           "measurement = \"X\"    targets, runs, noise of one measurement\n  [[effect]]            "
-          " name = \"backlash:X\"  b_um = -6.0 Effects are those of `nonio plugin list`, and "
+          " name = \"backlash:X\"  b_um = -6.0\nEffects are those of `nonio plugin list`, and "
           "formulas "
           "under [[model.formula]] or, if they shall not appear in the campaign, "
           "[[simulation.formula]]. The name of a parameter ends with its unit.",

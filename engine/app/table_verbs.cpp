@@ -353,7 +353,7 @@ Verb predict_verb(Common& common) {
           "was possible; 2 usage or configuration.",
       .examples =
           {"nonio table predict backup/siemens-840d-X-EEC.ini,backup/siemens-840d-X-backlash.ini "
-           "\\ site/2026-11-rossi --active-table --out new"},
+           "site/2026-11-rossi --active-table --out new"},
       .run = [w, &common] { return apply(*w, common); }};
 }
 

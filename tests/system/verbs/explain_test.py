@@ -143,7 +143,7 @@ class Explain(VerbTest):
         for got, true in zip(sizes["free-reversal:X"], (-8, 9, -1.4)):
             self.assertLess(abs(got - true), 1.5)
         self.assertTrue(any("9 targets or more" in text and "5 are too few" in text for text in e["next"]), e["next"])
-        self.assertIn("9 targets or more", self.nonio("model", "explain", self.folder).stdout)
+        self.assertIn("9 targets or more", self.nonio("model", "explain", self.folder, "--all").stdout)
 
     def test_a_complete_model_misses_nothing(self):
         self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
@@ -261,7 +261,7 @@ class Explain(VerbTest):
         self.assertEqual(described[0]["effect"], "free-reversal:X")
         self.assertLess(described[-1]["rms_um"], 1.1 * e["noise_floor_um"])
         self.assertNotIn("free-reversal:X", [c["effect"] for c in e["candidates"]])
-        self.assertIn("a description, not a cause", self.nonio("model", "explain", self.folder).stdout)
+        self.assertIn("a description, not a cause", self.nonio("model", "explain", self.folder, "--all").stdout)
         for d in described:
             self.nonio("model", "add", self.folder, d["effect"])
         e = self.explain()
@@ -316,7 +316,7 @@ class Explain(VerbTest):
         self.assertEqual(unseen["temperature:X"]["why_not"], "temperature-gaps")
         self.assertEqual(unseen["temperature:X"]["lines"], list(range(22, 62)))
         self.assertIn("Add the temperature for these rows", unseen["temperature:X"]["says"])
-        self.assertIn("temperature:X: 40 readings (x.csv, lines 22, 23", self.nonio("model", "explain", self.folder).stdout)
+        self.assertIn("temperature:X: 40 readings (x.csv, lines 22, 23", self.nonio("model", "explain", self.folder, "--all").stdout)
         self.campaign(manifest([]), x=readings(directions="+", times=False))
         unseen = {u["effect"]: u["why_not"] for u in self.explain()["unseen"]}
         self.assertEqual(unseen["backlash:X"], "one-direction")

@@ -36,7 +36,7 @@ class Languages(VerbTest):
                 for name in ("summary", "title", "attention"):
                     self.assertIn(words[name], summary)
                 for folder in (self.out / "c", self.folder):
-                    shown = self.nonio("show", folder, "--quiet").stdout
+                    shown = self.nonio("show", folder, "--all", "--quiet").stdout
                     self.assertIn(words["title"], shown)
                     self.assertIn(words["value"], shown)
 
