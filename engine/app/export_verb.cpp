@@ -183,9 +183,8 @@ Verb export_verb(Common& common) {
           "OUT/.nonio/packs/NAME.sqlar (compare "
           "the digests yourself).\n\nExit status: 0 done; 1 some campaign was not written; 2 usage "
           "or configuration.",
-      .examples =
-          {"nonio export 09-tolerances --out out --to /tmp/to-look-at  nonio export --list --out "
-           "out  nonio export --all --out out"},
+      .examples = {"nonio export 09-tolerances --out out --to /tmp/to-look-at",
+                   "nonio export --list --out out", "nonio export --all --out out"},
       .run = [wish, &common] { return get(*wish, common); }};
 }
 
