@@ -270,7 +270,7 @@ Expected<void> check_not_planned(const fs::path& out) {
   if (!*planned) return {};
   return fail("a night is planned in " + out.string() +
               " and not merged yet; expected its shards and `nonio run merge OUT`, or `nonio "
-              "night cancel OUT` to withdraw the plan");
+              "run cancel OUT` to withdraw the plan");
 }
 
 }  // namespace nonio::batch
