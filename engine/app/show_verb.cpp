@@ -19,6 +19,7 @@
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "platform/storage/nearest.h"
+#include "platform/storage/pack.h"
 #include "results_folder.h"
 #include "text_layout.h"
 #include "verbs.h"
@@ -446,13 +447,13 @@ int show(const ShowWish& wish, const Common& common) {
   const auto shown =
       holds == Holds::campaign ? evaluated_now(folder, common) : of_night(folder, common);
   if (!shown) return complain(text_of(shown.error()));
+  const bool is_stored = holds == Holds::results && !storage::in_pack(folder);
   try {
     const Json results = Json::parse(shown->text);
     if (common.json)
       std::cout << shown->text;
     else
-      Page(*shown, wish.all, holds == Holds::campaign ? "" : folder.string(), std::cout)
-          .print(results);
+      Page(*shown, wish.all, is_stored ? folder.string() : "", std::cout).print(results);
     return results.at("status") == "failed" ? exit_failed : exit_done;
   } catch (const Json::exception& e) {
     return complain((folder / evaluation::results_name).string() +
