@@ -186,7 +186,8 @@ constexpr Key database_keys[] = {
 constexpr Key due_keys[] = {
     {.name = "machine",
      .holds = text,
-     .help = "The machine for which it holds, as `nonio machine list` calls it; without it for all that "
+     .help = "The machine for which it holds, as `nonio machine list` calls it; without it for all "
+             "that "
              "no other says."},
     {.name = "months",
      .holds = whole,
@@ -248,11 +249,13 @@ constexpr Key signing_keys[] = {
      .help = "PEM file with revocation lists, for `nonio certificate verify`."},
     {.name = "signer",
      .holds = text,
-     .help = "Signer that `nonio certificate verify` expects: subject, or SHA-256 of the certificate; "
-             "alternative to signers."},
+     .help =
+         "Signer that `nonio certificate verify` expects: subject, or SHA-256 of the certificate; "
+         "alternative to signers."},
     {.name = "signers",
      .holds = tables,
-     .help = "Signers that `nonio certificate verify` expects, each with the days on which it signed.",
+     .help =
+         "Signers that `nonio certificate verify` expects, each with the days on which it signed.",
      .keys = signer_keys},
     {.name = "time_stamp",
      .holds = text,
