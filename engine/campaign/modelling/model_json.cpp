@@ -33,6 +33,7 @@ storage::Json parameters_json(const std::vector<model::Parameter>& parameters,
     if (std::isfinite(value)) one["value"] = value;
     if (std::isfinite(u)) one["u"] = u;
     one["unit"] = unit_of(p.quantity).symbol;
+    if (!p.group.empty()) one["group"] = p.group;
     if (p.shape) one["searched"] = true;
     if (terms != nullptr && is_stated(p, *terms)) one["stated"] = true;
     if (!p.shape && std::fabs(p.value) < 2.0 * p.u) one["below_uncertainty"] = true;
@@ -267,10 +268,30 @@ storage::Json plans_json(const std::vector<model::Plan>& plans, const ModelWords
   return list;
 }
 
+/// The values of an effect in each group, with the expanded uncertainty.
+storage::Json values_json(const std::vector<model::Parameter>& parameters) {
+  storage::Json list = storage::Json::array();
+  for (const model::Parameter& p : parameters) {
+    if (p.shape || p.group.empty()) continue;
+    storage::Json one = {{"group", p.group}, {"name", p.name}};
+    const double value = printed(p.value, p.quantity), U = printed(2.0 * p.u, p.quantity);
+    if (std::isfinite(value)) one["value"] = value;
+    if (std::isfinite(U)) one["U"] = U;
+    one["unit"] = unit_of(p.quantity).symbol;
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
 storage::Json verdict_json(const Explained& e, const ModelWords& words) {
   const model::Verdict& v = e.explanation.verdict;
   storage::Json json = {{"kind", to_text(v.kind)}};
   if (!v.effect.empty()) json["effect"] = v.effect;
+  const auto& candidates = e.explanation.candidates;
+  if (!v.effect.empty() && !candidates.empty() && candidates.front().term.grouping) {
+    json["by"] = candidates.front().term.grouping->by;
+    json["values"] = values_json(candidates.front().parameters);
+  }
   json["says"] = words.verdict(e.explanation, e.part);
   for (const char* what : {"is", "cure"})
     if (const std::string text = words.card(v.effect, what); !text.empty()) json[what] = text;

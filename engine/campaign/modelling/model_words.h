@@ -61,6 +61,8 @@ class ModelWords {
  private:
   std::string says(const std::string& id, std::vector<Number> numbers,
                    std::vector<std::pair<std::string, std::string>> texts) const;
+  /// The values of an effect in each group of measurements, with U.
+  std::string differs(const model::Candidate& candidate) const;
 
   const Templates& templates_;
   std::string language_;

@@ -45,9 +45,8 @@ void judge_on_all(const Part& part, const std::vector<Term>& model,
     const auto term = std::find_if(catalogue.begin(), catalogue.end(),
                                    [&](const Term& t) { return t.name() == c.term.name(); });
     if (!c.visible || term == catalogue.end()) continue;
-    std::vector<Term> terms = model;
-    terms.push_back(*term);
-    const auto fitted = fit(part.table, terms, weight, ground.whole.noise, &ground.thin->table);
+    const auto fitted =
+        fit(part.table, with_term(model, *term), weight, ground.whole.noise, &ground.thin->table);
     if (!fitted) continue;
     c.rms = fitted->rms;
     c.cv_rms = rms_of(cross_validated(part.table, fitted->terms, weight), weight);

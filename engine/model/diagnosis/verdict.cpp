@@ -6,11 +6,13 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "data/noise.h"
 #include "fit/compare.h"
 #include "fit/places.h"
+#include "nonio/math/distributions.h"
 #include "nonio/sdk/axis_readings.h"
 #include "plans.h"
 #include "scatter.h"
@@ -23,6 +25,8 @@ namespace {
 constexpr double least_left = 0.25;  // of the noise: smaller structure is not worth a verdict
 // docs/dev/constants.md, M5.
 constexpr double serious_p = 0.005;
+// docs/dev/constants.md, M35.
+constexpr double lacks_fit_p = 1e-4;
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
 // docs/dev/constants.md, M6.
 constexpr double unexplained_share = 0.04;
@@ -86,7 +90,7 @@ class Judge {
       lift(v.effect);
       out_.plans = plans_for(f_.part, f_.of_model.fit.terms, out_.candidates.front(), f_.terms,
                              f_.of_best.fit.s);
-    } else if (walks || !serious.empty() || !out_.cancelling.empty()) {
+    } else if (walks || !serious.empty() || !out_.cancelling.empty() || lacks_fit()) {
       v.kind = Verdict::Kind::unknown;
       if (!out_.cancelling.empty()) plan_for_cancelling();
       if (auto seats = seats_in(f_.part, f_.repeats, f_.of_model); !seats.empty())
@@ -94,10 +98,62 @@ class Judge {
       else if (!serious.empty())
         out_.fails = std::move(serious);
       if (zero == Noise::Zero::of_run) tell_runs();
+    } else if (below_scatter()) {
+      v.kind = Verdict::Kind::unknown;
+      v.below_scatter = true;
     }
   }
 
  private:
+  /// Whether the cells differ from the best explanation by more than their repeats scatter, in what
+  /// the passes of a side do not share: places hold what is common to a pass, and test it.
+  bool lacks_fit() const {
+    if (!f_.of_best.floor || !(f_.of_best.floor->dof >= 8.0)) return false;
+    const std::vector<double> weight = with_scatter(f_.weight, f_.noise);
+    const std::vector<double>& e = f_.of_best.fit.residual;
+    const Saturated all = saturate(f_.repeats, e, weight);
+    Repeats passes = f_.repeats;
+    passes.cell = passes.pass;
+    passes.cells = passes.passes;
+    const Saturated within = saturate(passes, e, weight);
+    const double s2 = f_.of_best.floor->s * f_.of_best.floor->s;
+    // Of neighbours that are alike, as far as their number of independent squares goes.
+    const double of_dof = f_.of_best.floor->dof / all.dof;
+    const double excess = within.squares - all.squares;
+    const double dof = degrees_of_cells();
+    if (!(dof * of_dof >= 1.0)) return false;
+    const double F = math::test_ratio(excess / dof, s2);
+    return math::f_upper(F, dof * of_dof, f_.of_best.floor->dof) < lacks_fit_p &&
+           std::sqrt(std::max(excess - dof * s2, 0.0) / static_cast<double>(e.size())) >
+               least_serious(f_.of_best.floor);
+  }
+
+  /// Of cells less what the passes of a side share and what the best explanation says.
+  double degrees_of_cells() const {
+    std::vector<Index> in_pass(f_.repeats.passes, 0), shared(f_.repeats.sides, 0);
+    std::vector<char> used(f_.repeats.cells, 0);
+    for (std::size_t i = 0; i < f_.weight.size(); ++i)
+      if (f_.weight[i] > 0.0) ++in_pass[f_.repeats.pass[i]], used[f_.repeats.cell[i]] = 1;
+    for (std::size_t p = 0; p < in_pass.size(); ++p) {
+      Index& of_side = shared[f_.repeats.side[p]];
+      of_side = std::max(of_side, shared_columns(in_pass[p]));
+    }
+    return static_cast<double>(std::count(used.begin(), used.end(), 1) -
+                               std::accumulate(shared.begin(), shared.end(), Index{0}));
+  }
+
+  /// Whether less is left than readings of this scatter could leave.
+  bool below_scatter() const {
+    const Fit& fit = f_.of_best.fit;
+    if (!f_.of_best.floor || fit.redundancy == 0 || f_.of_best.floor->s <= f_.noise.digit)
+      return false;
+    const auto redundancy = static_cast<double>(fit.redundancy);
+    const NoiseFloor& floor = *f_.of_best.floor;
+    const double dof = 0.5 * std::pow(floor.s / floor.u, 2);  // a correlation is known badly
+    return math::f_upper(std::pow(math::test_ratio(floor.s, fit.s), 2), dof, redundancy) <
+           lacks_fit_p;
+  }
+
   /// Where nothing is found, that of targets which a misread reading may hide.
   std::optional<Place> of_targets() const {
     if (!out_.together.empty()) return std::nullopt;

@@ -188,16 +188,16 @@ class CandidateOf {
   /// Added to the model as `nonio model add` does it, so that the RMS printed beforehand is the one
   /// obtained: all shapes are searched anew, and readings have the weights of a comparison.
   void fit_candidate(Candidate& c) const {
-    std::vector<Term> terms(f_.terms.begin(),
-                            f_.terms.begin() + static_cast<std::ptrdiff_t>(f_.in_model));
-    terms.push_back(f_.terms[f_.index_of(c.term.name())]);
+    const std::vector<Term> model(f_.terms.begin(),
+                                  f_.terms.begin() + static_cast<std::ptrdiff_t>(f_.in_model));
+    const std::vector<Term> terms = with_term(model, f_.terms[f_.index_of(c.term.name())]);
     const auto fitted = fit(f_.part.table, terms, ground_.weight, ground_.noise);
     if (!fitted) return;
     c.rms = fitted->rms;
     c.cv_rms =
         rms_of(cross_validated(f_.part.table, fitted->terms, ground_.weight), ground_.weight);
     const bool member = f_.bench->holds(f_.best, f_.index_of(c.term.name()));
-    const Fit& from = member ? f_.of_best.fit : *fitted;
+    const Fit& from = member && !c.term.differences ? f_.of_best.fit : *fitted;
     for (const Parameter& p : from.parameters)
       if (p.effect == c.term.name()) c.parameters.push_back(p);
     for (const Term& t : from.terms)

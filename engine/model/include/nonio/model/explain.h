@@ -74,6 +74,8 @@ struct Verdict {
   double false_alarms = 0.0;    ///< share of shuffles of the noise whose verdict is not `nothing`
   std::size_t trials = 0;       ///< behind it
   double suspects_share = 0.0;  ///< of the readings
+  /// unknown: less is left than the scatter of repeated readings allows.
+  bool below_scatter = false;
 };
 
 /// A description added to the model, to what is certain and to those before it: what is left, not
