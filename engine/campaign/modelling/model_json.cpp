@@ -234,6 +234,8 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   storage::put(json, "cv_rms", c.cv_rms, q);
   storage::put(json, "p", c.p, Quantity::probability);
   storage::put(json, "score", c.score, Quantity::number);
+  storage::put(json, "score_alone", c.alone, Quantity::number);
+  storage::put(json, "score_within", c.within, Quantity::number);
   json["parameters"] = parameters_json(c.parameters, nullptr);
   json["aliases"] = c.aliases;
   if (!c.beside.empty()) json["beside"] = c.beside;
@@ -319,6 +321,25 @@ storage::Json what_if_json(const std::vector<model::Foresight>& all) {
   return list;
 }
 
+storage::Json statements_json(const std::vector<model::Statement>& statements,
+                              const ModelWords& words, Quantity q) {
+  storage::Json list = storage::Json::array();
+  for (const model::Statement& s : statements) {
+    const bool reversal = s.what == model::Statement::What::reversal;
+    storage::Json one = {{"what", reversal ? "reversal" : "drift"}};
+    storage::put(one, "value", s.value, q);
+    storage::put(one, "U", 2.0 * s.u, q);
+    if (reversal) {
+      storage::put(one, "low", s.low, q);
+      storage::put(one, "high", s.high, q);
+    }
+    storage::put(one, "p", s.p, Quantity::probability);
+    one["says"] = words.statement(s, q);
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
 void put_explained(storage::Json& json, const Explained& e, const Campaign& campaign,
                    const ModelWords& words) {
   const model::Explanation& x = e.explanation;
@@ -353,6 +374,7 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
     descriptions.push_back(std::move(one));
   }
   json["descriptions"] = std::move(descriptions);
+  json["statements"] = statements_json(x.statements, words, q);
   json["verdict"] = verdict_json(e, words);
   json["plans"] = plans_json(x.plans, words);
   json["next"] = words.next(x, e.part);

@@ -294,6 +294,13 @@ std::string ModelWords::differs(const model::Candidate& c) const {
   return says("verdict.differs", {}, {{"by", c.term.grouping->by}, {"values", values}});
 }
 
+std::string ModelWords::statement(const model::Statement& s, Quantity q) const {
+  const std::vector<Number> numbers = {
+      {"value", s.value, q}, {"U", 2.0 * s.u, q}, {"low", s.low, q}, {"high", s.high, q}};
+  return says(s.what == model::Statement::What::reversal ? "statement.reversal" : "statement.drift",
+              numbers, {});
+}
+
 std::string ModelWords::verdict(const model::Explanation& e, const PartModel& part) const {
   std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
   if (e.verdict.kind == Kind::missing && !e.candidates.empty() &&
@@ -302,6 +309,7 @@ std::string ModelWords::verdict(const model::Explanation& e, const PartModel& pa
   if (e.one_growth && e.verdict.kind == Kind::missing)
     text += " " + says("one-growth", {{"at", *e.one_growth, Quantity::length}}, {});
   if (e.verdict.kind != Kind::unknown) return text;
+  for (const model::Statement& s : e.statements) text += " " + statement(s, part.deviation());
   for (const auto& [one, other] : e.cancelling) text += " " + cancelling(one, other);
   if (!e.fails.empty()) text += " " + place(e.fails.front(), part.deviation());
   return text;

@@ -21,6 +21,7 @@ class ModelWords {
   config::TerminalWords terminal() const { return {templates_, language_}; }
 
   std::string place(const model::Place& place, Quantity deviation) const;
+  std::string statement(const model::Statement& statement, Quantity deviation) const;
   std::string verdict(const model::Explanation& explanation, const PartModel& part) const;
   std::string candidate(const model::Candidate& candidate, const PartModel& part,
                         double rms_before) const;

@@ -9,6 +9,7 @@
 #include "fit/compare.h"
 #include "search/candidates.h"
 #include "search/finding.h"
+#include "statements.h"
 #include "verdict.h"
 
 namespace nonio::model {
@@ -27,7 +28,10 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
       out.together.push_back(c.term.name());
   out.best_rms = finding->of_best.fit.rms;
   judge(*finding, out);
-  if (out.verdict.kind == Verdict::Kind::unknown) describe(*finding, catalogue, out);
+  if (out.verdict.kind == Verdict::Kind::unknown) {
+    describe(*finding, catalogue, out);
+    out.statements = statements_of(*finding);
+  }
   out.comparison.suspects = std::move(finding->suspects);
   return out;
 }

@@ -14,6 +14,7 @@
 #include "fit/places.h"
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/axis_readings.h"
+#include "passes.h"
 #include "plans.h"
 #include "scatter.h"
 
@@ -23,8 +24,6 @@ namespace {
 
 // docs/dev/constants.md, M4.
 constexpr double least_left = 0.25;  // of the noise: smaller structure is not worth a verdict
-// docs/dev/constants.md, M5.
-constexpr double serious_p = 0.005;
 // docs/dev/constants.md, M35.
 constexpr double lacks_fit_p = 1e-4;
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
@@ -69,7 +68,14 @@ class Judge {
         static_cast<double>(f_.suspects.size()) / static_cast<double>(f_.part.table.size());
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
-    std::vector<Place> serious = Judge::serious(f_.of_best.places, least_serious(f_.of_best.floor));
+    const double least = least_serious(f_.of_best.floor);
+    const std::vector<Place> left = Judge::serious(f_.of_best.places, least);
+    // What zeros of passes that scatter leave too is no reason for a verdict, but one for doubt.
+    std::vector<Place> serious =
+        passes_.scatter()
+            ? Judge::serious(passes_.places(f_.of_best.fit.residual, f_.of_best.floor, least),
+                             least)
+            : left;
     const Noise::Zero zero = unsteady_zero();
     const bool walks = zero != Noise::Zero::steady;
     if (contradictory(zero)) {
@@ -78,11 +84,13 @@ class Judge {
     }
     find_one_growth();
     find_cancelling();
-    list_certain(serious, walks);
+    list_certain(left, walks);
     if (auto place = of_targets(); place && serious.empty()) serious.push_back(std::move(*place));
-    if (!out_.together.empty() && !walks && !cancels(out_.together.front()) &&
+    const bool of_passes =
+        passes_.scatter() && !out_.together.empty() && !passes_.shows(out_.together.front());
+    if (!out_.together.empty() && !walks && !of_passes && !cancels(out_.together.front()) &&
         !beside_cancelling(out_.together.front()) &&
-        !in_doubt(out_.together.front(), serious, unexplained_share)) {
+        !in_doubt(out_.together.front(), left, unexplained_share)) {
       v.kind = Verdict::Kind::missing;
       v.effect = out_.together.front();
     }
@@ -90,13 +98,14 @@ class Judge {
       lift(v.effect);
       out_.plans = plans_for(f_.part, f_.of_model.fit.terms, out_.candidates.front(), f_.terms,
                              f_.of_best.fit.s);
-    } else if (walks || !serious.empty() || !out_.cancelling.empty() || lacks_fit()) {
+    } else if (walks || !out_.together.empty() || !serious.empty() || !out_.cancelling.empty() ||
+               lacks_fit()) {
       v.kind = Verdict::Kind::unknown;
       if (!out_.cancelling.empty()) plan_for_cancelling();
       if (auto seats = seats_in(f_.part, f_.repeats, f_.of_model); !seats.empty())
         out_.fails = std::move(seats);
-      else if (!serious.empty())
-        out_.fails = std::move(serious);
+      else if (!serious.empty() || !left.empty())
+        out_.fails = serious.empty() ? left : std::move(serious);
       if (zero == Noise::Zero::of_run) tell_runs();
     } else if (below_scatter()) {
       v.kind = Verdict::Kind::unknown;
@@ -332,9 +341,11 @@ class Judge {
     for (const std::string& name : out_.together) {
       const auto c = std::find_if(out_.candidates.begin(), out_.candidates.end(),
                                   [&](const Candidate& k) { return k.term.name() == name; });
-      if (c->score < certain_evidence || !c->aliases.empty() || cancels(name)) continue;
+      if (c->within < certain_evidence || !c->aliases.empty() || cancels(name)) continue;
       if (in_doubt(name, serious, certain_share)) continue;
-      if (of_one_target(name) || (walks && !beside_walk(name))) continue;
+      if (of_one_target(name) || (walks && !beside_walk(name)) ||
+          (passes_.scatter() && !passes_.shows(name)))
+        continue;
       out_.certain.push_back(name);
     }
   }
@@ -397,8 +408,37 @@ class Judge {
     return e * (f_.of_best.floor->s * std::sqrt(f_.bench->readings() / e.squaredNorm()));
   }
 
+  VectorXd noise_of_passes() const {
+    const std::vector<double> e = passes_.noise();
+    return f_.bench->white()(Eigen::Map<const VectorXd>(e.data(), static_cast<Index>(e.size())));
+  }
+
+  /// The same with whole passes of the residuals, each with its sign: where their zeros scatter.
+  void count_with_passes(Verdict& v) const {
+    constexpr std::size_t draws = 200;  // docs/dev/constants.md, M14
+    const std::vector<double> e = passes_.noise();
+    std::mt19937_64 random(f_.seed);
+    const auto floor = floors(draws);
+    std::vector<double> drawn(e.size()), sign(f_.repeats.passes);
+    double alarms = 0.0;
+    for (std::size_t k = 0; k < draws; ++k) {
+      for (double& s : sign) s = (random() >> 63) != 0 ? 1.0 : -1.0;
+      for (std::size_t i = 0; i < e.size(); ++i) drawn[i] = sign[f_.repeats.pass[i]] * e[i];
+      if (!serious(passes_.places(drawn, floor[k], least_serious(floor[k])),
+                   least_serious(floor[k]))
+               .empty())
+        ++alarms;
+    }
+    v.trials = draws;
+    v.false_alarms = alarms / static_cast<double>(draws);
+  }
+
   void count_false_alarms(Verdict& v) const {
-    const SignFlips shuffles = shuffled(*f_.bench, f_.best, noise(), f_.repeats.pass, f_.seed);
+    if (passes_.scatter()) return count_with_passes(v);
+    const SignFlips shuffles =
+        passes_.drawn_again()
+            ? shuffled(*f_.bench, f_.best, noise_of_passes(), f_.repeats.pass, f_.seed, whole_pass)
+            : shuffled(*f_.bench, f_.best, noise(), f_.repeats.pass, f_.seed);
     const std::vector<char> named = named_in(*f_.bench, f_.best, shuffles, f_.chance);
     const PlaceTests tests(f_.part, f_.repeats, f_.bench->white(), f_.bench->basis(f_.best),
                            f_.dof(f_.best));
@@ -461,6 +501,7 @@ class Judge {
 
   const Finding& f_;
   Explanation& out_;
+  PassZeros passes_{f_};
   mutable std::optional<FactorsOf> factors_{};
 };
 

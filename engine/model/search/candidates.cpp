@@ -107,16 +107,19 @@ class CandidateOf {
       c.why = f_.bench->instances()[e].blocks.empty() ? "not-shown" : "aliased";
       return c;
     }
+    c.alone = f_.start.criterion - alone.criterion;
     const bool member = f_.bench->holds(f_.best, e);
     std::size_t block = alone.blocks.back();
     if (member) {
       for (const std::size_t b : f_.best.blocks)
         if (f_.bench->effect_of(b) == e) block = b;
-      c.score = f_.bench->settled(f_.bench->without(f_.best, e)).criterion - f_.best.criterion;
+      c.within = f_.bench->settled(f_.bench->without(f_.best, e)).criterion - f_.best.criterion;
+      c.score = c.alone > 0.0 ? c.alone : c.within;
       c.p = f_.chance.corrected(p_of(*f_.bench, f_.best, e));
       c.aliases = aliases_of(e);
     } else {
       score_outsider(e, c);
+      c.within = c.score;
     }
     c.term.shape = f_.bench->blocks()[block].shape;
     const Sizes sizes(f_, e, member);

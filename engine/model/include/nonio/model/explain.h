@@ -20,8 +20,12 @@ struct Candidate {
   std::string why;      ///< if not: "aliased" with the model or the targets; "no-temperature", ...
   double rms = 0.0;     ///< with it added to the model
   std::optional<double> cv_rms{};
-  double p = 1.0;      ///< chance that noise alone gives such a candidate anywhere in this search
-  double score = 0.0;  ///< 2 ln of the evidence for it; <= 0: none
+  double p = 1.0;  ///< chance that noise alone gives such a candidate anywhere in this search
+  /// 2 ln of the evidence for it; <= 0: none. By this they are ranked: of one of the best set that
+  /// has evidence alone, that, because an effect that leaves less comes first.
+  double score = 0.0;
+  double alone = 0.0;   ///< the same of it as the only addition to the model
+  double within = 0.0;  ///< of one of the best set what is lost without it, else what it adds
   std::vector<Parameter> parameters;
   std::vector<std::string> aliases;  ///< these readings cannot tell them from this one
   /// RMS of the smallest one that would be found nine times in ten, m or rad.
@@ -89,6 +93,18 @@ struct Description {
   double low = 0.0, high = 0.0, mean = 0.0;
 };
 
+/// What holds whatever repeats at each target from each side.
+struct Statement {
+  enum class What {
+    drift,    ///< of the zero over the test, as a straight line
+    reversal  ///< of one sign at every target
+  };
+  What what = What::drift;
+  double value = 0.0, u = 0.0;   ///< of the whole drift; of the mean reversal, m or rad
+  double low = 0.0, high = 0.0;  ///< of the reversals of the targets
+  double p = 1.0;                ///< of reversals that of the least certain one, corrected
+};
+
 struct Explanation {
   Comparison comparison;
   std::vector<Candidate> candidates;  ///< best first
@@ -103,6 +119,7 @@ struct Explanation {
   std::optional<double> one_growth{};
   double certain_rms = 0.0;               ///< unknown: with them in the model, m or rad
   std::vector<Description> descriptions;  ///< unknown: of what is left beside the certain
+  std::vector<Statement> statements;      ///< unknown, of an axis
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
   Verdict verdict;
