@@ -168,7 +168,7 @@ void print_candidates(std::ostream& out, const modelling::Explained& e,
         << padded(say("rms-after"), 14) << padded(say("left-out"), 15) << "p\n";
   for (const model::Candidate& c : e.explanation.candidates) {
     if (!modelling::is_ranked(c) || !(c.score > 0.0)) continue;
-    out << "  " << padded(c.term.name(), 22) << bar(c.score, best, 20) << " "
+    out << "  " << padded(c.term.name() + " ", 22) << bar(c.score, best, 20) << " "
         << padded(fixed_text(c.score, 1), 11) << padded(with_unit(c.rms, q), 14)
         << padded(c.cv_rms ? with_unit(*c.cv_rms, q) : "-", 15) << p_text(c.p) << "\n";
   }

@@ -114,13 +114,13 @@ class CandidateOf {
       for (const std::size_t b : f_.best.blocks)
         if (f_.bench->effect_of(b) == e) block = b;
       c.within = f_.bench->settled(f_.bench->without(f_.best, e)).criterion - f_.best.criterion;
-      c.score = c.alone > 0.0 ? c.alone : c.within;
       c.p = f_.chance.corrected(p_of(*f_.bench, f_.best, e));
       c.aliases = aliases_of(e);
     } else {
       score_outsider(e, c);
       c.within = c.score;
     }
+    c.score = c.within > 0.0 && c.alone > 0.0 ? c.alone : c.within;
     c.term.shape = f_.bench->blocks()[block].shape;
     const Sizes sizes(f_, e, member);
     c.minimal_detectable = sizes.smallest();

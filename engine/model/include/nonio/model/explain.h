@@ -21,8 +21,8 @@ struct Candidate {
   double rms = 0.0;     ///< with it added to the model
   std::optional<double> cv_rms{};
   double p = 1.0;  ///< chance that noise alone gives such a candidate anywhere in this search
-  /// 2 ln of the evidence for it; <= 0: none. By this they are ranked: of one of the best set that
-  /// has evidence alone, that, because an effect that leaves less comes first.
+  /// 2 ln of the evidence for it; <= 0: none. By this they are ranked: where there is evidence both
+  /// alone and within the best set, that alone, because an effect that leaves less comes first.
   double score = 0.0;
   double alone = 0.0;   ///< the same of it as the only addition to the model
   double within = 0.0;  ///< of one of the best set what is lost without it, else what it adds
