@@ -11,10 +11,12 @@ namespace nonio::modelling {
 
 namespace {
 
+/// Kind and axis, without the groups of lines ("@adjustment").
 std::pair<std::string, std::string> split(const std::string& effect) {
   const std::size_t colon = effect.find(':');
   if (colon == std::string::npos) return {effect, ""};
-  return {effect.substr(0, colon), effect.substr(colon + 1)};
+  const std::size_t axis = colon + 1;
+  return {effect.substr(0, colon), effect.substr(axis, effect.find('@', axis) - axis)};
 }
 
 std::vector<std::string> known_names(const reading::ReadCampaign& read) {

@@ -33,6 +33,7 @@ storage::Json parameters_json(const std::vector<model::Parameter>& parameters,
     if (std::isfinite(value)) one["value"] = value;
     if (std::isfinite(u)) one["u"] = u;
     one["unit"] = unit_of(p.quantity).symbol;
+    if (!p.group.empty()) one["group"] = p.group;
     if (p.shape) one["searched"] = true;
     if (terms != nullptr && is_stated(p, *terms)) one["stated"] = true;
     if (!p.shape && std::fabs(p.value) < 2.0 * p.u) one["below_uncertainty"] = true;
@@ -233,6 +234,8 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   storage::put(json, "cv_rms", c.cv_rms, q);
   storage::put(json, "p", c.p, Quantity::probability);
   storage::put(json, "score", c.score, Quantity::number);
+  storage::put(json, "score_alone", c.alone, Quantity::number);
+  storage::put(json, "score_within", c.within, Quantity::number);
   json["parameters"] = parameters_json(c.parameters, nullptr);
   json["aliases"] = c.aliases;
   if (!c.beside.empty()) json["beside"] = c.beside;
@@ -267,10 +270,30 @@ storage::Json plans_json(const std::vector<model::Plan>& plans, const ModelWords
   return list;
 }
 
+/// The values of an effect in each group, with the expanded uncertainty.
+storage::Json values_json(const std::vector<model::Parameter>& parameters) {
+  storage::Json list = storage::Json::array();
+  for (const model::Parameter& p : parameters) {
+    if (p.shape || p.group.empty()) continue;
+    storage::Json one = {{"group", p.group}, {"name", p.name}};
+    const double value = printed(p.value, p.quantity), U = printed(2.0 * p.u, p.quantity);
+    if (std::isfinite(value)) one["value"] = value;
+    if (std::isfinite(U)) one["U"] = U;
+    one["unit"] = unit_of(p.quantity).symbol;
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
 storage::Json verdict_json(const Explained& e, const ModelWords& words) {
   const model::Verdict& v = e.explanation.verdict;
   storage::Json json = {{"kind", to_text(v.kind)}};
   if (!v.effect.empty()) json["effect"] = v.effect;
+  const auto& candidates = e.explanation.candidates;
+  if (!v.effect.empty() && !candidates.empty() && candidates.front().term.grouping) {
+    json["by"] = candidates.front().term.grouping->by;
+    json["values"] = values_json(candidates.front().parameters);
+  }
   json["says"] = words.verdict(e.explanation, e.part);
   for (const char* what : {"is", "cure"})
     if (const std::string text = words.card(v.effect, what); !text.empty()) json[what] = text;
@@ -294,6 +317,25 @@ storage::Json what_if_json(const std::vector<model::Foresight>& all) {
                     {"readings", one.readings},
                     {"parameters", std::move(parameters)},
                     {"evidence", std::move(evidence)}});
+  }
+  return list;
+}
+
+storage::Json statements_json(const std::vector<model::Statement>& statements,
+                              const ModelWords& words, Quantity q) {
+  storage::Json list = storage::Json::array();
+  for (const model::Statement& s : statements) {
+    const bool reversal = s.what == model::Statement::What::reversal;
+    storage::Json one = {{"what", reversal ? "reversal" : "drift"}};
+    storage::put(one, "value", s.value, q);
+    storage::put(one, "U", 2.0 * s.u, q);
+    if (reversal) {
+      storage::put(one, "low", s.low, q);
+      storage::put(one, "high", s.high, q);
+    }
+    storage::put(one, "p", s.p, Quantity::probability);
+    one["says"] = words.statement(s, q);
+    list.push_back(std::move(one));
   }
   return list;
 }
@@ -332,6 +374,7 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
     descriptions.push_back(std::move(one));
   }
   json["descriptions"] = std::move(descriptions);
+  json["statements"] = statements_json(x.statements, words, q);
   json["verdict"] = verdict_json(e, words);
   json["plans"] = plans_json(x.plans, words);
   json["next"] = words.next(x, e.part);

@@ -21,6 +21,7 @@ class ModelWords {
   config::TerminalWords terminal() const { return {templates_, language_}; }
 
   std::string place(const model::Place& place, Quantity deviation) const;
+  std::string statement(const model::Statement& statement, Quantity deviation) const;
   std::string verdict(const model::Explanation& explanation, const PartModel& part) const;
   std::string candidate(const model::Candidate& candidate, const PartModel& part,
                         double rms_before) const;
@@ -61,6 +62,8 @@ class ModelWords {
  private:
   std::string says(const std::string& id, std::vector<Number> numbers,
                    std::vector<std::pair<std::string, std::string>> texts) const;
+  /// The values of an effect in each group of measurements, with U.
+  std::string differs(const model::Candidate& candidate) const;
 
   const Templates& templates_;
   std::string language_;

@@ -31,7 +31,16 @@ struct LackOfFit {
 };
 
 /// What readings are split by.
-enum class Factor : char { direction, position, screw_phase, angle, run, time, temperature };
+enum class Factor : char {
+  direction,
+  position,
+  screw_phase,
+  angle,
+  run,
+  time,
+  temperature,
+  measurement
+};
 
 /// One factor, or the product of two.
 struct Where {
