@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "platform/process/guarded.h"
 #include "platform/storage/nearest.h"
@@ -226,11 +227,29 @@ Expected<model::Comparison> compare_part(const PartModel& part, const model::Gro
                           [&] { return model::compare(part.part, part.terms, known, fitted); });
 }
 
+namespace {
+
+/// With values of its own for each group an effect is only worth a line where they explain more.
+void leave_out_weaker_groups(model::Explanation& e) {
+  std::map<std::string, double> score;
+  for (const model::Candidate& c : e.candidates) score[c.term.name()] = c.score;
+  std::erase_if(e.candidates, [&](const model::Candidate& c) {
+    if (!c.term.grouping ||
+        std::find(e.together.begin(), e.together.end(), c.term.name()) != e.together.end())
+      return false;
+    const auto plain = score.find(c.term.of_all());
+    return !(c.score > 0.0) || (plain != score.end() && !(c.score > plain->second));
+  });
+}
+
+}  // namespace
+
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
                                           const model::Groundwork* known) {
   if (!part.unfit.empty()) return fail(part.unfit);
   return process::guarded(kind_of(part.part) + " " + part.part.name, [&] {
     auto out = model::explain(part.part, part.terms, part.catalogue, seed, known);
+    if (out) leave_out_weaker_groups(*out);
     // None vanishes in silence.
     if (out)
       out->candidates.insert(out->candidates.end(), part.left_out.begin(), part.left_out.end());
