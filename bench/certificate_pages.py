@@ -193,10 +193,10 @@ def render(folder, dpi):
 
 
 def release(nonio, site):
-    for draft in json.loads(run(nonio, "release", site, "--list", "--json").stdout)["drafts"]:
+    for draft in json.loads(run(nonio, "certificate", "approve", site, "--list", "--json").stdout)["drafts"]:
         reasons = [part for f in draft["findings"] if f["severity"] == "attention"
                    for part in ("--reason", f"{f['id']}=as found")]
-        done = run(nonio, "release", site / draft["folder"], "--by", "B. Sample", *reasons, check=False)
+        done = run(nonio, "certificate", "approve", site / draft["folder"], "--by", "B. Sample", *reasons, check=False)
         if done.returncode:
             print(draft["campaign"], done.stdout, done.stderr)
 

@@ -10,7 +10,7 @@
 //                of the time constant of the runs'
 //                [--ar RHO] [--run-zero SIZE] [--walk SIZE] [--rough TIMES] [--digit SIZE]
 // Sizes in units of the noise: what makes the noise other than independent (hidden::Unrest).
-// Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio explain --auto` does. Fails
+// Campaigns of seeds SEED .. SEED+COUNT-1. Follows `missing` as `nonio model explain --auto` does. Fails
 // if fewer are right, or more named wrongly, than --right and --wrong say.
 #include <algorithm>
 #include <cmath>

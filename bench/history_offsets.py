@@ -123,7 +123,7 @@ def one(program, folder, seed, offset, given):
                           capture_output=True, text=True)
     if done.returncode not in (0, 1):
         raise SystemExit(done.stderr)
-    history = json.loads(subprocess.run([program, "history", where / "out", "--json"], check=True, capture_output=True, text=True).stdout)
+    history = json.loads(subprocess.run([program, "machine", "history", where / "out", "--json"], check=True, capture_output=True, text=True).stdout)
     (where / "history.json").write_text(json.dumps(history))
     truths.save(truth, where / "truth.json")
     shutil.rmtree(where / "site")

@@ -74,13 +74,13 @@ def main():
         if len(sys.argv) > 4:
             subprocess.run([program, "server", out, sys.argv[4]], check=True)
         subprocess.run([program, "rebuild", out], check=True)
-        subprocess.run([program, "morning", out, TEMPLATES], check=True)
+        subprocess.run([program, "status", "--actions", out, TEMPLATES], check=True)
         new = [f"n{i:03}" for i in range(100)]
         for campaign in new:  # measured after all others, as what comes to a night is
             write(out, campaign, 2, rng, kinds, machines, "2026-03-19")
         subprocess.run([program, "update", out, *new], check=True)
-        subprocess.run([program, "morning", out, TEMPLATES], check=True)
-        subprocess.run([program, "morning", out, TEMPLATES], check=True)
+        subprocess.run([program, "status", "--actions", out, TEMPLATES], check=True)
+        subprocess.run([program, "status", "--actions", out, TEMPLATES], check=True)
         for name in ("history.sqlite", "index.html", ".nonio/machines.sqlite"):
             if (out / name).exists():
                 print(f"{name}: {(out / name).stat().st_size / 1e6:.1f} MB")

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""live.py NONIO [--readings 210,20000,1000000] [--trials 5] [--no-browser] [--keep FOLDER]: how fast `nonio live` answers.
+"""live.py NONIO [--readings 210,20000,1000000] [--trials 5] [--no-browser] [--keep FOLDER]: how fast `nonio serve` answers.
 
 Simulated campaigns with a hidden warm-up (seed 7). Each is opened twice: over the interface as the page uses it (events,
 then what changed), and in Chromium, where times run to the painted picture (marks of the page). A click adds the effect
-that is hidden, then others; a zoom asks for a quarter of the axis. Peer in the same run: `nonio compare` and
-`nonio explain` as whole programs, and NumPy, which reads the same file and solves one least-squares problem of the
+that is hidden, then others; a zoom asks for a quarter of the axis. Peer in the same run: `nonio model compare` and
+`nonio model explain` as whole programs, and NumPy, which reads the same file and solves one least-squares problem of the
 model (needs python3-numpy). Memory is VmHWM of each process, and the page's JavaScript heap.
 """
 import argparse
@@ -32,7 +32,7 @@ PATIENCE = 180
 class Server:
     def __init__(self, nonio, folder):
         self.began = time.perf_counter()
-        self.process = subprocess.Popen([nonio, "live", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.process = subprocess.Popen([nonio, "serve", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.page = self.process.stdout.readline().strip()
         self.address, self.token = self.page.split("#t=")
         self.connection = http.client.HTTPConnection(urllib.parse.urlsplit(self.address).netloc, timeout=PATIENCE)

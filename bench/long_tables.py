@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""long_tables.py NONIO PICTURE.svg [MOST]: `nonio explain` on tables of 1,000 to MOST (default 1,000,000) readings.
+"""long_tables.py NONIO PICTURE.svg [MOST]: `nonio model explain` on tables of 1,000 to MOST (default 1,000,000) readings.
 
 CPU time of the whole program, reading the file included, of two kinds of table: few runs at many targets, many runs at
 few. In the same run NumPy reads the same file (loadtxt) and solves one least-squares problem of the same size with the
@@ -80,7 +80,7 @@ def campaign(nonio, folder, readings, few_runs):
     spec = folder / "spec.toml"
     spec.write_text(SPEC.format(step=1160.0 / (targets - 1), runs=runs, tau=way / 8.0))
     out = folder / "campaign"
-    cpu_of_children([nonio, "simulate", spec, "--out", out])
+    cpu_of_children([nonio, "model", "simulate", spec, "--out", out])
     return out
 
 
@@ -150,7 +150,7 @@ def main():
                 folder = pathlib.Path(scratch) / str(few_runs)
                 folder.mkdir()
                 made = campaign(nonio, folder, readings, few_runs)
-                times.append(min(cpu_of_children([nonio, "explain", made])[0] for _ in range(3)))
+                times.append(min(cpu_of_children([nonio, "model", "explain", made])[0] for _ in range(3)))
                 if few_runs:
                     peer = min(numpy_seconds(made / "x.csv", readings / 80.0) for _ in range(3))
         rows.append((readings, *times, peer))

@@ -66,11 +66,11 @@ def cpu(_, command):
 
 def steps(site, parts, out, packs, scratch):
     return {"first night": ["run", site, "--out", out, "--jobs", "1"], "unchanged night": ["run", site, "--out", out, "--jobs", "1"],
-            "plan": ["night", "plan", site, "--out", parts, "--shards", "1"],
-            "shard": ["run", site, "--out", parts, "--shard", "0/1", "--jobs", "1"], "merge": ["night", "merge", parts],
-            "plan of packs": ["night", "plan", site, "--out", packs, "--shards", "1"],
+            "plan": ["run", "plan", site, "--out", parts, "--shards", "1"],
+            "shard": ["run", site, "--out", parts, "--shard", "0/1", "--jobs", "1"], "merge": ["run", "merge", parts],
+            "plan of packs": ["run", "plan", site, "--out", packs, "--shards", "1"],
             "packed shard": ["run", site, "--out", packs, "--shard", "0/1", "--jobs", "1", "--pack", "--scratch", scratch],
-            "merge of packs": ["night", "merge", packs], "unchanged night of packs": ["run", site, "--out", packs, "--jobs", "1"]}
+            "merge of packs": ["run", "merge", packs], "unchanged night of packs": ["run", site, "--out", packs, "--jobs", "1"]}
 
 
 def compare(program, root, counts, scratch):
@@ -100,7 +100,7 @@ def memory(program, root, counts):
     for n in counts:
         site = root / f"large-{n}"
         make(site, n)
-        process = subprocess.Popen([program, "night", "plan", site, "--out", root / f"plan-{n}", "--shards", "64", "--quiet"])
+        process = subprocess.Popen([program, "run", "plan", site, "--out", root / f"plan-{n}", "--shards", "64", "--quiet"])
         peak = 0.0
         while process.poll() is None:
             peak = max(peak, campaigns.peak_memory(process))

@@ -32,8 +32,8 @@ def main():
     args = parser.parse_args()
     commands = {"python3 -I -c pass": [sys.executable, "-I", "-c", "pass"],
                 "nonio version": [args.nonio, "version"],
-                "nonio plugins": [args.nonio, "plugins"],
-                "nonio explain, 210 readings": [args.nonio, "explain", str(SITE)]}
+                "nonio plugin list": [args.nonio, "plugin", "list"],
+                "nonio model explain, 210 readings": [args.nonio, "model", "explain", str(SITE)]}
     base = None
     for name, command in commands.items():
         wall, cpu = least(command, args.trials)

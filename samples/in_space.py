@@ -169,7 +169,7 @@ class SmallGantry(Gantry):
 
 def straight_or_square():
     story = ["After the calibration of pitch the two diagonals were expected to show squareness and nothing else. They do",
-             "not: errors many times larger, at points that do not correspond. `nonio explain` says which effect the",
+             "not: errors many times larger, at points that do not correspond. `nonio model explain` says which effect the",
              "model lacks: the straightness of X, and of Y."]
     return expected_square(117, SmallGantry(1.0, 12.0), (0.0, 3000.0), "17-straight-or-square",
                            "Esempio Diciassette S.p.A.", "Brescia", "gantry", story)
@@ -195,7 +195,7 @@ class Column(SmallGantry):
 
 def one_column():
     story = ["The same measurements as 17 on a machine with one column. What the diagonals show looks like straightness",
-             "again, but with the wrong sign: the column turns as it follows its guide. `nonio explain` says yaw."]
+             "again, but with the wrong sign: the column turns as it follows its guide. `nonio model explain` says yaw."]
     return expected_square(118, Column(1.0, 12.0), (0.0, 3000.0), "18-one-column",
                            "Esempio Diciotto S.r.l.", "Bergamo", "single-column", story)
 

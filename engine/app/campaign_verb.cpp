@@ -5,25 +5,24 @@
 
 namespace nonio::app {
 
-tl::expected<OpenCampaign, int> open_campaign(const char* verb, const std::string& folder,
-                                              const Common& common, reading::TemplatesFor what) {
+tl::expected<OpenCampaign, int> open_campaign(const std::string& folder, const Common& common,
+                                              reading::TemplatesFor what) {
   OpenCampaign open{folder, nullptr, {}};
   auto place = reading::open_workplace(open.folder, common.plugin_folders(),
                                        common.template_folders(), NONIO_VERSION, what);
-  if (!place) return tl::unexpected(complain(verb, text_of(place.error())));
+  if (!place) return tl::unexpected(complain(text_of(place.error())));
   open.place = std::move(*place);
   if (!common.quiet)
-    for (const std::string& note : open.place->notes) complain(verb, note);
+    for (const std::string& note : open.place->notes) complain(note);
   open.read = reading::read_campaign(open.folder, open.place->context, [](const std::string&) {});
-  for (const Error& e : open.read.errors) complain(verb, text_of(e));
+  for (const Error& e : open.read.errors) complain(text_of(e));
   if (!common.quiet)
     for (const Remark& note : open.read.notes)
-      complain(verb,
-               remark_text(open.place->context.templates, open.place->context.site.language, note));
+      complain(remark_text(open.place->context.templates, open.place->context.site.language, note));
   if (!open.read.manifest) return tl::unexpected(exit_usage);
   for (const Observations& o : open.read.observations)
     if (o.size() > 0) return open;
-  if (open.read.errors.empty()) complain(verb, "the campaign has no readings");
+  if (open.read.errors.empty()) complain("the campaign has no readings");
   return tl::unexpected(exit_failed);
 }
 

@@ -24,7 +24,7 @@ struct OpenCampaign {
 /// cannot go on: 2 for the configuration, 1 for measurements of which none can be read. Errors of
 /// single measurements stay in `read.errors` and leave the others.
 tl::expected<OpenCampaign, int> open_campaign(
-    const char* verb, const std::string& folder, const Common& common,
+    const std::string& folder, const Common& common,
     reading::TemplatesFor what = reading::TemplatesFor::documents);
 
 /// Sentences in the language of the site, or English for JSON.

@@ -52,23 +52,22 @@ void print(const RegisterEntry& e) {
             << person_text("withdrawn", e.withdrawn_by, e.withdrawn_account) << "\n";
 }
 
-int refuse(const Error& error) {
-  std::cerr << "nonio certificates: " << (error.file.empty() ? "" : error.file + ": ")
-            << error.message << "\n";
-  return exit_usage;
-}
+int refuse(const Error& error) { return complain(text_of(error)); }
 
 int audit(const CertificateWish& wanted, const config::Numbering& numbering, const Common& common) {
   const auto found = certificates::audit(wanted.site, numbering);
   if (!found) return refuse(found.error());
   const certificates::Audit& a = *found;
   if (common.json) {
-    std::cout
-        << Json{{"schema", "nonio-audit/1"}, {"sound", a.wrong.empty()},       {"register", a.id},
-                {"entries", a.entries},      {"certificates", a.certificates}, {"files", a.files},
-                {"last_at", a.last_at},      {"last_sha256", a.last_sha256},   {"wrong", a.wrong}}
-               .dump(1, ' ', false, Json::error_handler_t::replace)
-        << "\n";
+    print_json(Json{{"schema", "nonio-audit/1"},
+                    {"sound", a.wrong.empty()},
+                    {"register", a.id},
+                    {"entries", a.entries},
+                    {"certificates", a.certificates},
+                    {"files", a.files},
+                    {"last_at", a.last_at},
+                    {"last_sha256", a.last_sha256},
+                    {"wrong", a.wrong}});
   } else {
     for (const std::string& what : a.wrong) std::cout << "WRONG: " << what << "\n";
     std::cout << "register " << a.id << ": " << a.entries << " entries, " << a.certificates
@@ -102,9 +101,7 @@ int certificates(const CertificateWish& wanted, const Common& common) {
   if (common.json) {
     Json all = Json::array();
     for (const RegisterEntry& e : *entries) all.push_back(to_json(e));
-    std::cout << Json{{"schema", "nonio-certificates/1"}, {"certificates", std::move(all)}}.dump(
-                     1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-certificates/1"}, {"certificates", std::move(all)}});
   } else {
     for (const RegisterEntry& e : *entries) print(e);
     if (entries->empty() && !common.quiet) std::cout << "no number was drawn yet\n";
@@ -114,47 +111,66 @@ int certificates(const CertificateWish& wanted, const Common& common) {
 
 }  // namespace
 
-Verb certificates_verb(Common& common) {
+std::vector<Verb> register_verbs(Common& common) {
   auto wanted = std::make_shared<CertificateWish>();
   using Takes = Argument::Takes;
-  return {
-      .name = "certificates",
+  const Argument site = required(existing(Takes::folder, {"SITE", &wanted->site, "The site"}));
+  const Argument why{"--why", &wanted->why, "Reason of the withdrawal, kept in the register"};
+  const Argument by{"--by", &wanted->by, "Name of the person, kept in the register"};
+  const auto former = [](Argument a) {
+    a.hidden = true;
+    return a;
+  };
+  const auto run = [wanted, &common] { return certificates(*wanted, common); };
+  Verb list{
+      .name = "list",
       .summary = "Shows the certificate register of a site: numbers, states, files",
       .arguments = joined(
-          {required(existing(Takes::folder, {"SITE", &wanted->site, "Site of the register"})),
+          {site,
            takes(Takes::folder, {"--out", &wanted->out,
                                  "Write the issued files of all numbers into this folder: "
-                                 "NUMBER.pdf and NUMBER-dcc.xml"}),
-           {"--withdraw", &wanted->withdraw,
-            "Withdraw this number. The next nightly run makes a draft of a new certificate, which\n"
-            "states this number and the reason"},
-           {"--why", &wanted->why, "Reason of the withdrawal, kept in the register"},
-           {"--by", &wanted->by, "Name of the person who withdraws it, kept in the register"},
-           {"--audit", &wanted->audit,
-            "Check that nothing in the register was changed or removed: the chain of digests, "
-            "every\n"
-            "file, and the digests in signed certificates. Status 1 if a check fails"}},
+                                 "NUMBER.pdf and NUMBER-dcc.xml. It restores a lost certificate"}),
+           former({"--withdraw", &wanted->withdraw, ""}), former(why), former(by),
+           former({"--audit", &wanted->audit, ""})},
           common_arguments(common)),
       .footer =
-          "Prints one line per number: number, state, campaign, date, reason, who released or "
-          "withdrew\n"
-          "it. The name is the stated name; the account is that of the operating system "
-          "(user@host). Neither\n"
-          "authenticates the person.\n"
-          "  issued     in force\n"
-          "  amended    replaced by another number, because the data changed\n"
-          "  withdrawn  no longer in force, with the reason\n"
-          "  drawn      not issued, with the reason; the next run uses it for the same "
-          "campaign\n"
-          "Entries are never deleted, and the same data are never issued twice. --out restores "
-          "a lost\n"
-          "certificate. --audit cannot detect that the last entries were removed: note the "
-          "last entry\n"
-          "that it prints. Include the register (certificates.sqlite in the site) in your "
-          "backups:\n"
-          "without it, numbers would be used twice, so the nightly run stops.\n\n"
-          "Example: nonio certificates site --withdraw 2026-0012 --why \"wrong serial number\"",
-      .run = [wanted, &common] { return certificates(*wanted, common); }};
+          "Prints one line per number: number, state, campaign, date, reason, who approved or "
+          "withdrew it. The name is the stated name; the account is that of the operating system "
+          "(user@host). Neither authenticates the person.\n  issued     in force\n  amended    "
+          "replaced by another number, because the data changed\n  withdrawn  no longer in force, "
+          "with the reason\n  drawn      not issued, with the reason; the next run uses it for the "
+          "same campaign\nEntries are never deleted, and the same data are never issued twice. "
+          "Include the register (certificates.sqlite in the site) in your backups: without it, "
+          "numbers would be used twice, so the nightly run stops.",
+      .examples = {"nonio certificate list site"},
+      .run = run};
+  Verb withdraw{
+      .name = "withdraw",
+      .summary = "Withdraws a certificate",
+      .arguments = joined(
+          {site,
+           required({"NUMBER", &wanted->withdraw, "Number of the certificate, such as 2026-0012"}),
+           required(why), by},
+          common_arguments(common)),
+      .footer =
+          "The next nightly run makes a draft of a new certificate, which states this "
+          "number and the reason.",
+      .examples = {"nonio certificate withdraw site 2026-0012 --why \"wrong serial "
+                   "number\" --by \"B. Sample\""},
+      .run = run};
+  Verb audit{.name = "audit",
+             .summary = "Checks that nothing in the register was changed or removed",
+             .arguments = joined({site}, common_arguments(common)),
+             .footer =
+                 "Checks the chain of digests, every file, and the digests in signed certificates. "
+                 "It cannot detect that the last entries were removed: note the last entry that it "
+                 "prints. Exit status 1 if a check fails.",
+             .examples = {"nonio certificate audit site"},
+             .run = [wanted, run] {
+               wanted->audit = true;
+               return run();
+             }};
+  return {std::move(list), std::move(withdraw), std::move(audit)};
 }
 
 }  // namespace nonio::app

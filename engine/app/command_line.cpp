@@ -6,41 +6,47 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
-#include <memory>
 #include <sstream>
 
 #include "colour.h"
 #include "platform/storage/nearest.h"
+#include "text_layout.h"
 
 namespace nonio::app {
 
 namespace {
 
+using Words = std::vector<std::string>;
+
+std::string& typed_words() {
+  static std::string words = "nonio";
+  return words;
+}
+
 CLI::Option* bind(CLI::App& app, const Argument& a) {
-  if (auto* const* flag = std::get_if<bool*>(&a.target))
-    return app.add_flag(a.name, **flag, a.help);
-  if (auto* const* list = std::get_if<std::vector<std::string>*>(&a.target)) {
-    CLI::Option* option = app.add_option(a.name, **list, a.help);
-    // One value each time, so that what follows it is never taken for a second
-    // one.
+  std::string names = a.name;
+  for (const std::string& other : {a.brief, a.old})
+    if (!other.empty()) names += "," + other;
+  if (auto* const* flag = std::get_if<bool*>(&a.target)) return app.add_flag(names, **flag);
+  if (auto* const* list = std::get_if<Words*>(&a.target)) {
+    CLI::Option* option = app.add_option(names, **list);
+    // One value each time, so that what follows it is never taken for a second one.
     if (!a.is_positional()) option->take_all()->expected(1)->allow_extra_args(false);
     return option;
   }
   if (!a.bare.empty())  // CLI11 knows such a value only for flags
-    return app.add_flag(a.name + "{" + a.bare + "}", *std::get<std::string*>(a.target), a.help);
-  return std::visit(
-      [&](auto* target) -> CLI::Option* { return app.add_option(a.name, *target, a.help); },
-      a.target);
+    return app.add_flag(a.name + "{" + a.bare + "}", *std::get<std::string*>(a.target));
+  return std::visit([&](auto* to) -> CLI::Option* { return app.add_option(names, *to); }, a.target);
 }
 
-CLI::Validator member_of(const std::vector<std::string>& choices) {
+CLI::Validator member_of(const Words& choices) {
   return {[choices](const std::string& found) {
             if (std::find(choices.begin(), choices.end(), found) != choices.end())
               return std::string();
             return "expected one of " + storage::listed(choices) + "; found \"" + found + "\"" +
                    storage::suggestion(found, choices);
           },
-          "{" + storage::listed(choices) + "}"};
+          ""};
 }
 
 void check(CLI::Option& option, const Argument& a) {
@@ -51,26 +57,13 @@ void check(CLI::Option& option, const Argument& a) {
                                                     : CLI::Validator(CLI::ExistingPath));
   if (!a.choices.empty()) option.check(member_of(a.choices));
   if (a.range) option.check(CLI::Range(a.range->first, a.range->second));
-  if (a.shows_default) option.capture_default_str();
 }
 
-void bind(CLI::App& app, const Verb& verb, std::function<int()>& chosen) {
-  for (const Argument& a : verb.arguments) check(*bind(app, a), a);
-  app.footer(verb.footer);
-  for (const Verb& inner : verb.verbs)
-    bind(*app.add_subcommand(inner.name, inner.summary)
-              ->group(inner.group.empty() ? "Verbs" : inner.group),
-         inner, chosen);
-  if (verb.verbs.empty())
-    app.callback([&chosen, &verb] { chosen = verb.run; });
-  else
-    app.require_subcommand(1);
-}
-
-std::vector<std::string> names_of(const std::vector<Verb>& verbs) {
-  std::vector<std::string> names;
-  for (const Verb& v : verbs) names.push_back(v.name);
-  return names;
+Words split(const std::string& text) {
+  std::istringstream stream(text);
+  Words words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
 }
 
 const Verb* find(const std::vector<Verb>& verbs, const std::string& name) {
@@ -79,32 +72,84 @@ const Verb* find(const std::vector<Verb>& verbs, const std::string& name) {
   return it == verbs.end() ? nullptr : &*it;
 }
 
-/// The verb that the words lead to, as far as they are verbs.
+Words names_of(const std::vector<Verb>& verbs) {
+  Words names;
+  for (const Verb& v : verbs)
+    if (!v.heading.empty()) names.push_back(v.name);
+  return names;
+}
+
+/// The command that the words lead to.
 struct Found {
   const Verb* verb = nullptr;
-  std::string path;       ///< "nonio plan"
-  std::size_t words = 0;  ///< of the path, without the program
-  std::string wrong{};    ///< what is wrong with the word where a verb is wanted;
-                          ///< empty: nothing
+  std::string path;              ///< "nonio plan"
+  std::string typed;             ///< the same with a former name, if that was typed
+  Words rest{};                  ///< the words behind the command
+  std::string wrong{};           ///< what is wrong with the word where a command is expected
+  const Alias* alias = nullptr;  ///< the former name that was typed
 };
 
-Found find(const Verb& top, const std::vector<std::string>& words) {
-  Found found{&top, top.name};
-  for (const std::string& word : words) {
-    const std::vector<Verb>& verbs = found.verb->verbs;
-    if (verbs.empty() || word.starts_with('-')) break;
-    const Verb* next = find(verbs, word);
+/// The words with the present name of a command in place of a former one.
+const Alias* alias_of(const Program& program, const Words& words) {
+  const Alias* longest = nullptr;
+  for (const Alias& alias : program.aliases) {
+    const Words old = split(alias.old_words);
+    if (old.size() <= words.size() && std::equal(old.begin(), old.end(), words.begin()) &&
+        (longest == nullptr || alias.old_words.size() > longest->old_words.size()))
+      longest = &alias;
+  }
+  return longest;
+}
+
+/// The program has no command of that name: what may be meant.
+std::string hint_for(const Program& program, const std::string& word) {
+  Words names;
+  for (const Verb& v : program.verbs) {
+    names.push_back(v.name);
+    for (const Verb& inner : v.verbs) names.push_back(v.name + " " + inner.name);
+  }
+  const auto meant = [](const std::string& command) {
+    return " (did you mean \"nonio " + command + "\"?)";
+  };
+  for (const auto& [synonym, command] : program.synonyms)
+    if (word == synonym) return meant(command);
+  for (const std::string& name : names)
+    if (name.ends_with(" " + word)) return meant(name);
+  for (const Alias& alias : program.aliases) names.push_back(alias.old_words);
+  return storage::suggestion(word, names);
+}
+
+std::string no_command(const Program& program, const Found& at, const std::string& word) {
+  const Words names = names_of(at.verb->verbs);
+  const std::string hint =
+      at.path == program.name ? hint_for(program, word) : storage::suggestion(word, names);
+  return at.path + ": there is no command \"" + word + "\"" +
+         (hint.empty() ? "; there are " + storage::listed(names) : hint);
+}
+
+Found find(const Program& program, const Verb& top, const Words& typed) {
+  Found found{&top, program.name, program.name};
+  found.alias = alias_of(program, typed);
+  Words words = typed;
+  if (found.alias != nullptr) {
+    const Words present = split(found.alias->words);
+    words.erase(words.begin(),
+                words.begin() + std::ptrdiff_t(split(found.alias->old_words).size()));
+    words.insert(words.begin(), present.begin(), present.end());
+  }
+  std::size_t used = 0;
+  for (; used < words.size() && !found.verb->verbs.empty() && !words[used].starts_with('-');
+       ++used) {
+    const Verb* next = find(found.verb->verbs, words[used]);
     if (next == nullptr) {
-      const auto names = names_of(verbs);
-      const std::string nearest = storage::suggestion(word, names);
-      found.wrong = found.path + ": there is no verb \"" + word + "\"" +
-                    (nearest.empty() ? "; there are " + storage::listed(names) : nearest);
+      if (!found.verb->run) found.wrong = no_command(program, found, words[used]);
       break;
     }
     found.verb = next;
-    found.path += " " + word;
-    ++found.words;
+    found.path += " " + words[used];
   }
+  found.rest.assign(words.begin() + std::ptrdiff_t(used), words.end());
+  found.typed = found.alias == nullptr ? found.path : program.name + " " + found.alias->old_words;
   return found;
 }
 
@@ -112,87 +157,204 @@ bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && word.find_first_of("0123456789.") != 1;
 }
 
-/// What is wrong with the first option that the verb does not have, with the
-/// nearest one that it has; empty if it has them all.
-std::string unknown_option(const Verb& verb, std::vector<std::string> own,
-                           const std::vector<std::string>& words) {
-  for (const Argument& a : verb.arguments)
-    if (!a.is_positional()) own.push_back(a.name);
+/// The options among the words, without their values.
+Words options_of(const Verb& verb, const Words& words) {
+  Words options;
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
     if (!is_option(words[i])) continue;
-    const std::string name = words[i].substr(0, words[i].find('='));
-    if (std::find(own.begin(), own.end(), name) == own.end())
-      return "there is no option " + name + storage::suggestion(name, own);
+    options.push_back(words[i].substr(0, words[i].find('=')));
     for (const Argument& a : verb.arguments)
-      if (a.name == name && name == words[i] && a.needs_value()) ++i;
+      if ((a.name == words[i] || a.old == words[i]) && a.needs_value()) ++i;
   }
-  return {};
+  return options;
 }
 
-/// What CLI11 does not say as well; empty: nothing.
-std::string complaint_about(const Found& found, const std::vector<std::string>& words) {
-  if (!found.wrong.empty()) return found.wrong;
-  const bool at_top = found.words == 0;
-  std::vector<std::string> own{"--help", "-h"};
+/// What is wrong with the first option that the command does not have, with the nearest one that
+/// it has; empty if it has them all.
+std::string unknown_option(const Verb& verb, const Words& options, bool at_top) {
+  Words own{"--help", "-h"}, accepted;
   if (at_top) own.emplace_back("--version");
-  const std::vector<std::string> rest(words.begin() + found.words, words.end());
-  if (const std::string wrong = unknown_option(*found.verb, own, rest); !wrong.empty())
-    return found.path + ": " + wrong;
-  if (!at_top && rest.empty() && !found.verb->verbs.empty())
-    return found.path + ": expected a verb: " + storage::listed(names_of(found.verb->verbs));
+  for (const Argument& a : verb.arguments) {
+    if (a.is_positional()) continue;
+    (a.hidden ? accepted : own).push_back(a.name);
+    accepted.insert(accepted.end(), {a.brief, a.old});
+  }
+  accepted.insert(accepted.end(), own.begin(), own.end());
+  for (const std::string& option : options)
+    if (std::find(accepted.begin(), accepted.end(), option) == accepted.end())
+      return "there is no option " + option + storage::suggestion(option, own);
   return {};
 }
 
-std::unique_ptr<CLI::App> cli_of(const Program& program, const Verb& top,
-                                 std::function<int()>& chosen) {
-  auto cli = std::make_unique<CLI::App>(program.summary);
-  cli->name(program.name);
-  cli->get_formatter()->label("SUBCOMMAND", "VERB");
-  cli->set_version_flag("--version", program.name + " " + program.version);
-  bind(*cli, top, chosen);
-  return cli;
+bool has(const Words& options, const char* name) {
+  return std::find(options.begin(), options.end(), name) != options.end();
 }
 
-Verb top_of(const Program& program) {
-  return {.name = program.name,
-          .summary = program.summary,
-          .footer = program.footer,
-          .verbs = program.verbs};
+bool asks_for_help(const Words& options) { return has(options, "--help") || has(options, "-h"); }
+
+/// What CLI11 does not state as well; empty: nothing.
+std::string complaint_about(const Found& found, const Words& options, const Program& program) {
+  if (!found.wrong.empty()) return found.wrong;
+  if (const std::string wrong = unknown_option(*found.verb, options, found.path == program.name);
+      !wrong.empty())
+    return found.typed + ": " + wrong;
+  if (!found.verb->run && !asks_for_help(options) && !has(options, "--version"))
+    return found.typed + ": expected one of " + storage::listed(names_of(found.verb->verbs));
+  return {};
 }
 
-/// With headings in bold.
-void print_help(const std::string& text, std::ostream& out) {
-  const bool is_out = &out == &std::cout;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    const bool heading = line.ends_with(':') && line.size() < 30 && line[0] != ' ';
-    out << (heading ? coloured(line, Colour::bold, is_out ? STDOUT_FILENO : STDERR_FILENO) : line)
-        << "\n";
+std::string value_of(const Argument& a) {
+  if (!a.choices.empty()) {
+    std::string all;
+    for (const std::string& choice : a.choices) all += (all.empty() ? "" : "|") + choice;
+    return all.size() <= 24 ? all : "NAME";
   }
+  if (a.takes == Argument::Takes::folder) return "FOLDER";
+  if (a.takes != Argument::Takes::anything)
+    return a.takes == Argument::Takes::file ? "FILE" : "PATH";
+  if (std::holds_alternative<std::int64_t*>(a.target) ||
+      std::holds_alternative<std::uint64_t*>(a.target))
+    return "N";
+  return std::holds_alternative<double*>(a.target) ? "NUMBER" : "TEXT";
 }
 
-/// The program with no words, as far as it has been bound.
-struct Bound {
-  explicit Bound(const Program& program)
-      : top(top_of(program)), cli(cli_of(program, top, chosen)) {}
-  Bound(const Bound&) = delete;
-  Bound& operator=(const Bound&) = delete;
+std::string left_column(const Argument& a) {
+  if (a.is_positional()) return a.name + (a.is_list() ? "..." : "");
+  if (a.is_flag()) return (a.brief.empty() ? "" : a.brief + ", ") + a.name;
+  return a.bare.empty() ? a.name + " " + value_of(a) : a.name + "[=" + value_of(a) + "]";
+}
 
-  std::function<int()> chosen{};
-  Verb top;
-  std::unique_ptr<CLI::App> cli;
+std::string right_column(const Argument& a) {
+  std::string text = a.help;
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (value_of(a) == "NAME" && !a.choices.empty()) text += "; one of " + storage::listed(a.choices);
+  if (a.shows_default)
+    text += " (default: " +
+            std::visit(
+                [](auto* target) -> std::string {
+                  using T = std::remove_pointer_t<decltype(target)>;
+                  if constexpr (std::is_same_v<T, Words>) return storage::listed(*target);
+                  std::ostringstream out;
+                  if constexpr (!std::is_same_v<T, Words>) out << *target;
+                  return out.str();
+                },
+                a.target) +
+            ")";
+  return text + (a.required && !a.is_positional() ? " (required)" : "");
+}
+
+class HelpPage {
+ public:
+  HelpPage(std::ostream& out, int descriptor)
+      : out_(out), descriptor_(descriptor), width_(line_width(descriptor)) {}
+
+  void program(const Program& p) {
+    out_ << wrapped(one_paragraph(p.summary), 0, width_) << "\nUsage: " << p.name
+         << " COMMAND [ARGUMENTS]\n";
+    verbs(p.verbs);
+    out_ << "\n" << wrapped(p.footer, 0, width_);
+  }
+
+  void command(const Found& found) {
+    const Verb& v = *found.verb;
+    out_ << wrapped(v.summary + (v.summary.ends_with('.') ? "" : "."), 0, width_) << "\n";
+    if (v.run) out_ << wrapped("Usage: " + synopsis(found.path, v), 0, width_, 7);
+    if (!v.verbs.empty()) out_ << "Usage: " << found.path << " COMMAND [ARGUMENTS]\n";
+    verbs(v.verbs);
+    arguments(v, "Arguments:", true);
+    arguments(v, "Options:", false);
+    if (!v.footer.empty()) out_ << "\n" << wrapped(v.footer, 0, width_);
+    if (v.examples.empty()) return;
+    heading(v.examples.size() == 1 ? "Example:" : "Examples:");
+    for (const std::string& example : v.examples) out_ << wrapped(example, 2, width_, 4);
+  }
+
+  static std::string synopsis(const std::string& path, const Verb& v) {
+    std::string line = path;
+    bool has_options = false;
+    for (const Argument& a : v.arguments) {
+      if (a.is_positional())
+        line += " " + (a.required ? left_column(a) : "[" + left_column(a) + "]");
+      else if (a.required)
+        line += " " + left_column(a);
+      else
+        has_options = has_options || !a.hidden;
+    }
+    return line + (has_options ? " [OPTIONS]" : "");
+  }
+
+ private:
+  static std::string one_paragraph(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+  }
+
+  void heading(const std::string& text) {
+    out_ << "\n" << coloured(text, Colour::bold, descriptor_) << "\n";
+  }
+
+  void row(const std::string& left, std::size_t column, const std::string& right) {
+    const std::string text = wrapped(right, column, width_);
+    if (columns_of(left) + 3 > column)
+      out_ << "  " << left << "\n" << text;
+    else
+      out_ << "  " << padded(left, column - 2) << text.substr(column);
+  }
+
+  void verbs(const std::vector<Verb>& all) {
+    std::string last;
+    for (const Verb& v : all) {
+      if (v.heading.empty()) continue;
+      if (v.heading != last) heading((last = v.heading) + ":");
+      std::string names;
+      for (const Verb& inner : v.verbs) names += (names.empty() ? "" : ", ") + inner.name;
+      row(v.name, 15, v.summary + (names.empty() ? "" : " (" + names + ")"));
+    }
+  }
+
+  void arguments(const Verb& v, const char* title, bool positional) {
+    std::size_t column = 0;
+    for (const Argument& a : v.arguments)
+      if (a.is_positional() == positional && !a.hidden)
+        column = std::max(column, std::min<std::size_t>(columns_of(left_column(a)) + 4, 28));
+    if (!positional) column = std::max<std::size_t>(column, 12);
+    bool is_first = true;
+    for (const Argument& a : v.arguments) {
+      if (a.is_positional() != positional || a.hidden) continue;
+      if (std::exchange(is_first, false)) heading(title);
+      row(left_column(a), column, right_column(a));
+    }
+  }
+
+  std::ostream& out_;
+  int descriptor_;
+  std::size_t width_;
 };
 
-/// `words` lead to a verb.
-std::string help_text(const Program& program, const std::vector<std::string>& words) {
-  Bound bound(program);
-  std::vector<std::string> reversed{"--help"};
-  reversed.insert(reversed.end(), words.rbegin(), words.rend());
+Verb top_of(const Program& program) {
+  return {.name = program.name, .summary = program.summary, .verbs = program.verbs};
+}
+
+void print_help(const Program& program, const Found& found, std::ostream& out, int descriptor) {
+  HelpPage page(out, descriptor);
+  found.path == program.name ? page.program(program) : page.command(found);
+}
+
+/// Fills the targets; the exit status.
+int parse(const Found& found, const Words& options) {
+  CLI::App cli;
+  for (const Argument& a : found.verb->arguments) check(*bind(cli, a), a);
+  Words reversed(found.rest.rbegin(), found.rest.rend());
   try {
-    bound.cli->parse(reversed);
-  } catch (const CLI::ParseError&) {  // that of --help
+    cli.parse(std::move(reversed));
+  } catch (const CLI::ParseError& e) {
+    std::cerr << found.typed << ": " << e.what() << "\nSee `" << found.path << " --help`.\n";
+    return exit_usage;
   }
-  return bound.cli->help();
+  for (const Argument& a : found.verb->arguments)
+    if (!a.old.empty() && has(options, a.old.c_str()))
+      std::cerr << found.typed << ": the option " << a.old << " is now " << a.name << "\n";
+  return exit_done;
 }
 
 }  // namespace
@@ -205,48 +367,57 @@ std::vector<Argument> joined(std::vector<Argument> first, const std::vector<Argu
   return first;
 }
 
-int show_help(const Program& program, const std::vector<std::string>& words) {
+const std::string& command_words() { return typed_words(); }
+
+std::string synopsis(const std::string& path, const Verb& verb) {
+  return HelpPage::synopsis(path, verb);
+}
+
+int show_help(const Program& program, const Words& words) {
   const Verb top = top_of(program);
-  const Found found = find(top, words);
-  if (found.wrong.empty() && found.words == words.size()) {
-    print_help(help_text(program, words), std::cout);
+  Found found = find(program, top, words);
+  if (found.alias != nullptr) found.rest.clear();
+  if (found.wrong.empty() && found.rest.empty()) {
+    print_help(program, found, std::cout, STDOUT_FILENO);
     return exit_done;
   }
-  std::cerr << (found.wrong.empty() ? found.path + ": there is no verb below it" : found.wrong)
+  std::cerr << (found.wrong.empty() ? found.path + ": there is no command below it" : found.wrong)
             << "\n";
   return exit_usage;
 }
 
 int run(const Program& program, int argc, const char* const* argv) {
-  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  const Words words(argv + std::min(argc, 1), argv + argc);
+  const Verb top = top_of(program);
+  const Found found = find(program, top, words);
+  typed_words() = found.typed;
   if (words.empty()) {
-    print_help(help_text(program, {}), std::cerr);
+    print_help(program, found, std::cerr, STDERR_FILENO);
     return exit_usage;
   }
-  Bound bound(program);
-  const Found found = find(bound.top, words);
-  if (const std::string wrong = complaint_about(found, words); !wrong.empty()) {
-    std::cerr << wrong << "\n`" << found.path << " --help` says more.\n";
+  const Words options = options_of(*found.verb, found.rest);
+  if (const std::string wrong = complaint_about(found, options, program); !wrong.empty()) {
+    std::cerr << wrong << "\nSee `" << found.path << " --help`.\n";
     return exit_usage;
   }
-  try {
-    bound.cli->parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    print_help(bound.cli->help(), std::cout);
+  if (asks_for_help(options)) {
+    print_help(program, found, std::cout, STDOUT_FILENO);
     return exit_done;
-  } catch (const CLI::Success& e) {
-    return bound.cli->exit(e);
-  } catch (const CLI::ParseError& e) {
-    std::cerr << found.path << ": " << e.what() << "\n`" << found.path
-              << " --help` says what it takes.\n";
-    return exit_usage;
   }
+  if (found.path == program.name) {
+    std::cout << program.name << " " << program.version << "\n";
+    return exit_done;
+  }
+  if (found.alias != nullptr && found.alias->is_announced)
+    std::cerr << "'" << found.typed << "' is now '" << program.name << " " << found.alias->words
+              << "'; the old name will be removed in version " << program.aliases_until << "\n";
+  if (const int status = parse(found, options); status != exit_done) return status;
   try {
-    return bound.chosen();
+    return found.verb->run();
   } catch (const std::bad_alloc&) {
-    std::cerr << found.path << ": out of memory\n";
+    std::cerr << found.typed << ": out of memory\n";
   } catch (const std::exception& e) {
-    std::cerr << found.path << ": " << e.what() << "\n";
+    std::cerr << found.typed << ": " << e.what() << "\n";
   }
   return exit_failed;
 }

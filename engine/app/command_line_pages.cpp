@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is written from the table of verbs for others to read: man(1), bash and zsh.
+// What is written from the table of commands: the manual page, completion of bash and zsh, JSON.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "command_line.h"
@@ -47,27 +48,26 @@ std::string in_capitals(std::string text) {
   return text;
 }
 
-void write_roff_block(std::ostream& out, const std::string& text) {
-  if (!text.empty()) out << ".PP\n.nf\n" << roff(text) << "\n.fi\n";
+void write_roff_examples(std::ostream& out, const std::vector<std::string>& examples) {
+  if (examples.empty()) return;
+  out << ".PP\n.nf\n";
+  for (const std::string& example : examples) out << roff(example) << "\n";
+  out << ".fi\n";
 }
 
-std::string synopsis(const std::string& path, const Verb& v) {
-  std::string line = path;
-  for (const Argument& a : v.arguments)
-    if (a.is_positional())
-      line += " " + std::string(a.required ? "" : "[") + a.name + (a.is_list() ? "..." : "") +
-              (a.required ? "" : "]");
-    else if (a.required)
-      line += " " + a.name + " ...";
-  if (!v.verbs.empty()) {
-    line += " ";
-    for (const Verb& inner : v.verbs) line += (&inner == &v.verbs.front() ? "" : "|") + inner.name;
-  }
-  return line;
+/// Paragraphs of a footer; lines that begin with a space stay as they are.
+void write_roff_paragraphs(std::ostream& out, const std::string& text) {
+  if (!text.empty()) out << ".PP\n" << roff(replaced(text, '\n', "\n.br\n")) << "\n";
 }
 
 std::string in_single_quotes(const std::string& text) {
   return "'" + replaced(text, '\'', "'\\''") + "'";
+}
+
+std::string joined_names(const std::vector<Verb>& verbs, const char* between) {
+  std::string out;
+  for (const Verb& v : verbs) out += (out.empty() ? "" : between) + v.name;
+  return out;
 }
 
 std::string in_words(const std::vector<std::string>& words) {
@@ -110,7 +110,7 @@ void write_bash(const Program& program, std::ostream& out) {
          "  case \"$path $prev$equals\" in\n";
   each(program.verbs, name, [&](const std::string& path, const Verb& v) {
     for (const Argument& a : v.arguments) {
-      if (a.is_positional() || a.is_flag()) continue;
+      if (a.is_positional() || a.is_flag() || a.hidden) continue;
       const std::string option = path + " " + a.name;
       out << "    ";
       if (a.needs_value()) out << "\"" << option << "\" | ";
@@ -124,14 +124,14 @@ void write_bash(const Program& program, std::ostream& out) {
     for (const Argument& a : v.arguments)
       if (a.is_positional())
         values.push_back(bash_values(a));
-      else
+      else if (!a.hidden)
         words.push_back(a.name);
     words.emplace_back("--help");
     out << "        \"" << path << "\") offer=\"-W '" << in_words(words) << "'\"";
     if (!values.empty()) out << "; [[ $cur == -* ]] || offer=\"" << values.front() << "\"";
     out << " ;;\n";
   };
-  write_words(name, {name, {}, {}, {}, {}, program.verbs});
+  write_words(name, {.name = name, .summary = {}, .verbs = program.verbs});
   each(program.verbs, name, write_words);
   out << "      esac ;;\n  esac\n"
          "  case \"$offer\" in\n"
@@ -167,6 +167,7 @@ std::string zsh_values(const Argument& a) {
 void write_zsh_arguments(const Verb& v, const std::string& indent, std::ostream& out) {
   out << indent << "_arguments -s '--help[help of this verb]'";
   for (const Argument& a : v.arguments) {
+    if (a.hidden) continue;
     const bool many = a.is_list();
     out << " \\\n" << indent << "  '";
     if (a.is_positional()) {
@@ -201,10 +202,12 @@ void write_zsh_function(const std::string& function, const std::vector<Verb>& ve
          "in\n";
   for (const Verb& v : verbs) {
     out << "    " << v.name << ")\n";
-    if (v.verbs.empty())
-      write_zsh_arguments(v, "      ", out);
-    else
-      out << "      " << function << "_" << v.name << "\n";
+    if (v.run && !v.verbs.empty())
+      out << "      if [[ -z $words[2] || \" " << joined_names(v.verbs, " ")
+          << " \" != *\" $words[2] \"* ]]; then\n";
+    if (v.run) write_zsh_arguments(v, "      ", out);
+    if (v.run && !v.verbs.empty()) out << "      return; fi\n";
+    if (!v.verbs.empty()) out << "      " << function << "_" << v.name << "\n";
     out << "      ;;\n";
   }
   out << "  esac\n}\n";
@@ -220,17 +223,23 @@ void write_man_page(const Program& program, std::ostream& out) {
   for (const Verb& v : program.verbs)
     out << ".B " << roff(synopsis(program.name + " " + v.name, v)) << "\n.br\n";
   out << ".SH DESCRIPTION\n" << roff(one_line(program.summary)) << "\n";
-  std::string group;
+  std::string heading;
+  const auto at_top = [](const std::string& path) {
+    return std::count(path.begin(), path.end(), ' ') == 1;
+  };
   each(program.verbs, program.name, [&](const std::string& path, const Verb& v) {
-    if (!v.group.empty() && v.group != group) out << ".SH " << in_capitals(group = v.group) << "\n";
+    if (!v.heading.empty() && v.heading != heading && at_top(path))
+      out << ".SH " << in_capitals(heading = v.heading) << "\n";
     out << ".SS " << roff(synopsis(path, v)) << "\n"
         << roff(v.summary) << (v.summary.ends_with('?') ? "" : ".") << "\n";
     for (const Argument& a : v.arguments) {
+      if (a.hidden) continue;
       out << ".TP\n.B " << roff(a.name) << "\n" << roff(one_line(a.help));
       if (!a.choices.empty()) out << "; one of " << roff(in_words(a.choices));
       out << "\n";
     }
-    write_roff_block(out, v.footer);
+    write_roff_paragraphs(out, v.footer);
+    write_roff_examples(out, v.examples);
   });
   out << ".SH EXIT STATUS\n" << roff(one_line(program.footer)) << "\n";
 }
@@ -241,6 +250,55 @@ void write_completion(const Program& program, const std::string& shell, std::ost
       << " completion zsh`\n";
   write_zsh_function("_" + program.name, program.verbs, out);
   out << "_" << program.name << " \"$@\"\n";
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* kind_of(const Argument& a) {
+  constexpr const char* kinds[] = {"flag", "text", "list", "integer", "integer", "number"};
+  return kinds[a.target.index()];
+}
+
+Json to_json(const Argument& a) {
+  Json json = {
+      {"name", a.name}, {"kind", kind_of(a)}, {"required", a.required}, {"help", one_line(a.help)}};
+  if (!a.choices.empty()) json["choices"] = a.choices;
+  if (a.range) json["range"] = {a.range->first, a.range->second};
+  if (!a.bare.empty()) json["value_of_bare"] = a.bare;
+  if (!a.old.empty()) json["old"] = a.old;
+  if (a.hidden) json["hidden"] = true;
+  return json;
+}
+
+}  // namespace
+
+void write_table(const Program& program, std::ostream& out) {
+  Json commands = Json::array(), aliases = Json::array(), synonyms = Json::object();
+  each(program.verbs, program.name, [&](const std::string& path, const Verb& v) {
+    Json arguments = Json::array();
+    for (const Argument& a : v.arguments) arguments.push_back(to_json(a));
+    commands.push_back({{"command", path},
+                        {"listed", !v.heading.empty()},
+                        {"runs", bool(v.run)},
+                        {"summary", v.summary},
+                        {"arguments", std::move(arguments)},
+                        {"text", v.footer},
+                        {"examples", v.examples}});
+  });
+  for (const Alias& alias : program.aliases)
+    aliases.push_back({{"old", program.name + " " + alias.old_words},
+                       {"command", program.name + " " + alias.words},
+                       {"announced", alias.is_announced}});
+  for (const auto& [word, command] : program.synonyms)
+    synonyms[word] = program.name + " " + command;
+  out << Json{{"schema", "nonio-commands/1"},
+              {"commands", std::move(commands)},
+              {"aliases", std::move(aliases)},
+              {"synonyms", std::move(synonyms)}}
+             .dump(1)
+      << "\n";
 }
 
 }  // namespace nonio::app

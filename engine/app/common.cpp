@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 namespace nonio::app {
@@ -45,14 +46,11 @@ std::vector<fs::path> Common::template_folders() const {
 
 std::vector<Argument> common_arguments(Common& common) {
   using Takes = Argument::Takes;
-  return {
-      existing(
-          Takes::folder,
-          {"--plugin-path", &common.plugin_paths,
-           "A folder with more plugins; may be given several times. NONIO_PLUGIN_PATH lists such\n"
-           "folders too, separated by ':'."}),
-      {"--json", &common.json, "Machine-readable output on stdout"},
-      {"--quiet", &common.quiet, "No progress; only errors"}};
+  return {existing(Takes::folder, {"--plugin-path", &common.plugin_paths,
+                                   "A folder with more plugins; may be given several times. "
+                                   "NONIO_PLUGIN_PATH lists such folders too, separated by ':'."}),
+          {"--json", &common.json, "Machine-readable output on stdout"},
+          {"--quiet", &common.quiet, "No progress; only errors"}};
 }
 
 Argument templates_argument(Common& common) {
@@ -75,6 +73,11 @@ Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::
     out[one.substr(0, equals)] = one.substr(equals + 1);
   }
   return out;
+}
+
+void print_json(const nlohmann::ordered_json& json, int indent) {
+  std::cout << json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+            << "\n";
 }
 
 std::string today() {
@@ -102,8 +105,8 @@ std::string text_of(const Error& e) {
          (e.column.empty() ? "" : " (" + e.column + ")") + (e.file.empty() ? "" : ": ") + e.message;
 }
 
-int complain(const std::string& verb, const std::string& message, int status) {
-  std::cerr << verb << ": " << message << "\n";
+int complain(const std::string& message, int status) {
+  std::cerr << command_words() << ": " << message << "\n";
   return status;
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ Argument settings_argument(std::vector<std::string>& settings, std::string help)
 /// {"NAME", "VALUE"} of each --set.
 Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::string>& given);
 
+/// On stdout with a line feed; bytes that are not UTF-8 are replaced. `indent` -1: on one line.
+void print_json(const nlohmann::ordered_json& json, int indent = 1);
+
 /// YYYY-MM-DD, of the local clock.
 std::string today();
 /// YYYY-MM-DD, a day that is in the calendar.
@@ -38,7 +42,8 @@ bool is_day(const std::string& text);
 
 /// "campaign.toml:12 (target_mm): ..."
 std::string text_of(const Error& error);
-/// "nonio compare: ..." on stderr; returns the exit status.
-int complain(const std::string& verb, const std::string& message, int status = exit_usage);
+/// "nonio run: ..." on stderr, with the words of the command as they were typed; returns the
+/// exit status.
+int complain(const std::string& message, int status = exit_usage);
 
 }  // namespace nonio::app

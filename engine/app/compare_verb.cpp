@@ -15,12 +15,11 @@ struct PredictOptions {
 };
 
 int compare(const std::string& folder, const Common& common) {
-  const char* const verb = "nonio compare";
-  auto opened = open_campaign(verb, folder, common, reading::TemplatesFor::terminal);
+  auto opened = open_campaign(folder, common, reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   auto parts = modelling::part_models(open.read, open.campaign().model);
-  if (!parts) return complain(verb, text_of(parts.error()));
+  if (!parts) return complain(text_of(parts.error()));
   const modelling::ModelWords words = words_for(open, common);
   std::vector<std::string> warnings;
   for (const std::string& effect : modelling::unmeasured(open.campaign().model, *parts))
@@ -32,13 +31,13 @@ int compare(const std::string& folder, const Common& common) {
     if (comparison) {
       all.push_back({std::move(part), std::move(*comparison)});
     } else {
-      complain(verb, text_of(comparison.error()));
+      complain(text_of(comparison.error()));
       errors.push_back(comparison.error());
     }
   }
   if (parts->empty())
-    complain(verb, text_of(errors.emplace_back(modelling::nothing_to_compare(open.read))));
-  for (const std::string& warning : warnings) complain(verb, warning);
+    complain(text_of(errors.emplace_back(modelling::nothing_to_compare(open.read))));
+  for (const std::string& warning : warnings) complain(warning);
   if (common.json)
     std::cout << modelling::compare_json(all, open.campaign(), words, warnings, errors);
   else
@@ -49,14 +48,13 @@ int compare(const std::string& folder, const Common& common) {
 
 /// The model of another campaign, applied to this one.
 int predict(const std::string& folder, const PredictOptions& options, const Common& common) {
-  const char* const verb = "nonio compare";
-  auto unseen = open_campaign(verb, folder, common, reading::TemplatesFor::terminal);
+  auto unseen = open_campaign(folder, common, reading::TemplatesFor::terminal);
   if (!unseen) return unseen.error();
-  auto seen = open_campaign(verb, options.model_of, common, reading::TemplatesFor::terminal);
+  auto seen = open_campaign(options.model_of, common, reading::TemplatesFor::terminal);
   if (!seen) return seen.error();
   const bool kept = options.zero == "kept";
   const auto all = modelling::predictions(seen->read, unseen->read, kept);
-  if (!all) return complain(verb, text_of(all.error()));
+  if (!all) return complain(text_of(all.error()));
   const modelling::ModelWords words = words_for(*unseen, common);
   if (common.json) {
     std::cout << modelling::predict_json(*all, seen->campaign(), unseen->campaign(), words, kept);
@@ -79,7 +77,7 @@ Verb compare_verb(Common& common) {
           campaign_arguments(*folder, common),
           {{.name = "--model-of",
             .target = &options->model_of,
-            .help = "Predict this campaign with the model of another one, fitted there; displacements\n"
+            .help = "Predict this campaign with the model of another one, fitted there: displacements "
                     "over time only",
             .takes = Argument::Takes::folder,
             .exists = true},
@@ -88,13 +86,11 @@ Verb compare_verb(Common& common) {
                                      .help = "With --model-of: the zero is a new unknown, or that of "
                                              "the model",
                                      .shows_default = true})}),
-      .footer =
-          "Shows for each axis the residuals (RMS, largest residual, RMS of left-out runs), the "
-          "noise\n"
-          "floor of repeated readings, the parameters with their uncertainty, and the factors that "
-          "the\n"
-          "residuals depend on: direction, position, run, time, temperature, screw or angle.\n\n"
-          "Example: nonio compare samples/site/02-constant-reversal",
+      .footer = "Shows for each axis the residuals (RMS, largest residual, RMS of left-out runs), "
+                "the noise floor of repeated readings, the parameters with their uncertainty, and "
+                "the factors that the residuals depend on: direction, position, run, time, "
+                "temperature, screw or angle.",
+      .examples = {"nonio model compare samples/site/02-constant-reversal"},
       .run =
           [folder, options, &common] {
             return options->model_of.empty() ? compare(*folder, common)

@@ -120,7 +120,7 @@ int list_controls(const std::vector<std::string>& names, const Common& common) {
   for (const std::string& name : names)
     if (std::none_of(all.begin(), all.end(),
                      [&](const Controller* o) { return o->info.name == name; })) {
-      return complain("nonio controllers", plugins.absence("controller", name));
+      return complain(plugins.absence("controller", name));
     }
   if (!names.empty())
     std::erase_if(all, [&](const Controller* o) {
@@ -129,7 +129,7 @@ int list_controls(const std::vector<std::string>& names, const Common& common) {
   if (common.json) {
     Json json = {{"schema", "nonio-controllers/1"}, {"controllers", Json::array()}};
     for (const Controller* o : all) json["controllers"].push_back(control_json(*o));
-    std::cout << json.dump(1) << "\n";
+    print_json(json);
     return exit_done;
   }
   print_head();
@@ -139,26 +139,21 @@ int list_controls(const std::vector<std::string>& names, const Common& common) {
 
 }  // namespace
 
-Verb controllers_verb(Common& common) {
+Verb controls_verb(Common& common) {
   auto names = std::make_shared<std::vector<std::string>>();
-  return {.name = "controllers",
+  return {.name = "controls",
           .summary = "Lists the controls that tables are written for, and what each supports",
           .arguments = joined(
               {{"NAME", names.get(), "Only these controls, with the confidence of each fact"}},
               common_arguments(common)),
           .footer =
-              "points: of one table. both ways: a table for each direction of travel. "
-              "straight, square:\n"
-              "an axis by the position of another. volume: all errors of the machine in one "
-              "file.\n"
-              "sign: whether an entry is the measured error (actual - nominal) or the "
-              "correction. If\n"
-              "it is undocumented, no table is written before a sign probe has shown it "
-              "(`nonio plan\n"
-              "sign-probe`). Name the control in the campaign:\n"
-              "    [machine]\n"
-              "    control = \"fagor-8055\"\n\n"
-              "Example: nonio controllers pmac ecmc",
+              "points: of one table. both ways: a table for each direction of travel. straight, "
+              "square: an axis by the position of another. volume: all errors of the machine in "
+              "one file. sign: whether an entry is the measured error (actual - nominal) or the "
+              "correction. If it is undocumented, no table is written before a sign probe has "
+              "shown it (`nonio table probe`). Name the control in the campaign:\n    "
+              "[machine]\n    control = \"fagor-8055\"",
+          .examples = {"nonio table controls pmac ecmc"},
           .run = [names, &common] { return list_controls(*names, common); }};
 }
 

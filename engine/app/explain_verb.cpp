@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <iostream>
+#include <utility>
 
 #include "campaign_verb.h"
 #include "tables.h"
@@ -9,12 +11,12 @@ namespace nonio::app {
 
 namespace {
 
-constexpr std::size_t most_steps = 12;
+constexpr std::size_t most_steps = 12;  // for each part
 
 struct ExplainOptions {
   std::string folder;
   bool automatic = false;
-  bool what_if = false;
+  bool what_if = false, all = false;
   std::uint64_t seed = 1;
 };
 
@@ -24,8 +26,7 @@ class Explain {
       : options_(options), common_(common) {}
 
   int run() {
-    auto opened =
-        open_campaign("nonio explain", options_.folder, common_, reading::TemplatesFor::terminal);
+    auto opened = open_campaign(options_.folder, common_, reading::TemplatesFor::terminal);
     if (!opened) return opened.error();
     open_ = std::move(*opened);
     words_.emplace(words_for(open_, common_));
@@ -33,24 +34,32 @@ class Explain {
       if (common_.json && status == exit_failed) show();
       return status;
     }
-    while (options_.automatic && !next().empty()) {
-      if (steps_.size() == most_steps) {
-        tell(std::to_string(most_steps) + " effects were added and one is still missing; stopped");
-        failed_ = true;
-        break;
-      }
-      if (!add(next())) break;
-      explain();
-    }
+    if (options_.automatic) add_missing();
     show();
     return failed_ ? exit_failed : exit_done;
   }
 
  private:
-  static void tell(const std::string& text) { complain("nonio explain", text); }
+  void add_missing() {
+    for (auto effects = modelling::next_effects(all_); !effects.empty();
+         effects = modelling::next_effects(all_)) {
+      for (const std::string& effect : effects) {
+        if (steps_.size() == most_steps * all_.size()) {
+          tell(std::to_string(steps_.size()) +
+               " effects were added and one is still missing; stopped");
+          failed_ = true;
+          return;
+        }
+        if (!add(effect)) return;
+      }
+      explain();
+    }
+  }
+
+  static void tell(const std::string& text) { complain(text); }
 
   int explain() {
-    all_.clear();
+    const std::vector<modelling::Explained> before = std::exchange(all_, {});
     errors_ = open_.read.errors;
     failed_ = !errors_.empty();
     auto parts = modelling::part_models(open_.read, open_.campaign().model);
@@ -64,7 +73,13 @@ class Explain {
     if (parts->empty())
       tell(text_of(errors_.emplace_back(modelling::nothing_to_compare(open_.read))));
     for (modelling::PartModel& part : *parts) {
-      auto explanation = modelling::explain_part(part, options_.seed);
+      // A part whose model is as it was is explained already.
+      const auto known = std::find_if(before.begin(), before.end(), [&](const auto& one) {
+        return one.part.part.name == part.part.name && one.part.names() == part.names();
+      });
+      auto explanation = known == before.end()
+                             ? modelling::explain_part(part, options_.seed)
+                             : Expected<model::Explanation>(known->explanation);
       if (explanation) {
         all_.push_back({std::move(part), std::move(*explanation)});
         continue;
@@ -75,9 +90,6 @@ class Explain {
     }
     return all_.empty() ? exit_failed : exit_done;
   }
-
-  /// What belongs into the model beyond doubt; empty: nothing more.
-  std::string next() const { return modelling::next_effect(modelling::told_of(all_)); }
 
   bool add(const std::string& effect) {
     const auto change = modelling::change_model(open_.folder, open_.read, effect, true);
@@ -104,7 +116,7 @@ class Explain {
       return;
     }
     for (const modelling::Explained& e : all_) {
-      print_explanation(std::cout, e, open_.campaign(), *words_);
+      print_explanation(std::cout, e, open_.campaign(), options_.folder, options_.all, *words_);
       if (e.what_if) print_foresight(std::cout, e, words_->terminal());
     }
   }
@@ -129,8 +141,9 @@ Verb explain_verb(Common& common) {
       .summary = "Finds the effect that is missing from the model: ranked candidates and a verdict",
       .arguments = joined(
           campaign_arguments(options->folder, common),
-          {{"--what-if", &options->what_if,
-            "Also predicts what one run more, in each order of directions, would do to the\n"
+          {{"--all", &options->all, "Every candidate, and why an effect could not be tested"},
+           {"--what-if", &options->what_if,
+            "Also predicts what one run more, in each order of directions, would do to the "
             "uncertainties and to the evidence"},
            {"--auto", &options->automatic,
             "While an effect is missing or certain, add it to campaign.toml; show each step"},
@@ -139,16 +152,12 @@ Verb explain_verb(Common& common) {
             .help = "Random seed of the false-alarm estimate",
             .shows_default = true}}),
       .footer =
-          "Tries every effect of the catalogue (`nonio plugins`) that is not in the model. "
-          "Verdicts:\n"
-          "missing (an effect belongs in the model), complete (nothing missing: the model "
-          "explains\n"
-          "everything down to the noise; `nothing` in JSON), unknown (no effect explains the "
-          "remaining\n"
-          "error; it states where), unrepeatable (the readings contradict each other: check the "
-          "machine\n"
-          "first).\n\n"
-          "Example: nonio explain samples/site/02-constant-reversal",
+          "Tries every effect of the catalogue (`nonio plugin list`) that is not in the model. "
+          "Verdicts: missing (an effect belongs in the model), complete (nothing missing: the "
+          "model explains everything down to the noise; `nothing` in JSON), unknown (no effect "
+          "explains the remaining error; it states where), unrepeatable (the readings contradict "
+          "each other: check the machine first).",
+      .examples = {"nonio model explain samples/site/02-constant-reversal"},
       .run = [options, &common] { return Explain(*options, common).run(); }};
 }
 

@@ -9,6 +9,7 @@
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/units.h"
 #include "printable.h"
+#include "text_layout.h"
 
 namespace nonio::app {
 
@@ -33,14 +34,6 @@ std::string with_U(double value, double u, Quantity q) {
 }
 
 std::string p_text(double p) { return evidence_text({"p", p, Quantity::probability}); }
-
-std::string padded(std::string text, std::size_t width) {
-  const auto shown = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-  }));
-  if (shown < width) text.append(width - shown, ' ');
-  return text;
-}
 
 char mark_of(const HistoryPoint& p) {
   if (!p.joined) return '.';

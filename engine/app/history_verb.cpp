@@ -15,8 +15,6 @@ namespace nonio::app {
 
 namespace {
 
-constexpr const char* history_name = "nonio history";
-
 struct HistoryWish {
   std::string out, machine, axis, quantity;
 };
@@ -34,24 +32,25 @@ void keep(const HistoryWish& wish, const std::string& machine, reports::SiteHist
 
 int history(const HistoryWish& wish, const Common& common) {
   const auto tonight = assessment::tonight_in(wish.out);
-  if (!tonight) return complain(history_name, tonight.error().message);
+  if (!tonight) return complain(tonight.error().message);
   std::string machine;
   if (!wish.machine.empty()) {
     auto known = store::machine_named(wish.out, wish.machine);
-    if (!known) return complain(history_name, known.error().message);
+    if (!known) return complain(known.error().message);
     machine = std::move(*known);
   }
   if (const auto known = store::known_night(wish.out);
       !known || *known != std::optional(tonight->night))
-    std::cerr << history_name << ": " << store::store_in(wish.out) << " does not know night "
-              << tonight->night << " yet: what follows is older; the next `nonio run` enters it\n";
+    complain(store::store_in(wish.out) + " does not contain night " +
+             std::to_string(tonight->night) +
+             " yet: what follows is older. The next `nonio run` enters it.");
   auto site = assessment::assess(wish.out, *tonight, [] {});
-  if (!site) return complain(history_name, site.error().message);
+  if (!site) return complain(site.error().message);
   keep(wish, machine, *site);
   if (common.json) {
     std::string digest;
     const auto templates = config::read_templates(common.template_folders(), digest);
-    if (!templates) return complain(history_name, templates.error().message);
+    if (!templates) return complain(templates.error().message);
     std::cout << assessment::history_json(*site, *tonight, *templates);
     return exit_done;
   }
@@ -65,29 +64,32 @@ int history(const HistoryWish& wish, const Common& common) {
 
 }  // namespace
 
+int show_machine(const std::string& out, const std::string& machine, const Common& common) {
+  return history({out, machine, {}, {}}, common);
+}
+
 Verb history_verb(Common& common) {
   auto wish = std::make_shared<HistoryWish>();
   return {
       .name = "history",
-      .summary = "What became of a machine over its campaigns: trends, changes, forecasts",
+      .summary = "Trends, changes and forecasts of a machine over its campaigns",
       .arguments = joined(
           {required(existing(Argument::Takes::folder,
                              {"OUT", &wish->out, "Output folder of `nonio run`"})),
            {"MACHINE", &wish->machine,
             "Its asset, or maker and serial with a space between them; without it all machines"},
-           {"--axis", &wish->axis, "As the control calls it: X, or X1 and X2 of a gantry"},
+           {"--axis", &wish->axis, "As the control names it: X, or X1 and X2 of a gantry"},
            {"--quantity", &wish->quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"}},
           common_arguments(common)),
       .footer =
-          "A line a campaign: o as found, x as left, + check, . not comparable, with U (k = 2) as "
-          "in\n"
-          "its report, and in brackets U of comparison: what the scatter of the readings shows,\n"
-          "without what all campaigns with one instrument share. ! the limit, * what happened,\n"
-          "~ what changed, with its U and p among all that its night asked. What is not told as a\n"
-          "change was too small to be seen: from which size on one would have been stands below.\n"
-          "A, E and R are shown, no line is drawn through them.\n\n"
-          "--json writes schema nonio-history/1 (docs/history.md).\n\n"
-          "Example: nonio history out S-0042 --axis X --quantity B_mean",
+          "One line per campaign: o = as found, x = as left, + = check, . = not comparable, with U "
+          "(k = 2) as in its report and, in brackets, the U of the comparison (scatter of the "
+          "readings only, without the contributions that all campaigns with one instrument share). "
+          "! = tolerance limit, * = event, ~ = change, with U and adjusted p-value. Smaller "
+          "changes cannot be detected; the detection limit is given below each chart. A, E and R "
+          "are shown without a fitted line.\n\n--json writes schema "
+          "nonio-history/1 (docs/history.md).",
+      .examples = {"nonio machine history out S-0042 --axis X --quantity B_mean"},
       .run = [wish, &common] { return history(*wish, common); }};
 }
 

@@ -39,7 +39,7 @@ Json json_of(const std::vector<importing::ImportReport::Passed>& list) {
   return out;
 }
 
-void print_json(const importing::ImportReport& report, bool dry_run) {
+void print_import_json(const importing::ImportReport& report, bool dry_run) {
   Json campaigns = Json::array();
   for (const importing::ImportedCampaign& c : report.campaigns) {
     Json files = Json::array();
@@ -60,14 +60,12 @@ void print_json(const importing::ImportReport& report, bool dry_run) {
                          {"lacks", c.lacks},
                          {"files", std::move(files)}});
   }
-  std::cout << Json{{"schema", "nonio-import/1"},
-                    {"dry_run", dry_run},
-                    {"campaigns", std::move(campaigns)},
-                    {"duplicates", json_of(report.duplicates)},
-                    {"excluded", json_of(report.excluded)},
-                    {"unmatched", json_of(report.unmatched)}}
-                   .dump(1, ' ', false, Json::error_handler_t::replace)
-            << "\n";
+  print_json(Json{{"schema", "nonio-import/1"},
+                  {"dry_run", dry_run},
+                  {"campaigns", std::move(campaigns)},
+                  {"duplicates", json_of(report.duplicates)},
+                  {"excluded", json_of(report.excluded)},
+                  {"unmatched", json_of(report.unmatched)}});
 }
 
 void print(const char* title, const std::vector<importing::ImportReport::Passed>& list) {
@@ -116,29 +114,28 @@ void print(const importing::ImportReport& report) {
 }
 
 int import_files(const ImportArguments& arguments, const Common& common) {
-  const char* const verb = "nonio import";
   auto rule = rule_of(arguments);
   if (!rule) {
-    for (const Error& e : rule.error()) complain(verb, text_of(e));
+    for (const Error& e : rule.error()) complain(text_of(e));
     return exit_usage;
   }
   if (!arguments.reader.empty()) rule->reader = arguments.reader;
   if (!arguments.campaign.empty()) rule->campaign = arguments.campaign;
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
-  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  for (const std::string& conflict : plugins.conflicts()) return complain(conflict);
   const auto report = importing::import_folder(
       {arguments.folder, fs::absolute(arguments.out), *rule, arguments.asset, arguments.maker,
        arguments.serial, arguments.partial, arguments.dry_run},
       plugins);
-  if (!report) return complain(verb, report.error().message);
+  if (!report) return complain(report.error().message);
   if (common.json)
-    print_json(*report, arguments.dry_run);
+    print_import_json(*report, arguments.dry_run);
   else if (!common.quiet)
     print(*report);
   bool whole = !report->campaigns.empty();
   for (const importing::ImportedCampaign& c : report->campaigns) whole = whole && c.whole();
-  if (report->campaigns.empty()) complain(verb, "no file follows the pattern " + rule->pattern);
+  if (report->campaigns.empty()) complain("no file follows the pattern " + rule->pattern);
   return whole ? exit_done : exit_failed;
 }
 
@@ -153,12 +150,11 @@ Verb import_verb(Common& common) {
       .arguments = joined(
           {required(existing(Takes::folder, {"FOLDER", &arguments->folder,
                                              "Folder with the files; subfolders are included"})),
-           required(takes(
-               Takes::file,
-               {"--rule", &arguments->rule,
-                "Rule for the names: a pattern such as {machine}_{axis}_{date}.rtl, or a file "
-                "RULE.toml\n"
-                "with pattern, campaign, kind, reader, exclude, axis, [axes] and [manifest]"})),
+           required(takes(Takes::file,
+                          {"--rule", &arguments->rule,
+                           "Rule for the names: a pattern such as {machine}_{axis}_{date}.rtl, or "
+                           "a file RULE.toml with pattern, campaign, kind, reader, exclude, axis, "
+                           "[axes] and [manifest]"})),
            required(takes(Takes::folder,
                           {"--out", &arguments->out, "Site in which each campaign gets a folder"})),
            {"--reader", &arguments->reader, "Reader for all files (default: chosen by content)"},
@@ -173,22 +169,14 @@ Verb import_verb(Common& common) {
           common_arguments(common)),
       .footer =
           "Placeholders of a pattern: {axis} (capital letters and digits; x or y2 is X or Y2), "
-          "{date}\n"
-          "(20240302 or 2024-03-02), {machine} (its model), {maker}, {serial}, {asset}, {id} (of "
-          "the measurement),\n"
-          "any other name in small letters, {*} for any text, also empty. A placeholder that "
-          "occurs "
-          "twice\n"
-          "must match the same text.\n"
-          "A pattern with / applies to the path below FOLDER, otherwise to the file name. A "
-          "name that can\n"
-          "be read in two ways is not imported, nor is a second file with the same content. "
-          "Every file\n"
-          "is read as in a nightly run; a campaign is written if nothing is missing. Existing "
-          "files are\n"
-          "never changed; files that were imported before are skipped without an error.\n\n"
-          "Example: nonio import laser --rule '{machine}_{axis}_{date}.rtl' --out site "
-          "--dry-run",
+          "{date} (20240302 or 2024-03-02), {machine} (its model), {maker}, {serial}, {asset}, "
+          "{id} (of the measurement), any other name in small letters, {*} for any text, also "
+          "empty. A placeholder that occurs twice must match the same text. A pattern with / "
+          "applies to the path below FOLDER, otherwise to the file name. A name that can be read "
+          "in two ways is not imported, nor is a second file with the same content. Every file is "
+          "read as in a nightly run; a campaign is written if nothing is missing. Existing files "
+          "are never changed; files that were imported before are skipped without an error.",
+      .examples = {"nonio import laser --rule '{machine}_{axis}_{date}.rtl' --out site --dry-run"},
       .run = [arguments, &common] { return import_files(*arguments, common); }};
 }
 

@@ -31,25 +31,25 @@ struct ForgetWish {
   std::vector<std::string> campaigns;
 };
 
-int refuse_all(const std::string& verb, const std::vector<Error>& errors) {
-  for (const Error& e : errors) complain(verb, text_of(e));
+int refuse_all(const std::vector<Error>& errors) {
+  for (const Error& e : errors) complain(text_of(e));
   return exit_usage;
 }
 
-int wrong_day(const std::string& verb, const std::string& day) {
-  return complain(verb, "expected a day as YYYY-MM-DD, found \"" + day + "\"");
+int wrong_day(const std::string& day) {
+  return complain("expected a day as YYYY-MM-DD, found \"" + day + "\"");
 }
 
 void say(const Common& common, const std::string& site, const char* file, const Json& entry) {
   if (common.json)
-    std::cout << entry.dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+    print_json(entry);
   else if (!common.quiet)
     std::cout << "entered in " << printable(site) << "/" << file << "\n";
 }
 
 int list_events(const EventWish& wish, const Common& common) {
   const auto logs = config::read_site_logs(wish.site);
-  if (!logs) return refuse_all("nonio event", logs.error());
+  if (!logs) return refuse_all(logs.error());
   Json all = Json::array();
   for (const config::Event& e : logs->events) {
     if (!wish.event.machine.empty() && e.machine != wish.event.machine) continue;
@@ -66,31 +66,27 @@ int list_events(const EventWish& wish, const Common& common) {
               << printable(e.text) << (e.by.empty() ? "" : "  (" + printable(e.by) + ")") << "\n";
   }
   if (common.json)
-    std::cout << Json{{"schema", "nonio-events/1"}, {"events", std::move(all)}}.dump(
-                     1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-events/1"}, {"events", std::move(all)}});
   else if (all.empty() && !common.quiet)
     std::cout << "no events yet\n";
   return exit_done;
 }
 
 int event(EventWish& wish, const Common& common) {
-  const char* const verb = "nonio event";
   config::Event& e = wish.event;
   if (e.kind.empty() && e.text.empty()) return list_events(wish, common);
   if (e.kind.empty() || e.text.empty() || e.machine.empty())
-    return complain(verb, "expected --machine, --kind and --text together");
+    return complain("expected --machine, --kind and --text together");
   if (e.date.empty()) e.date = today();
-  if (!is_day(e.date)) return wrong_day(verb, e.date);
+  if (!is_day(e.date)) return wrong_day(e.date);
   if (!wish.out.empty()) {
     store::Query known;
     known.machine = e.machine;
     known.axis = e.axis;
     if (const auto found = store::query(wish.out, known); !found)
-      return complain(verb, found.error().message);
+      return complain(found.error().message);
   }
-  if (const auto added = config::add_event(wish.site, e); !added)
-    return refuse_all(verb, added.error());
+  if (const auto added = config::add_event(wish.site, e); !added) return refuse_all(added.error());
   say(common, wish.site, config::events_name,
       {{"schema", "nonio-event/1"}, {"date", e.date}, {"machine", e.machine}, {"kind", e.kind}});
   return exit_done;
@@ -114,7 +110,7 @@ void put_number(Json& json, const char* name, const std::optional<double>& value
 /// Those that count, in the order of the file.
 int list_acknowledged(const AckWish& wish, const Common& common) {
   const auto logs = config::read_site_logs(wish.site);
-  if (!logs) return refuse_all("nonio ack", logs.error());
+  if (!logs) return refuse_all(logs.error());
   Json all = Json::array();
   for (const config::Acknowledgement& a : logs->acknowledged) {
     if (!wish.known.machine.empty() && a.machine != wish.known.machine) continue;
@@ -130,26 +126,23 @@ int list_acknowledged(const AckWish& wish, const Common& common) {
               << printable(a.why) << "  (" << printable(a.by) << ")\n";
   }
   if (common.json)
-    std::cout << Json{{"schema", "nonio-acknowledged/1"}, {"acknowledged", std::move(all)}}.dump(
-                     1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-acknowledged/1"}, {"acknowledged", std::move(all)}});
   else if (all.empty() && !common.quiet)
     std::cout << "nothing is acknowledged\n";
   return exit_done;
 }
 
 int withdraw(const AckWish& wish, const Common& common) {
-  const char* const verb = "nonio ack";
   const config::Acknowledgement& a = wish.known;
   if (a.finding.empty() || a.machine.empty() || a.by.empty())
-    return complain(verb, "--withdraw: expected --finding, --machine and --by");
-  if (!is_day(a.date)) return wrong_day(verb, a.date);
+    return complain("--withdraw: expected --finding, --machine and --by");
+  if (!is_day(a.date)) return wrong_day(a.date);
   if (!a.until.empty() || !wish.value.empty() || !wish.U.empty())
-    return complain(verb, "--withdraw takes no --until, --value and --U");
+    return complain("--withdraw takes no --until, --value and --U");
   if (const auto added = config::add_withdrawal(
           wish.site, {a.date, a.finding, a.machine, a.axis, a.quantity, a.by, a.why});
       !added)
-    return refuse_all(verb, added.error());
+    return refuse_all(added.error());
   say(common, wish.site, config::acknowledged_name,
       {{"schema", "nonio-ack/1"},
        {"finding", a.finding},
@@ -159,7 +152,6 @@ int withdraw(const AckWish& wish, const Common& common) {
 }
 
 int acknowledge(AckWish& wish, const Common& common) {
-  const char* const verb = "nonio ack";
   config::Acknowledgement& a = wish.known;
   if (!wish.withdraw && a.finding.empty() && a.until.empty() && a.why.empty())
     return list_acknowledged(wish, common);
@@ -170,13 +162,13 @@ int acknowledge(AckWish& wish, const Common& common) {
                                    {"--until", &a.until},
                                    {"--by", &a.by},
                                    {"--why", &a.why}})
-    if (text->empty()) return complain(verb, std::string(name) + " is missing");
+    if (text->empty()) return complain(std::string(name) + " is missing");
   for (const std::string& day : {a.date, a.until})
-    if (!is_day(day)) return wrong_day(verb, day);
+    if (!is_day(day)) return wrong_day(day);
   if (!take_number(wish.value, a.value) || !take_number(wish.U, a.U))
-    return complain(verb, "--value and --U: expected a number with a decimal point");
+    return complain("--value and --U: expected a number with a decimal point");
   if (const auto added = config::add_acknowledgement(wish.site, a); !added)
-    return refuse_all(verb, added.error());
+    return refuse_all(added.error());
   say(common, wish.site, config::acknowledged_name,
       {{"schema", "nonio-ack/1"},
        {"finding", a.finding},
@@ -186,14 +178,13 @@ int acknowledge(AckWish& wish, const Common& common) {
 }
 
 int forget(ForgetWish& wish, const Common& common) {
-  const char* const verb = "nonio forget";
   if (wish.date.empty()) wish.date = today();
-  if (!is_day(wish.date)) return wrong_day(verb, wish.date);
+  if (!is_day(wish.date)) return wrong_day(wish.date);
   for (const std::string& campaign : wish.campaigns) {
     if (const auto added =
             config::add_forgotten(wish.site, {wish.date, campaign, wish.by, wish.why});
         !added)
-      return refuse_all(verb, added.error());
+      return refuse_all(added.error());
   }
   say(common, wish.site, config::forgotten_name,
       {{"schema", "nonio-forget/1"}, {"campaigns", wish.campaigns}});
@@ -214,25 +205,27 @@ Verb event_verb(Common& common) {
       .summary = "Record an event of a machine: a crash, a repair, a new table",
       .arguments = joined(
           {site_argument(wish->site),
-           {"--machine", &e.machine, "Its asset, or maker and serial, as `nonio query` names it"},
+           {"--machine", &e.machine,
+            "Its asset, or maker and serial, as `nonio machine list` names it"},
            {"--axis", &e.axis, "The axis concerned; default: the whole machine"},
            one_of({"crash", "repair", "compensation", "moved", "instrument", "software", "other"},
                   {"--kind", &e.kind, "Kind of event"}),
-           {"--text", &e.text, "Description in the words of a witness, one line"},
+           {"--text", &e.text, "Description, one line"},
            {"--date", &e.date, "The day, YYYY-MM-DD; default: today"},
            {"--by", &e.by, "Name of the author of the entry"},
            existing(Argument::Takes::folder,
                     {"--out", &wish->out,
-                     "Output folder of `nonio run`: a machine or axis that is not in its history\n"
+                     "Output folder of `nonio run`: a machine or axis that is not in its history "
                      "is rejected, with the nearest name"})},
           common_arguments(common)),
       .footer =
-          "Without --kind and --text: lists the events, of one machine or all.\n"
-          "Appends to SITE/events.toml. You can also edit this file; comments stay. Correct a\n"
-          "wrong entry there. The machine's history contains the event from the next night on: a\n"
-          "step of its values on that day then counts as its effect.\n\n"
-          "Example: nonio event site --machine S-0042 --axis X --kind crash --date 2026-03-04 "
-          "--text \"tool hit the vice\"",
+          "Without --kind and --text: lists the events, of one machine or all. Appends to "
+          "SITE/events.toml. You can also edit this file; comments stay. Correct a wrong entry "
+          "there. The machine's history contains the event from the next night on: a step of its "
+          "values on that day then counts as its effect.",
+      .examples =
+          {"nonio machine event site --machine S-0042 --axis X --kind crash --date 2026-03-04 "
+           "--text \"tool hit the vice\""},
       .run = [wish, &common] { return event(*wish, common); }};
 }
 
@@ -242,42 +235,42 @@ Verb ack_verb(Common& common) {
   return {
       .name = "ack",
       .summary = "Acknowledge a finding of a machine until a given day",
-      .arguments = joined(
-          {site_argument(wish->site),
-           {"--finding", &a.finding, "Id of the finding, as the night's summary has it"},
-           {"--machine", &a.machine, "As `nonio query` names it"},
-           {"--axis", &a.axis, "The axis; default: all"},
-           {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
-           {"--until", &a.until, "Last day on which it counts as known, YYYY-MM-DD"},
-           {"--value", &wish->value,
-            "Present value of the quantity, in its unit: the finding returns\n"
-            "if the value changes by more than --U"},
-           {"--U", &wish->U, "Expanded uncertainty (k = 2) of that value"},
-           {"--by", &a.by, "Name of the author of the entry"},
-           {"--why", &a.why, "Reason why it is accepted until then"},
-           {"--date", &a.date, "Day of the entry, YYYY-MM-DD; default: today"},
-           {"--withdraw", &wish->withdraw,
-            "Take back the acknowledgement that has exactly this --finding, --machine, --axis\n"
-            "and --quantity"}},
-          common_arguments(common)),
+      .arguments =
+          joined({site_argument(wish->site),
+                  {"--finding", &a.finding, "Id of the finding, as the night's summary has it"},
+                  {"--machine", &a.machine, "As `nonio machine list` names it"},
+                  {"--axis", &a.axis, "The axis; default: all"},
+                  {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
+                  {"--until", &a.until, "Last day of the acknowledgement, YYYY-MM-DD"},
+                  {"--value", &wish->value,
+                   "Present value of the quantity, in its unit: the finding returns if the value "
+                   "changes by more than --U"},
+                  {"--U", &wish->U, "Expanded uncertainty (k = 2) of that value"},
+                  {"--by", &a.by, "Name of the author of the entry"},
+                  {"--why", &a.why, "Reason why it is accepted until then"},
+                  {"--date", &a.date, "Day of the entry, YYYY-MM-DD; default: today"},
+                  {"--withdraw", &wish->withdraw,
+                   "Withdraw the acknowledgement with exactly this --finding, --machine, --axis "
+                   "and --quantity"}},
+                 common_arguments(common)),
       .footer =
-          "Without --finding, --until and --why: lists those that count, of one machine or all.\n"
+          "Without options: lists the active acknowledgements, of one machine or of all. "
           "Appends to SITE/acknowledged.toml; comments stay. It hides nothing: the finding stays "
-          "in "
-          "the\nresults and in the history. What was withdrawn stays in the file too.\n\n"
-          "Example: nonio ack site --finding reversal.constant --machine S-0042 --axis X "
-          "--until 2026-06-30\n         --by \"B. Sample\" --why \"nut is ordered\"",
+          "in the results and in the history. Withdrawn entries stay in the file.",
+      .examples =
+          {"nonio machine ack site --finding reversal.constant --machine S-0042 --axis X --until "
+           "2026-06-30 --by \"B. Sample\" --why \"nut is ordered\""},
       .run = [wish, &common] { return acknowledge(*wish, common); }};
 }
 
-Verb forget_verb(Common& common) {
+Verb remove_verb(Common& common) {
   auto wish = std::make_shared<ForgetWish>();
   return {
-      .name = "forget",
+      .name = "remove",
       .summary = "Record that campaigns or files were removed from the site on purpose",
       .arguments = joined({site_argument(wish->site),
                            required({"CAMPAIGN", &wish->campaigns,
-                                     "Their ids; or paths of other files or folders of the site,\n"
+                                     "Their ids; or paths of other files or folders of the site, "
                                      "such as machines/S-0042.toml or templates"}),
                            required({"--by", &wish->by, "Name of the author of the entry"}),
                            required({"--why", &wish->why, "Reason for the removal"}),
@@ -285,10 +278,10 @@ Verb forget_verb(Common& common) {
                           common_arguments(common)),
       .footer =
           "The nightly run reports a campaign that has vanished every night, with exit status 1, "
-          "until it\nis back or forgotten. Appends to SITE/forgotten.toml. The results of the "
-          "campaign stay in the\noutput folder and in the history.\n\n"
-          "Example: nonio forget site 2021-03-02-rossi --by \"B. Sample\" --why \"machine "
-          "was sold\"",
+          "until it is back or forgotten. Appends to SITE/forgotten.toml. The results of the "
+          "campaign stay in the output folder and in the history.",
+      .examples = {"nonio machine remove site 2021-03-02-rossi --by \"B. Sample\" --why \"machine "
+                   "was sold\""},
       .run = [wish, &common] { return forget(*wish, common); }};
 }
 

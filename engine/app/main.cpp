@@ -13,7 +13,7 @@
 
 namespace {
 
-/// The process that the user starts has no plugin code, whatever the verb does.
+/// The process that the user starts has no plugin code, whatever the command does.
 nonio::app::Verb apart(nonio::app::Verb verb) {
   for (nonio::app::Verb& part : verb.verbs) part = apart(std::move(part));
   if (verb.run)
@@ -40,6 +40,115 @@ void block_pipe_signal() {
   ::_exit(nonio::app::exit_failed);
 }
 
+using namespace nonio::app;
+
+/// Former names. Those of the contract's table are not announced: scripts go on using them.
+std::vector<Alias> former_names() {
+  return {{"compare", "model compare", false},
+          {"explain", "model explain", false},
+          {"simulate", "model simulate", false},
+          {"verify", "certificate verify", false},
+          {"plugins", "plugin list", false},
+          {"history", "machine history", false},
+          {"query", "machine list"},
+          {"event", "machine event"},
+          {"ack", "machine ack"},
+          {"forget", "machine remove"},
+          {"release", "certificate approve"},
+          {"certificates", "certificate list"},
+          {"restamp", "certificate extend"},
+          {"template check", "check --only-templates"},
+          {"controllers", "table controls"},
+          {"diff", "table diff"},
+          {"apply", "table predict"},
+          {"merge", "table insert"},
+          {"plan sign-probe", "table probe"},
+          {"night", "run"},
+          {"night plan", "run plan"},
+          {"night merge", "run merge"},
+          {"night cancel", "run cancel"},
+          {"night unlock", "run unlock"},
+          {"morning", "status --actions"},
+          {"get", "export"},
+          {"live", "serve"},
+          {"open", "show --open"}};
+}
+
+/// What people type who know other programs.
+std::vector<std::pair<std::string, std::string>> synonyms() {
+  return {{"report", "show"},
+          {"view", "show"},
+          {"print", "show"},
+          {"validate", "check"},
+          {"test", "check"},
+          {"lint", "check"},
+          {"doctor", "check"},
+          {"build", "run"},
+          {"evaluate", "run"},
+          {"start", "run"},
+          {"shard", "run plan"},
+          {"web", "serve"},
+          {"server", "serve"},
+          {"page", "serve"},
+          {"init", "new"},
+          {"create", "new"},
+          {"site", "new site"},
+          {"campaign", "new campaign"},
+          {"read", "import"},
+          {"convert", "import"},
+          {"cert", "certificate"},
+          {"sign", "certificate approve"},
+          {"issue", "certificate approve"},
+          {"machines", "machine list"},
+          {"log", "machine event"},
+          {"acknowledge", "machine ack"},
+          {"fit", "model compare"},
+          {"compensate", "table predict"},
+          {"unpack", "export"},
+          {"extract", "export"},
+          {"csv", "export"},
+          {"summary", "status"},
+          {"worklist", "status"},
+          {"todo", "status"},
+          {"man", "help --man"}};
+}
+
+Verb group(const char* name, const char* summary, std::vector<Verb> verbs) {
+  return {.name = name, .summary = summary, .verbs = std::move(verbs)};
+}
+
+std::vector<Verb> table_of_commands(Common& common, const Program& program) {
+  std::vector<Verb> all;
+  const auto add = [&](const char* heading, std::vector<Verb> verbs) {
+    for (Verb& verb : verbs) {
+      verb.heading = heading;
+      for (Verb& inner : verb.verbs) inner.heading = "Commands";
+      all.push_back(std::move(verb));
+    }
+  };
+  Verb run = run_verb(common);
+  run.verbs = run_parts(common);
+  std::vector<Verb> certificate = register_verbs(common);
+  certificate.insert(certificate.begin() + 1, approve_verb(common));
+  certificate.insert(certificate.begin() + 3, apart(verify_verb(common)));
+  certificate.insert(certificate.begin() + 4, extend_verb(common));
+  add("Prepare", {apart(new_verb(common)), apart(import_verb(common)), apart(check_verb(common)),
+                  apart(plan_verb(common))});
+  add("Evaluate", {std::move(run), status_verb(common), apart(show_verb(common)),
+                   export_verb(common), serve_verb(common)});
+  add("Follow up", {group("machine", "Machines over the years",
+                          {machine_list_verb(common), history_verb(common), event_verb(common),
+                           ack_verb(common), remove_verb(common)}),
+                    group("certificate", "Certificates and their register", std::move(certificate)),
+                    apart(model_verb(common)),
+                    apart(group("table", "Compensation tables of controls",
+                                {controls_verb(common), diff_verb(common), predict_verb(common),
+                                 insert_verb(common), probe_verb(common)}))});
+  add("Program", {apart(plugin_verb(common)), help_verb(program)});
+  add("", {version_verb(common), completion_verb(program), apart(schema_verb(common))});
+  return all;
+}
+
 }  // namespace
 
 #ifdef NONIO_SANITIZED
@@ -50,7 +159,6 @@ extern "C" int __lsan_is_turned_off() { return 1; }
 #endif
 
 int main(int argc, char** argv) try {
-  using namespace nonio::app;
   std::set_terminate(give_up);
   block_pipe_signal();
   Common common;
@@ -59,34 +167,17 @@ int main(int argc, char** argv) try {
       .version = NONIO_VERSION,
       .purpose = "evaluate machine-tool calibrations in batch",
       .summary =
-          "Nonio evaluates machine-tool calibration campaigns: by the standards, with findings,\n"
-          "reports and the tables that go into the machine's controller.",
+          "Nonio evaluates machine-tool calibration campaigns: results according to the standards, "
+          "findings, reports, certificates and compensation tables.",
       .footer =
-          "Exit status: 0 done; 1 done, but some campaign failed; 2 usage or configuration error;\n"
-          "130 interrupted.",
-      .verbs = {}};
-  const auto add = [&](const char* group, std::vector<Verb> verbs) {
-    for (Verb& verb : verbs) {
-      verb.group = group;
-      program.verbs.push_back(std::move(verb));
-    }
-  };
-  add("Every night",
-      {run_verb(common), night_verb(common), status_verb(common), morning_verb(common)});
-  add("Campaigns", {apart(new_verb(common)), apart(import_verb(common)), apart(show_verb(common)),
-                    open_verb(common), get_verb(common), apart(schema_verb(common))});
-  add("The machines over the years", {query_verb(common), history_verb(common), event_verb(common),
-                                      ack_verb(common), forget_verb(common)});
-  add("Certificates", {release_verb(common), certificates_verb(common), apart(verify_verb(common)),
-                       restamp_verb(common), apart(template_verb(common))});
-  add("The error model",
-      {live_verb(common), apart(compare_verb(common)), apart(explain_verb(common)),
-       apart(model_verb(common)), apart(simulate_verb(common))});
-  add("At the machine",
-      {apart(plan_verb(common)), apart(controllers_verb(common)), apart(diff_verb(common)),
-       apart(apply_verb(common)), apart(merge_verb(common))});
-  add("Plugins", {apart(plugins_verb(common)), apart(plugin_verb(common))});
-  add("This program", {help_verb(program), version_verb(common), completion_verb(program)});
+          "Also: nonio version, nonio completion SHELL, nonio schema FILE. `nonio help COMMAND` "
+          "describes a command.\n\n"
+          "Exit status: 0 done; 1 done, but some campaign or check failed; 2 usage or "
+          "configuration error; 130 interrupted.",
+      .aliases = former_names(),
+      .aliases_until = "0.3",
+      .synonyms = synonyms()};
+  program.verbs = table_of_commands(common, program);
   return run(program, argc, argv);
 } catch (const std::exception& e) {
   std::cerr << "nonio: " << e.what() << "\n";

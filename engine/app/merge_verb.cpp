@@ -19,8 +19,6 @@ struct MergeWish {
   std::vector<std::string> settings;
 };
 
-const char* const merge_name = "nonio merge";
-
 /// The axis that is said, or the only one that was measured.
 Expected<std::string> merged_axis(const MergeWish& w, const Campaign& campaign) {
   if (!w.axis.empty()) return w.axis;
@@ -51,7 +49,7 @@ int tell_merged(const tables::MergedTables& merged, const Loaded& present, const
                       {"tables", TableJson::array()}};
     for (const auto& d : merged.differences) json["tables"].push_back(difference_json(d));
     json["files"] = written;
-    std::cout << json.dump(1) << "\n";
+    print_json(json);
     return exit_done;
   }
   for (const auto& d : merged.differences) print_difference(d);
@@ -61,35 +59,35 @@ int tell_merged(const tables::MergedTables& merged, const Loaded& present, const
 
 int merge(const MergeWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
-  if (!settings) return complain(merge_name, settings.error().message);
-  const auto opened = open_campaign(merge_name, w.folder, common);
+  if (!settings) return complain(settings.error().message);
+  const auto opened = open_campaign(w.folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;
   const auto axis = merged_axis(w, open.campaign());
-  if (!axis) return complain(merge_name, axis.error().message);
+  if (!axis) return complain(axis.error().message);
   const auto options = [&](const Info& info) { return campaign_options(open, info, *settings); };
   const std::string control = w.control.empty() ? open.campaign().machine.control : w.control;
   const auto present =
       load(open.place->plugins, w.backup, control, open.campaign(), *settings, options);
-  if (!present) return complain(merge_name, text_of(present.error()));
+  if (!present) return complain(text_of(present.error()));
   const auto merged = tables::merge_tables(open.read, *present->control,
                                            *options(present->control->info), present->files, *axis);
-  if (!merged) return complain(merge_name, text_of(merged.error()), exit_failed);
-  tell_findings(merge_name, open, merged->findings);
-  if (merged->files.empty()) return complain(merge_name, "nothing was written", exit_failed);
+  if (!merged) return complain(text_of(merged.error()), exit_failed);
+  tell_findings(open, merged->findings);
+  if (merged->files.empty()) return complain("nothing was written", exit_failed);
   if (!w.out.empty())
     if (auto done = storage::publish(std::filesystem::absolute(w.out), merged->files); !done)
-      return complain(merge_name, text_of(done.error()), exit_failed);
+      return complain(text_of(done.error()), exit_failed);
   return tell_merged(*merged, *present, *axis, w, open, common);
 }
 
 }  // namespace
 
-Verb merge_verb(Common& common) {
+Verb insert_verb(Common& common) {
   auto w = std::make_shared<MergeWish>();
   using Takes = Argument::Takes;
   return {
-      .name = "merge",
+      .name = "insert",
       .summary =
           "Inserts a new table into a backup of a control and leaves everything else unchanged",
       .arguments = joined(
@@ -99,22 +97,18 @@ Verb merge_verb(Common& common) {
            {"--axis", &w->axis, "The axis (default: the measured axis, if there is only one)"},
            takes(Takes::folder, {"--out", &w->out,
                                  "Folder for the changed files (default: only print the changes)"}),
-           {"--control", &w->control, "The control of the files (`nonio controllers`)"},
+           {"--control", &w->control, "The control of the files (`nonio table controls`)"},
            settings_argument(w->settings,
-                             "NAME=VALUE: an option of that control; may be given\n"
-                             "several times")},
+                             "NAME=VALUE: an option of that control; may be given several times")},
           common_arguments(common)),
       .footer =
-          "For files with several axes: FANUC's parameters and pitch data, SINUMERIK's "
-          "archives,\n"
+          "For files with several axes: FANUC's parameters and pitch data, SINUMERIK's archives, "
           "HEIDENHAIN's CONFIG.CMA. The new table gets the numbers that the axis has in the "
-          "backup, or\n"
-          "free ones. Every other byte stays unchanged. If the control would read a different "
-          "table for\n"
-          "another axis, nothing is written.\n\n"
-          "Exit status: 0 merged; 1 refused; 2 usage or configuration.\n\n"
-          "Example: nonio merge backup/CNCPARAM.TXT --with site/2026-11-rossi --axis Z --out "
-          "load",
+          "backup, or free ones. Every other byte stays unchanged. If the control would read a "
+          "different table for another axis, nothing is written.\n\nExit status: 0 merged; 1 "
+          "refused; 2 usage or configuration.",
+      .examples =
+          {"nonio table insert backup/CNCPARAM.TXT --with site/2026-11-rossi --axis Z --out load"},
       .run = [w, &common] { return merge(*w, common); }};
 }
 

@@ -17,17 +17,14 @@ struct ModelOptions {
   double period_mm = 0.0;
 };
 
-const char* const model_name = "nonio model";
-
 int show_model(const ModelOptions& options, const Common& common) {
-  auto opened =
-      open_campaign("nonio model show", options.folder, common, reading::TemplatesFor::terminal);
+  auto opened = open_campaign(options.folder, common, reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   auto parts = modelling::part_models(open.read, open.campaign().model);
-  if (!parts) return complain(model_name, text_of(parts.error()));
+  if (!parts) return complain(text_of(parts.error()));
   const auto history = modelling::read_history(open.folder);
-  if (!history) return complain(model_name, text_of(history.error()), exit_failed);
+  if (!history) return complain(text_of(history.error()), exit_failed);
   const modelling::ModelWords words = words_for(open, common);
   std::vector<modelling::Compared> all;
   std::vector<Error> errors = open.read.errors;
@@ -36,7 +33,7 @@ int show_model(const ModelOptions& options, const Common& common) {
     if (comparison) {
       all.push_back({std::move(part), std::move(*comparison)});
     } else {
-      complain(model_name, text_of(comparison.error()));
+      complain(text_of(comparison.error()));
       errors.push_back(comparison.error());
     }
   }
@@ -63,14 +60,13 @@ std::string refusal(const OpenCampaign& open, const std::string& effect, bool ad
 }
 
 int change(const ModelOptions& options, const Common& common, bool add) {
-  auto opened = open_campaign(add ? "nonio model add" : "nonio model drop", options.folder, common,
-                              reading::TemplatesFor::terminal);
+  auto opened = open_campaign(options.folder, common, reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   if (const std::string why = refusal(open, options.effect, add); !why.empty())
-    return complain(model_name, why + "; nothing was changed");
+    return complain(why + "; nothing was changed");
   const auto changed = modelling::change_model(open.folder, open.read, options.effect, add);
-  if (!changed) return complain(model_name, text_of(changed.error()), exit_failed);
+  if (!changed) return complain(text_of(changed.error()), exit_failed);
   const modelling::ModelWords words = words_for(open, common);
   if (common.json)
     std::cout << modelling::change_json(*changed, open.campaign(), words);
@@ -79,20 +75,21 @@ int change(const ModelOptions& options, const Common& common, bool add) {
   return open.read.errors.empty() ? exit_done : exit_failed;
 }
 
+constexpr const char* keeps_the_rest =
+    "campaign.toml keeps its comments and everything else; model-history.jsonl next to it records "
+    "the change.";
+
 Verb change_verb(const std::shared_ptr<ModelOptions>& options, Common& common, bool add) {
   const std::string name = add ? "add" : "drop";
-  return {
-      .name = name,
-      .summary = add ? "Adds an effect to the model and shows the residuals before and after"
-                     : "Removes an effect from the model",
-      .arguments = joined(campaign_arguments(options->folder, common),
-                          {required({"EFFECT", &options->effect,
-                                     "kind:axis, such as backlash:X (`nonio plugins`)"})}),
-      .footer =
-          "campaign.toml keeps its comments and everything else; model-history.jsonl next to it\n"
-          "records the change.\n\nExample: nonio model " +
-          name + " samples/site/02-constant-reversal backlash:X",
-      .run = [options, &common, add] { return change(*options, common, add); }};
+  return {.name = name,
+          .summary = add ? "Adds an effect to the model and shows the residuals before and after"
+                         : "Removes an effect from the model",
+          .arguments = joined(campaign_arguments(options->folder, common),
+                              {required({"EFFECT", &options->effect,
+                                         "kind:axis, such as backlash:X (`nonio plugin list`)"})}),
+          .footer = keeps_the_rest,
+          .examples = {"nonio model " + name + " samples/site/02-constant-reversal backlash:X"},
+          .run = [options, &common, add] { return change(*options, common, add); }};
 }
 
 /// "57,103" as numbers; nothing if it is something else.
@@ -109,24 +106,19 @@ std::vector<std::uint32_t> lines_in(const std::string& text) {
   return out;
 }
 
-int change_campaign(const char* verb, const ModelOptions& options, const Common& common,
+int change_campaign(const ModelOptions& options, const Common& common,
                     const modelling::CampaignEdit& edit) {
-  auto opened = open_campaign(verb, options.folder, common, reading::TemplatesFor::terminal);
+  auto opened = open_campaign(options.folder, common, reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   const auto changed = modelling::change_campaign(open.folder, open.read, edit);
-  if (!changed)
-    return complain(model_name, text_of(changed.error()) + "; nothing was changed", exit_failed);
+  if (!changed) return complain(text_of(changed.error()) + "; nothing was changed", exit_failed);
   if (common.json)
     std::cout << modelling::change_json(changed->front(), open.campaign(), words_for(open, common));
   else
     print_step(std::cout, changed->front().step, words_for(open, common).terminal());
   return open.read.errors.empty() ? exit_done : exit_failed;
 }
-
-constexpr const char* keeps_the_rest =
-    "campaign.toml keeps its comments and everything else; model-history.jsonl next to it\n"
-    "records the change.\n\nExample: ";
 
 Verb exclude_verb(const std::shared_ptr<ModelOptions>& options, Common& common) {
   return {.name = "exclude",
@@ -137,17 +129,16 @@ Verb exclude_verb(const std::shared_ptr<ModelOptions>& options, Common& common) 
                       required({"LINES", &options->lines, "Lines of its file, such as 57,103"}),
                       required({"--why", &options->why,
                                 "The reason, in one line, such as \"beam interrupted\""})}),
-          .footer = keeps_the_rest + std::string("nonio model exclude "
-                                                 "samples/site/02-constant-reversal Z 9 --why "
-                                                 "\"beam interrupted\""),
+          .footer = keeps_the_rest,
+          .examples = {"nonio model exclude samples/site/02-constant-reversal "
+                       "Z 9 --why \"beam interrupted\""},
           .run = [options, &common] {
             const auto lines = lines_in(options->lines);
             if (lines.empty())
-              return complain(model_name,
-                              "LINES: expected numbers with commas between them, such "
-                              "as 57,103; found \"" +
-                                  options->lines + "\"");
-            return change_campaign("nonio model exclude", *options, common,
+              return complain(
+                  "LINES: expected numbers with commas between them, such as 57,103; found \"" +
+                  options->lines + "\"");
+            return change_campaign(*options, common,
                                    {.excluded = {{options->measurement, lines, options->why}}});
           }};
 }
@@ -159,10 +150,10 @@ Verb period_verb(const std::shared_ptr<ModelOptions>& options, Common& common) {
               joined(campaign_arguments(options->folder, common),
                      {required({"AXIS", &options->axis, "A linear axis of the machine, such as X"}),
                       required({"MM", &options->period_mm, "Its period in mm, such as 10"})}),
-          .footer = keeps_the_rest +
-                    std::string("nonio model period samples/site/02-constant-reversal Z 10"),
+          .footer = keeps_the_rest,
+          .examples = {"nonio model period samples/site/02-constant-reversal Z 10"},
           .run = [options, &common] {
-            return change_campaign("nonio model period", *options, common,
+            return change_campaign(*options, common,
                                    {.periods = {{options->axis, options->period_mm}}});
           }};
 }
@@ -172,15 +163,19 @@ Verb period_verb(const std::shared_ptr<ModelOptions>& options, Common& common) {
 Verb model_verb(Common& common) {
   auto options = std::make_shared<ModelOptions>();
   return {.name = "model",
-          .summary = "Shows or changes the model of a campaign, in its campaign.toml",
-          .verbs = {{.name = "show",
-                     .summary = "Shows the effects with their values, and the history",
-                     .arguments = campaign_arguments(options->folder, common),
-                     .run = [options, &common] { return show_model(*options, common); }},
+          .summary = "The error model of a campaign, in its campaign.toml",
+          .verbs = {compare_verb(common),
+                    explain_verb(common),
                     change_verb(options, common, true),
                     change_verb(options, common, false),
                     exclude_verb(options, common),
-                    period_verb(options, common)}};
+                    period_verb(options, common),
+                    simulate_verb(common),
+                    {.name = "show",
+                     .summary = "Shows the effects with their values, and the history",
+                     .arguments = campaign_arguments(options->folder, common),
+                     .examples = {"nonio model show samples/site/02-constant-reversal"},
+                     .run = [options, &common] { return show_model(*options, common); }}}};
 }
 
 }  // namespace nonio::app

@@ -173,11 +173,11 @@ std::string site_text(const NewSite& site) {
   return text +
          "\n"
          "# Analyses and outputs for campaigns that do not select their own. Without this\n"
-         "# section: all that apply. `nonio plugins` lists them.\n"
+         "# section: all that apply. `nonio plugin list` lists them.\n"
          "# [run]\n"
          "# analyses = [\"iso230-2\", \"vdi-dgq-3441\"]\n"
          "# outputs = [\"pdf-report\", \"csv\"]\n\n"
-         "# Options of one plugin, for all campaigns. `nonio plugins` lists them with their "
+         "# Options of one plugin, for all campaigns. `nonio plugin list` lists them with their "
          "defaults.\n"
          "# [options.pdf-report]\n"
          "# language = \"it\"\n\n"
@@ -207,7 +207,7 @@ std::string machine_text(const NewMachine& m) {
   text += text_line("model", m.model, "VM 12");
   text += text_line("serial", m.serial, "S-0001");
   text += text_line("control", m.control, "siemens-840d",
-                    "the numbers below refer to it: `nonio controllers`");
+                    "the numbers below refer to it: `nonio table controls`");
   text += text_line("control_version", "", "4.95");
   text += "# taken = [\"0\", \"100-227\"]  # numbers in use, of CEC tables or FANUC's points\n";
   int number = 0;
@@ -254,7 +254,7 @@ std::string campaign_text(const NewCampaign& c) {
   text += text_line("model", marked(c.machine, example), "VM 12");
   text += text_line("serial", c.serial, "S-0001");
   text += text_line("control", c.control, "siemens-840d",
-                    "tables for this one only: `nonio controllers`");
+                    "tables for this one only: `nonio table controls`");
   text += text_line("structure", "", "gantry", "gantry, single-column, bridge, other");
   for (const NewAxis& a : c.axes) text += axis_text(a);
   text += instrument_text(c);
@@ -267,7 +267,7 @@ std::string campaign_text(const NewCampaign& c) {
   return text +
          "# exclude = [57]  # lines of the file with excluded readings\n"
          "# exclude_reason = \"beam interrupted, see the record of the test\"\n\n"
-         "# The error model, for `nonio compare` and `nonio explain`.\n"
+         "# The error model, for `nonio model compare` and `nonio model explain`.\n"
          "# [model]\n"
          "# effects = [\"scale:" +
          c.axes.front().axis.name + "\", \"backlash:" + c.axes.front().axis.name +

@@ -24,8 +24,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const char* const new_name = "nonio new";
-
 struct NewWish {
   std::string what, folder, id, customer, operator_name, date, maker, machine, serial, asset,
       control, instrument, laboratory, address, country;
@@ -286,17 +284,15 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
   std::vector<std::string> written;
   for (const NewFiles& one : all) {
     if (auto done = storage::publish(one.folder, one.files); !done)
-      return complain(new_name, text_of(done.error()), exit_failed);
+      return complain(text_of(done.error()), exit_failed);
     for (const Artifact& file : one.files) written.push_back((one.folder / file.name).string());
   }
   if (common.json) {
-    std::cout << Json{{"schema", "nonio-new/1"},
-                      {"kind", what},
-                      {"folder", all.front().folder.string()},
-                      {"example", example},
-                      {"files", written}}
-                     .dump(1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-new/1"},
+                    {"kind", what},
+                    {"folder", all.front().folder.string()},
+                    {"example", example},
+                    {"files", written}});
     return exit_done;
   }
   if (common.quiet) return exit_done;
@@ -330,8 +326,8 @@ int new_site(const NewWish& wish, const fs::path& folder, const Common& common) 
                                      {"Laboratory, address", &site.address},
                                      {"Country (two letters)", &site.country}}) {
     if (auto done = ask.text(question, *to, ""); !done)
-      return complain(new_name, done.error().message, ask.status());
-    if (auto done = one_line(question, *to); !done) return complain(new_name, done.error().message);
+      return complain(done.error().message, ask.status());
+    if (auto done = one_line(question, *to); !done) return complain(done.error().message);
   }
   std::vector<NewFiles> all{{folder, {{config::site_name, site_text(site)}}}};
   if (wish.empty) return write_new(all, wish, "site", false, common);
@@ -339,7 +335,7 @@ int new_site(const NewWish& wish, const fs::path& folder, const Common& common) 
   bool example = false;
   const auto campaign =
       campaign_files(wish, folder / "first-campaign", {}, silent, example, common);
-  if (!campaign) return complain(new_name, campaign.error().message);
+  if (!campaign) return complain(campaign.error().message);
   all.push_back(*campaign);
   return write_new(all, wish, "site", example, common);
 }
@@ -348,7 +344,7 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
   Questions ask(!wish.defaults && ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1);
   bool example = false;
   const auto campaign = campaign_files(wish, folder, site_above(folder), ask, example, common);
-  if (!campaign) return complain(new_name, campaign.error().message, ask.status());
+  if (!campaign) return complain(campaign.error().message, ask.status());
   return write_new({*campaign}, wish, "campaign", example, common);
 }
 
@@ -356,16 +352,15 @@ int new_campaign(const NewWish& wish, const fs::path& folder, const Common& comm
 int new_machine(const NewWish& wish, const fs::path& path, const Common& common) {
   NewMachine machine{path.stem().string(), wish.maker, wish.machine, wish.serial, wish.control, {}};
   if (path.extension() != ".toml" || path.parent_path().filename() != config::machines_folder)
-    return complain(new_name, "expected SITE/machines/<asset>.toml, found " + wish.folder);
+    return complain("expected SITE/machines/<asset>.toml, found " + wish.folder);
   const auto axes = axes_of(wish.axes.empty() ? std::vector<std::string>{"X=0:500"} : wish.axes);
-  if (!axes) return complain(new_name, axes.error().message);
+  if (!axes) return complain(axes.error().message);
   for (const NewAxis& a : *axes) machine.axes.push_back(a.axis);
   const std::string text = machine_text(machine);
   const std::string file = path.filename().string();
   if (const auto read = config::parse_machine(text, file, machine.asset); !read)
-    return complain(new_name, text_of(read.error().front()) + "; nothing was written");
-  if (!storage::is_artifact_name(file))
-    return complain(new_name, "expected a plain name, found " + file);
+    return complain(text_of(read.error().front()) + "; nothing was written");
+  if (!storage::is_artifact_name(file)) return complain("expected a plain name, found " + file);
   std::vector<NewFiles> all{{path.parent_path(), {{file, text}}}};
   return write_new(all, wish, "machine", false, common);
 }
@@ -374,20 +369,20 @@ int make_new(NewWish wish, const Common& common) {
   const std::vector<std::string> kinds{"site", "campaign", "machine"};
   const bool named = std::find(kinds.begin(), kinds.end(), wish.what) != kinds.end();
   if (wish.folder.empty() && named)
-    return complain(new_name, "expected a folder after \"" + wish.what + "\"");
+    return complain("expected a folder after \"" + wish.what + "\"");
   if (!wish.folder.empty() && !named)
-    return complain(new_name, "expected site, campaign or machine, found \"" + wish.what + "\"" +
-                                  storage::suggestion(wish.what, kinds));
+    return complain("expected site, campaign or machine, found \"" + wish.what + "\"" +
+                    storage::suggestion(wish.what, kinds));
   if (wish.folder.empty()) wish.folder = std::exchange(wish.what, {});
   fs::path folder = fs::absolute(wish.folder).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
-  if (const std::string why = in_the_way(folder); !why.empty()) return complain(new_name, why);
+  if (const std::string why = in_the_way(folder); !why.empty()) return complain(why);
   if (wish.what.empty()) wish.what = site_above(folder) ? "campaign" : "site";
   if (wish.what == "machine") return new_machine(wish, folder, common);
   if (wish.what == "site") return new_site(wish, folder, common);
   if (wish.empty || !(wish.laboratory + wish.address + wish.country).empty())
     return complain(
-        new_name, "--empty, --laboratory, --address and --country are for a site, not a campaign");
+        "--empty, --laboratory, --address and --country are for a site, not a campaign");
   return new_campaign(wish, folder, common);
 }
 
@@ -398,17 +393,15 @@ Verb new_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "new",
-      .summary = "Makes a site or a campaign with an example that runs immediately",
+      .summary = "Makes a site, a campaign or the record of a machine, with an example",
       .arguments = joined(
           {required(offering({"site", "campaign", "machine"},
                              {"WHAT", &wish->what,
                               "site, campaign or machine. Default: a campaign inside a site or "
-                              "beside campaigns,\n"
-                              "otherwise a site"})),
-           takes(Takes::folder,
-                 {"FOLDER", &wish->folder,
-                  "The folder; new, or empty. For a machine the file of its record,\n"
-                  "SITE/machines/<asset>.toml"}),
+                              "next to other campaigns, otherwise a site"})),
+           takes(Takes::folder, {"FOLDER", &wish->folder,
+                                 "The folder; new, or empty. For a machine the file of its record, "
+                                 "SITE/machines/<asset>.toml"}),
            {"--id", &wish->id, "Id of the campaign (default: from the folder's name)"},
            {"--customer", &wish->customer, "Customer"},
            {"--operator", &wish->operator_name, "Name of the operator"},
@@ -417,14 +410,14 @@ Verb new_verb(Common& common) {
            {"--machine", &wish->machine, "Model of the machine"},
            {"--serial", &wish->serial, "Its serial number; with the maker it names the machine"},
            {"--asset", &wish->asset, "Its name in the laboratory, in place of maker and serial"},
-           {"--control", &wish->control, "Its control (`nonio controllers`)"},
+           {"--control", &wish->control, "Its control (`nonio table controls`)"},
            {"--instrument", &wish->instrument, "Model of the instrument"},
            {"--axis", &wish->axes,
-            "NAME=FROM:TO, travel in mm, for A, B and C in deg; may be given several times\n"
+            "NAME=FROM:TO, travel in mm, for A, B and C in deg; may be given several times "
             "(default: X=0:500)"},
            takes(Takes::file, {"--file", &wish->files,
                                "AXIS=PATH: readings of that axis, copied; may be given several "
-                               "times.\nAn axis without a file gets example readings"}),
+                               "times. An axis without a file gets example readings"}),
            {"--laboratory", &wish->laboratory, "For a site: name of the laboratory"},
            {"--address", &wish->address, "For a site: its address"},
            {"--country", &wish->country, "For a site: country, two letters"},
@@ -432,16 +425,14 @@ Verb new_verb(Common& common) {
            {"--defaults", &wish->defaults, "Do not ask for missing options"}},
           common_arguments(common)),
       .footer =
-          "On a terminal the command asks for missing options, with the default in brackets; "
-          "an empty\n"
-          "line accepts it, and ^D or ^C ends without writing anything.\n"
-          "Example readings are marked: every report prints EXAMPLE, NOT MEASURED beside the "
-          "customer\n"
-          "and the machine. Existing files are never overwritten.\n\n"
-          "Examples: nonio new site lab\n"
-          "          nonio new machine site/machines/S-0042.toml --axis X=0:800 --axis "
-          "C=0:360\n"
-          "          nonio new campaign site/2026-11-rossi --axis X=0:800 --file X=laser/x.csv",
+          "On a terminal the command asks for missing options, with the default in brackets; an "
+          "empty line accepts it, and ^D or ^C ends without writing anything. Example readings are "
+          "marked: every report prints EXAMPLE, NOT MEASURED next to the customer and the machine. "
+          "Existing files are never overwritten.",
+      .examples = {"nonio new site lab",
+                   "nonio new machine site/machines/S-0042.toml --axis X=0:800 --axis "
+                   "C=0:360",
+                   "nonio new campaign site/2026-11-rossi --axis X=0:800 --file X=laser/x.csv"},
       .run = [wish, &common] { return make_new(*wish, common); }};
 }
 

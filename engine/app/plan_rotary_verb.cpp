@@ -56,15 +56,15 @@ nlohmann::ordered_json json_of(const RotaryRow& row) {
 
 using Fewest = std::optional<Expected<std::size_t>>;
 
-void print_json(const RotaryWish& wish, const std::vector<RotaryRow>& rows, double two_points,
-                const Fewest& fewest) {
+void print_rotary_json(const RotaryWish& wish, const std::vector<RotaryRow>& rows,
+                       double two_points, const Fewest& fewest) {
   nlohmann::ordered_json out{{"schema", "nonio-rotary-plan/1"}, {"axis", wish.axis},
                              {"probe_u_um", wish.probe_u},      {"arc_deg", wish.arc},
                              {"trials", wish.trials},           {"seed", wish.seed},
                              {"U_two_points_um", two_points}};
   for (const RotaryRow& row : rows) out["plans"].push_back(json_of(row));
   if (fewest && *fewest) out["fewest_balls"] = **fewest;
-  std::cout << out.dump(1) << "\n";
+  print_json(out);
 }
 
 void print_plans_of(const RotaryWish& wish, const std::vector<RotaryRow>& rows, double two_points,
@@ -94,29 +94,27 @@ void print_plans_of(const RotaryWish& wish, const std::vector<RotaryRow>& rows, 
 }
 
 int plan_rotary(const RotaryWish& wish, const Common& common) {
-  const char* const verb = "nonio plan rotary";
   const Axis axis = axis_named(wish.axis);
   if (!is_axis_name(wish.axis) || !axis.rotary)
-    return complain(verb,
-                    "--axis: expected a rotary axis (A, B or C), found \"" + wish.axis + "\"");
+    return complain("--axis: expected a rotary axis (A, B or C), found \"" + wish.axis + "\"");
   const auto radius = length_of("--radius", wish.radius);
-  if (!radius) return complain(verb, radius.error().message);
+  if (!radius) return complain(radius.error().message);
   math::RotaryPlan own;
   own.balls = static_cast<std::size_t>(std::max<std::int64_t>(0, wish.balls));
   own.radius = *radius;
   own.arc = wish.arc * std::numbers::pi / 180.0;
   own.sigma = wish.probe_u / um_of_m;
   const auto rows = planning::rotary_rows(own, static_cast<std::size_t>(wish.trials), wish.seed);
-  if (!rows) return complain(verb, rows.error().message);
+  if (!rows) return complain(rows.error().message);
   Fewest fewest;
   if (wish.want_centre > 0.0 || wish.want_direction > 0.0)
     fewest = planning::fewest_balls(own, wish.want_centre / um_of_m, wish.want_direction / um_of_m);
   const double two_points = 2.0 * wish.probe_u / std::numbers::sqrt2;
   if (common.json)
-    print_json(wish, *rows, two_points, fewest);
+    print_rotary_json(wish, *rows, two_points, fewest);
   else
     print_plans_of(wish, *rows, two_points, fewest);
-  if (fewest && !*fewest) return complain(verb, fewest->error().message, exit_failed);
+  if (fewest && !*fewest) return complain(fewest->error().message, exit_failed);
   return exit_done;
 }
 
@@ -146,11 +144,11 @@ Verb plan_rotary_verb(Common& common) {
            {"--seed", &wish->seed, "Seed of the simulation (default 1)"}},
           common_arguments(common)),
       .footer =
-          "A larger radius helps the direction only; more balls help both, with the root of their\n"
-          "number. An arc of less than half a turn costs far more than fewer balls do.\n\n"
-          "Exit status: 0; 1 no number of balls reaches the wanted U; 2 usage.\n\n"
-          "Example: nonio plan rotary --axis C --balls 5 --radius 250 --probe-u 1.5 --want-centre "
-          "2",
+          "A larger radius helps the direction only; more balls help both, with the root of their "
+          "number. An arc of less than half a turn costs far more than fewer balls do.\n\nExit "
+          "status: 0; 1 no number of balls reaches the wanted U; 2 usage.",
+      .examples =
+          {"nonio plan rotary --axis C --balls 5 --radius 250 --probe-u 1.5 --want-centre 2"},
       .run = [wish, &common] { return plan_rotary(*wish, common); }};
 }
 

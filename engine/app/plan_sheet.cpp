@@ -29,30 +29,29 @@ Machine rectangle(double x, double y) {
   return machine;
 }
 
-int write_sheet(const char* verb, const SheetWish& wish, const Machine& machine,
-                const PointTable& rows, std::map<std::string, std::string> options,
-                const Common& common) {
+int write_sheet(const SheetWish& wish, const Machine& machine, const PointTable& rows,
+                std::map<std::string, std::string> options, const Common& common) {
   namespace fs = std::filesystem;
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
-  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  for (const std::string& conflict : plugins.conflicts()) return complain(conflict);
   std::string digest;
   const auto templates = config::read_templates(common.template_folders(), digest);
-  if (!templates) return complain(verb, text_of(templates.error()));
+  if (!templates) return complain(text_of(templates.error()));
   options["language"] = wish.language;
   options["stops"] = std::to_string(wish.stops);
   const Output* sheet = plugins.output_of(Output::Role::sheet_of_stops);
-  if (sheet == nullptr) return complain(verb, "no output plugin writes a sheet of stops");
+  if (sheet == nullptr) return complain("no output plugin writes a sheet of stops");
   auto files =
       planning::write_programs(plugins, sheet->info.name, machine, rows, options, *templates);
   if (!files) {
-    for (const Error& e : files.error()) complain(verb, text_of(e));
+    for (const Error& e : files.error()) complain(text_of(e));
     return exit_usage;
   }
   const fs::path to = fs::absolute(wish.file);
   for (Artifact& a : *files) a.name = to.filename().string();
   if (auto done = storage::publish(to.parent_path(), *files); !done)
-    return complain(verb, done.error().message, exit_failed);
+    return complain(done.error().message, exit_failed);
   if (!common.quiet) std::cerr << wish.file << "\n";
   return exit_done;
 }

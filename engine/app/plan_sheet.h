@@ -23,7 +23,7 @@ std::vector<Argument> sheet_arguments(SheetWish&, Common&);
 Machine rectangle(double x, double y);
 
 /// Writes the sheet of these rows, by the output plan-sheet with its options. Exit status.
-int write_sheet(const char* verb, const SheetWish&, const Machine&, const PointTable& rows,
+int write_sheet(const SheetWish&, const Machine&, const PointTable& rows,
                 std::map<std::string, std::string> options, const Common&);
 
 }  // namespace nonio::app

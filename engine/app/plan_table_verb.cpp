@@ -124,14 +124,14 @@ nlohmann::ordered_json json_of(const TableRow& row) {
 }
 
 /// A folder for each row: 01-56-33-65.
-int write_row_programs(const char* verb, const std::vector<TableRow>& rows, const TableWish& wish,
+int write_row_programs(const std::vector<TableRow>& rows, const TableWish& wish,
                        const math::TripleRequest& w, const Common& common) {
-  if (wish.control.empty()) return complain(verb, "part programs want a control (--control)");
+  if (wish.control.empty()) return complain("part programs want a control (--control)");
   const auto given = settings_of(wish.settings);
-  if (!given) return complain(verb, given.error().message);
+  if (!given) return complain(given.error().message);
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
-  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  for (const std::string& conflict : plugins.conflicts()) return complain(conflict);
   const Machine machine = rectangle(w.x, w.y);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::map<std::string, std::string> settings{
@@ -140,7 +140,7 @@ int write_row_programs(const char* verb, const std::vector<TableRow>& rows, cons
     const auto files = planning::write_programs(plugins, wish.control, machine,
                                                 math::triple_table({rows[i].plan}), settings);
     if (!files) {
-      for (const Error& e : files.error()) complain(verb, e.message);
+      for (const Error& e : files.error()) complain(e.message);
       return exit_usage;
     }
     const math::Triple& t = rows[i].triple;
@@ -149,7 +149,7 @@ int write_row_programs(const char* verb, const std::vector<TableRow>& rows, cons
                                                   number + "-" + std::to_string(t.a) + "-" +
                                                   std::to_string(t.b) + "-" + std::to_string(t.c));
     if (auto done = storage::publish(fs::absolute(folder), *files); !done)
-      return complain(verb, done.error().message, exit_failed);
+      return complain(done.error().message, exit_failed);
     if (!common.quiet) std::cerr << folder.string() << ": " << files->size() << " files\n";
   }
   return exit_done;
@@ -168,29 +168,27 @@ PointTable sheet_rows(const std::vector<TableRow>& rows) {
 }
 
 int plan_table(const TableWish& wish, const Common& common) {
-  const char* const verb = "nonio plan table";
   math::TripleRequest request;
   std::vector<TableRow> rows;
   if (wish.x.empty() != wish.y.empty())
-    return complain(verb, "--x and --y: expected both, or none for the table alone");
-  if (!wish.out.empty() && !wish.fits())
-    return complain(verb, "--program: expected --x and --y too");
+    return complain("--x and --y: expected both, or none for the table alone");
+  if (!wish.out.empty() && !wish.fits()) return complain("--program: expected --x and --y too");
   if (wish.fits()) {
     auto found = rows_that_fit(wish, request);
-    if (!found) return complain(verb, found.error().message, exit_failed);
+    if (!found) return complain(found.error().message, exit_failed);
     rows = std::move(*found);
     if (rows.empty())
-      return complain(verb,
-                      "no plan covers as much of both axes; a smaller --least-cover or a larger "
-                      "--hypotenuse shows more",
-                      exit_failed);
+      return complain(
+          "no plan covers as much of both axes; a smaller --least-cover or a larger "
+          "--hypotenuse shows more",
+          exit_failed);
   } else {
     for (const math::Triple& t : math::primitive_triples(wish.hypotenuse))
       rows.push_back({t, {}, 0.0});
   }
   const std::string sort = wish.sort.empty() ? (wish.fits() ? "minutes" : "ratio") : wish.sort;
   if (sort == "minutes" && !wish.fits())
-    return complain(verb, "--sort=minutes: expected --x and --y too");
+    return complain("--sort=minutes: expected --x and --y too");
   std::stable_sort(rows.begin(), rows.end(), [&](const TableRow& one, const TableRow& other) {
     if (sort == "minutes") return one.minutes < other.minutes;
     if (sort == "ratio") return one.ratio() < other.ratio();
@@ -200,21 +198,20 @@ int plan_table(const TableWish& wish, const Common& common) {
     nlohmann::ordered_json out{{"schema", "nonio-triple-table/1"}, {"sort", sort}};
     out["rows"] = nlohmann::ordered_json::array();
     for (const TableRow& row : rows) out["rows"].push_back(json_of(row));
-    std::cout << out.dump(1) << "\n";
+    print_json(out);
   } else {
     print_table_rows(rows, wish);
   }
   if (!wish.sheet.file.empty())
-    if (const int exit =
-            write_sheet(verb, wish.sheet, rectangle(request.x, request.y), sheet_rows(rows),
-                        {{"over_travel_mm", wish.over_travel},
-                         {"runs", std::to_string(wish.runs)},
-                         {"feed_mm_per_min", fixed_text(wish.feed, 6)},
-                         {"dwell_s", fixed_text(wish.dwell, 6)}},
-                        common);
+    if (const int exit = write_sheet(wish.sheet, rectangle(request.x, request.y), sheet_rows(rows),
+                                     {{"over_travel_mm", wish.over_travel},
+                                      {"runs", std::to_string(wish.runs)},
+                                      {"feed_mm_per_min", fixed_text(wish.feed, 6)},
+                                      {"dwell_s", fixed_text(wish.dwell, 6)}},
+                                     common);
         exit != exit_done)
       return exit;
-  return wish.out.empty() ? exit_done : write_row_programs(verb, rows, wish, request, common);
+  return wish.out.empty() ? exit_done : write_row_programs(rows, wish, request, common);
 }
 
 }  // namespace
@@ -259,12 +256,11 @@ Verb plan_table_verb(Common& common) {
            settings_argument(wish->settings, "NAME=VALUE: an option of that writer")},
           joined(sheet_arguments(wish->sheet, common), common_arguments(common))),
       .footer =
-          "Without travels: every primitive triple with a < b and c up to --hypotenuse, with b/a.\n"
-          "With travels: the best plan of each triple, both ways round, and its cost in "
-          "minutes.\n"
-          "With resolutions of their own, q counts their largest common divisor.\n\n"
-          "Exit status: 0; 1 no plan fits (prints which limits to relax); 2 usage.\n\n"
-          "Example: nonio plan table --x 20000 --y 12000 --max-step 500 --pdf plans.pdf",
+          "Without travels: every primitive triple with a < b and c up to --hypotenuse, with b/a. "
+          "With travels: the best plan of each triple, both ways round, and its cost in minutes. "
+          "With resolutions of their own, q counts their largest common divisor.\n\nExit status: "
+          "0; 1 no plan fits (prints which limits to relax); 2 usage.",
+      .examples = {"nonio plan table --x 20000 --y 12000 --max-step 500 --pdf plans.pdf"},
       .run = [wish, &common] { return plan_table(*wish, common); }};
 }
 

@@ -14,6 +14,7 @@
 #include "plan_sheet.h"
 #include "platform/storage/files.h"
 #include "tables.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -75,10 +76,6 @@ Expected<void> settle(Plan& plan) {
   return {};
 }
 
-std::string padded_left(const std::string& text, std::size_t width) {
-  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
-}
-
 std::string mm_text(double m) { return evidence_text({"", m, Quantity::length}); }
 
 void print_plan(std::size_t number, const math::TriplePlan& p, const math::TriplePlan& best) {
@@ -114,25 +111,24 @@ void print_plans(const Plan& plan, const math::TriplePlans& found) {
                "one reading\nof the diagonals.\n";
 }
 
-int write_programs(const char* verb, const Common& common, const Programs& p,
-                   const Machine& machine, const PointTable& rows,
-                   std::map<std::string, std::string> settings,
+int write_programs(const Common& common, const Programs& p, const Machine& machine,
+                   const PointTable& rows, std::map<std::string, std::string> settings,
                    std::vector<std::string>* written = nullptr) {
   if (p.control.empty() || p.out.empty())
-    return complain(verb, "part programs want a control (--control) and a folder");
+    return complain("part programs want a control (--control) and a folder");
   const auto given = settings_of(p.settings);
-  if (!given) return complain(verb, given.error().message);
+  if (!given) return complain(given.error().message);
   for (const auto& [name, value] : *given) settings[name] = value;
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
-  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  for (const std::string& conflict : plugins.conflicts()) return complain(conflict);
   const auto files = planning::write_programs(plugins, p.control, machine, rows, settings);
   if (!files) {
-    for (const Error& e : files.error()) complain(verb, e.message);
+    for (const Error& e : files.error()) complain(e.message);
     return exit_usage;
   }
   if (auto done = storage::publish(fs::absolute(p.out), *files); !done)
-    return complain(verb, done.error().message, exit_failed);
+    return complain(done.error().message, exit_failed);
   for (const Artifact& a : *files) {
     const std::string path = (fs::path(p.out) / a.name).string();
     if (written != nullptr) written->push_back(path);
@@ -142,30 +138,29 @@ int write_programs(const char* verb, const Common& common, const Programs& p,
 }
 
 int plan_triples(Plan plan, const Common& common) {
-  const char* const verb = "nonio plan triples";
-  if (auto done = settle(plan); !done) return complain(verb, done.error().message);
+  if (auto done = settle(plan); !done) return complain(done.error().message);
   const auto found = math::plan_triples(plan.wish);
-  if (!found) return complain(verb, found.error().message);
+  if (!found) return complain(found.error().message);
   if (common.json)
     std::cout << planning::triples_json(plan.wish, *found);
   else if (!found->plans.empty())
     print_plans(plan, *found);
   if (found->plans.empty()) {
-    return complain(verb, planning::why_nothing(*found), exit_failed);
+    return complain(planning::why_nothing(*found), exit_failed);
   }
   const PointTable rows = math::triple_table(found->plans);
   const Machine machine = rectangle(plan.wish.x, plan.wish.y);
   if (!plan.sheet.file.empty())
-    if (const int exit = write_sheet(verb, plan.sheet, machine, rows,
+    if (const int exit = write_sheet(plan.sheet, machine, rows,
                                      {{"over_travel_mm", plan.mm.over_travel}}, common);
         exit != exit_done)
       return exit;
   if (plan.programs.out.empty() && plan.programs.control.empty()) return exit_done;
   if (plan.choose < 1 || plan.choose > static_cast<std::int64_t>(found->plans.size()))
-    return complain(verb, "--choose: expected 1 to " + std::to_string(found->plans.size()) +
-                              ", found " + std::to_string(plan.choose));
+    return complain("--choose: expected 1 to " + std::to_string(found->plans.size()) + ", found " +
+                    std::to_string(plan.choose));
   return write_programs(
-      verb, common, plan.programs, machine, rows,
+      common, plan.programs, machine, rows,
       {{"plan", std::to_string(plan.choose)}, {"over_travel_mm", plan.mm.over_travel}});
 }
 
@@ -191,23 +186,21 @@ Expected<PointTable> grid_of(const ProgramWish& p) {
 }
 
 int plan_program(const ProgramWish& p, const Common& common) {
-  const char* const verb = "nonio plan program";
   Machine machine;
   machine.model = p.machine;
   for (const std::string& text : p.axes) {
     const auto axis = axis_of(text);
-    if (!axis) return complain(verb, axis.error().message);
+    if (!axis) return complain(axis.error().message);
     if (machine.axis(axis->name) != nullptr)
-      return complain(verb, "--axis: " + axis->name + " is there twice");
+      return complain("--axis: " + axis->name + " is there twice");
     machine.axes.push_back(*axis);
   }
   const auto rows = grid_of(p);
-  if (!rows) return complain(verb, rows.error().message);
+  if (!rows) return complain(rows.error().message);
   std::vector<std::string> files;
-  const int exit = write_programs(verb, common, p.programs, machine, *rows, {}, &files);
+  const int exit = write_programs(common, p.programs, machine, *rows, {}, &files);
   if (common.json && exit == exit_done)
-    std::cout << nlohmann::ordered_json{{"schema", "nonio-programs/1"}, {"files", files}}.dump(1)
-              << "\n";
+    print_json(nlohmann::ordered_json{{"schema", "nonio-programs/1"}, {"files", files}});
   return exit;
 }
 
@@ -216,91 +209,86 @@ std::vector<Argument> program_arguments(Programs& p) {
            "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name"},
           settings_argument(
               p.settings,
-              "NAME=VALUE: an option of that writer (`nonio plugins` lists them), such as\n"
+              "NAME=VALUE: an option of that writer (`nonio plugin list` lists them), such as "
               "dwell_s=3, runs=2, programs=axes,diagonals; may be given several times")};
 }
 
 Verb triples_verb(Common& common) {
   auto plan = std::make_shared<Plan>();
   const std::string pitch =
-      "Pitch of screw, rack or scale, mm: no step is a whole multiple of it;\n"
-      "may be given several times";
+      "Pitch of screw, rack or scale, mm: no step is a whole multiple of it; may be given several "
+      "times";
   Argument even = one_of({"any", "prefer", "require"},
                          {"--even", &plan->even,
-                          "An even number of steps, for a third diagonal to half of Y;\n"
+                          "An even number of steps, for a third diagonal to half of Y; "
                           "--even=prefer uses it if it costs at most 1 % of coverage"});
   even.bare = "require";
-  return {.name = "triples",
-          .summary = "Stops for X, Y and both diagonals of their rectangle, with equal whole steps",
-          .arguments = joined(
-              {required({"--x", &plan->mm.x, "Travel of X, mm"}),
-               required({"--y", &plan->mm.y, "Travel of Y, mm"}),
-               {"--over-travel", &plan->mm.over_travel,
-                "Range kept free at each end of both axes, mm (default 0)"},
-               {"--resolution", &plan->mm.resolution,
-                "Steps are whole multiples of this value, mm (default 1)"},
-               {"--resolution-x", &plan->mm.resolution_x,
-                "Scale factor of X: its steps are whole multiples of this, mm (default "
-                "--resolution)"},
-               {"--resolution-y", &plan->mm.resolution_y,
-                "The same of Y; --resolution is the diagonal's"},
-               {"--max-step", &plan->mm.max_step, "Largest step of either axis, mm (default any)"},
-               {"--max-points", &plan->wish.max_points,
-                "Entries of the control's compensation table (default 1500)"},
-               {"--pitch-x", &plan->mm.pitch_x, pitch},
-               {"--pitch-y", &plan->mm.pitch_y, pitch},
-               {"--density", &plan->wish.density,
-                "Only stops that ISO 230-2 accepts: five per metre on axes of up to 2 m,\n"
-                "no more than 250 mm apart on longer ones"},
-               even,
-               {"--hypotenuse", &plan->wish.hypotenuse,
-                "Largest c of the triples a-b-c (default 5000)"},
-               {"--count", &plan->count, "Plans to show (default 5)"},
-               takes(Argument::Takes::folder,
-                     {"--program", &plan->programs.out,
-                      "Folder for the part programs of one plan: X, Y and both diagonals"}),
-               {"--choose", &plan->choose, "Which plan --program writes (default 1)"}},
-              program_arguments(plan->programs),
-              joined(sheet_arguments(plan->sheet, common), common_arguments(common))),
-          .footer =
-              "A diagonal whose steps are whole needs a right triangle with whole sides: 3-4-5,\n"
-              "5-12-13, ... Step = q (a, b, c) x resolution; n steps cover n q a of X and n q b of "
-              "Y.\n"
-              "The same n stops serve the pitch of X and Y, both straightnesses and the "
-              "diagonals.\n"
-              "The first plan has the best coverage of the worse axis. The others are listed with "
-              "their\n"
-              "advantage and their disadvantage.\n\n"
-              "Exit status: 0 plans were found; 1 no plan fits (prints which limits to relax); 2 "
-              "usage.\n\n"
-              "Example: nonio plan triples --x 12000 --y 9000 --max-step 500 --max-points 31",
-          .run = [plan, &common] { return plan_triples(*plan, common); }};
+  return {
+      .name = "triples",
+      .summary = "Stops for X, Y and both diagonals of their rectangle, with equal whole steps",
+      .arguments = joined(
+          {required({"--x", &plan->mm.x, "Travel of X, mm"}),
+           required({"--y", &plan->mm.y, "Travel of Y, mm"}),
+           {"--over-travel", &plan->mm.over_travel,
+            "Range kept free at each end of both axes, mm (default 0)"},
+           {"--resolution", &plan->mm.resolution,
+            "Steps are whole multiples of this value, mm (default 1)"},
+           {"--resolution-x", &plan->mm.resolution_x,
+            "Scale factor of X: its steps are whole multiples of this, mm (default --resolution)"},
+           {"--resolution-y", &plan->mm.resolution_y,
+            "The same of Y; --resolution is the diagonal's"},
+           {"--max-step", &plan->mm.max_step, "Largest step of either axis, mm (default any)"},
+           {"--max-points", &plan->wish.max_points,
+            "Entries of the control's compensation table (default 1500)"},
+           {"--pitch-x", &plan->mm.pitch_x, pitch},
+           {"--pitch-y", &plan->mm.pitch_y, pitch},
+           {"--density", &plan->wish.density,
+            "Only stops that ISO 230-2 accepts: five per metre on axes of up to 2 m, no more than "
+            "250 mm apart on longer ones"},
+           even,
+           {"--hypotenuse", &plan->wish.hypotenuse,
+            "Largest c of the triples a-b-c (default 5000)"},
+           {"--count", &plan->count, "Plans to show (default 5)"},
+           takes(Argument::Takes::folder,
+                 {"--program", &plan->programs.out,
+                  "Folder for the part programs of one plan: X, Y and both diagonals"}),
+           {"--choose", &plan->choose, "Which plan --program writes (default 1)"}},
+          program_arguments(plan->programs),
+          joined(sheet_arguments(plan->sheet, common), common_arguments(common))),
+      .footer =
+          "A diagonal whose steps are whole needs a right triangle with whole sides: 3-4-5, "
+          "5-12-13, ... Step = q (a, b, c) x resolution; n steps cover n q a of X and n q b of Y. "
+          "The same n stops serve the pitch of X and Y, both straightnesses and the diagonals. The "
+          "first plan has the best coverage of the worse axis. The others are listed with their "
+          "advantage and their disadvantage.\n\nExit status: 0 plans were found; 1 no plan fits "
+          "(prints which limits to relax); 2 usage.",
+      .examples = {"nonio plan triples --x 12000 --y 9000 --max-step 500 --max-points 31"},
+      .run = [plan, &common] { return plan_triples(*plan, common); }};
 }
 
 Verb program_verb(Common& common) {
   auto program = std::make_shared<ProgramWish>();
-  return {.name = "program",
-          .summary = "Part programs of axis runs, diagonals and step diagonals, without a campaign",
-          .arguments = joined(
-              {required({"--axis", &program->axes,
-                         "NAME=FROM:TO, travel in mm, for A, B and C in deg; may be given "
-                         "several times"}),
-               {"--n", &program->n, "Steps of the diagonals (from `nonio plan triples`)"},
-               {"--step-x", &program->step_x, "Step of X on the diagonals, mm"},
-               {"--step-y", &program->step_y, "Step of Y on the diagonals, mm"},
-               {"--machine", &program->machine, "Name of the machine, for the comments"},
-               required(takes(Argument::Takes::folder,
-                              {"--out", &program->programs.out, "Folder for the programs"}))},
-              program_arguments(program->programs), common_arguments(common)),
-          .footer =
-              "Axis runs have random offsets of the targets, as ISO 230-2 requires; the same seed\n"
-              "(--set seed=7) gives the same targets. With --n, --step-x and --step-y the "
-              "diagonals are\n"
-              "written too, and X and Y have the same stops as the diagonals.\n\n"
-              "Example: nonio plan program --axis X=0:800 --axis Y=0:600 --axis Z=0:600 \\\n"
-              "           --control siemens --set programs=axes,step-diagonals --set steps=40 "
-              "--out p",
-          .run = [program, &common] { return plan_program(*program, common); }};
+  return {
+      .name = "program",
+      .summary = "Part programs of axis runs, diagonals and step diagonals, without a campaign",
+      .arguments = joined(
+          {required(
+               {"--axis", &program->axes,
+                "NAME=FROM:TO, travel in mm, for A, B and C in deg; may be given several times"}),
+           {"--n", &program->n, "Steps of the diagonals (from `nonio plan triples`)"},
+           {"--step-x", &program->step_x, "Step of X on the diagonals, mm"},
+           {"--step-y", &program->step_y, "Step of Y on the diagonals, mm"},
+           {"--machine", &program->machine, "Name of the machine, for the comments"},
+           required(takes(Argument::Takes::folder,
+                          {"--out", &program->programs.out, "Folder for the programs"}))},
+          program_arguments(program->programs), common_arguments(common)),
+      .footer =
+          "Axis runs have random offsets of the targets, as ISO 230-2 requires; the same seed "
+          "(--set seed=7) gives the same targets. With --n, --step-x and --step-y the diagonals "
+          "are written too, and X and Y have the same stops as the diagonals.",
+      .examples = {"nonio plan program --axis X=0:800 --axis Y=0:600 --axis Z=0:600 --control "
+                   "siemens --set programs=axes,step-diagonals --set steps=40 --out p"},
+      .run = [program, &common] { return plan_program(*program, common); }};
 }
 
 }  // namespace
@@ -309,7 +297,7 @@ Verb plan_verb(Common& common) {
   return {.name = "plan",
           .summary = "Plans measurements: stops and part programs",
           .verbs = {triples_verb(common), program_verb(common), plan_rotary_verb(common),
-                    plan_table_verb(common), sign_probe_verb(common)}};
+                    plan_table_verb(common)}};
 }
 
 }  // namespace nonio::app

@@ -53,23 +53,20 @@ class CheckReport {
   int end() const {
     const std::size_t passed = counts_[0], failed = counts_[1], crashed = counts_[2];
     if (common_.json)
-      std::cout << Json{{"schema", "nonio-plugin-check/1"},
-                        {"seed", options_.request.seed},
-                        {"seeds", options_.request.seeds},
-                        {"checks", checks_},
-                        {"passed", passed},
-                        {"failed", failed},
-                        {"crashed", crashed},
-                        {"skipped", counts_[3]}}
-                       .dump(1, ' ', false, Json::error_handler_t::replace)
-                << "\n";
+      print_json(Json{{"schema", "nonio-plugin-check/1"},
+                      {"seed", options_.request.seed},
+                      {"seeds", options_.request.seeds},
+                      {"checks", checks_},
+                      {"passed", passed},
+                      {"failed", failed},
+                      {"crashed", crashed},
+                      {"skipped", counts_[3]}});
     else
       std::cout << passed << " passed, " << failed << " failed, " << crashed << " crashed, "
                 << counts_[3] << " skipped; seed " << options_.request.seed << ", seeds "
                 << options_.request.seeds << "\n";
     if (passed + failed + crashed + counts_[3] == 0) {
-      return complain("nonio plugin check",
-                      "no plugin here has the check " + options_.request.only);
+      return complain("no plugin here has the check " + options_.request.only);
     }
     return failed + crashed == 0 ? exit_done : exit_failed;
   }
@@ -102,7 +99,7 @@ int check_plugin(CheckOptions& options, const Common& common) {
   request.cases.assign(options.cases.begin(), options.cases.end());
   CheckReport report(options, common);
   const auto done = plugin_check::check_plugins(request, std::ref(report));
-  return done ? report.end() : complain("nonio plugin check", done.error().message);
+  return done ? report.end() : complain(done.error().message);
 }
 
 struct SkeletonOptions {
@@ -114,9 +111,9 @@ int make_plugin(const SkeletonOptions& options, const Common& common) {
   const fs::path skeletons = common.template_folders().front().parent_path() / "plugin";
   const auto files =
       plugin_check::new_plugin(skeletons, options.kind, options.name, fs::absolute(folder));
-  if (!files) return complain("nonio plugin new", files.error().message);
+  if (!files) return complain(files.error().message);
   if (common.json)
-    std::cout << Json{{"folder", fs::absolute(folder).string()}, {"files", *files}}.dump(1) << "\n";
+    print_json(Json{{"folder", fs::absolute(folder).string()}, {"files", *files}});
   else if (!common.quiet)
     std::cout << "Written: " << folder.string() << "\n\n"
               << "    cmake -S " << folder.string() << " -B " << folder.string() << "/build\n"
@@ -131,9 +128,7 @@ std::string all_checks() {
     name.resize(std::max<std::size_t>(name.size(), 13), ' ');
     words += "  " + name + law + "\n";
   }
-  return words +
-         "\nExit status: 0 none failed or crashed; 1 some did; 2 usage.\n\n"
-         "Example: nonio plugin check build";
+  return words + "\nExit status: 0 none failed or crashed; 1 some did; 2 usage.";
 }
 
 Verb new_plugin_verb(Common& common) {
@@ -148,7 +143,7 @@ Verb new_plugin_verb(Common& common) {
                takes(Argument::Takes::folder,
                      {"--out", &options->out, "The folder; it must not exist (default: NAME)"})},
               common_arguments(common)),
-          .footer = "Example: nonio plugin new controller my-control",
+          .examples = {"nonio plugin new controller my-control"},
           .run = [options, &common] { return make_plugin(*options, common); }};
 }
 
@@ -158,11 +153,9 @@ Verb check_plugin_verb(Common& common) {
   return {.name = "check",
           .summary = "Runs the conformance checks for a plugin type, each in a process with limits",
           .arguments = joined(
-              {required(existing(
-                   Takes::path,
-                   {"FILE|FOLDER", &options->subject,
-                    "A plugin; or a folder: every .so below it, and cases/*/campaign.toml as "
-                    "samples"})),
+              {required(existing(Takes::path, {"FILE|FOLDER", &options->subject,
+                                               "A plugin; or a folder: every .so below it, and "
+                                               "cases/*/campaign.toml as samples"})),
                {"--seed", &options->request.seed, "Seed of the generated samples (default: 1)"},
                {"--seeds", &options->request.seeds, "Number of seeds, in steps of 1 (default: 3)"},
                {"--plugin", &options->request.plugin,
@@ -176,6 +169,7 @@ Verb check_plugin_verb(Common& common) {
                templates_argument(common)},
               common_arguments(common)),
           .footer = all_checks(),
+          .examples = {"nonio plugin check build"},
           .run = [options, &common] { return check_plugin(*options, common); }};
 }
 
@@ -183,8 +177,8 @@ Verb check_plugin_verb(Common& common) {
 
 Verb plugin_verb(Common& common) {
   return {.name = "plugin",
-          .summary = "Creates and checks your own plugin",
-          .verbs = {new_plugin_verb(common), check_plugin_verb(common)}};
+          .summary = "Plugins: what is loaded, and your own",
+          .verbs = {plugin_list_verb(common), new_plugin_verb(common), check_plugin_verb(common)}};
 }
 
 }  // namespace nonio::app

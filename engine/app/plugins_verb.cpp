@@ -61,11 +61,8 @@ void print_plugins_json(const loader::Plugins& plugins) {
       columns.push_back({{"name", name_in_file(c)}, {"required", c.required}, {"help", c.help}});
     all.back()["columns"] = std::move(columns);
   }
-  std::cout << Json{{"abi", NONIO_ABI_TAG},
-                    {"files", std::move(files)},
-                    {"plugins", std::move(all)}}
-                   .dump(1)
-            << "\n";
+  print_json(
+      Json{{"abi", NONIO_ABI_TAG}, {"files", std::move(files)}, {"plugins", std::move(all)}});
 }
 
 void print_plugins(const loader::Plugins& plugins, bool with_options) {
@@ -99,7 +96,7 @@ int list_plugins(const Common& common) {
     print_plugins_json(plugins);
   else
     print_plugins(plugins, !common.quiet);
-  for (const std::string& conflict : plugins.conflicts()) complain("nonio plugins", conflict);
+  for (const std::string& conflict : plugins.conflicts()) complain(conflict);
   if (!plugins.conflicts().empty()) return exit_usage;
   const auto refused = [](const loader::PluginFile& f) { return !f.refused.empty(); };
   return std::any_of(plugins.files().begin(), plugins.files().end(), refused) ? exit_failed
@@ -108,10 +105,11 @@ int list_plugins(const Common& common) {
 
 }  // namespace
 
-Verb plugins_verb(Common& common) {
-  return {.name = "plugins",
+Verb plugin_list_verb(Common& common) {
+  return {.name = "list",
           .summary = "Lists loaded plugins with their options, and rejected ones with the reason",
           .arguments = common_arguments(common),
+          .examples = {"nonio plugin list --quiet"},
           .run = [&common] { return list_plugins(common); }};
 }
 

@@ -146,16 +146,15 @@ void print_probe(const tables::SignProbe& p, const std::string& file) {
 }
 
 int probe(const ProbeWish& w, const Common& common) {
-  const char* const verb = "nonio plan sign-probe";
-  if (!(w.feed > 0.0)) return complain(verb, "--feed: expected more than 0");
-  const auto opened = open_campaign(verb, w.folder, common);
+  if (!(w.feed > 0.0)) return complain("--feed: expected more than 0");
+  const auto opened = open_campaign(w.folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;
   const auto& campaign = open.campaign();
   if (!w.axis.empty() && campaign.machine.axis(w.axis) == nullptr)
-    return complain(verb, "--axis: the campaign has no axis " + w.axis);
+    return complain("--axis: the campaign has no axis " + w.axis);
   const auto settings = settings_of(w.settings);
-  if (!settings) return complain(verb, settings.error().message);
+  if (!settings) return complain(settings.error().message);
   const Settings said = said_of_axes(open);
   Json all = Json::array();
   std::vector<Artifact> files;
@@ -169,18 +168,18 @@ int probe(const ProbeWish& w, const Common& common) {
     const auto p = tables::sign_probe(m, open.read.observations[i]);
     if (!p) {
       good = false;
-      complain(verb, p.error().message);
+      complain(p.error().message);
       continue;
     }
     if (auto inside = within_travel(*p, campaign.machine.axis(m.axis), said); !inside) {
       good = false;
-      complain(verb, inside.error().message);
+      complain(inside.error().message);
       continue;
     }
     std::string file;
     if (!w.out.empty()) {
       auto program = program_of(*p, campaign.machine, w, *settings, open.place->plugins);
-      if (!program) return complain(verb, text_of(program.error()));
+      if (!program) return complain(text_of(program.error()));
       for (const Artifact& f : files)
         if (f.name == program->name) program->name = m.id + "-" + program->name;
       file = (std::filesystem::path(w.out) / program->name).string();
@@ -192,48 +191,40 @@ int probe(const ProbeWish& w, const Common& common) {
   }
   if (!files.empty())
     if (auto done = storage::publish(std::filesystem::absolute(w.out), files); !done)
-      return complain(verb, text_of(done.error()), exit_failed);
+      return complain(text_of(done.error()), exit_failed);
   if (common.json)
-    std::cout << Json{{"schema", "nonio-sign-probe/1"}, {"campaign", campaign.id}, {"probes", all}}
-                     .dump(1)
-              << "\n";
-  if (!measured) return complain(verb, "no measurement of an axis with readings", exit_failed);
+    print_json(Json{{"schema", "nonio-sign-probe/1"}, {"campaign", campaign.id}, {"probes", all}});
+  if (!measured) return complain("no measurement of an axis with readings", exit_failed);
   return good ? exit_done : exit_failed;
 }
 
 }  // namespace
 
-Verb sign_probe_verb(Common& common) {
+Verb probe_verb(Common& common) {
   auto w = std::make_shared<ProbeWish>();
-  return {.name = "sign-probe",
-          .summary = "Two moves that show on the machine whether a table has the right sign",
-          .arguments = joined(
-              campaign_arguments(w->folder, common),
-              {{"--axis", &w->axis, "Only this axis"},
-               takes(Argument::Takes::folder, {"--out", &w->out, "Folder for the part programs"}),
-               {"--feed", &w->feed, "Feed of the programs, mm/min or deg/min (default 1000)"},
-               {"--control", &w->control,
-                "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name "
-                "(default:\n"
-                "that of the campaign's control)"},
-               settings_argument(w->settings,
-                                 "NAME=VALUE: an option of that writer, such as dwell_s=3; may be "
-                                 "given several\n"
-                                 "times")}),
-          .footer =
-              "The two stops are the targets between which the error changed most, both reached "
-              "towards\n"
-              "plus. Load the table, reference the axis, run the program, set the instrument to "
-              "zero at\n"
-              "the first stop (M0) and read it at the second. Near zero: the sign is right. Twice "
-              "the\n"
-              "error: it is wrong. The error itself: no table is active. DRY RUN FIRST: the "
-              "program moves\n"
-              "the axis in coordinates of the machine.\n\n"
-              "Exit status: 0 the test works for every axis; 1 the error of an axis is too small "
-              "for it; 2 usage.\n\n"
-              "Example: nonio plan sign-probe site/2026-11-rossi --out p",
-          .run = [w, &common] { return probe(*w, common); }};
+  return {
+      .name = "probe",
+      .summary = "Two moves that show on the machine whether a table has the right sign",
+      .arguments = joined(
+          campaign_arguments(w->folder, common),
+          {{"--axis", &w->axis, "Only this axis"},
+           takes(Argument::Takes::folder, {"--out", &w->out, "Folder for the part programs"}),
+           {"--feed", &w->feed, "Feed of the programs, mm/min or deg/min (default 1000)"},
+           {"--control", &w->control,
+            "Writer of part programs: gcode, siemens, heidenhain or a plugin's whole name "
+            "(default: that of the campaign's control)"},
+           settings_argument(w->settings,
+                             "NAME=VALUE: an option of that writer, such as dwell_s=3; may be "
+                             "given several times")}),
+      .footer =
+          "The two stops are the targets between which the error changed most, both reached "
+          "towards plus. Load the table, reference the axis, run the program, set the instrument "
+          "to zero at the first stop (M0) and read it at the second. Near zero: the sign is right. "
+          "Twice the error: it is wrong. The error itself: no table is active. DRY RUN FIRST: the "
+          "program moves the axis in coordinates of the machine.\n\nExit status: 0 the test works "
+          "for every axis; 1 the error of an axis is too small for it; 2 usage.",
+      .examples = {"nonio table probe site/2026-11-rossi --out p"},
+      .run = [w, &common] { return probe(*w, common); }};
 }
 
 }  // namespace nonio::app

@@ -15,12 +15,16 @@ namespace {
 
 struct HelpWish {
   std::vector<std::string> words;
-  bool man = false;
+  bool man = false, json = false;
 };
 
 int help(const HelpWish& wish, const Program& program) {
   if (wish.man) {
     write_man_page(program, std::cout);
+    return exit_done;
+  }
+  if (wish.json) {
+    write_table(program, std::cout);
     return exit_done;
   }
   return show_help(program, wish.words);
@@ -42,13 +46,11 @@ int version(const Common& common) {
   const auto plugins = texts_of(common.plugin_folders()),
              templates = texts_of(common.template_folders());
   if (common.json) {
-    std::cout << Json{{"schema", "nonio-version/1"},
-                      {"version", NONIO_VERSION},
-                      {"abi", NONIO_ABI_TAG},
-                      {"plugins", plugins},
-                      {"templates", templates}}
-                     .dump(1)
-              << "\n";
+    print_json(Json{{"schema", "nonio-version/1"},
+                    {"version", NONIO_VERSION},
+                    {"abi", NONIO_ABI_TAG},
+                    {"plugins", plugins},
+                    {"templates", templates}});
     return exit_done;
   }
   std::cout << "nonio " NONIO_VERSION "\nABI        " NONIO_ABI_TAG "\n";
@@ -63,24 +65,22 @@ int version(const Common& common) {
 Verb help_verb(const Program& program) {
   auto wish = std::make_shared<HelpWish>();
   return {.name = "help",
-          .summary = "Prints the help of a verb or of the program; --man for man(1)",
-          .arguments = {offering(names_of(program), {"VERB", &wish->words,
-                                                     "A verb with its sub-verb, such as plan "
-                                                     "triples"}),
-                        {"--man", &wish->man, "The manual page of all verbs, as man(1) reads it"}},
-          .footer =
-              "Examples: nonio help plan triples\n"
-              "          nonio help --man | man -l -",
+          .summary = "Describes a command; --man prints the manual page",
+          .arguments = {offering(names_of(program),
+                                 {"COMMAND", &wish->words, "A command, such as plan triples"}),
+                        {"--man", &wish->man, "All commands as a manual page for man(1)"},
+                        {"--json", &wish->json, "The table of all commands"}},
+          .examples = {"nonio help plan triples", "nonio help --man | man -l -"},
           .run = [wish, &program] { return help(*wish, program); }};
 }
 
 Verb version_verb(Common& common) {
-  return {.name = "version",
-          .summary =
-              "Prints the version, the ABI tag, and the search paths of plugins and "
-              "templates",
-          .arguments = joined({templates_argument(common)}, common_arguments(common)),
-          .run = [&common] { return version(common); }};
+  return {
+      .name = "version",
+      .summary = "Prints the version, the ABI tag, and the search paths of plugins and templates",
+      .arguments = joined({templates_argument(common)}, common_arguments(common)),
+      .examples = {"nonio version --json"},
+      .run = [&common] { return version(common); }};
 }
 
 Verb completion_verb(const Program& program) {
@@ -88,10 +88,8 @@ Verb completion_verb(const Program& program) {
   return {.name = "completion",
           .summary = "Prints the shell script that completes verbs, options and files",
           .arguments = {required(one_of({"bash", "zsh"}, {"SHELL", shell.get(), "bash or zsh"}))},
-          .footer =
-              "Examples: nonio completion bash > "
-              "~/.local/share/bash-completion/completions/nonio\n"
-              "          nonio completion zsh > ~/.zfunc/_nonio",
+          .examples = {"nonio completion bash > ~/.local/share/bash-completion/completions/nonio",
+                       "nonio completion zsh > ~/.zfunc/_nonio"},
           .run = [shell, &program] {
             write_completion(program, *shell, std::cout);
             return exit_done;

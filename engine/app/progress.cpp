@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "progress.h"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "colour.h"
 #include "common.h"
+#include "text_layout.h"
 
 namespace nonio::app {
 
@@ -27,11 +27,6 @@ std::string duration(double seconds) {
   if (s < 60) return std::to_string(s) + " s";
   if (s < 3600) return std::to_string(s / 60) + " min " + std::to_string(s % 60) + " s";
   return std::to_string(s / 3600) + " h " + std::to_string(s / 60 % 60) + " min";
-}
-
-std::size_t terminal_width() {
-  winsize size{};
-  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
 }
 
 std::string message_of(const batch::CampaignState& c) {
@@ -82,10 +77,10 @@ void Progress::finished(const batch::CampaignState& c) {
     if (failed) event["message"] = message_of(c);
     return print_event(event);
   }
-  if (bar_ ? failed : failed || !quiet_) {
+  if (failed) {
     clear();
-    std::cerr << status_word(to_text(c.status), STDERR_FILENO) << " " << c.id
-              << (failed ? ": " + message_of(c) : "") << "\n";
+    std::cerr << status_word(to_text(c.status), STDERR_FILENO) << " " << c.id << ": "
+              << message_of(c) << "\n";
   }
   if (bar_) draw();
 }
@@ -104,7 +99,7 @@ void Progress::draw() {
     r.erase(r.find('.') + 2);
     text += "  " + r + "/s  " + duration(static_cast<double>(to_do_ - done_) / rate) + " left";
   }
-  const std::size_t width = terminal_width();
+  const std::size_t width = line_width(STDERR_FILENO);
   const std::size_t cells =
       width > text.size() + 4 ? std::min<std::size_t>(width - text.size() - 4, 40) : 0;
   const std::size_t full = to_do_ == 0 ? cells : cells * done_ / to_do_;

@@ -10,6 +10,7 @@
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "printable.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -19,8 +20,6 @@ using store::Point;
 using store::Spelling;
 
 namespace {
-
-constexpr const char* query_name = "nonio query";
 
 struct QueryWish {
   std::string out;
@@ -93,23 +92,16 @@ Json to_json(const std::vector<Spelling>& spellings) {
   return all;
 }
 
-/// How many characters a terminal shows of UTF-8, as good as nobody asks more.
-std::size_t shown_width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-  }));
-}
-
 void print_rows(const std::vector<std::vector<std::string>>& rows, const std::string& right) {
   std::vector<std::size_t> widths(rows.front().size());
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], shown_width(row[i]));
+      widths[i] = std::max(widths[i], columns_of(row[i]));
   for (const auto& row : rows) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string pad(widths[i] - shown_width(row[i]), ' ');
-      line += (i == 0 ? "" : "  ") + (right[i] == 'r' ? pad + row[i] : row[i] + pad);
+      line += (i == 0 ? "" : "  ") +
+              (right[i] == 'r' ? padded_left(row[i], widths[i]) : padded(row[i], widths[i]));
     }
     line.erase(line.find_last_not_of(' ') + 1);
     std::cout << line << "\n";
@@ -147,18 +139,16 @@ void print_table(const std::vector<Point>& points) {
 
 int print_machines(const QueryWish& wish, const Common& common) {
   const auto machines = store::machines_in(wish.out);
-  if (!machines) return complain(query_name, machines.error().message);
+  if (!machines) return complain(machines.error().message);
   const auto spellings = store::spellings_in(wish.out);
-  if (!spellings) return complain(query_name, spellings.error().message);
+  if (!spellings) return complain(spellings.error().message);
   if (common.json) {
     Json all = Json::array();
     for (const NamedMachine& m : *machines)
       all.push_back({{"machine", m.name}, {"campaigns", m.campaigns}});
-    std::cout << Json{{"schema", "nonio-query/1"},
-                      {"machines", std::move(all)},
-                      {"spellings", to_json(*spellings)}}
-                     .dump(1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-query/1"},
+                    {"machines", std::move(all)},
+                    {"spellings", to_json(*spellings)}});
     return exit_done;
   }
   std::vector<std::vector<std::string>> rows{{"machine", "campaigns"}};
@@ -179,15 +169,13 @@ int query(const QueryWish& wish, const Common& common) {
     return print_machines(wish, common);
   for (const std::string& day : {q.from, q.to})
     if (!day.empty() && !is_day(day))
-      return complain(query_name, "expected a day as YYYY-MM-DD, found \"" + day + "\"");
+      return complain("expected a day as YYYY-MM-DD, found \"" + day + "\"");
   const auto points = store::query(wish.out, q);
-  if (!points) return complain(query_name, points.error().message);
+  if (!points) return complain(points.error().message);
   if (common.json) {
     Json all = Json::array();
     for (const Point& p : *points) all.push_back(to_json(p));
-    std::cout << Json{{"schema", "nonio-query/1"}, {"points", std::move(all)}}.dump(
-                     1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-query/1"}, {"points", std::move(all)}});
   } else if (wish.csv) {
     print_csv(*points);
   } else if (points->empty()) {
@@ -200,39 +188,36 @@ int query(const QueryWish& wish, const Common& common) {
 
 }  // namespace
 
-Verb query_verb(Common& common) {
+Verb machine_list_verb(Common& common) {
   auto wish = std::make_shared<QueryWish>();
   store::Query& q = wish->query;
-  return {
-      .name = "query",
-      .summary = "Results of all campaigns of a machine, from the history of an output folder",
-      .arguments = joined(
-          {required(existing(Argument::Takes::folder,
-                             {"OUT", &wish->out, "Output folder of `nonio run`"})),
-           {"MACHINE", &q.machine,
-            "Its asset, or maker and serial with a space between them; default: all machines"},
-           {"--axis", &q.axis, "As the control names it: X, or X1 and X2 of a gantry"},
-           {"--quantity", &q.quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"},
-           {"--source", &q.source,
-            "\"followed\" (with covariance, for trends), or an analysis: iso230-2"},
-           {"--from", &q.from, "First day of the campaigns, YYYY-MM-DD"},
-           {"--to", &q.to, "Last day, YYYY-MM-DD"},
-           {"--superseded", &q.superseded,
-            "Also replaced results: other readings, other options, another version"},
-           {"--csv", &wish->csv, "Comma-separated, all columns, for a spreadsheet"}},
-          common_arguments(common)),
-      .footer =
-          "With OUT alone: lists the machines, and names that may be one machine.\n"
-          "u is the standard uncertainty of the contributions that are new in each campaign, U "
-          "the\n"
-          "expanded one (k = 2); the contributions that campaigns share (the instrument, the\n"
-          "expansion) are u_common in --csv and --json. The values are those of results.json,\n"
-          "digit for digit. The history is OUT/history.sqlite, or a schema on the PostgreSQL "
-          "server\n"
-          "of [database] in site.toml; any tool for them reads it: tables `evaluation`, `result`,\n"
-          "..., view `point`.\n\n"
-          "Example: nonio query out S-0042 --axis X --quantity B_mean --csv",
-      .run = [wish, &common] { return query(*wish, common); }};
+  return {.name = "list",
+          .summary = "Results of all campaigns of a machine, from the history of an output folder",
+          .arguments = joined(
+              {required(existing(Argument::Takes::folder,
+                                 {"OUT", &wish->out, "Output folder of `nonio run`"})),
+               {"MACHINE", &q.machine,
+                "Its asset, or maker and serial with a space between them; default: all machines"},
+               {"--axis", &q.axis, "As the control names it: X, or X1 and X2 of a gantry"},
+               {"--quantity", &q.quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"},
+               {"--source", &q.source,
+                "\"followed\" (with covariance, for trends), or an analysis: iso230-2"},
+               {"--from", &q.from, "First day of the campaigns, YYYY-MM-DD"},
+               {"--to", &q.to, "Last day, YYYY-MM-DD"},
+               {"--superseded", &q.superseded,
+                "Also replaced results: other readings, other options, another version"},
+               {"--csv", &wish->csv, "Comma-separated, all columns, for a spreadsheet"}},
+              common_arguments(common)),
+          .footer =
+              "With OUT alone: lists the machines, and names that may be one machine. u is the "
+              "standard uncertainty of the contributions that are new in each campaign, U the "
+              "expanded one (k = 2); the contributions that campaigns share (the instrument, the "
+              "expansion) are u_common in --csv and --json. The values are those of results.json, "
+              "digit for digit. The history is OUT/history.sqlite, or a schema on the PostgreSQL "
+              "server of [database] in site.toml; any tool for them reads it: tables `evaluation`, "
+              "`result`, ..., view `point`.",
+          .examples = {"nonio machine list out S-0042 --axis X --quantity B_mean --csv"},
+          .run = [wish, &common] { return query(*wish, common); }};
 }
 
 }  // namespace nonio::app

@@ -16,8 +16,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* release_name = "nonio release";
-
 struct ReleaseVerbWish {
   std::string folder, by, role, out;
   std::vector<std::string> reasons;
@@ -59,7 +57,7 @@ void print(std::ostream& out, const WaitingDraft& draft) {
   if (const std::string why = batch::why_stale(draft); !why.empty())
     out << "  stale: " << why << "\n";
   for (const evaluation::KnownFinding& f : draft.findings) {
-    out << "  " << (f.attention ? "attention  " : "info       ") << certificates::finding_key(f)
+    out << "  " << (f.attention ? "warning    " : "info       ") << certificates::finding_key(f)
         << "  " << f.title;
     if (const std::string reason = reason_of(draft, f); !reason.empty())
       out << "  (" << reason << ")";
@@ -73,7 +71,7 @@ std::string dumped(const Json& json) {
 
 int list_drafts(const ReleaseVerbWish& wish, const Common& common) {
   const auto drafts = batch::waiting_drafts(wish.folder);
-  if (!drafts) return complain(release_name, text_of(drafts.error()));
+  if (!drafts) return complain(text_of(drafts.error()));
   if (common.json) {
     Json all = Json::array();
     for (const WaitingDraft& d : *drafts) all.push_back(draft_json(d));
@@ -104,28 +102,26 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
   using State = Released::State;
   if (common.json) std::cout << dumped(released_json(done)) << "\n";
   for (const std::string& note : done.notes)
-    if (!common.quiet) std::cerr << release_name << ": " << note << "\n";
+    if (!common.quiet) complain(note);
   switch (done.state) {
     case State::refused:
-      return complain(release_name, done.why);
+      return complain(done.why);
     case State::lacking:
       if (!common.json) print(std::cerr, *done.draft);
       for (const std::string& key : done.without_reason)
-        complain(release_name,
-                 key +
-                     " requires action and no reason is given for accepting it; expected "
-                     "--reason \"" +
-                     key + "=TEXT\"");
+        complain(key +
+                 " requires action and no reason is given for accepting it; expected "
+                 "--reason \"" +
+                 key + "=TEXT\"");
       return exit_failed;
     case State::approved:
       if (!common.json)
         std::cout << done.draft->campaign << " approved by " << wish.by
-                  << "; an authoriser releases it with nonio release " << wish.folder
+                  << "; an authoriser releases it with nonio certificate approve " << wish.folder
                   << " --by NAME --as authoriser\n";
       return exit_done;
     case State::failed:
-      return complain(release_name, done.why + " (nothing was issued by this command)",
-                      exit_failed);
+      return complain(done.why + " (nothing was issued by this command)", exit_failed);
     case State::issued:
       break;
   }
@@ -135,20 +131,18 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
     for (const fs::path& f : done.files) std::cout << "  " << f.string() << "\n";
   }
   if (!done.why.empty())
-    complain(release_name, done.why + " (it is issued; the next night gives its files)",
-             exit_failed);
+    complain(done.why + " (it is issued; the next night gives its files)", exit_failed);
   return done.why.empty() ? exit_done : exit_failed;
 }
 
 int release(const ReleaseVerbWish& wish, const Common& common) {
   if (wish.list) return list_drafts(wish, common);
-  if (wish.by.empty())
-    return complain(release_name, "--by NAME is missing: who releases it? Or --list");
+  if (wish.by.empty()) return complain("--by NAME is missing: who releases it? Or --list");
   batch::ReleaseRequest wanted{wish.folder, wish.by, wish.role, {}, wish.out};
   for (const std::string& given : wish.reasons) {
     const std::size_t equals = given.find('=');
     if (equals == std::string::npos || equals == 0)
-      return complain(release_name, "--reason wants FINDING=TEXT, found \"" + given + "\"");
+      return complain("--reason wants FINDING=TEXT, found \"" + given + "\"");
     wanted.reasons[given.substr(0, equals)] = given.substr(equals + 1);
   }
   batch::RunOptions base;
@@ -163,45 +157,41 @@ int release(const ReleaseVerbWish& wish, const Common& common) {
 
 }  // namespace
 
-Verb release_verb(Common& common) {
+Verb approve_verb(Common& common) {
   auto wanted = std::make_shared<ReleaseVerbWish>();
   using Takes = Argument::Takes;
   return {
-      .name = "release",
+      .name = "approve",
       .summary = "Issues a certificate from the draft of a nightly run",
       .arguments = joined(
           {required(existing(Takes::folder, {"CAMPAIGN", &wanted->folder,
                                              "Folder of the campaign; with --list also a site"})),
            {"--by", &wanted->by,
             "Name of the person who releases it, printed on the certificate. It is a statement, "
-            "not\n"
-            "an authentication; the register also keeps the account (user@host)"},
-           one_of({"author", "authoriser"}, {"--as", &wanted->role,
-                                             "author: approves the draft; an authoriser then "
-                                             "releases it. Default: author if the\n"
-                                             "site requires two persons, otherwise authoriser"}),
+            "not an authentication; the register also keeps the account (user@host)"},
+           one_of({"author", "authoriser"},
+                  {"--as", &wanted->role,
+                   "author: approves the draft; an authoriser then releases it. Default: author if "
+                   "the site requires two persons, otherwise authoriser"}),
            {"--reason", &wanted->reasons,
-            "FINDING=TEXT: reason why the certificate may be issued in spite of this finding.\n"
+            "FINDING=TEXT: reason why the certificate may be issued in spite of this finding. "
             "FINDING as printed by --list, or its id for all measurements"},
            {"--list", &wanted->list,
-            "List the drafts that wait, with their findings; release "
-            "nothing"},
+            "List the drafts that wait, with their findings; release nothing"},
            takes(Takes::folder,
                  {"--out", &wanted->out, "Output folder of the nightly run, if it was moved"}),
            templates_argument(common)},
           common_arguments(common)),
       .footer =
           "The nightly run makes a draft: OUT/CAMPAIGN/certificate-draft.pdf, marked on every "
-          "page, without\n"
-          "number and signature. Read the draft, check the findings, and release it. The "
-          "certificate\n"
-          "then gets a number, is signed, and is entered into the register of the site with "
-          "your name,\n"
-          "the time and the reasons. If data, plugins or templates have changed since the "
-          "draft was\n"
-          "made, repeat the nightly run first. Exit status 1 if a reason is missing.\n\n"
-          "Example: nonio release site/c1 --by \"B. Sample\" --reason \"X: drift=agreed with "
-          "the customer\"",
+          "page, without number and signature. Read the draft, check the findings, and release it. "
+          "The certificate then gets a number, is signed, and is entered into the register of the "
+          "site with your name, the time and the reasons. If data, plugins or templates have "
+          "changed since the draft was made, repeat the nightly run first. Exit status 1 if a "
+          "reason is missing.",
+      .examples = {"nonio certificate approve site/c1 --by \"B. Sample\" --reason \"X: "
+                   "drift=agreed with the "
+                   "customer\""},
       .run = [wanted, &common] { return release(*wanted, common); }};
 }
 

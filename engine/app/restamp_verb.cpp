@@ -12,8 +12,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* restamp_name = "nonio restamp";
-
 struct RestampWish {
   std::vector<std::string> files, answers, signers;
   std::string site, signer_roots, time_stamp_roots, trust, revoked, time_stamp, out;
@@ -45,10 +43,10 @@ int restamp(const RestampWish& wanted, const Common& common) {
   options.answers = {wanted.answers.begin(), wanted.answers.end()};
   options.fetch = !wanted.no_fetch;
   if (wanted.no_time_stamp && !wanted.time_stamp.empty())
-    return complain(restamp_name, "--time-stamp and --no-time-stamp exclude each other");
+    return complain("--time-stamp and --no-time-stamp exclude each other");
   const auto how = certificates::prolonging_of(options);
   if (!how) {
-    for (const Error& e : how.error()) complain(restamp_name, text_of(e));
+    for (const Error& e : how.error()) complain(text_of(e));
     return exit_usage;
   }
   const auto rows = certificates::register_rows(wanted.site);
@@ -58,26 +56,24 @@ int restamp(const RestampWish& wanted, const Common& common) {
     if (done)
       print(file, *done, common);
     else
-      status = complain(restamp_name, printable(file) + " " + printable(done.error().message),
-                        exit_failed);
+      status = complain(printable(file) + " " + printable(done.error().message), exit_failed);
   }
   return status;
 }
 
 }  // namespace
 
-Verb restamp_verb(Common& common) {
+Verb extend_verb(Common& common) {
   auto wanted = std::make_shared<RestampWish>();
   using Takes = Argument::Takes;
   return {
-      .name = "restamp",
+      .name = "extend",
       .summary = "Keeps signed certificates verifiable after keys and time servers expire",
       .arguments = joined(
           {required(takes(Takes::file, {"FILE", &wanted->files, "Signed certificates (PDF)"})),
            existing(Takes::folder, {"--site", &wanted->site,
                                     "Site whose site.toml, [signing], names trusted roots, "
-                                    "expected signer, time server and\n"
-                                    "revocation lists"}),
+                                    "expected signer, time server and revocation lists"}),
            takes(Takes::file, {"--signer-roots", &wanted->signer_roots,
                                "PEM file with the trusted root certificates of signers"}),
            takes(Takes::file, {"--time-stamp-roots", &wanted->time_stamp_roots,
@@ -95,27 +91,21 @@ Verb restamp_verb(Common& common) {
            {"--no-fetch", &wanted->no_fetch,
             "Do not contact addresses in certificates; use only the given data"},
            takes(Takes::folder, {"--out", &wanted->out,
-                                 "Folder for the files (default: overwrite the given "
-                                 "files)"})},
+                                 "Folder for the files (default: overwrite the given files)"})},
           common_arguments(common)),
       .footer =
-          "Adds to each file the certificates of its signer and time servers with their "
-          "revocation data\n"
-          "(revocation lists, OCSP responses), then a time stamp over the whole file (PAdES "
-          "B-LTA).\n"
-          "The issued bytes stay unchanged at the beginning of the file; `nonio verify` "
-          "accepts this\n"
-          "addition and no other. Restamp some days after the issue, and again before the "
-          "certificate\n"
-          "of the last time server expires: a later stamp protects the earlier ones. The "
-          "register keeps\n"
-          "the file as it was issued. Revocation data come from --revoked and --ocsp, "
-          "otherwise from the\n"
-          "addresses (http) in the certificates. If the status of a certificate cannot be "
-          "determined,\n"
-          "nothing is written. Exit status 0 only if all files were written.\n\n"
-          "Example: nonio certificates site --out archive && nonio restamp --site site "
-          "archive/*.pdf",
+          "Adds to each file the certificates of its signer and time servers with their revocation "
+          "data (revocation lists, OCSP responses), then a time stamp over the whole file (PAdES "
+          "B-LTA). The issued bytes stay unchanged at the beginning of the file; `nonio "
+          "certificate verify` "
+          "accepts this addition and no other. Extend it some days after the issue, and again "
+          "before "
+          "the certificate of the last time server expires: a later stamp protects the earlier "
+          "ones. The register keeps the file as it was issued. Revocation data come from --revoked "
+          "and --ocsp, otherwise from the addresses (http) in the certificates. If the status of a "
+          "certificate cannot be determined, nothing is written. Exit status 0 only if all files "
+          "were written.",
+      .examples = {"nonio certificate extend --site site archive/S-0001.pdf archive/S-0002.pdf"},
       .run = [wanted, &common] { return restamp(*wanted, common); }};
 }
 

@@ -3,16 +3,61 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "platform/process/stop.h"
+#include "platform/storage/files.h"
+#include "platform/storage/nearest.h"
+#include "text_layout.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
+
+namespace {
+
+/// One line per campaign that requires action, as far as they fit a screen: from summary.json, which
+/// the run has just written.
+void print_actions(const fs::path& out) {
+  constexpr std::size_t most_campaigns = 20;
+  const auto text = storage::read_file(out / "summary.json");
+  const Json summary = text ? Json::parse(*text, nullptr, false) : Json();
+  if (!summary.is_object() || !summary.contains("lines")) return;
+  struct Campaign {
+    std::string id, says;
+    std::vector<std::string> of{};  ///< axes and quantities
+    std::size_t more = 0;           ///< actions with other texts
+  };
+  std::vector<Campaign> campaigns;
+  for (const Json& line : summary["lines"]) {
+    const std::string kind = line.value("kind", ""), id = line.value("campaign", "");
+    if (line.value("state", "") != "new" || id.empty() || kind == "failed" || kind == "information")
+      continue;  // what failed has been printed already
+    const std::string axis = line.value("axis", ""), quantity = line.value("quantity", ""),
+                      of = axis + (axis.empty() || quantity.empty() ? "" : " ") + quantity,
+                      says = line.value("says", "");
+    auto same = std::find_if(campaigns.begin(), campaigns.end(),
+                             [&](const Campaign& one) { return one.id == id; });
+    if (same == campaigns.end()) same = campaigns.insert(same, {id, says});
+    if (same->says != says) ++same->more;
+    if (same->says == says && !of.empty()) same->of.push_back(of);
+  }
+  for (std::size_t i = 0; i < std::min(campaigns.size(), most_campaigns); ++i) {
+    const Campaign& c = campaigns[i];
+    std::cout << wrapped(
+        "action required  " + c.id + (c.of.empty() ? "" : " (" + storage::listed(c.of) + ")") +
+            ": " + c.says + (c.more == 0 ? "" : " And " + std::to_string(c.more) + " more."),
+        0, sentence_width(STDOUT_FILENO), 4);
+  }
+  if (campaigns.size() > most_campaigns)
+    std::cout << "and " << campaigns.size() - most_campaigns << " more campaigns\n";
+}
+
+}  // namespace
 
 void print_summary(const batch::Night& night, const fs::path& out, bool json) {
   std::size_t done = 0, unchanged = 0, attention = 0, failed = 0;
@@ -25,22 +70,20 @@ void print_summary(const batch::Night& night, const fs::path& out, bool json) {
       ++unchanged;
     if (c.status == evaluation::Status::attention) ++attention;
   }
-  // Findings are counted by campaign; what somebody must decide, by line.
+  // Findings are counted by campaign; actions by line of the worklist.
   if (json) {
     Json end = {{"event", "end"},         {"done", done},     {"unchanged", unchanged},
                 {"attention", attention}, {"failed", failed}, {"vanished", night.vanished.size()}};
     if (night.asking) end["decisions"] = *night.asking;
     end["summary"] = (out / "summary.json").string();
-    std::cout << end.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+    print_json(end, -1);
     return;
   }
+  if (night.asking && *night.asking > 0) print_actions(out);
   std::cout << done << " done, " << unchanged << " unchanged, " << failed << " failed; "
             << (night.vanished.empty() ? "" : std::to_string(night.vanished.size()) + " vanished; ")
-            << attention << (attention == 1 ? " has findings" : " have findings");
-  if (night.asking)
-    std::cout << "; action required: " << *night.asking
-              << (*night.asking == 1 ? " line" : " lines");
-  std::cout << ": " << (out / "summary.txt").string() << "\n";
+            << (night.asking ? "actions required: " + std::to_string(*night.asking) + "; " : "")
+            << (out / "summary.txt").string() << "\n";
 }
 
 namespace {
@@ -75,16 +118,15 @@ void prepare_run(batch::RunOptions& options, const std::string& site, const std:
   options.as_root = options.as_root || std::getenv("NONIO_ALLOW_ROOT") != nullptr;
   catch_signals();
   if (::geteuid() == 0 && !options.as_root && !common.quiet)
-    std::cerr << "nonio: this runs as root, for whom nothing needs it: expected a user of its own "
-                 "(the package's service runs as nonio), or --root to say that it is meant\n";
+    std::cerr << "nonio: warning: running as root is not needed. Use a dedicated user (the service "
+                 "uses nonio), or pass --root.\n";
 }
 
-std::optional<int> exit_of_unfinished(const batch::Night& night, const char* verb) {
-  if (night.end == batch::Night::End::refused) return complain(verb, night.error);
+std::optional<int> exit_of_unfinished(const batch::Night& night) {
+  if (night.end == batch::Night::End::refused) return complain(night.error);
   if (night.end == batch::Night::End::interrupted)
-    return complain(verb, "interrupted; the same command goes on where it stopped",
-                    exit_interrupted);
-  if (!night.error.empty()) return complain(verb, night.error, exit_failed);
+    return complain("interrupted; the same command goes on where it stopped", exit_interrupted);
+  if (!night.error.empty()) return complain(night.error, exit_failed);
   return std::nullopt;
 }
 

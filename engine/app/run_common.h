@@ -14,7 +14,7 @@ namespace nonio::app {
 void prepare_run(batch::RunOptions& options, const std::string& site, const std::string& out,
                  const Common& common);
 /// The exit status of a night or a part of it that did not get to its end; none if it did.
-std::optional<int> exit_of_unfinished(const batch::Night& night, const char* verb);
+std::optional<int> exit_of_unfinished(const batch::Night& night);
 /// The night's counts and where its summary is.
 void print_summary(const batch::Night& night, const std::filesystem::path& out, bool json);
 

@@ -35,12 +35,11 @@ void print_night_plan(const batch::Night& night, bool json) {
         c.action == batch::CampaignState::Action::todo && c.status == evaluation::Status::failed;
     const std::string reason = collides ? c.errors().front().message : c.reason;
     if (json)
-      std::cout << Json{{"id", c.id},
-                        {"folder", storage::path_text(c.folder.view())},
-                        {"action", collides ? "refused" : to_text(c.action)},
-                        {"reason", reason}}
-                       .dump(-1, ' ', false, Json::error_handler_t::replace)
-                << "\n";
+      print_json(Json{{"id", c.id},
+                      {"folder", storage::path_text(c.folder.view())},
+                      {"action", collides ? "refused" : to_text(c.action)},
+                      {"reason", reason}},
+                 -1);
     else
       std::cout << (collides ? "refused" : to_text(c.action)) << "  " << c.id << ": " << reason
                 << "\n";
@@ -63,7 +62,7 @@ std::string take_shard(RunWish& wish) {
       !options.only.empty())
     return "--shard goes with --jobs and --pack alone: whether and when campaigns are done is "
            "planned "
-           "(nonio night plan --help)";
+           "(nonio run plan --help)";
   const char* const end = wish.shard.data() + wish.shard.size();
   const auto number = std::from_chars(wish.shard.data(), end, options.shard);
   const bool is_number = number.ec == std::errc() && number.ptr != end && *number.ptr == '/';
@@ -77,11 +76,10 @@ std::string take_shard(RunWish& wish) {
 
 /// One shard of a planned night.
 int run_part(const batch::RunOptions& options, const Common& common) {
-  const char* const verb = "nonio run --shard";
   Progress progress(common.quiet, common.json);
   const batch::Night night = batch::run_shard(options, progress.events());
   progress.end();
-  if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
+  if (const auto exit = exit_of_unfinished(night)) return *exit;
   const auto left = static_cast<std::size_t>(
       std::count_if(night.campaigns.begin(), night.campaigns.end(),
                     [](const auto& c) { return c.action == batch::CampaignState::Action::todo; }));
@@ -104,20 +102,19 @@ int run_part(const batch::RunOptions& options, const Common& common) {
 }
 
 int run_night(RunWish& wish, const Common& common) {
-  const char* const verb = "nonio run";
-  if (wish.out.empty()) return complain(verb, "--out is empty; expected a folder");
+  if (wish.out.empty()) return complain("--out is empty; expected a folder");
   batch::RunOptions& options = wish.options;
   if (!options.date.empty() && !is_day(options.date))
-    return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
+    return complain("--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   if (!options.only.empty() && (options.force || !options.date.empty()))
-    return complain(verb, "--only goes with neither --force nor --date");
+    return complain("--only goes with neither --force nor --date");
   if (wish.shard == not_given && (options.pack || !wish.scratch.empty()))
-    return complain(verb, "--pack and --scratch are of a shard; expected --shard i/S with them");
+    return complain("--pack and --scratch are of a shard; expected --shard i/S with them");
   if (!wish.scratch.empty() && !options.pack)
-    return complain(verb, "--scratch is where a packed shard works; expected --pack with it");
+    return complain("--scratch is where a packed shard works; expected --pack with it");
   options.scratch = wish.scratch;
   if (wish.shard != not_given) {
-    if (const auto wrong = take_shard(wish); !wrong.empty()) return complain(verb, wrong);
+    if (const auto wrong = take_shard(wish); !wrong.empty()) return complain(wrong);
     prepare_run(options, wish.site, wish.out, common);
     return run_part(options, common);
   }
@@ -125,7 +122,7 @@ int run_night(RunWish& wish, const Common& common) {
   Progress progress(common.quiet, common.json);
   const batch::Night night = batch::run_site(options, progress.events());
   progress.end();
-  if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
+  if (const auto exit = exit_of_unfinished(night)) return *exit;
   // What a night before has already said is said again: a failed campaign is never silent.
   if (!common.json && !options.dry_run) progress.still_failed(night);
   if (options.dry_run)
@@ -152,37 +149,34 @@ Verb run_verb(Common& common) {
                           {"--out", &wish->out,
                            "Folder for the results: one folder per campaign, and the summary"})),
            jobs_argument(options),
-           {"--force", &options.force, "Do every campaign again, changed or not"},
+           {"--force", &options.force, "Evaluate every campaign again, changed or not"},
            {"--only", &options.only,
-            "One campaign (its folder, or its id) of the last night again, changed or\n"
-            "not; all others stay as the night left them, and the night keeps its number"},
+            "Evaluate a single campaign (folder or id) of the last run again; all other results "
+            "are kept, and the run keeps its number"},
            {"--verify-results", &options.verify_results,
-            "Compare the digests of all result files, not only of those that look modified; a\n"
+            "Compare the digests of all result files, not only of those that look modified; a "
             "campaign with a modified file is evaluated again"},
            {"--date", &options.date,
-            "Date of the night, YYYY-MM-DD, for the summary (default: today; a resumed run keeps\n"
+            "Date of the run, YYYY-MM-DD, for the summary (default: today; a resumed run keeps "
             "its date)"},
-           {"--dry-run", &options.dry_run, "Print what would be done and why; do nothing"},
+           {"--dry-run", &options.dry_run, "Print what would be evaluated and why; write nothing"},
            {"--shard", &wish->shard,
-            "i/S: only part i = 0 .. S-1 of a night that `nonio night plan` has planned for S\n"
-            "parts; on any host that has SITE and DIR, in any order, also several times"},
+            "i/S: only shard i = 0 .. S-1 of a run that `nonio run plan` has divided into S "
+            "shards; on any host that has SITE and OUT, in any order, also repeatedly"},
            {"--pack", &options.pack,
-            "With --shard: do the campaigns in a folder of this host and hand their results over "
-            "as\n"
-            "one file in DIR/.nonio/packs. Every verb reads them there; `nonio get` writes them "
-            "out"},
-           existing(Takes::folder,
-                    {"--scratch", &wish->scratch,
-                     "With --pack: the folder of this host (default: TMPDIR, or /tmp). "
-                     "It needs room\nfor the results of the shard, twice"}),
+            "With --shard: work in a folder of this host and store the results as one file in "
+            "OUT/.nonio/packs. Every command reads them there; `nonio export` writes them into "
+            "folders"},
+           existing(Takes::folder, {"--scratch", &wish->scratch,
+                                    "With --pack: the folder of this host (default: TMPDIR, or "
+                                    "/tmp). It needs room for the results of the shard, twice"}),
            root_argument(options),
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "A campaign is evaluated again only if its files, site.toml, a plugin, a template or "
-          "the\n"
-          "program have changed. A run that was killed resumes where it stopped.\n\n"
-          "Example: nonio run samples/site --out out",
+          "A campaign is evaluated again only if its files, site.toml, a plugin, a template or the "
+          "program have changed. A run that was killed resumes where it stopped.",
+      .examples = {"nonio run samples/site --out out"},
       .run = [wish, &common] { return run_night(*wish, common); }};
 }
 

@@ -15,13 +15,12 @@ namespace {
 
 using Schema = std::string (*)(const loader::Plugins&);
 
-int write_schema(const std::string& verb, Schema schema, const std::string& out,
-                 const Common& common) {
+int write_schema(Schema schema, const std::string& out, const Common& common) {
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
-  if (!plugins.conflicts().empty()) return complain(verb, plugins.conflicts().front());
+  if (!plugins.conflicts().empty()) return complain(plugins.conflicts().front());
   for (const std::string& note : plugins.refusal_notes())
-    std::cerr << verb << ": its names and options are not in the schema: " << note << "\n";
+    complain("its names and options are not in the schema: " + note);
   const std::string text = schema(plugins);
   if (out.empty()) {
     std::cout << text;
@@ -29,14 +28,13 @@ int write_schema(const std::string& verb, Schema schema, const std::string& out,
   }
   const fs::path path = fs::absolute(out);
   if (!path.has_filename() || fs::is_directory(path))
-    return complain(verb, out + " is a folder; expected a file");
+    return complain(out + " is a folder; expected a file");
   const auto written = storage::publish(path.parent_path(), {{path.filename().string(), text}});
-  return written ? exit_done : complain(verb, text_of(written.error()), exit_failed);
+  return written ? exit_done : complain(text_of(written.error()), exit_failed);
 }
 
 Verb schema_of(const std::string& file, Schema schema, Common& common) {
   auto out = std::make_shared<std::string>();
-  const std::string verb = "nonio schema " + file;
   return {
       .name = file,
       .summary = "JSON schema of " + file + ".toml",
@@ -44,10 +42,9 @@ Verb schema_of(const std::string& file, Schema schema, Common& common) {
                                  {"--out", out.get(), "File for the schema (default: stdout)"})},
                           common_arguments(common)),
       .footer = "An editor finds the schema by the first line of " + file +
-                ".toml, with the path from there:\n\n    #:schema ../" + file +
-                ".schema.json\n\nExample: nonio schema " + file + " --out site/" + file +
-                ".schema.json",
-      .run = [=, &common] { return write_schema(verb, schema, *out, common); }};
+                ".toml, with the path from there:\n\n    #:schema ../" + file + ".schema.json",
+      .examples = {"nonio schema " + file + " --out site/" + file + ".schema.json"},
+      .run = [=, &common] { return write_schema(schema, *out, common); }};
 }
 
 }  // namespace

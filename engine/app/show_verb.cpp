@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `nonio show`: results.json for a person at a terminal, read from a night's
 // folder or made now.
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,7 +8,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "campaign/config/template_files.h"
 #include "campaign/config/terminal_words.h"
@@ -20,7 +18,10 @@
 #include "nonio/sdk/format.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
+#include "platform/storage/nearest.h"
+#include "platform/storage/pack.h"
 #include "results_folder.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -30,7 +31,8 @@ namespace fs = std::filesystem;
 namespace {
 
 struct ShowWish {
-  std::string folder;
+  std::string folder, out = "out";
+  bool all = false, opens = false;
 };
 
 /// results.json and the words to say it in.
@@ -47,7 +49,7 @@ Expected<Shown> evaluated_now(const fs::path& folder, const Common& common) {
                                        NONIO_VERSION);
   if (!place) return fail(place.error());
   if (!common.quiet)
-    for (const std::string& note : (*place)->notes) complain("nonio show", note);
+    for (const std::string& note : (*place)->notes) complain(note);
   const reading::Context& context = (*place)->context;
   const evaluation::Evaluated evaluated =
       evaluation::evaluate(folder, id_of_campaign(folder), context, [](const std::string&) {});
@@ -101,36 +103,59 @@ Finding finding_of(const Json& json) {
   return f;
 }
 
-/// Columns of characters, not bytes.
-std::size_t columns_of(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+/// Parts of a sentence with a separator between those that are not empty.
+std::string joined_text(const std::vector<std::string>& parts, const char* between) {
+  std::string text;
+  for (const std::string& part : parts)
+    if (!part.empty()) text += (text.empty() ? "" : between) + part;
+  return text;
 }
 
-std::string to_width(std::string text, std::size_t width, bool left = false) {
-  const std::size_t has = columns_of(text);
-  const std::string space(has < width ? width - has : 0, ' ');
-  return left ? space + text : text + space;
+/// One finding of the campaign, with all measurements that have it.
+struct Grouped {
+  std::string severity, title;
+  std::vector<std::string> measurements{}, says{}, advice{};
+};
+
+void add_once(std::vector<std::string>& texts, const std::string& text) {
+  if (!text.empty() && std::find(texts.begin(), texts.end(), text) == texts.end())
+    texts.push_back(text);
+}
+
+/// What requires action comes first: results outside their tolerance, then those that cannot be
+/// decided, then those that conform, then those without tolerance.
+int rank_of(const Json& value) {
+  const std::string decision = value.value("decision", "");
+  if (decision.empty()) return 3;
+  if (decision == "does not conform" || decision == "fail") return 0;
+  return decision == "cannot be decided" ? 1 : 2;
 }
 
 class Page {
  public:
-  Page(const Shown& shown, std::ostream& out) : say_(shown.templates, shown.language), out_(out) {
-    winsize size{};
-    const bool known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col != 0;
-    width_ = known ? std::clamp<std::size_t>(size.ws_col, 80, 120) : 80;
-  }
+  Page(const Shown& shown, bool all, std::string folder, std::ostream& out)
+      : say_(shown.templates, shown.language),
+        all_(all),
+        folder_(std::move(folder)),
+        out_(out),
+        width_(line_width(STDOUT_FILENO)) {}
 
   void print(const Json& results) {
     head(results);
     for (const Json& e : results.at("errors")) error(e);
-    std::vector<std::string> seen;
-    for (const Json& a : results.at("analyses")) analysis(a, seen);
+    std::string measurement;
+    for (const Json& a : results.at("analyses")) analysis(a, measurement);
     if (results.contains("conformity")) undecided(results.at("conformity"));
-    if (results.contains("tables"))
-      for (const Json& t : results.at("tables")) table(t);
-    notes(results, "");
+    const Json tables = results.value("tables", Json::array());
+    for (const Json& t : tables) collect(t, "");
+    findings();
+    compensation(tables, results.at("outputs"));
+    if (results.contains("notes")) {
+      heading(say_("notes"));
+      notes(results);
+    }
     outputs(results);
+    if (!all_) out_ << wrapped(say_("show.all"), 0, width_);
   }
 
  private:
@@ -138,120 +163,132 @@ class Page {
     return coloured(text, colour, STDOUT_FILENO);
   }
   void heading(const std::string& text) { out_ << "\n" << paint(text, Colour::bold) << "\n"; }
+  std::string local(const std::string& number) const { return localised(number, say_.language()); }
 
-  void wrapped(const std::string& indent, const std::string& text) {
-    std::string line = indent;
-    std::size_t used = indent.size();
-    for (std::size_t i = 0; i < text.size();) {
-      const std::size_t end = std::min(text.find(' ', i), text.size());
-      const std::string word = text.substr(i, end - i);
-      if (used > indent.size() && used + 1 + columns_of(word) > width_) {
-        out_ << line << "\n";
-        line = indent;
-        used = indent.size();
-      }
-      if (used > indent.size()) line += ' ';
-      used += columns_of(word) + (used > indent.size() ? 1 : 0);
-      line += word;
-      i = end + 1;
-    }
-    out_ << line << "\n";
-  }
-
-  void entry(const std::string& name, const std::string& text) {
-    if (!text.empty()) out_ << "  " << to_width(say_.of("campaign", name), 12) << text << "\n";
+  static std::string name_of(const Json& thing) {
+    return joined_text(
+        {thing.value("maker", ""), thing.value("model", ""), thing.value("serial", "")}, " ");
   }
 
   void head(const Json& results) {
     const Json& c = results.at("campaign");
     const std::string status = results.at("status");
-    out_ << paint(c.at("id").get<std::string>(), Colour::bold) << "  "
-         << paint(say_.of("status", status), status_colour(status)) << "\n";
-    for (const char* name : {"customer", "site", "date", "operator"})
-      entry(name, c.value(name, ""));
-    for (const char* name : {"machine", "instrument"}) {
-      std::string text;
-      if (c.contains(name))
-        for (const char* part : {"maker", "model", "serial"})
-          if (const std::string word = c.at(name).value(part, ""); !word.empty())
-            text += (text.empty() ? "" : " ") + word;
-      entry(name, text);
-    }
+    const Json nothing = Json::object();
+    const std::string id = c.at("id"), verdict = say_.of("status", status);
+    out_ << paint(id, Colour::bold) << "  " << paint(verdict, status_colour(status)) << "\n"
+         << wrapped(joined_text({name_of(c.value("machine", nothing)), c.value("customer", ""),
+                                 c.value("site", ""), c.value("date", "")},
+                                " · "),
+                    2, width_);
+    if (all_)
+      for (const auto& [name, text] : {std::pair{"operator", c.value("operator", "")},
+                                       {"instrument", name_of(c.value("instrument", nothing))}})
+        if (!text.empty()) out_ << "  " << say_.of("campaign", name) << " " << text << "\n";
     if (!results.contains("certificate")) return;
     const Json& issued = results.at("certificate");
     const std::string replaced = issued.value("replaces", "");
-    entry("certificate",
-          say_("certificate-of",
-               {{"number", issued.value("number", "")}, {"date", issued.value("date", "")}}) +
-              (replaced.empty() ? "" : ", " + say_("replaces", {{"number", replaced}})));
+    out_ << "  " << say_("campaign.certificate") << " "
+         << say_("certificate-of",
+                 {{"number", issued.value("number", "")}, {"date", issued.value("date", "")}})
+         << (replaced.empty() ? "" : ", " + say_("replaces", {{"number", replaced}})) << "\n";
   }
 
   void error(const Json& e) {
     Error error{e.value("message", ""), e.value("file", ""), e.value("line", std::uint64_t{0})};
     error.column = e.value("column", "");
-    out_ << "\n" << paint(say_("error"), Colour::red) << "\n";
-    wrapped("  ", text_of(error));
+    out_ << "\n" << paint(say_("error"), Colour::red) << "\n" << wrapped(text_of(error), 2, width_);
   }
 
-  void analysis(const Json& a, std::vector<std::string>& seen) {
+  void analysis(const Json& a, std::string& last) {
     const std::string measurement = a.value("measurement", "");
-    if (!measurement.empty() && std::find(seen.begin(), seen.end(), measurement) == seen.end()) {
+    if (!measurement.empty() && measurement != last)
       heading(say_("measurement", {{"id", measurement}}));
-      seen.push_back(measurement);
-    }
-    const std::string name = a.at("plugin").get<std::string>() + " " + a.value("version", "");
-    measurement.empty() ? heading(name) : void(out_ << "  " << name << "\n");
-    values(a.at("values"));
+    last = measurement;
+    const Json& results = a.at("values");
+    if (measurement.empty() && (all_ || !results.empty())) out_ << "\n";
+    if (all_ || !results.empty())
+      out_ << "  " << a.at("plugin").get<std::string>() << " " << a.value("version", "") << "\n";
+    values(results);
+    collect(a, measurement);
+    if (!all_) return;
     if (a.contains("series"))
-      for (const auto& [series_name, s] : a.at("series").items()) series(series_name, s);
+      for (const auto& [name, s] : a.at("series").items()) series(name, s);
     if (a.contains("rows"))
       out_ << "    " << say_("rows", {{"count", std::to_string(a.at("rows").size())}}) << "\n";
-    for (const Json& f : a.at("findings")) finding(f, measurement);
-    notes(a, "  ");
+    notes(a);
   }
 
   /// To the second significant digit of U. Without one to three decimals, of what has no unit (a
   /// direction) to seven.
-  static std::string number(const Json& of, const char* key) {
+  std::string number(const Json& of, const char* key) const {
     if (!of.contains(key)) return {};
     const double value = of.at(key), U = of.value("U", 0.0);
     if (of.at(key).is_number_integer()) return std::to_string(of.at(key).get<std::int64_t>());
-    if (!(U > 0.0)) return fixed_text(value, of.value("unit", "").empty() ? 7 : 3);
-    return fixed_text(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, 12));
+    if (!(U > 0.0)) return local(fixed_text(value, of.value("unit", "").empty() ? 7 : 3));
+    return local(
+        fixed_text(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(U))), 0, 12)));
   }
 
-  static std::string shortest(double value) {
-    std::string text;
-    append_shortest(text, value);
-    return text;
+  /// "4.82 ± 1.00 um"
+  std::string result(const Json& v) const {
+    const std::string U = number(v, "U"), unit = v.value("unit", "");
+    if (U.empty() && unit.empty() && v.at("value").is_number_float())
+      return local(short_text(v.at("value").get<double>(), 4));
+    return joined_text({number(v, "value"), U.empty() ? "" : "± " + U, unit}, " ");
   }
 
   void values(const Json& all) {
-    if (all.empty()) return;
-    bool limits = false;
-    std::size_t name_width = 8, value_width = 12, U_width = 10;
-    for (const auto& [name, v] : all.items()) {
-      limits = limits || v.contains("decision");
+    std::vector<std::pair<std::string, Json>> rows, rest;
+    for (const auto& [name, v] : all.items())
+      (all_ || v.contains("decision") ? rows : rest).emplace_back(name, v);
+    std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
+      return rank_of(a.second) < rank_of(b.second);
+    });
+    table(rows);
+    // Of the two directions only with --all.
+    std::erase_if(rest, [&](const auto& row) {
+      return row.first.size() > 1 && (row.first.ends_with('+') || row.first.ends_with('-')) &&
+             all.contains(row.first.substr(0, row.first.size() - 1));
+    });
+    std::string text;
+    for (std::size_t i = 0; i < std::min(rest.size(), most_values); ++i)
+      text += (i == 0 ? "" : ", ") + rest[i].first + " " + result(rest[i].second);
+    if (rest.size() > most_values)
+      text += ", " + say_("show.more", {{"count", std::to_string(rest.size() - most_values)}});
+    if (!text.empty()) out_ << wrapped(text, 4, width_);
+  }
+
+  void table(const std::vector<std::pair<std::string, Json>>& rows) {
+    if (rows.empty()) return;
+    std::size_t name_width = 8, value_width = 8, U_width = 8, unit_width = 4;
+    for (const auto& [name, v] : rows) {
       name_width = std::max(name_width, columns_of(name) + 1);
       value_width = std::max(value_width, number(v, "value").size());
       U_width = std::max(U_width, number(v, "U").size() + 1);
+      unit_width = std::max(unit_width, v.value("unit", "").size());
     }
-    out_ << "    " << to_width("", name_width) << to_width(say_("value"), value_width, true)
-         << to_width("U", U_width, true) << "  "
-         << (limits ? to_width(say_("unit"), 10) + to_width(say_("limit"), 9, true) + "  " +
+    const bool limits = rank_of(rows.front().second) != 3;
+    out_ << "    " << padded("", name_width + 3) << padded_left(say_("value"), value_width)
+         << padded_left("U", U_width) << "  "
+         << (limits ? padded(say_("unit"), unit_width) + padded_left(say_("limit"), 11) + "  " +
                           say_("decision")
                     : say_("unit"))
          << "\n";
-    for (const auto& [name, v] : all.items()) {
-      out_ << "    " << to_width(name, name_width)
-           << to_width(number(v, "value"), value_width, true)
-           << to_width(number(v, "U"), U_width, true) << "  ";
-      const std::string unit = v.value("unit", ""), decision = v.value("decision", "");
-      if (decision.empty())
+    constexpr const char* marks[] = {"!  ", "?  ", "ok ", "   "};
+    for (const auto& [name, v] : rows) {
+      const std::string decision = v.value("decision", ""), unit = v.value("unit", "");
+      const std::string row = padded(name, name_width) +
+                              padded_left(number(v, "value"), value_width) +
+                              padded_left(number(v, "U"), U_width) + "  ";
+      out_ << "    " << marks[rank_of(v)] << row;
+      if (decision.empty()) {
         out_ << unit << "\n";
-      else
-        out_ << to_width(unit, 10) << to_width(shortest(v.at("tolerance").get<double>()), 9, true)
-             << "  " << paint(say_.of("decision", decision), status_colour(decision)) << "\n";
+        continue;
+      }
+      std::string limit;
+      append_shortest(limit, v.at("tolerance").get<double>());
+      out_ << padded(unit, unit_width) << padded_left(local(limit), 11) << "  "
+           << paint(say_.of("decision", decision), status_colour(decision)) << "\n";
     }
   }
 
@@ -263,39 +300,63 @@ class Page {
         most = std::max(most, v.get<double>());
       }
     if (!(least <= most)) return;
-    out_ << "    " << to_width(name + " ", 8)
+    out_ << "    " << padded(name + " ", 8)
          << say_("series", {{"over", s.value("over", "")},
-                            {"low", fixed_text(least, 3)},
-                            {"high", fixed_text(most, 3)},
+                            {"low", local(fixed_text(least, 3))},
+                            {"high", local(fixed_text(most, 3))},
                             {"unit", s.value("unit", "")}})
          << "\n";
   }
 
-  std::string said_of(const Finding& f, const char* part) const {
-    return finding_text(say_.templates(), say_.language(), f, part);
+  /// The findings of an analysis or table to those that other measurements have too.
+  void collect(const Json& of, const std::string& measurement) {
+    if (!of.contains("findings")) return;
+    for (const Json& json : of.at("findings")) {
+      const Finding f = finding_of(json);
+      const auto text = [&](const char* part) {
+        return finding_text(say_.templates(), say_.language(), f, part);
+      };
+      const std::string severity = f.attention ? "attention" : "info", title = text("title");
+      auto same = std::find_if(findings_.begin(), findings_.end(), [&](const Grouped& g) {
+        return g.severity == severity && g.title == title;
+      });
+      if (same == findings_.end()) same = findings_.insert(same, {severity, title});
+      const std::string where = f.measurement.empty() ? measurement : f.measurement;
+      add_once(same->measurements, where);
+      const std::string says = text("says");
+      add_once(same->says, where.empty() || says.empty() ? says : where + ": " + says);
+      add_once(same->advice, text("advice"));
+    }
   }
 
-  /// Two analyses of one measurement may find the same.
-  void finding(const Json& json, const std::string& measurement) {
-    const Finding f = finding_of(json);
-    const bool again = !told_.insert(measurement + "\n" + json.dump()).second;
-    if (again && !f.attention) return;
-    const std::string of = f.measurement.empty() ? "" : f.measurement + ": ";
-    out_ << "    "
-         << (f.attention ? paint(to_width(say_("severity.attention"), 9), Colour::yellow)
-                         : to_width(say_("severity.info"), 9))
-         << "  " << of << said_of(f, "title") << (again ? ": " + say_("as-above") : "") << "\n";
-    if (again) return;
-    if (const std::string says = said_of(f, "says"); !says.empty())
-      wrapped("               ", says);
-    if (const std::string advice = said_of(f, "advice"); !advice.empty())
-      wrapped("               ", say_("advice") + ": " + advice);
+  /// Each finding once. Without --all the text of those that require action, and the titles of the
+  /// others.
+  void findings() {
+    if (findings_.empty()) return;
+    heading(say_("findings"));
+    std::stable_partition(findings_.begin(), findings_.end(),
+                          [](const Grouped& g) { return g.severity == "attention"; });
+    for (const Grouped& g : findings_) {
+      const bool is_warning = g.severity == "attention";
+      const std::string severity = padded(say_.of("severity", g.severity), 9);
+      const std::string where =
+          g.measurements.empty() ? "" : " (" + storage::listed(g.measurements) + ")";
+      out_ << "  " << (is_warning ? paint(severity, Colour::yellow) : severity)
+           << wrapped(g.title + where, 11, width_).substr(11);
+      if (!is_warning && !all_) continue;
+      for (const std::string& says : g.says) {
+        const bool is_only = g.says.size() == 1 && g.measurements.size() == 1;
+        out_ << wrapped(is_only ? says.substr(g.measurements.front().size() + 2) : says, 11,
+                        width_);
+      }
+      for (const std::string& advice : g.advice)
+        out_ << wrapped(say_("advice") + ": " + advice, 11, width_);
+    }
   }
 
-  void notes(const Json& of, const std::string& indent) {
+  void notes(const Json& of) {
     if (!of.contains("notes")) return;
-    if (indent.empty()) heading(say_("notes"));
-    for (const Json& note : of.at("notes")) wrapped(indent + "  ", note.get<std::string>());
+    for (const Json& note : of.at("notes")) out_ << wrapped(note.get<std::string>(), 4, width_);
   }
 
   void undecided(const Json& all) {
@@ -305,59 +366,98 @@ class Page {
       if (!std::exchange(any, true)) heading(say_("undecided"));
       const std::string reason = c.value("reason", ""),
                         why = words(say_.templates(), say_.language(), "results." + reason);
-      out_ << "  " << say_("head.axis") << " " << c.value("axis", "") << ", " << c.value("name", "")
-           << ": " << (why.empty() ? reason : why) << "\n";
+      out_ << wrapped(say_("head.axis") + " " + c.value("axis", "") + ", " + c.value("name", "") +
+                          ": " + (why.empty() ? reason : why),
+                      2, width_);
     }
   }
 
-  void table(const Json& t) {
-    heading(t.at("plugin").get<std::string>() + " " + t.value("version", ""));
-    if (t.contains("predictions"))
-      for (const Json& p : t.at("predictions"))
-        out_ << "    " << p.value("measurement", "") << ", " << p.value("name", "") << ": "
-             << say_("predicted", {{"before", fixed_text(p.at("before").get<double>(), 3)},
-                                   {"after", fixed_text(p.at("predicted").get<double>(), 3)},
-                                   {"unit", p.value("unit", "")}})
-             << "\n";
-    if (t.contains("findings"))
-      for (const Json& f : t.at("findings")) finding(f, "");
-    notes(t, "  ");
+  /// What each table would leave, by measurement, and how many files it has.
+  void compensation(const Json& tables, const Json& written) {
+    bool is_first = true;
+    for (const Json& t : tables) {
+      const std::string plugin = t.at("plugin");
+      const auto files = std::count_if(written.begin(), written.end(), [&](const Json& o) {
+        return o.value("plugin", "") == plugin;
+      });
+      if (files == 0 && !all_) continue;
+      if (std::exchange(is_first, false)) heading(say_("compensation"));
+      out_ << "  " << plugin << ": " << say_("files") << " " << files << "\n";
+      std::string last;
+      std::vector<std::string> parts;
+      const auto flush = [&] {
+        if (!parts.empty()) out_ << wrapped(last + ": " + joined_text(parts, ", "), 4, width_, 2);
+        parts.clear();
+      };
+      for (const Json& p : t.value("predictions", Json::array())) {
+        if (p.value("measurement", "") != last) flush();
+        last = p.value("measurement", "");
+        const auto three = [&](const char* key) {
+          return local(short_text(p.at(key).get<double>(), 3));
+        };
+        parts.push_back(p.value("name", "") + " " +
+                        say_("predicted", {{"before", three("before")},
+                                           {"after", three("predicted")},
+                                           {"unit", p.value("unit", "")}}));
+      }
+      flush();
+      if (all_)
+        notes(t);
+      else if (const std::size_t count = t.value("notes", Json::array()).size(); count > 0)
+        out_ << "    " << say_("show.notes", {{"count", std::to_string(count)}}) << "\n";
+    }
   }
 
   void outputs(const Json& results) {
-    if (results.at("outputs").empty()) return;
-    heading(say_("files"));
-    for (const Json& o : results.at("outputs"))
-      out_ << "  " << to_width(o.at("file"), 34) << " " << o.value("plugin", "") << "\n";
+    const Json& all = results.at("outputs");
+    if (all_ && !all.empty()) heading(say_("files"));
+    std::string report;
+    for (const Json& o : all) {
+      const std::string file = o.at("file");
+      if (all_) out_ << "  " << padded(file, 34) << " " << o.value("plugin", "") << "\n";
+      if (report.empty() && file.starts_with("report") && file.ends_with(".pdf")) report = file;
+    }
+    if (!report.empty() && !folder_.empty())
+      out_ << "\n" << say_("report") << ": " << (fs::path(folder_) / report).string() << "\n";
+    else if (!all_)
+      out_ << "\n";
   }
 
+  static constexpr std::size_t most_values = 8;  ///< without --all, of one analysis
+
   config::TerminalWords say_;
+  bool all_;
+  std::string folder_;  ///< of the results; empty: they are not stored
   std::ostream& out_;
-  std::size_t width_ = 80;
-  std::set<std::string> told_{};
+  std::size_t width_;
+  std::vector<Grouped> findings_{};
 };
 
 int show(const ShowWish& wish, const Common& common) {
-  const char* const verb = "nonio show";
+  if (wish.opens) return open_document(wish.folder, wish.out, common);
+  if (wish.folder.empty()) return complain("expected a campaign, its results, or a machine");
   const fs::path folder = results_at(wish.folder);
   const Holds holds = what_holds(folder);
+  if (holds == Holds::nothing && !fs::exists(folder) && what_holds(wish.out) == Holds::night)
+    return show_machine(wish.out, wish.folder, common);
   if (holds == Holds::night)
-    return complain(verb, folder.string() + " holds the results of a night; expected " +
-                              (folder / "ID").string() + " (summary.txt lists them)");
-  if (holds == Holds::nothing) return complain(verb, holds_nothing(folder));
+    return complain(folder.string() + " holds the results of a night; expected " +
+                    (folder / "ID").string() + " (summary.txt lists them)");
+  if (holds == Holds::nothing) return complain(holds_nothing(folder));
   const auto shown =
       holds == Holds::campaign ? evaluated_now(folder, common) : of_night(folder, common);
-  if (!shown) return complain(verb, text_of(shown.error()));
+  if (!shown) return complain(text_of(shown.error()));
+  const bool is_stored = holds == Holds::results && !storage::in_pack(folder);
   try {
     const Json results = Json::parse(shown->text);
     if (common.json)
       std::cout << shown->text;
     else
-      Page(*shown, std::cout).print(results);
+      Page(*shown, wish.all, is_stored ? folder.string() : "", std::cout).print(results);
     return results.at("status") == "failed" ? exit_failed : exit_done;
   } catch (const Json::exception& e) {
-    return complain(verb, (folder / evaluation::results_name).string() +
-                              ": expected results of a campaign (nonio-results/1): " + e.what());
+    return complain((folder / evaluation::results_name).string() +
+                    ": expected results of a campaign (nonio-results/1): " + e.what());
   }
 }
 
@@ -365,21 +465,34 @@ int show(const ShowWish& wish, const Common& common) {
 
 Verb show_verb(Common& common) {
   auto wish = std::make_shared<ShowWish>();
-  return {.name = "show",
-          .summary = "Shows values, decisions and findings of one campaign in the terminal",
-          .arguments = joined({required(takes(Argument::Takes::folder,
-                                              {"CAMPAIGN|OUT/ID", &wish->folder,
-                                               "A campaign (evaluated now, nothing is written), "
-                                               "or its results from a nightly run"})),
-                               templates_argument(common)},
-                              common_arguments(common)),
-          .footer =
-              "--json prints the text of results.json.\n\n"
-              "Exit status: 0 shown; 1 shown, and the campaign failed; 2 usage or "
-              "configuration.\n\n"
-              "Examples: nonio show samples/site/09-tolerances\n"
-              "          nonio show out/09-tolerances",
-          .run = [wish, &common] { return show(*wish, common); }};
+  using Takes = Argument::Takes;
+  return {
+      .name = "show",
+      .summary = "Shows the results of a campaign, or the history of a machine",
+      .arguments = joined(
+          {takes(Takes::folder,
+                 {"CAMPAIGN|OUT/ID|MACHINE", &wish->folder,
+                  "A campaign (evaluated now, nothing is written), its results from a run, or the "
+                  "name of a machine"}),
+           {"--all", &wish->all, "All values, curves, findings with their texts, notes and files"},
+           {"--open", &wish->opens,
+            "Open the report on the desktop, or else the page or results.json, and print its path. "
+            "Of a run: the first campaign that requires action. Without CAMPAIGN: what the current "
+            "folder or --out contains"},
+           takes(Takes::folder, {.name = "--out",
+                                 .target = &wish->out,
+                                 .help = "Output folder of `nonio run` with the machine or report",
+                                 .shows_default = true}),
+           templates_argument(common)},
+          common_arguments(common)),
+      .footer =
+          "Results with a tolerance come first: ! does not conform, ? cannot be decided, ok "
+          "conforms. Findings with the severity warning require action. --json prints the text of "
+          "results.json (of a machine: nonio-history/1).\n\n"
+          "Exit status: 0 shown; 1 shown, and the campaign failed; 2 usage or configuration.",
+      .examples = {"nonio show samples/site/09-tolerances", "nonio show out/09-tolerances --all",
+                   "nonio show S-0042 --out out"},
+      .run = [wish, &common] { return show(*wish, common); }};
 }
 
 }  // namespace nonio::app

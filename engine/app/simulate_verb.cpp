@@ -31,30 +31,27 @@ std::string not_to_be_written(const fs::path& out, const fs::path& truth) {
 }
 
 int simulate(const SimulateWish& w, const Common& common) {
-  const char* const verb = "nonio simulate";
-  if (w.out.empty()) return complain(verb, "--out is empty; expected a folder");
+  if (w.out.empty()) return complain("--out is empty; expected a folder");
   fs::path out = fs::absolute(w.out).lexically_normal();
   if (!out.has_filename()) out = out.parent_path();
   const fs::path truth = w.truth.empty() ? fs::path(out.string() + ".truth.json")
                                          : fs::absolute(w.truth).lexically_normal();
-  if (const std::string why = not_to_be_written(out, truth); !why.empty())
-    return complain(verb, why);
+  if (const std::string why = not_to_be_written(out, truth); !why.empty()) return complain(why);
   const auto text = storage::read_file(w.specification);
-  if (!text) return complain(verb, text.error().message);
+  if (!text) return complain(text.error().message);
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
-  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  for (const std::string& conflict : plugins.conflicts()) return complain(conflict);
   const auto made =
       simulation::simulate(*text, w.specification, plugins.effects(), plugins.methods());
   if (!made) {
     for (const Error& e : made.error())
-      complain(verb,
-               e.file + (e.line != 0 ? ", line " + std::to_string(e.line) : "") + ": " + e.message);
+      complain(e.file + (e.line != 0 ? ", line " + std::to_string(e.line) : "") + ": " + e.message);
     return exit_usage;
   }
   auto written = storage::publish(truth.parent_path(), {{truth.filename().string(), made->truth}});
   if (written) written = storage::publish(out, made->campaign);
-  if (!written) return complain(verb, written.error().message, exit_failed);
+  if (!written) return complain(written.error().message, exit_failed);
   if (common.json)
     std::cout
         << nlohmann::ordered_json{{"campaign", out.string()}, {"truth", truth.string()}}.dump()
@@ -69,31 +66,31 @@ int simulate(const SimulateWish& w, const Common& common) {
 Verb simulate_verb(Common& common) {
   auto wish = std::make_shared<SimulateWish>();
   using Takes = Argument::Takes;
-  return {.name = "simulate",
-          .summary =
-              "Makes a campaign from a machine with known effects and stores the truth separately",
-          .arguments = joined(
-              {required(existing(Takes::file, {"SPEC", &wish->specification,
-                                               "A campaign.toml with [simulation], [[cycle]] and "
-                                               "[[effect]] (docs/simulate.md)"})),
-               required(takes(Takes::folder,
-                              {"--out", &wish->out, "Folder for campaign.toml and the readings"})),
-               takes(Takes::file,
-                     {"--truth", &wish->truth,
-                      "File for the true values (default: OUT.truth.json, beside the folder)"})},
-              common_arguments(common)),
-          .footer =
-              "The specification is a manifest with three additional tables:\n"
-              "  [simulation]           seed = 7             the same seed gives the same bytes\n"
-              "  [[cycle]]              measurement = \"X\"    targets, runs, noise of one "
-              "measurement\n"
-              "  [[effect]]             name = \"backlash:X\"  b_um = -6.0\n"
-              "Effects are those of `nonio plugins`, and formulas under [[model.formula]] or, if "
-              "they shall\n"
-              "not appear in the campaign, [[simulation.formula]]. The name of a parameter ends "
-              "with its unit.\n\n"
-              "Example: nonio simulate samples/simulate/worn-screw.toml --out site/worn-screw",
-          .run = [wish, &common] { return simulate(*wish, common); }};
+  return {
+      .name = "simulate",
+      .summary =
+          "Makes a campaign from a machine with known effects and stores the truth separately",
+      .arguments = joined(
+          {required(existing(
+               Takes::file,
+               {"SPEC", &wish->specification,
+                "A campaign.toml with [simulation], [[cycle]] and [[effect]] (docs/simulate.md)"})),
+           required(takes(Takes::folder,
+                          {"--out", &wish->out, "Folder for campaign.toml and the readings"})),
+           takes(Takes::file,
+                 {"--truth", &wish->truth,
+                  "File for the true values (default: OUT.truth.json, next to the folder)"})},
+          common_arguments(common)),
+      .footer =
+          "The specification is a manifest with three additional tables:\n  [simulation]           "
+          "seed = 7             the same seed gives the same bytes\n  [[cycle]]              "
+          "measurement = \"X\"    targets, runs, noise of one measurement\n  [[effect]]            "
+          " name = \"backlash:X\"  b_um = -6.0\nEffects are those of `nonio plugin list`, and "
+          "formulas "
+          "under [[model.formula]] or, if they shall not appear in the campaign, "
+          "[[simulation.formula]]. The name of a parameter ends with its unit.",
+      .examples = {"nonio model simulate samples/simulate/worn-screw.toml --out site/worn-screw"},
+      .run = [wish, &common] { return simulate(*wish, common); }};
 }
 
 }  // namespace nonio::app

@@ -14,8 +14,6 @@ using batch::NightStatus;
 
 namespace {
 
-constexpr const char* status_name = "nonio status";
-
 struct StatusWish {
   std::string out;
   double max_age = 36.0;  ///< h; 0: any
@@ -63,7 +61,7 @@ std::string line_of(const NightStatus& s, const std::string& wrong) {
 
 int status(const StatusWish& wish, const Common& common) {
   const auto found = batch::night_status(wish.out);
-  if (!found) return complain(status_name, found.error().message);
+  if (!found) return complain(found.error().message);
   const std::string wrong = trouble(*found, wish);
   const int exit = wrong.empty() ? exit_done : exit_failed;
   if (common.json) {
@@ -84,7 +82,7 @@ int status(const StatusWish& wish, const Common& common) {
                                {"campaigns", found->last->seen},
                                {"failed", found->last->failed}};
     if (!wrong.empty()) json["wrong"] = wrong;
-    std::cout << json.dump(1, ' ', false, Json::error_handler_t::replace) << "\n";
+    print_json(json);
   } else if (!common.quiet || !wrong.empty()) {
     std::cout << line_of(*found, wrong) << "\n";
   }
@@ -94,30 +92,56 @@ int status(const StatusWish& wish, const Common& common) {
 }  // namespace
 
 Verb status_verb(Common& common) {
-  auto wish = std::make_shared<StatusWish>();
+  struct Wish : StatusWish {
+    WorklistWish list{};
+    bool only_actions = false;
+  };
+  auto wish = std::make_shared<Wish>();
   using Takes = Argument::Takes;
   Argument age = within(
       0, 1e6,
-      {"--max-age", &wish->max_age, "Largest age of the last complete night, in hours; 0: any"});
+      {"--max-age", &wish->max_age, "Largest age of the last complete run, in hours; 0: any"});
   age.shows_default = true;
+  WorklistWish& list = wish->list;
   return {
       .name = "status",
-      .summary = "Checks that the last nightly run was done; for the monitoring of another machine",
-      .arguments = {required(existing(Takes::folder,
-                                      {"OUT", &wish->out, "Output folder of `nonio run`"})),
-                    age,
-                    {"--json", &common.json, "Machine-readable output on stdout"},
-                    {"--quiet", &common.quiet, "No output unless something is wrong"}},
+      .summary = "Was the last run done, and what requires action?",
+      .arguments = joined(
+          {required(existing(Takes::folder, {"OUT", &wish->out, "Output folder of `nonio run`"})),
+           age,
+           {"--actions", &wish->only_actions,
+            "Only the actions, in --json too. Exit status: 0 no action required, 1 action "
+            "required, 2 error"},
+           {"--since", &list.since, "Only actions since this day (YYYY-MM-DD)"},
+           {"--customer", &list.customer, "Only the machines of this customer"},
+           {"--language", &list.language, "de, en or it; else that of the run's summary.txt"},
+           existing(Takes::folder,
+                    {"--site", &list.site,
+                     "The site: acknowledgements, withdrawals and events that were entered after "
+                     "the run are applied already"}),
+           {"--page", &list.page,
+            "Print one of the pages instead: index.html, due.html, due.ics, instruments.html, "
+            "compare.html, machines/NAME.html"}},
+          common_arguments(common)),
       .footer =
-          "One line: the last night's number, date, age, campaigns. Exit status: 0 the last "
-          "night\n"
-          "is complete and recent enough, also while another one is running or planned; 1 a night "
-          "began "
-          "and did\n"
-          "not end, or the last one is too old; 2 there was none, or it cannot be read.\n"
-          "The age is that of OUT/summary.json.\n\n"
-          "Example: nonio status out --max-age 26",
-      .run = [wish, &common] { return status(*wish, common); }};
+          "The first line states number, date and age of the last run and its campaigns; with "
+          "--quiet it is printed only if something is wrong. The actions follow, most urgent "
+          "first: lost, failed, out of its limit, changed, soon out, overdue, undecided, note. "
+          "Each names the machine and axis, the value with U (k = 2), the limit, since when, what "
+          "to do, and the page that shows it. Known: acknowledged (`nonio machine ack`) and not "
+          "changed since.\n\nExit status: 0 the last run is complete and recent enough, also while "
+          "another one is running or planned; 1 a run began and did not end, or the last one is "
+          "too old; 2 there was none, or it cannot be read. The age is that of OUT/summary.json.",
+      .examples = {"nonio status out --max-age 26",
+                   "nonio status out --actions --since 2026-11-01 --customer \"Sample Works\""},
+      .run = [wish, &common] {
+        wish->list.out = wish->out;
+        if (wish->only_actions || !wish->list.page.empty())
+          return print_worklist(wish->list, common);
+        const int exit = status(*wish, common);
+        if (exit != exit_usage && !common.json && !common.quiet) print_worklist(wish->list, common);
+        return exit;
+      }};
 }
 
 }  // namespace nonio::app

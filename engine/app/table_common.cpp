@@ -96,14 +96,13 @@ config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info&
   return settled;
 }
 
-void tell_findings(const char* verb, const OpenCampaign& open,
-                   const std::vector<Finding>& findings) {
+void tell_findings(const OpenCampaign& open, const std::vector<Finding>& findings) {
   const Templates& words = open.place->context.templates;
   const std::string& language = open.place->context.site.language;
   for (const Finding& f : findings)
     if (f.attention)
-      std::cerr << verb << ": " << finding_text(words, language, f, "title") << ": "
-                << finding_text(words, language, f, "says") << "\n";
+      complain(finding_text(words, language, f, "title") + ": " +
+               finding_text(words, language, f, "says"));
 }
 
 }  // namespace nonio::app

@@ -37,7 +37,6 @@ config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info&
                                            const Texts& settings);
 
 /// What a control's tables of a campaign are: the words of a refusal stand on stderr.
-void tell_findings(const char* verb, const OpenCampaign& open,
-                   const std::vector<Finding>& findings);
+void tell_findings(const OpenCampaign& open, const std::vector<Finding>& findings);
 
 }  // namespace nonio::app

@@ -72,7 +72,7 @@ int tell_differences(const std::string& control, const std::vector<tables::Table
   if (common.json) {
     Json json = {{"schema", "nonio-diff/1"}, {"control", control}, {"tables", Json::array()}};
     for (const auto& d : all) json["tables"].push_back(difference_json(d));
-    std::cout << json.dump(1) << "\n";
+    print_json(json);
   } else {
     for (const auto& d : all) print_difference(d);
   }
@@ -82,29 +82,27 @@ int tell_differences(const std::string& control, const std::vector<tables::Table
 /// What is in the control against what the campaign would write: of the campaign's axes only.
 int diff_with_campaign(const std::string& backup, const std::string& folder, const TableWish& w,
                        const Texts& settings, const Common& common) {
-  const char* const verb = "nonio diff";
-  const auto opened = open_campaign(verb, folder, common);
+  const auto opened = open_campaign(folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;
   const auto options = [&](const Info& info) { return campaign_options(open, info, settings); };
   const std::string control = w.control.empty() ? open.campaign().machine.control : w.control;
   const auto present =
       load(open.place->plugins, backup, control, open.campaign(), settings, options);
-  if (!present) return complain(verb, text_of(present.error()));
+  if (!present) return complain(text_of(present.error()));
   auto next =
       tables::tables_of_campaign(open.read, *present->control, *options(present->control->info));
-  if (!next) return complain(verb, text_of(next.error()), exit_failed);
-  tell_findings(verb, open, next->findings);
-  if (next->tables.empty()) return complain(verb, "the campaign has no table", exit_failed);
+  if (!next) return complain(text_of(next.error()), exit_failed);
+  tell_findings(open, next->findings);
+  if (next->tables.empty()) return complain("the campaign has no table", exit_failed);
   auto all = tables::differences(present->tables, next->tables);
   std::erase_if(all, [](const tables::TableDifference& d) { return !d.next; });
   return tell_differences(present->control->info.name, all, common);
 }
 
 int diff(const TableWish& w, const Common& common) {
-  const char* const verb = "nonio diff";
   const auto settings = settings_of(w.settings);
-  if (!settings) return complain(verb, settings.error().message);
+  if (!settings) return complain(settings.error().message);
   const auto is_folder = [](const std::string& path) {
     std::error_code error;
     return std::filesystem::is_directory(path, error);
@@ -113,7 +111,7 @@ int diff(const TableWish& w, const Common& common) {
   if (is_folder(w.table)) return diff_with_campaign(w.other, w.table, w, *settings, common);
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
-  for (const std::string& conflict : plugins.conflicts()) return complain(verb, conflict);
+  for (const std::string& conflict : plugins.conflicts()) return complain(conflict);
   const Campaign campaign = machine_of(w.axes);
   const auto options = [&](const Info& info) {
     auto settled = config::options_from(info, *settings);
@@ -121,9 +119,9 @@ int diff(const TableWish& w, const Common& common) {
     return settled;
   };
   const auto was = load(plugins, w.table, w.control, campaign, *settings, options);
-  if (!was) return complain(verb, text_of(was.error()));
+  if (!was) return complain(text_of(was.error()));
   const auto will = load(plugins, w.other, was->control->info.name, campaign, *settings, options);
-  if (!will) return complain(verb, text_of(will.error()));
+  if (!will) return complain(text_of(will.error()));
   return tell_differences(was->control->info.name, tables::differences(was->tables, will->tables),
                           common);
 }
@@ -146,16 +144,15 @@ int tell(const Applied& a, const std::string& control, const OpenCampaign& open,
     if (!a.differences.empty()) json["tables"] = Json::array();
     for (const auto& d : a.differences) json["tables"].push_back(difference_json(d));
     if (!a.files.empty()) json["files"] = a.files;
-    std::cout << json.dump(1) << "\n";
+    print_json(json);
   } else {
     for (const auto& d : a.differences) print_difference(d);
     for (const auto& f : a.forecast) print_forecast(f);
     for (const std::string& file : a.files) std::cout << file << "\n";
   }
-  tell_findings("nonio apply", open, a.findings);
+  tell_findings(open, a.findings);
   if (a.forecast.empty())
-    return complain("nonio apply", "no measurement of an axis that these tables correct",
-                    exit_failed);
+    return complain("no measurement of an axis that these tables correct", exit_failed);
   const auto worse = [](const tables::TableForecast& f) { return f.worse(); };
   return std::any_of(a.forecast.begin(), a.forecast.end(), worse) ? exit_failed : exit_done;
 }
@@ -177,7 +174,8 @@ Expected<std::vector<BacklashWas>> backlash_was(const std::vector<std::string>& 
     const bool number = end.ec == std::errc() && end.ptr == value.data() + value.size();
     if (value != "none" && !(number && std::isfinite(one.value) && std::fabs(one.value) <= 10.0))
       return fail(
-          "--backlash-was: expected a number of mm or deg, none, or AXIS= and one of these; found "
+          "--active-backlash: expected a number of mm or deg, none, or AXIS= and one of these; "
+          "found "
           "\"" +
           text + "\"");
     if (value == "none") one.value = 0.0;
@@ -201,7 +199,7 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
       const auto known =
           t.backlash ? t.backlash : tables::stated_backlash(options, t.output, t.rotary);
       if (known && std::fabs(*known * per - b.value) > 5e-7)
-        return fail("--backlash-was says " + short_text(b.value, 6) + " for axis " + t.output +
+        return fail("--active-backlash says " + short_text(b.value, 6) + " for axis " + t.output +
                     ", its files or the campaign say " + short_text(*known * per, 6));
       if (!known) tables::state_backlash(options, t.output, t.rotary, b.value / per);
     }
@@ -209,25 +207,25 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
     if (has_parameter && !t.backlash && !tables::stated_backlash(options, t.output, t.rotary))
       return fail(w.table + " does not say what was in " + present.control->table.backlash +
                   " of axis " + t.output +
-                  " while it was measured: give its file too, or --backlash-was VALUE|none, or "
+                  " while it was measured: give its file too, or --active-backlash VALUE|none, or "
                   "backlash_on_" +
                   (t.rotary ? "deg" : "mm") + " in [machine.axes." + t.output +
                   "] of campaign.toml, or the record of the machine");
   }
   for (std::size_t i = 0; i < used.size(); ++i)
     if (!used[i])
-      return fail("--backlash-was " + w.backlash_was[i] + ": " +
+      return fail("--active-backlash " + w.backlash_was[i] + ": " +
                   ((*said)[i].axis.empty() ? "these files hold several tables; expected AXIS=VALUE"
                                            : "these files hold no table of that axis"));
   return {};
 }
 
-/// --was-on and the campaign state the same thing: they must not state two.
+/// --active-table and the campaign state the same thing: they must not state two.
 Expected<void> was_on_unless_stated(const TableWish& w, const Loaded& present, const Campaign& c) {
   for (const LoadedTable& t : present.tables) {
     const Axis* axis = c.machine.axis(t.output);
     if (axis == nullptr || !axis->table_on || t.input != std::vector{t.output}) continue;
-    return fail("--was-on states that " + w.table +
+    return fail("--active-table states that " + w.table +
                 " was active, but the campaign states table_on = \"" +
                 (axis->table_on->empty() ? "none" : *axis->table_on) + "\" of axis " + t.output +
                 ": correct one of them");
@@ -236,42 +234,41 @@ Expected<void> was_on_unless_stated(const TableWish& w, const Loaded& present, c
 }
 
 int apply(const TableWish& w, const Common& common) {
-  const char* const verb = "nonio apply";
   const auto settings = settings_of(w.settings);
-  if (!settings) return complain(verb, settings.error().message);
+  if (!settings) return complain(settings.error().message);
   if (!w.out.empty() && !w.was_on)
-    return complain(verb, "--out writes the renewed table: it needs --was-on");
+    return complain("--out writes the renewed table: it needs --active-table");
   if (!w.backlash_was.empty() && !w.was_on)
-    return complain(verb, "--backlash-was is about a table that was on: it needs --was-on");
-  const auto opened = open_campaign(verb, w.folder, common);
+    return complain("--active-backlash is about a table that was on: it needs --active-table");
+  const auto opened = open_campaign(w.folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;
   const auto options = [&](const Info& info) { return campaign_options(open, info, *settings); };
   const std::string control = w.control.empty() ? open.campaign().machine.control : w.control;
   const auto table =
       load(open.place->plugins, w.table, control, open.campaign(), *settings, options);
-  if (!table) return complain(verb, text_of(table.error()));
+  if (!table) return complain(text_of(table.error()));
   Settings settled = *options(table->control->info);
   Applied a;
   if (!w.was_on) {
     const auto on = tables::what_was_on(open.read, *table->control, settled);
-    if (!on) return complain(verb, text_of(on.error()));
+    if (!on) return complain(text_of(on.error()));
     a.forecast = tables::forecast(open.read, table->tables, settled, *on);
     return tell(a, table->control->info.name, open, common);
   }
   if (auto agreed = was_on_unless_stated(w, *table, open.campaign()); !agreed)
-    return complain(verb, agreed.error().message);
+    return complain(agreed.error().message);
   if (auto stated = settle_backlash(w, *table, settled); !stated)
-    return complain(verb, stated.error().message);
+    return complain(stated.error().message);
   auto renewed = tables::renew(open.read, *table->control, settled, table->tables);
-  if (!renewed) return complain(verb, text_of(renewed.error()), exit_failed);
+  if (!renewed) return complain(text_of(renewed.error()), exit_failed);
   a = {tables::differences(table->tables, renewed->tables),
        std::move(renewed->forecast),
        std::move(renewed->findings),
        {}};
   if (!w.out.empty()) {
     if (auto done = storage::publish(std::filesystem::absolute(w.out), renewed->files); !done)
-      return complain(verb, text_of(done.error()), exit_failed);
+      return complain(text_of(done.error()), exit_failed);
     for (const Artifact& f : renewed->files)
       a.files.push_back((std::filesystem::path(w.out) / f.name).string());
   }
@@ -279,12 +276,13 @@ int apply(const TableWish& w, const Common& common) {
 }
 
 std::vector<Argument> table_arguments(TableWish& w) {
-  return {{"--control", &w.control,
-           "The control of the files (`nonio controllers`); else as the files are\n"
-           "called, or the only one that can read them"},
-          settings_argument(w.settings,
-                            "NAME=VALUE: an option of that control, such as type=1 or\n"
-                            "\"axes=X number=1,Y number=2\"; may be given several times")};
+  return {
+      {"--control", &w.control,
+       "The control of the files (`nonio table controls`); else as the files are called, or the "
+       "only one that can read them"},
+      settings_argument(w.settings,
+                        "NAME=VALUE: an option of that control, such as type=1 or \"axes=X "
+                        "number=1,Y number=2\"; may be given several times")};
 }
 
 }  // namespace
@@ -306,57 +304,57 @@ Verb diff_verb(Common& common) {
           table_arguments(*w),
           {{"--axis", &w->axes,
             "Name of an axis, in the order of the axis numbers; A, B and C are in deg; may be "
-            "given\n"
-            "several times"}},
+            "given several times"}},
           common_arguments(common)),
       .footer =
-          "Both tables are read as the control reads them, whatever sign or increments the "
-          "files have.\n"
-          "For each axis it prints the largest difference and where it is, and for each table "
-          "the\n"
-          "largest entry, the largest step between neighbouring points and the largest slope. "
-          "If a step\n"
-          "or slope is much larger than in the present table, find out why before you load "
-          "it.\n\n"
-          "Exit status: 0 compared; 2 a file cannot be read.\n\n"
-          "Example: nonio diff backup/linuxcnc-X.comp out/c/linuxcnc-X.comp --axis X",
+          "Both tables are read as the control reads them, whatever sign or increments the files "
+          "have. For each axis it prints the largest difference and where it is, and for each "
+          "table the largest entry, the largest step between neighbouring points and the largest "
+          "slope. If a step or slope is much larger than in the present table, find out why before "
+          "you load it.\n\nExit status: 0 compared; 2 a file cannot be read.",
+      .examples = {"nonio table diff backup/linuxcnc-X.comp out/c/linuxcnc-X.comp --axis X"},
       .run = [w, &common] { return diff(*w, common); }};
 }
 
-Verb apply_verb(Common& common) {
+Verb predict_verb(Common& common) {
   auto w = std::make_shared<TableWish>();
   using Takes = Argument::Takes;
-  return {.name = "apply",
-          .summary = "Predicts the error of a campaign after a table is loaded",
-          .arguments = joined(
-              {required(takes(Takes::file, {"TABLE", &w->table,
-                                            "The table: FILE, or FILE,FILE,... with the file of "
-                                            "its backlash value"}))},
-              campaign_arguments(w->folder, common), table_arguments(*w),
-              {{"--was-on", &w->was_on,
-                "TABLE was active during the measurement: it is removed from the readings, so that "
-                "the\n"
-                "new table is complete"},
-               {"--backlash-was", &w->backlash_was,
-                "With --was-on: active backlash value in mm or deg, if TABLE does not contain it:\n"
-                "VALUE, none, or AXIS=VALUE; may be given several times"},
-               takes(Takes::folder,
-                     {"--out", &w->out, "With --was-on: folder for the files of the new table"})}),
-          .footer =
-              "Without --was-on it prints E, B and M as measured, and after this table is loaded "
-              "into a\n"
-              "control without a table (backlash parameter of the axis: option axes, "
-              "backlash_mm).\n"
-              "With --was-on it prints the difference between this table and the new one, and E, B "
-              "and M\n"
-              "after the new one replaces it. Cross tables are not removed from the readings.\n\n"
-              "Exit status: 0 no axis gets worse; 1 an axis gets worse, or no prediction was "
-              "possible; 2 usage\n"
-              "or configuration.\n\n"
-              "Example: nonio apply "
-              "backup/siemens-840d-X-EEC.ini,backup/siemens-840d-X-backlash.ini \\\n"
-              "           site/2026-11-rossi --was-on --out new",
-          .run = [w, &common] { return apply(*w, common); }};
+  return {
+      .name = "predict",
+      .summary = "Predicts the error of a campaign after a table is loaded",
+      .arguments = joined(
+          {required(
+              takes(Takes::file,
+                    {"TABLE", &w->table,
+                     "The table: FILE, or FILE,FILE,... with the file of its backlash value"}))},
+          campaign_arguments(w->folder, common), table_arguments(*w),
+          {{.name = "--active-table",
+            .target = &w->was_on,
+            .help = "TABLE was active during the measurement: it is removed from the readings, so "
+                    "that the "
+                    "new table is complete",
+            .old = "--was-on"},
+           {.name = "--active-backlash",
+            .target = &w->backlash_was,
+            .help = "With --active-table: active backlash value in mm or deg, if TABLE does not "
+                    "contain it: "
+                    "VALUE, none, or AXIS=VALUE; may be given several times",
+            .old = "--backlash-was"},
+           takes(Takes::folder, {"--out", &w->out,
+                                 "With --active-table: folder for the files of the new table"})}),
+      .footer =
+          "Without --active-table it prints E, B and M as measured, and after this table is loaded "
+          "into "
+          "a control without a table (backlash parameter of the axis: option axes, backlash_mm). "
+          "With --active-table it prints the difference between this table and the new one, and E, "
+          "B and "
+          "M after the new one replaces it. Cross tables are not removed from the "
+          "readings.\n\nExit status: 0 no axis gets worse; 1 an axis gets worse, or no prediction "
+          "was possible; 2 usage or configuration.",
+      .examples =
+          {"nonio table predict backup/siemens-840d-X-EEC.ini,backup/siemens-840d-X-backlash.ini "
+           "site/2026-11-rossi --active-table --out new"},
+      .run = [w, &common] { return apply(*w, common); }};
 }
 
 }  // namespace nonio::app

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tables.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <ostream>
@@ -8,20 +10,13 @@
 
 #include "campaign/modelling/after_table.h"
 #include "nonio/sdk/format.h"
+#include "text_layout.h"
 
 namespace nonio::app {
 
 namespace {
 
 constexpr std::size_t bar_width = 40;
-
-/// Columns of characters, not bytes.
-std::string padded(std::string text, std::size_t width) {
-  const auto columns = static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-  if (columns < width) text.append(width - columns, ' ');
-  return text;
-}
 
 /// `part` of `whole` as a bar of at most `width`, with "|" at `mark`.
 std::string bar(double part, double whole, std::size_t width, std::optional<double> mark = {}) {
@@ -39,7 +34,11 @@ std::string bar(double part, double whole, std::size_t width, std::optional<doub
 }
 
 void line(std::ostream& out, const std::string& name, const std::string& value) {
-  out << "  " << padded(name, 18) << value << "\n";
+  out << "  " << padded(name, 18) << wrapped(value, 20, sentence_width(STDOUT_FILENO)).substr(20);
+}
+
+void sentence(std::ostream& out, std::size_t indent, const std::string& text) {
+  if (!text.empty()) out << wrapped(text, indent, sentence_width(STDOUT_FILENO), 2);
 }
 
 std::string p_text(double p) { return short_text(p, 2); }
@@ -66,11 +65,11 @@ void print_head(std::ostream& out, const modelling::PartModel& part,
                 const modelling::ModelWords& words) {
   const config::TerminalWords say = words.terminal();
   const std::string effects = storage::listed(part.names());
-  out << say(head_of(part.part)) << " " << part.part.name << " ("
-      << storage::listed(part.part.measurements) << "): "
-      << say("head.readings", {{"count", std::to_string(part.part.table.size())},
-                               {"model", effects.empty() ? say("head.empty") : effects}})
-      << "\n";
+  sentence(out, 0,
+           say(head_of(part.part)) + " " + part.part.name + " (" +
+               storage::listed(part.part.measurements) + "): " +
+               say("head.readings", {{"count", std::to_string(part.part.table.size())},
+                                     {"model", effects.empty() ? say("head.empty") : effects}}));
 }
 
 /// Curves by what they say, everything else by its parameters.
@@ -112,15 +111,16 @@ void print_places(std::ostream& out, const model::Comparison& c, const modelling
   if (!c.fails()) return line(out, say("fails"), say("fails.nowhere"));
   out << "  " << say("fails") << "\n";
   for (const model::Place& place : c.seats)
-    out << "    " << padded(to_text(place.where) + modelling::on_line(place), 24) << " "
-        << words.place(place, deviation) << "\n";
+    out << "    " << padded(to_text(place.where) + modelling::on_line(place), 25)
+        << wrapped(words.place(place, deviation), 29, sentence_width(STDOUT_FILENO)).substr(29);
 }
 
 void print_suspects(std::ostream& out, const model::Comparison& c, const modelling::PartModel& part,
                     const Campaign& campaign, const modelling::ModelWords& words) {
   for (const model::Suspect& s : c.suspects)
-    out << "  " << words.terminal()("suspect") << ": "
-        << words.suspect(s, modelling::place_of(part, campaign, s.row), part.deviation()) << "\n";
+    sentence(out, 2,
+             words.terminal()("suspect") + ": " +
+                 words.suspect(s, modelling::place_of(part, campaign, s.row), part.deviation()));
 }
 
 /// What a table in the control would leave, predicted; nothing if the model has nothing for one.
@@ -159,21 +159,33 @@ std::string largest_text(const modelling::Compared& compared, const Campaign& ca
   return at.line == 0 ? text : text + ":" + std::to_string(at.line);
 }
 
-void print_candidates(std::ostream& out, const modelling::Explained& e,
+/// The candidates as bars; without `all` those of the best explanation and the five best.
+void print_candidates(std::ostream& out, const modelling::Explained& e, bool all,
                       const config::TerminalWords& say) {
+  constexpr std::size_t most_shown = 5;
   const Quantity q = e.part.deviation();
-  double best = 0.0;
-  for (const model::Candidate& c : e.explanation.candidates)
-    if (modelling::is_ranked(c)) best = std::max(best, c.score);
-  if (best > 0.0)
-    out << "  " << padded(say("candidate"), 22) << padded(say("evidence"), 32)
-        << padded(say("rms-after"), 14) << padded(say("left-out"), 15) << "p\n";
+  const auto& together = e.explanation.together;
+  std::vector<const model::Candidate*> shown;
+  std::size_t left = 0;
   for (const model::Candidate& c : e.explanation.candidates) {
     if (!modelling::is_ranked(c) || !(c.score > 0.0)) continue;
-    out << "  " << padded(c.term.name(), 22) << bar(c.score, best, 20) << " "
-        << padded(fixed_text(c.score, 1), 11) << padded(with_unit(c.rms, q), 14)
-        << padded(c.cv_rms ? with_unit(*c.cv_rms, q) : "-", 15) << p_text(c.p) << "\n";
+    const bool is_best = shown.size() < most_shown || std::find(together.begin(), together.end(),
+                                                                c.term.name()) != together.end();
+    if (all || is_best)
+      shown.push_back(&c);
+    else
+      ++left;
   }
+  if (shown.empty()) return;
+  double best = 0.0;
+  for (const model::Candidate* c : shown) best = std::max(best, c->score);
+  out << "  " << padded(say("candidate"), 22) << padded(say("evidence"), 32)
+      << padded(say("rms-after"), 14) << padded(say("left-out"), 15) << "p\n";
+  for (const model::Candidate* c : shown)
+    out << "  " << padded(c->term.name() + " ", 22) << bar(c->score, best, 20) << " "
+        << padded(fixed_text(c->score, 1), 11) << padded(with_unit(c->rms, q), 14)
+        << padded(c->cv_rms ? with_unit(*c->cv_rms, q) : "-", 15) << p_text(c->p) << "\n";
+  if (left > 0) out << "  " << say("show.more", {{"count", std::to_string(left)}}) << " (--all)\n";
 }
 
 /// What the best explanation adds; where it is none, what of it is not certain.
@@ -185,8 +197,8 @@ void print_together(std::ostream& out, const model::Explanation& x,
     if (!unknown || std::find(x.certain.begin(), x.certain.end(), name) == x.certain.end())
       names.push_back(name);
   if (names.size() > (unknown ? 0U : 1U))
-    out << "    " << say(unknown ? "together.unknown" : "together") << ": "
-        << storage::listed(names) << "\n";
+    sentence(out, 2,
+             say(unknown ? "together.unknown" : "together") + ": " + storage::listed(names));
 }
 
 void print_verdict(std::ostream& out, const modelling::Explained& e,
@@ -194,17 +206,44 @@ void print_verdict(std::ostream& out, const modelling::Explained& e,
   const model::Explanation& x = e.explanation;
   const config::TerminalWords say = words.terminal();
   out << "  " << say("verdict") << ": " << say.of("verdict", modelling::to_text(x.verdict.kind))
-      << (x.verdict.effect.empty() ? "" : " " + x.verdict.effect) << "\n    "
-      << words.verdict(x, e.part) << "\n";
-  print_together(out, x, say);
-  for (const model::Description& d : x.descriptions)
-    out << "    " << words.description(d, e.part) << "\n";
-  for (const std::string& text : words.next(x, e.part))
-    out << "    " << say(x.plans.empty() ? "next" : "next.apart") << ": " << text << "\n";
-  for (const char* what : {"is", "cure"})
+      << (x.verdict.effect.empty() ? "" : " " + x.verdict.effect) << "\n";
+  sentence(out, 2, words.verdict(x, e.part));
+}
+
+/// Why it is so, what to do about it, and the command that goes on.
+void print_advice(std::ostream& out, const modelling::Explained& e, const std::string& folder,
+                  const modelling::ModelWords& words) {
+  const model::Explanation& x = e.explanation;
+  const config::TerminalWords say = words.terminal();
+  for (const model::Description& d : x.descriptions) sentence(out, 2, words.description(d, e.part));
+  for (const auto& [what, label] : {std::pair{"is", "why"}, {"cure", "do"}})
     if (const std::string text = words.card(x.verdict.effect, what); !text.empty())
-      out << "    " << text << "\n";
-  if (x.verdict.trials > 0) out << "    " << words.false_alarms(x.verdict) << "\n";
+      sentence(out, 2, say(label) + ": " + text);
+  for (const std::string& text : words.next(x, e.part))
+    sentence(out, 2, say(x.plans.empty() ? "next" : "next.apart") + ": " + text);
+  if (x.verdict.kind == model::Verdict::Kind::missing && !x.verdict.effect.empty())
+    out << "  " << say("command") << ": nonio model add " << folder << " " << x.verdict.effect
+        << "\n";
+}
+
+/// What the verdict does not cover. Without `all` the effects that could not be tested by name.
+void print_limits(std::ostream& out, const modelling::Explained& e, const Campaign& campaign,
+                  bool all, const modelling::ModelWords& words) {
+  const config::TerminalWords say = words.terminal();
+  if (e.explanation.verdict.trials > 0) sentence(out, 2, words.false_alarms(e.explanation.verdict));
+  sentence(out, 2, words.no_sign(e.explanation, e.part));
+  std::vector<std::string> untested;
+  for (const model::Candidate& candidate : e.explanation.candidates) {
+    // A test of an hour is not meant to show the day: only the JSON states it.
+    if (modelling::is_ranked(candidate) || candidate.why == "short-test") continue;
+    if (all)
+      sentence(out, 2,
+               words.unseen(candidate, modelling::place_of(e.part, campaign, candidate.rows)));
+    else
+      untested.push_back(candidate.term.name());
+  }
+  if (!untested.empty())
+    sentence(out, 2, say("untested", {{"effects", storage::listed(untested)}}));
 }
 
 void print_bars(std::ostream& out, const modelling::ModelStep& step,
@@ -252,7 +291,7 @@ void print_comparison(std::ostream& out, const modelling::Compared& compared,
   print_suspects(out, c, part, campaign, words);
   print_after_table(out, part.part, c.fit, q, say);
   for (const std::string& warning : modelling::warnings_of(part, c.fit, words))
-    out << "  " << say("warning") << ": " << warning << "\n";
+    sentence(out, 2, say("warning") + ": " + warning);
 }
 
 void print_model(std::ostream& out, const modelling::Compared& compared,
@@ -266,29 +305,25 @@ void print_model(std::ostream& out, const modelling::Compared& compared,
   if (c.floor) line(out, say("floor"), floor_text(*c.floor, q));
   print_parameters(out, c.fit, compared.part, words);
   for (const std::string& warning : modelling::warnings_of(compared.part, c.fit, words))
-    out << "  " << say("warning") << ": " << warning << "\n";
+    sentence(out, 2, say("warning") + ": " + warning);
 }
 
 void print_explanation(std::ostream& out, const modelling::Explained& e, const Campaign& campaign,
-                       const modelling::ModelWords& words) {
+                       const std::string& folder, bool all, const modelling::ModelWords& words) {
   const model::Comparison& c = e.explanation.comparison;
   const Quantity q = e.part.deviation();
   const config::TerminalWords say = words.terminal();
   print_head(out, e.part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
   if (c.floor) line(out, say("floor"), floor_text(*c.floor, q));
-  print_candidates(out, e, say);
-  if (const std::string text = words.no_sign(e.explanation, e.part); !text.empty())
-    out << "  " << text << "\n";
-  for (const model::Candidate& candidate : e.explanation.candidates)
-    // A test of an hour is not meant to show the day: only the JSON says so.
-    if (!modelling::is_ranked(candidate) && candidate.why != "short-test")
-      out << "  " << words.unseen(candidate, modelling::place_of(e.part, campaign, candidate.rows))
-          << "\n";
   print_verdict(out, e, words);
+  print_candidates(out, e, all, say);
+  print_together(out, e.explanation, say);
+  print_advice(out, e, folder, words);
+  print_limits(out, e, campaign, all, words);
   print_suspects(out, c, e.part, campaign, words);
   for (const std::string& warning : modelling::warnings_of(e.part, c.fit, words))
-    out << "  " << say("warning") << ": " << warning << "\n";
+    sentence(out, 2, say("warning") + ": " + warning);
 }
 
 void print_foresight(std::ostream& out, const modelling::Explained& e,
@@ -333,7 +368,7 @@ void print_change(std::ostream& out, const modelling::Change& change,
   print_parameters(out, change.after->comparison.fit, change.after->part, words);
   for (const std::string& warning :
        modelling::warnings_of(change.after->part, change.after->comparison.fit, words))
-    out << "  " << say("warning") << ": " << warning << "\n";
+    sentence(out, 2, say("warning") + ": " + warning);
 }
 
 void print_step(std::ostream& out, const modelling::ModelStep& step,

@@ -13,8 +13,11 @@ std::string with_unit(double value, Quantity quantity);
 
 void print_comparison(std::ostream& out, const modelling::Compared& compared,
                       const Campaign& campaign, const modelling::ModelWords& words);
+/// `folder`: of the campaign, for the command that goes on. `all`: every candidate, and why an effect
+/// could not be tested.
 void print_explanation(std::ostream& out, const modelling::Explained& explained,
-                       const Campaign& campaign, const modelling::ModelWords& words);
+                       const Campaign& campaign, const std::string& folder, bool all,
+                       const modelling::ModelWords& words);
 /// Before and after with bars that fall; "|" is the noise floor.
 void print_change(std::ostream& out, const modelling::Change& change,
                   const modelling::ModelWords& words);

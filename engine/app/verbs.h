@@ -3,48 +3,61 @@
 
 #include "common.h"
 
-/// The verbs of the program. `common` is filled before one of them is run.
+/// The commands of the program. `common` is filled before one of them is run.
 namespace nonio::app {
 
-Verb ack_verb(Common& common);
-Verb apply_verb(Common& common);
-Verb certificates_verb(Common& common);
-Verb compare_verb(Common& common);
-Verb controllers_verb(Common& common);
-Verb diff_verb(Common& common);
-Verb event_verb(Common& common);
-Verb explain_verb(Common& common);
-Verb forget_verb(Common& common);
-Verb import_verb(Common& common);
-Verb live_verb(Common& common);
-Verb merge_verb(Common& common);
-Verb model_verb(Common& common);
-Verb morning_verb(Common& common);
 Verb new_verb(Common& common);
-Verb night_verb(Common& common);
-Verb open_verb(Common& common);
-Verb plan_verb(Common& common);
-Verb plugin_verb(Common& common);
-Verb plugins_verb(Common& common);
-Verb query_verb(Common& common);
-Verb get_verb(Common& common);
-Verb history_verb(Common& common);
-Verb release_verb(Common& common);
-Verb restamp_verb(Common& common);
+Verb import_verb(Common& common);
+Verb check_verb(Common& common);
 Verb run_verb(Common& common);
-Verb schema_verb(Common& common);
-Verb show_verb(Common& common);
-Verb simulate_verb(Common& common);
+/// Below `run`: plan, merge, cancel, unlock.
+std::vector<Verb> run_parts(Common& common);
 Verb status_verb(Common& common);
-Verb template_verb(Common& common);
+Verb show_verb(Common& common);
+Verb export_verb(Common& common);
+Verb serve_verb(Common& common);
+Verb machine_list_verb(Common& common);
+Verb history_verb(Common& common);
+Verb event_verb(Common& common);
+Verb ack_verb(Common& common);
+Verb remove_verb(Common& common);
+/// Of the register: list, withdraw, audit.
+std::vector<Verb> register_verbs(Common& common);
+Verb approve_verb(Common& common);
 Verb verify_verb(Common& common);
-Verb version_verb(Common& common);
-/// What they print is made from the whole table; the program outlives the verb.
-Verb help_verb(const Program& program);
-Verb completion_verb(const Program& program);
-/// Below `plan`.
+Verb extend_verb(Common& common);
+Verb model_verb(Common& common);
+Verb compare_verb(Common& common);
+Verb explain_verb(Common& common);
+Verb simulate_verb(Common& common);
+Verb controls_verb(Common& common);
+Verb diff_verb(Common& common);
+Verb predict_verb(Common& common);
+Verb insert_verb(Common& common);
+Verb probe_verb(Common& common);
+Verb plan_verb(Common& common);
 Verb plan_rotary_verb(Common& common);
 Verb plan_table_verb(Common& common);
-Verb sign_probe_verb(Common& common);
+Verb plugin_verb(Common& common);
+Verb plugin_list_verb(Common& common);
+Verb schema_verb(Common& common);
+Verb version_verb(Common& common);
+/// What they print is made from the whole table; the program outlives the command.
+Verb help_verb(const Program& program);
+Verb completion_verb(const Program& program);
+
+/// Parts of other commands. The history of a machine, or of all (`machine` empty), on stdout.
+int show_machine(const std::string& out, const std::string& machine, const Common& common);
+/// The report of a campaign or of the first one that requires action, on the desktop.
+int open_document(const std::string& folder, const std::string& out, const Common& common);
+/// The templates of a site, or those that are installed.
+int check_templates(const std::string& site, const Common& common);
+
+struct WorklistWish {
+  std::string out, since, customer, language, site, page;
+};
+/// What the last run requires of people, one line per action. The exit status: 1 if action is
+/// required.
+int print_worklist(const WorklistWish& wish, const Common& common);
 
 }  // namespace nonio::app

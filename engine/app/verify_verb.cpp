@@ -23,6 +23,7 @@ namespace {
 struct VerifyWish {
   std::vector<std::string> files, signers;
   std::string site, signer_roots, time_stamp_roots, trust, revoked;
+  bool verbose = false;
 };
 
 const char* to_text(sign::Check::State state) {
@@ -51,8 +52,8 @@ Json to_json(const std::string& file, const sign::Verified& v) {
           {"checks", std::move(checks)}};
 }
 
-/// "time stamp, revocation": of the checks that were not made, each once.
-std::string names_of(const std::vector<std::string>& checks) {
+/// "time stamp", "revocation": of the checks that were not made, each once.
+std::vector<std::string> check_names(const std::vector<std::string>& checks) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 6> names{
       {{".time", "time stamp"},
        {".revocation", "revocation"},
@@ -67,7 +68,7 @@ std::string names_of(const std::vector<std::string>& checks) {
       if (id.ends_with(end)) name = says;
     if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(std::move(name));
   }
-  return storage::listed(out);
+  return out;
 }
 
 /// The gravest of all files'.
@@ -86,15 +87,24 @@ int exit_of(const std::vector<Verdict>& verdicts) {
 }
 
 /// The verdict first: nothing that a file says comes before it, and nothing can look like it.
-void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet) {
+/// The checks that fail follow, or all of them.
+void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet,
+           bool verbose) {
   const std::string name = printable(file);
   const Verdict verdict = certificates::verdict_of(v);
-  out << name << ": " << certificates::text_of(verdict);
-  if (verdict == Verdict::incomplete) out << ": " << names_of(certificates::not_made(v));
+  const auto not_made = check_names(certificates::not_made(v));
+  out << name << ": ";
+  if (verdict == Verdict::incomplete)
+    out << "VALID (" << not_made.size() << (not_made.size() == 1 ? " check" : " checks")
+        << " not made: " << storage::listed(not_made) << ")";
+  else
+    out << certificates::text_of(verdict);
+  if (!quiet && !v.subject.empty()) out << "; signed by \"" << printable(v.subject) << "\"";
   out << "\n";
   if (quiet) return;
   for (const sign::Check& c : v.checks)
-    out << name << ": " << c.id << " " << to_text(c.state) << ": " << printable(c.says) << "\n";
+    if (verbose || c.state == sign::Check::State::fails)
+      out << name << ": " << c.id << " " << to_text(c.state) << ": " << printable(c.says) << "\n";
 }
 
 int verify(const VerifyWish& wanted, const Common& common) {
@@ -102,7 +112,7 @@ int verify(const VerifyWish& wanted, const Common& common) {
       certificates::verifier_of({wanted.site, wanted.signer_roots, wanted.time_stamp_roots,
                                  wanted.trust, wanted.revoked, wanted.signers});
   if (!verifier) {
-    for (const Error& e : verifier.error()) complain("nonio verify", text_of(e));
+    for (const Error& e : verifier.error()) complain(text_of(e));
     return exit_usage;
   }
   // Before it: what is confined opens no connection to a server.
@@ -122,13 +132,13 @@ int verify(const VerifyWish& wanted, const Common& common) {
   std::vector<Verdict> verdicts;
   for (const std::string& file : wanted.files) {
     const auto v = certificates::verify_file(file, *verifier, open, rows);
-    if (!v) return complain("nonio verify", v.error().message);
+    if (!v) return complain(v.error().message);
     verdicts.push_back(certificates::verdict_of(*v));
     std::ostream& out = place ? std::cout : early;
     if (common.json)
       out << to_json(file, *v).dump(-1, ' ', true, Json::error_handler_t::replace) << "\n";
     else
-      print(out, file, *v, common.quiet);
+      print(out, file, *v, common.quiet, wanted.verbose);
   }
   if (!place) std::cout << early.str();
   return exit_of(verdicts);
@@ -145,13 +155,14 @@ Verb verify_verb(Common& common) {
       .arguments = joined(
           {required(
                takes(Takes::file, {"FILE", &wanted->files, "Certificates (PDF) and DCC (XML)"})),
-           existing(Takes::folder, {"--site", &wanted->site,
-                                    "Site whose site.toml, [signing], names trusted roots and the "
-                                    "expected signer, and\n"
-                                    "whose register lists the numbers in force"}),
-           takes(Takes::file, {"--signer-roots", &wanted->signer_roots,
-                               "PEM file with the trusted root certificates of signers (no others "
-                               "are trusted)"}),
+           existing(Takes::folder,
+                    {"--site", &wanted->site,
+                     "Site whose site.toml, [signing], names trusted roots and the expected "
+                     "signer, and whose register lists the numbers in force"}),
+           takes(
+               Takes::file,
+               {"--signer-roots", &wanted->signer_roots,
+                "PEM file with the trusted root certificates of signers (no others are trusted)"}),
            takes(Takes::file, {"--time-stamp-roots", &wanted->time_stamp_roots,
                                "PEM file with the trusted root certificates of time servers"}),
            takes(Takes::file,
@@ -160,19 +171,21 @@ Verb verify_verb(Common& common) {
            takes(Takes::file, {"--revoked", &wanted->revoked, "PEM file with revocation lists"}),
            {"--signer", &wanted->signers,
             "Expected signer: subject of the certificate, or its SHA-256; may be repeated"},
+           {.name = "--verbose",
+            .target = &wanted->verbose,
+            .help = "One line per check, not only for those that fail",
+            .brief = "-v"},
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "Prints the verdict, then one line per check. Without roots and --signer (or --site) a\n"
+          "Prints the verdict with the signer, and one line for each check that fails. Without "
+          "roots and --signer (or --site) a "
           "signature proves nothing: the verdict is that you do not trust the signer. No network "
-          "is needed.\n\n"
-          "Exit status: 0 valid; 3 valid, but not every check was made; 4 signer not trusted by "
-          "you; 5 not\n"
-          "in force; 8 other words than installed; 1 altered or broken; 6 not a certificate; 7 no "
-          "such\n"
-          "file; 2 usage, configuration, or a register that cannot be read. Of several files the\n"
-          "gravest: 1, 4, 5, 8, 6, 7, 3, 0.\n\n"
-          "Example: nonio verify --site site out/c1/certificate.pdf",
+          "is needed.\n\nExit status: 0 valid; 3 valid, but not every check was made; 4 signer not "
+          "trusted by you; 5 not in force; 8 other words than installed; 1 altered or broken; 6 "
+          "not a certificate; 7 no such file; 2 usage, configuration, or a register that cannot be "
+          "read. Of several files the gravest: 1, 4, 5, 8, 6, 7, 3, 0.",
+      .examples = {"nonio certificate verify --site site out/c1/certificate.pdf"},
       .run = [wanted, &common] { return verify(*wanted, common); }};
 }
 

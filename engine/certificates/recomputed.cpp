@@ -105,7 +105,7 @@ Expected<std::string> same_values(std::string_view attached_text, std::string_vi
     const storage::Json* same_one = find(again, name_of(a));
     if (same_one == nullptr)
       return fail("the analysis " + name_of(a) +
-                  " is not found again: is its plugin installed (`nonio plugins`)?");
+                  " is not found again: is its plugin installed (`nonio plugin list`)?");
     comparison.compare(values_of(a), values_of(*same_one), name_of(a));
   }
   if (attached["analyses"].size() != again["analyses"].size())

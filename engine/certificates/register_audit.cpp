@@ -166,11 +166,10 @@ Expected<void> Register::check_journal(bool numbers) {
   const std::vector<std::string> wrong = Auditor(*database_).run_journal(numbers);
   if (auto ended = transaction.end(); !ended) return ended;
   if (wrong.empty()) return {};
-  return fail(
-      "the register of certificates is not what was written: " + wrong.front() +
-      (wrong.size() == 1 ? "" : ", and " + std::to_string(wrong.size() - 1) + " more") +
-      ". Nothing is issued from it; `nonio certificates SITE --audit` lists all. Restore it "
-      "from the newest backup");
+  return fail("the register of certificates is not what was written: " + wrong.front() +
+              (wrong.size() == 1 ? "" : ", and " + std::to_string(wrong.size() - 1) + " more") +
+              ". Nothing is issued from it; `nonio certificate audit SITE` lists all. Restore it "
+              "from the newest backup");
 }
 
 Expected<Audit> Register::audit() {

@@ -11,7 +11,7 @@
 
 namespace nonio::certificates {
 
-/// What `nonio restamp` is told; what is empty is that of the site.
+/// What `nonio certificate extend` is told; what is empty is that of the site.
 struct RestampOptions {
   VerifyOptions whom;
   std::string time_stamp;  ///< address of the server

@@ -36,7 +36,7 @@ Expected<sign::Verified> verify_file(const std::filesystem::path& path,
                                      const sign::Verifier& verifier, const OpenContext& open,
                                      const RegisterRows& rows);
 
-/// What all checks of a file amount to; each has an exit status of `nonio verify`.
+/// What all checks of a file amount to; each has an exit status of `nonio certificate verify`.
 enum class Verdict {
   valid,         ///< every check was made and passed
   incomplete,    ///< every check that was made passed; some could not be made (`not_made`)

@@ -230,17 +230,6 @@ Expected<std::string> page_data(const Bench& bench, const PartModel& part, const
   return data;
 }
 
-Json text_of(const Bench& bench, const PartModel& part, const model::Comparison& c) {
-  const modelling::ModelWords words = words_of(bench);
-  Json text = Json::object();
-  if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))
-    text["left"] = words.lack_of_fit(c, part.deviation());
-  Json places = Json::array();
-  for (const model::Place& place : c.seats) places.push_back(words.place(place, part.deviation()));
-  text["places"] = std::move(places);
-  return text;
-}
-
 /// None where it is of other readings.
 const model::Groundwork* groundwork_of(const Bench& bench, const Tried& tried) {
   if (tried.own) return nullptr;
@@ -252,8 +241,7 @@ const model::Groundwork* groundwork_of(const Bench& bench, const Tried& tried) {
 std::string head_of(const Bench& bench, const PartModel& part, const model::Comparison& c,
                     modelling::Extent extent) {
   const modelling::Compared both{part, c};
-  return "\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench), extent) +
-         ",\"text\":" + storage::dump(text_of(bench, part, c));
+  return "\"compare\":" + modelling::part_json(both, bench.campaign(), words_of(bench), extent);
 }
 
 Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> residual,

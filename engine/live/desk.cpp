@@ -138,7 +138,7 @@ Json Desk::steps() const {
 /// What leads to the trial on a terminal.
 std::string Desk::command() const {
   const std::string change = command_of(name_, session_.saved(), session_.trial());
-  return change.empty() ? "nonio compare " + quoted_for_shell(name_) : change;
+  return change.empty() ? "nonio model compare " + quoted_for_shell(name_) : change;
 }
 
 Answer Desk::state() {

@@ -48,7 +48,7 @@ class Remembered {
   std::size_t bytes_ = 0;
 };
 
-/// Effects that are added one after the other, as `nonio explain --auto` adds them.
+/// Effects that are added one after the other, as `nonio model explain --auto` adds them.
 struct Searching {
   std::uint64_t job = 0;
   std::string kind;  ///< suggest, finish

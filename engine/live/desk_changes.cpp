@@ -13,7 +13,7 @@ using storage::Json;
 
 namespace {
 
-constexpr std::size_t most_added = 12;  // as `nonio explain --auto`
+constexpr std::size_t most_added = 12;  // as `nonio model explain --auto`
 constexpr std::size_t longest_text = 2000;
 
 Answer json_answer(int status, const Json& json) {
@@ -86,7 +86,7 @@ Done Desk::change(const std::string& what, const Json& body, std::string& told) 
     return session_.name(body.at("n").get<std::size_t>(), body.at("name").get<std::string>());
   }
   if (what == "include") {
-    told = "nonio compare " + quoted_for_shell(name_);
+    told = "nonio model compare " + quoted_for_shell(name_);
     return session_.include(body.at("part").get<std::string>(),
                             body.at("rows").get<std::vector<std::size_t>>());
   }
@@ -156,7 +156,7 @@ Answer Desk::reload() {
   read_again();
   publish("state", "", Json::object());
   return json_answer(202, {{"version", session_.version()},
-                           {"command", "nonio compare " + quoted_for_shell(name_)}});
+                           {"command", "nonio model compare " + quoted_for_shell(name_)}});
 }
 
 Answer Desk::difference() {
@@ -219,7 +219,7 @@ Answer Desk::search(const std::string& kind) {
   for (const std::string& part : order_) ask_explanation(part, parts_[part]);
   publish("progress", "job", {{"job", searching_->job}, {"kind", kind}, {"state", "running"}});
   Json answer = {{"version", session_.version()},
-                 {"command", "nonio explain " + quoted_for_shell(name_) +
+                 {"command", "nonio model explain " + quoted_for_shell(name_) +
                                  (kind == "finish" ? " --auto" : "")}};
   const std::uint64_t job = searching_->job;
   search_on();

@@ -277,7 +277,7 @@ Desk::Waiting Desk::wait_for(std::unique_lock<std::mutex>& lock, const Json& req
     replaceable_.erase(own);
   if (!out.done) {
     bench_->cancel(job);
-    out.text = over_ ? "nonio live ends" : "no answer in time";
+    out.text = over_ ? "nonio serve ends" : "no answer in time";
   }
   return out;
 }

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-/// Who may ask the server of `nonio live` for what: a pure function over the head of a request.
+/// Who may ask the server of `nonio serve` for what: a pure function over the head of a request.
 /// Attackers are web pages in the same browser (also under a name that means 127.0.0.1 by now) and
 /// other users of the machine.
 namespace nonio::live {

@@ -79,9 +79,9 @@ Expected<process::Handle> Launcher::run(const std::vector<std::string>& argument
 Expected<process::Handle> Launcher::ask(const storage::Json& what) {
   const std::lock_guard lock(*mutex_);
   if (!process::write_text(channel_.get(), what.dump()))
-    return fail("the process that starts others has ended; start nonio live again");
+    return fail("the process that starts others has ended; start nonio serve again");
   auto answer = process::receive_descriptors(channel_.get());
-  if (!answer) return fail("the process that starts others has ended; start nonio live again");
+  if (!answer) return fail("the process that starts others has ended; start nonio serve again");
   if (answer->word != '+' || answer->descriptors.size() != 1)
     return fail("no process could be started");
   return std::move(answer->descriptors.front());

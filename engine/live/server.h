@@ -9,7 +9,7 @@
 
 namespace nonio::live {
 
-/// What `nonio live` is asked for.
+/// What `nonio serve` is asked for.
 struct LiveWish {
   std::filesystem::path folder;  ///< of a campaign, or of a site
   std::string name;              ///< as a person wrote it

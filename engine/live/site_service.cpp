@@ -192,9 +192,10 @@ Answer SiteService::get(const std::string& path, const Request& request) {
   if (path == "/api/site") return morning();
   if (path == "/api/site/state") return state();
   if (path == "/api/site/events") return events(request);
-  if (path == "/api/drafts") return of_verb({"release", "--list", "--json", wish_.folder.string()});
-  if (path == "/api/ack") return of_verb({"ack", "--json", wish_.folder.string()});
-  if (path == "/api/event") return of_verb({"event", "--json", wish_.folder.string()});
+  if (path == "/api/drafts")
+    return of_verb({"certificate", "approve", "--list", "--json", wish_.folder.string()});
+  if (path == "/api/ack") return of_verb({"machine", "ack", "--json", wish_.folder.string()});
+  if (path == "/api/event") return of_verb({"machine", "event", "--json", wish_.folder.string()});
   if (path == "/site/{page}") return page(request.names.back());
   if (path == "/site/machines/{page}") return page("machines/" + request.names.back());
   return result(request.names.front(), request.names.back());
@@ -276,7 +277,8 @@ Answer SiteService::entered(const std::vector<std::string>& arguments) {
 
 Answer SiteService::morning() {
   if (wish_.out.empty()) return refused(409, "no_out");
-  return of_verb({"morning", "--json", option("site", wish_.folder.string()), wish_.out.string()});
+  return of_verb(
+      {"status", "--actions", "--json", option("site", wish_.folder.string()), wish_.out.string()});
 }
 
 Answer SiteService::state() {
@@ -321,8 +323,8 @@ Answer SiteService::page(const std::string& name) {
   if (wish_.out.empty() || !(plain.ends_with(".html") || plain == "due.ics") ||
       !is_plain_file_in(folder, plain))
     return refused(404, "no_page");
-  const ToolEnd end = call(
-      {"morning", option("site", wish_.folder.string()), option("page", name), wish_.out.string()});
+  const ToolEnd end = call({"status", "--actions", option("site", wish_.folder.string()),
+                            option("page", name), wish_.out.string()});
   if (end.status != 0) return refusal(422, end.errors);
   // To be kept or shown by the page itself: its own script would run with this address.
   return {200, "application/octet-stream", end.out, {}};
@@ -353,7 +355,7 @@ Answer SiteService::open(const std::string& campaign) {
   return answered(
       200, {{"version", version_.load()},
             {"path", path + "/"},
-            {"command", "nonio live " + quoted_for_shell((wish_.folder / *folder).string())}});
+            {"command", "nonio serve " + quoted_for_shell((wish_.folder / *folder).string())}});
 }
 
 /// The members that a body has, as options.
@@ -364,7 +366,7 @@ void add_options(std::vector<std::string>& arguments, const Json& body,
 }
 
 Answer SiteService::acknowledge(const Json& body) {
-  std::vector<std::string> arguments{"ack", "--json"};
+  std::vector<std::string> arguments{"machine", "ack", "--json"};
   if (body.value("withdraw", false)) arguments.emplace_back("--withdraw");
   add_options(
       arguments, body,
@@ -376,7 +378,7 @@ Answer SiteService::acknowledge(const Json& body) {
 }
 
 Answer SiteService::event(const Json& body) {
-  std::vector<std::string> arguments{"event", "--json"};
+  std::vector<std::string> arguments{"machine", "event", "--json"};
   add_options(arguments, body, {"machine", "axis", "kind", "text", "date", "by"});
   if (!body.contains("kind")) return refused(400, "body_form", {{"path", "/api/event"}});
   arguments.push_back(wish_.folder.string());
@@ -387,7 +389,7 @@ Answer SiteService::release(const Json& body) {
   const auto folder = folder_of(body.at("campaign").get<std::string>());
   if (!folder)
     return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
-  std::vector<std::string> arguments{"release", "--json",
+  std::vector<std::string> arguments{"certificate", "approve", "--json",
                                      option("by", body.at("by").get<std::string>())};
   add_options(arguments, body, {"as"});
   const Json reasons = body.value("reasons", Json::object());
@@ -406,8 +408,9 @@ Answer SiteService::verify(const Request& request) {
   if (folder.path().empty()) return refused(503, "no_scratch");
   if (const auto kept = storage::publish(folder.path(), {{name, request.body}}); !kept)
     return refusal(503, kept.error().message);
-  return of_verb(with_places({"verify", "--json", option("site", wish_.folder.string()),
-                              (folder.path() / name).string()}));
+  return of_verb(
+      with_places({"certificate", "verify", "--json", option("site", wish_.folder.string()),
+                   (folder.path() / name).string()}));
 }
 
 /// One campaign of the last night again; or what a night would do now, of all that has changed.

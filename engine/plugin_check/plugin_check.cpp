@@ -474,7 +474,7 @@ class Checker {
   };
   static constexpr std::chrono::milliseconds a_second{1100};
   std::vector<Once> once_;
-  Brought brought_;             ///< in a child only
+  Brought brought_;  ///< in a child only
 };
 
 template <class Checks>

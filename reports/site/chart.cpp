@@ -2,9 +2,10 @@
 #include "chart.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include "axis_scale.h"
+#include "nonio/reports/drawing.h"
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
 
@@ -12,13 +13,51 @@ namespace nonio::reports::site {
 
 namespace {
 
-constexpr double width = 720.0, height = 260.0, left = 58.0, right = 12.0, top = 22.0,
-                 bottom = 40.0;
+using Curve = Plot::Curve;
 
-std::string coordinate(double v) { return fixed_text(v, 1); }
+/// The colours of site.css, whose values are those of the dark screen there.
+constexpr Colour hex(unsigned rgb) {
+  const auto part = [rgb](unsigned shift) {
+    return static_cast<float>((rgb >> shift) & 255U) / 255.0F;
+  };
+  return {part(16), part(8), part(0)};
+}
+namespace ink {
+constexpr Colour text = hex(0x1a1a1a), muted = hex(0x5c6470), rule = hex(0xd3d7dc),
+                 accent = hex(0x12395b), measured = hex(0x0a5fa5), failed = hex(0xa61b1b),
+                 back = hex(0xffffff), band = hex(0xb9cfe3), guard = hex(0xf0dcc4),
+                 cone = hex(0xd5e1ed), earlier = hex(0xb4b9bf);
+}  // namespace ink
+constexpr std::array<NamedColour, 11> named{{{ink::text, "text"},
+                                             {ink::muted, "muted"},
+                                             {ink::rule, "rule"},
+                                             {ink::accent, "accent"},
+                                             {ink::measured, "line"},
+                                             {ink::failed, "failed"},
+                                             {ink::back, "back"},
+                                             {ink::band, "band"},
+                                             {ink::guard, "guard"},
+                                             {ink::cone, "cone"},
+                                             {ink::earlier, "earlier"}}};
 
-std::string attribute(const char* name, double v) {
-  return ' ' + std::string(name) + "=\"" + coordinate(v) + '"';
+constexpr double width = 720.0;
+
+Style style() {
+  Style out;
+  out.small = 15.5;  // the letters of axes have half a px less
+  out.plot_height = 260.0;
+  out.see_through = 0.6;
+  out.rule_width = 0.5;
+  out.text = ink::text, out.muted = ink::muted, out.rule = ink::rule;
+  return out;
+}
+
+/// One thing to those who do not see it, but with links in it a group, so that they reach them.
+Html picture(const Page& page, const std::string& label, const Plot& plot) {
+  const Drawing drawn = drawing_of(plot, width, style(), *page.fonts, named);
+  return {"<svg class=\"chart\" role=\"" + std::string(drawn.has_links ? "group" : "img") +
+          "\" viewBox=\"0 0 " + fixed_text(width, 0) + ' ' + fixed_text(drawn.height, 0) +
+          "\" aria-label=\"" + html_of(label).text + "\">" + drawn.elements + "</svg>\n"};
 }
 
 double days(Day day) { return static_cast<double>(day.time_since_epoch().count()); }
@@ -34,64 +73,22 @@ struct Range {
     const double by = std::max(part * (high - low), least);
     low -= by, high += by;
   }
+  std::pair<double, double> ends() const { return {low, high}; }
 };
-
-/// Places of numbers on the picture.
-struct Frame {
-  AxisScale x, y;
-  double at_x(double v) const { return left + x.at(v) * (width - left - right); }
-  double at_y(double v) const { return height - bottom - y.at(v) * (height - top - bottom); }
-};
-
-std::string text_at(double x, double y, std::string_view text, const char* anchor,
-                    const char* style = nullptr) {
-  return "<text" + attribute("x", x) + attribute("y", y) + " text-anchor=\"" + anchor + '"' +
-         (style != nullptr ? " class=\"" + std::string(style) + '"' : "") + '>' + html(text) +
-         "</text>";
-}
-
-std::string line_of(double x1, double y1, double x2, double y2, const char* style) {
-  return "<line class=\"" + std::string(style) + '"' + attribute("x1", x1) + attribute("y1", y1) +
-         attribute("x2", x2) + attribute("y2", y2) + "/>";
-}
-
-std::string rules(const Frame& f, const std::string& unit) {
-  std::string out;
-  for (std::size_t i = 0; i < f.y.ticks.size(); ++i) {
-    const double y = f.at_y(f.y.ticks[i]);
-    out +=
-        line_of(left, y, width - right, y, "rule") + text_at(left - 6, y + 4, f.y.labels[i], "end");
-  }
-  for (std::size_t i = 0; i < f.x.ticks.size(); ++i) {
-    const double x = f.at_x(f.x.ticks[i]);
-    out += line_of(x, top, x, height - bottom, "rule") +
-           text_at(x, height - bottom + 16, f.x.labels[i], "middle");
-  }
-  return out + text_at(4, top - 10, unit, "start");
-}
-
-/// One thing to those who do not see it, but with links in it a group, so that they reach them.
-std::string picture(const std::string& label, const std::string& inside) {
-  const std::string role = inside.find("<a ") == std::string::npos ? "img" : "group";
-  return "<svg class=\"chart\" role=\"" + role + "\" viewBox=\"0 0 " + fixed_text(width, 0) + ' ' +
-         fixed_text(height, 0) + "\" aria-label=\"" + html(label) + "\">" + inside + "</svg>\n";
-}
 
 /// Years where there are many, else quarters.
-AxisScale calendar(const Page& page, double low, double high) {
-  AxisScale out;
-  out.from = low, out.to = high;
+std::vector<std::pair<double, std::string>> calendar(const Page& page, const Range& range) {
   using namespace std::chrono;
-  const double span = high - low;
+  std::vector<std::pair<double, std::string>> out;
+  const double span = range.high - range.low;
   const unsigned step = span > 365 * 3 ? 12 : span > 500 ? 6 : span > 200 ? 3 : 1;
-  const year_month_day first{Day(std::chrono::days(static_cast<int>(std::floor(low))))};
-  for (year_month at = first.year() / January; days(Day(at / 1)) <= high; at += months(step)) {
-    const double tick = days(Day(at / 1));
-    if (tick < low) continue;
-    out.ticks.push_back(tick);
+  const year_month_day first{Day(std::chrono::days(static_cast<int>(std::floor(range.low))))};
+  for (year_month at = first.year() / January; days(Day(at / 1)) <= range.high;
+       at += months(step)) {
     const std::string y = std::to_string(static_cast<int>(at.year()));
     const auto m = static_cast<unsigned>(at.month());
-    out.labels.push_back(
+    out.emplace_back(
+        days(Day(at / 1)),
         step == 12 ? y : month_text(page, y + (m < 10 ? "-0" : "-") + std::to_string(m)));
   }
   return out;
@@ -100,202 +97,171 @@ AxisScale calendar(const Page& page, double low, double high) {
 double scaled(double v, Quantity q) { return v * unit_of(q).per_si; }
 
 /// One series in printed units against days.
-class HistoryDrawing {
+class HistoryPlot {
  public:
-  HistoryDrawing(const Page& page, const MachineHistory& machine, const HistorySeries& series)
-      : page_(page), machine_(machine), series_(series) {}
-
-  std::string svg() {
+  HistoryPlot(const Page& page, const MachineHistory& machine, const HistorySeries& series)
+      : page_(page), machine_(machine), series_(series) {
     fit();
+  }
+
+  Html svg() {
     if (x_.empty()) return {};
-    const std::string label =
-        machine_.id + ' ' + series_.axis + ' ' + quantity_text(page_, series_.quantity);
-    return picture(label, guard() + rules(frame_, unit_text(series_.unit)) + events() + model() +
-                              forecast() + points());
+    plot_.y_title = unit_text(series_.unit);
+    plot_.language = page_.words.language();
+    plot_.zero_line = false;
+    plot_.x_range = x_.ends(), plot_.range = y_.ends();
+    plot_.ticks = calendar(page_, x_);
+    add_limits();
+    add_events();
+    for (const HistorySegment& s : series_.segments)
+      add_model({s.from, s.first, s.u_first}, {s.to, s.last, s.u_last}, Dash::solid, ink::band);
+    if (series_.forecast && !series_.segments.empty() && std::isfinite(series_.forecast->value)) {
+      const HistorySegment& s = series_.segments.back();
+      const HistoryForecast& f = *series_.forecast;
+      add_model({s.to, s.last, s.u_last}, {f.date, f.value, f.u}, Dash::dashed, ink::cone);
+    }
+    add_points();
+    return picture(page_,
+                   machine_.id + ' ' + series_.axis + ' ' + quantity_text(page_, series_.quantity),
+                   plot_);
   }
 
   /// Without rules and words.
-  std::string spark() {
-    fit();
+  Html spark() const {
     if (x_.empty()) return {};
+    const auto y = [this](double v) {
+      return fixed_text(22 - 20 * (v - y_.low) / (y_.high - y_.low), 1);
+    };
     std::string path;
     for (const HistoryPoint& p : series_.points)
-      if (const auto day = day_of(p.date); day && p.joined)
-        path += (path.empty() ? "M" : "L") + coordinate(2 + frame_.x.at(days(*day)) * 116) + ' ' +
-                coordinate(22 - frame_.y.at(value(p.value)) * 20);
+      if (const auto day = day_of(p.date); day && p.joined && std::isfinite(p.value))
+        path += (path.empty() ? "M" : "L") +
+                fixed_text(2 + 116 * (days(*day) - x_.low) / (x_.high - x_.low), 1) + ' ' +
+                y(value(p.value));
     if (path.empty()) return {};
     std::string out = "<path class=\"line\" d=\"" + path + "\"/>";
-    if (shows_limit_)
-      for (const double side : sides()) {
-        const double y = 22 - frame_.y.at(side * value(*series_.limit)) * 20;
-        if (y >= 0 && y <= 24) out += line_of(0, y, 120, y, "limit");
-      }
-    return "<svg class=\"spark\" viewBox=\"0 0 120 24\" aria-hidden=\"true\">" + out + "</svg>";
+    for (const double limit : limits_) {
+      const std::string at = y(limit);
+      out += "<line class=\"limit\" x1=\"0\" y1=\"" + at + "\" x2=\"120\" y2=\"" + at + "\"/>";
+    }
+    return {"<svg class=\"spark\" viewBox=\"0 0 120 24\" aria-hidden=\"true\">" + out + "</svg>"};
   }
 
  private:
-  double value(double si) const { return scaled(si, series_.unit); }
+  struct At {
+    std::string date;
+    double value, u;
+  };
 
-  /// What is followed has a sign and a limit on both sides; the largest deviations are none below 0.
-  std::vector<double> sides() const {
-    return series_.model.empty() ? std::vector<double>{1.0} : std::vector<double>{1.0, -1.0};
+  double value(double si) const { return scaled(si, series_.unit); }
+  double x_of(std::string_view date) const {
+    const auto day = day_of(date);
+    return day ? days(*day) : x_.low;
   }
 
   void fit() {
-    for (const HistoryPoint& p : series_.points) {
-      const auto day = day_of(p.date);
-      if (!day) continue;
+    const auto show = [this](const std::string& date, double v, double u) {
+      const auto day = day_of(date);
+      if (!day) return;
       x_.show(days(*day));
-      y_.show(value(p.value + 2 * p.u)), y_.show(value(p.value - 2 * p.u));
-    }
-    if (series_.forecast) {
-      const HistoryForecast& f = *series_.forecast;
-      if (const auto day = day_of(f.date)) x_.show(days(*day));
-      y_.show(value(f.value + 2 * f.u)), y_.show(value(f.value - 2 * f.u));
-    }
+      y_.show(value(v + 2 * u)), y_.show(value(v - 2 * u));
+    };
+    for (const HistoryPoint& p : series_.points) show(p.date, p.value, p.u);
     if (x_.empty()) return;
-    if (series_.limit) {
-      // A limit far away would press the readings flat.
-      const double limit = value(*series_.limit),
-                   most = std::max(std::fabs(y_.low), std::fabs(y_.high));
-      shows_limit_ = limit <= 3 * most || most == 0.0;
-      if (shows_limit_) {
-        if (y_.high > 0) y_.show(limit);
-        if (y_.low < 0 && sides().size() > 1) y_.show(-limit);
-      }
+    if (const auto& f = series_.forecast) show(f->date, f->value, f->u);
+    const double most = std::max(std::fabs(y_.low), std::fabs(y_.high));
+    // A limit far away would press the readings flat.
+    if (const auto& limit = series_.limit; limit && (value(*limit) <= 3 * most || most == 0.0)) {
+      if (y_.high > 0) y_.show(value(*limit));
+      // What is followed has a sign and a limit on both sides; the largest deviations have not.
+      if (y_.low < 0 && !series_.model.empty()) y_.show(-value(*limit));
+      for (const double side : {1.0, -1.0})
+        if (side > 0 || !series_.model.empty()) limits_.push_back(side * value(*limit));
     }
+    if (y_.empty()) y_.show(0.0);
     x_.widen(0.03, 20);
-    y_.widen(0.08, 1e-9 + 1e-3 * std::max(std::fabs(y_.low), std::fabs(y_.high)));
-    frame_.x = calendar(page_, x_.low, x_.high);
-    frame_.y = axis_scale(y_.low, y_.high, 5, Ticks::decimal, page_.words.language());
+    y_.widen(0.08, 1e-9 + 1e-3 * most);
+    std::erase_if(limits_, [this](double limit) { return limit < y_.low || limit > y_.high; });
   }
 
-  double at(std::string_view date) const {
-    const auto day = day_of(date);
-    return frame_.at_x(day ? days(*day) : x_.low);
-  }
-  double at_value(double si) const { return frame_.at_y(value(si)); }
-
-  /// Between the limit and what U leaves of it.
-  std::string guard() const {
-    if (!shows_limit_ || series_.points.empty()) return {};
-    std::string out;
-    const double U = 2 * series_.points.back().u;
-    for (const double side : sides()) {
-      const double limit = side * *series_.limit, kept = limit - side * U;
-      if (value(limit) > frame_.y.to || value(limit) < frame_.y.from) continue;
-      const double a = at_value(limit), b = std::clamp(at_value(kept), top, height - bottom);
-      out += "<rect class=\"guard\"" + attribute("x", left) + attribute("y", std::min(a, b)) +
-             attribute("width", width - left - right) + attribute("height", std::fabs(a - b)) +
-             "/>" + line_of(left, a, width - right, a, "limit");
+  /// Each with what U leaves of it.
+  void add_limits() {
+    const double U = value(2 * series_.points.back().u);
+    for (const double limit : limits_) {
+      plot_.limits.push_back({limit, ink::failed});
+      const double kept = std::clamp(limit - std::copysign(U, limit), y_.low, y_.high);
+      plot_.belts.push_back({std::min(limit, kept), std::max(limit, kept), ink::guard});
     }
+  }
+
+  void add_events() {
+    for (std::size_t i = 0; i < machine_.events.size(); ++i) {
+      const MachineEvent& e = machine_.events[i];
+      if (const auto day = day_of(e.date); day && (e.axis.empty() || e.axis == series_.axis))
+        plot_.events.push_back({days(*day), std::to_string(i + 1), e.date + ' ' + e.text});
+    }
+  }
+
+  void add_model(const At& a, const At& b, Dash dash, Colour shade) {
+    Curve area{.kind = Curve::Kind::band, .x = {}, .y = {}, .colour = shade, .width = 0};
+    Curve line{.x = {}, .y = {}, .colour = ink::measured, .width = 1.7, .dash = dash};
+    for (const At& at : {a, b}) {
+      area.x.push_back(x_of(at.date)), line.x.push_back(x_of(at.date));
+      line.y.push_back(value(at.value));
+      area.y.push_back(value(at.value + 2 * at.u)), area.y2.push_back(value(at.value - 2 * at.u));
+    }
+    plot_.curves.push_back(std::move(area));
+    plot_.curves.push_back(std::move(line));
+  }
+
+  Curve marks_of(const HistoryPoint& p) const {
+    const bool check = p.state == HistoryPoint::State::check;
+    const bool filled = p.joined && p.state != HistoryPoint::State::as_left;
+    Curve out{.kind = Curve::Kind::points,
+              .x = {},
+              .y = {},
+              .colour = p.joined ? ink::accent : ink::muted};
+    out.dash = p.joined ? Dash::solid : Dash::dotted;
+    out.marker = check ? Marker::square : filled ? Marker::dot : Marker::ring;
+    out.marker_size = 5.5;
     return out;
   }
 
-  std::string events() const {
-    std::string out;
-    std::size_t number = 0;
-    for (const MachineEvent& e : machine_.events) {
-      ++number;
-      const auto day = day_of(e.date);
-      if (!day || (!e.axis.empty() && e.axis != series_.axis)) continue;
-      const double x = frame_.at_x(days(*day));
-      if (x < left || x > width - right) continue;
-      out += "<g>" + element("title", html(e.date + ' ' + e.text)) +
-             line_of(x, top, x, height - bottom, "event") +
-             text_at(x + 3, top + 9, std::to_string(number), "start", "event-number") + "</g>";
-    }
+  std::string title_of(const HistoryPoint& p) const {
+    std::string out =
+        p.date + ' ' + p.campaign + ": " + value_text(page_, p.value, u_of_value(p), series_.unit);
+    if (!p.joined)
+      out += " (" + page_.words.get_or("site.not_joined." + p.why_not, p.why_not) + ")";
     return out;
   }
 
-  std::string band(double x1, double y1, double u1, double x2, double y2, double u2,
-                   const char* style) const {
-    return "<polygon class=\"" + std::string(style) + "\" points=\"" + coordinate(x1) + ',' +
-           coordinate(at_value(y1 + 2 * u1)) + ' ' + coordinate(x2) + ',' +
-           coordinate(at_value(y2 + 2 * u2)) + ' ' + coordinate(x2) + ',' +
-           coordinate(at_value(y2 - 2 * u2)) + ' ' + coordinate(x1) + ',' +
-           coordinate(at_value(y1 - 2 * u1)) + "\"/>";
-  }
-
-  std::string model() const {
-    std::string out;
-    for (const HistorySegment& s : series_.segments) {
-      const double a = at(s.from), b = at(s.to);
-      out += band(a, s.first, s.u_first, b, s.last, s.u_last, "band") +
-             line_of(a, at_value(s.first), b, at_value(s.last), "line");
-    }
-    return out;
-  }
-
-  std::string forecast() const {
-    if (!series_.forecast || series_.segments.empty() || !std::isfinite(series_.forecast->value))
-      return {};
-    const HistorySegment& s = series_.segments.back();
-    const HistoryForecast& f = *series_.forecast;
-    const double a = at(s.to), b = at(f.date);
-    return band(a, s.last, s.u_last, b, f.value, f.u, "cone") +
-           line_of(a, at_value(s.last), b, at_value(f.value), "line dashed");
-  }
-
-  std::string points() const {
-    std::string out;
+  /// In the order of the days, in which the keyboard reaches them.
+  void add_points() {
+    Curve bars{.kind = Curve::Kind::bars, .x = {}, .y = {}, .colour = ink::accent, .width = 1.2};
+    std::vector<Curve> marks;
     for (const HistoryPoint& p : series_.points) {
       if (!day_of(p.date)) continue;
-      const double x = at(p.date), y = at_value(p.value);
-      std::string inside =
-          element("title",
-                  html(p.date + ' ' + p.campaign + ": " +
-                       value_text(page_, p.value, u_of_value(p), series_.unit) +
-                       (p.joined
-                            ? ""
-                            : " (" + page_.words.get_or("site.not_joined." + p.why_not, p.why_not) +
-                                  ")"))) +
-          line_of(x, at_value(p.value - 2 * p.u), x, at_value(p.value + 2 * p.u), "bar");
-      const char* style = !p.joined                                 ? "point apart"
-                          : p.state == HistoryPoint::State::as_left ? "point left"
-                                                                    : "point";
-      if (p.state == HistoryPoint::State::check)
-        inside += "<rect class=\"" + std::string(style) + '"' + attribute("x", x - 4) +
-                  attribute("y", y - 4) + " width=\"8\" height=\"8\"/>";
-      else
-        inside += "<circle class=\"" + std::string(style) + '"' + attribute("cx", x) +
-                  attribute("cy", y) + " r=\"4.5\"/>";
-      out += p.link.empty() ? element("g", inside) : link(page_.to_root + p.link, inside);
+      bars.x.push_back(x_of(p.date));
+      bars.y.push_back(value(p.value - 2 * p.u)), bars.y2.push_back(value(p.value + 2 * p.u));
+      Curve mark = marks_of(p);
+      if (marks.empty() || marks.back().marker != mark.marker || marks.back().dash != mark.dash)
+        marks.push_back(std::move(mark));
+      marks.back().x.push_back(x_of(p.date));
+      marks.back().y.push_back(value(p.value));
+      marks.back().titles.push_back(title_of(p));
+      marks.back().links.push_back(p.link.empty() ? "" : page_.to_root + p.link);
     }
-    return out;
+    plot_.curves.push_back(std::move(bars));
+    for (Curve& curve : marks) plot_.curves.push_back(std::move(curve));
   }
 
   const Page& page_;
   const MachineHistory& machine_;
   const HistorySeries& series_;
   Range x_{}, y_{};
-  Frame frame_{};
-  bool shows_limit_ = false;
+  std::vector<double> limits_;
+  Plot plot_;
 };
-
-std::string polyline(const Frame& f, const std::vector<double>& x, const std::vector<double>& y,
-                     const std::string& style) {
-  std::string points;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    points += (i == 0 ? "" : " ") + coordinate(f.at_x(x[i])) + ',' + coordinate(f.at_y(y[i]));
-  return "<polyline class=\"" + style + "\" points=\"" + points + "\"/>";
-}
-
-/// The curves of an axis in printed units.
-struct Curves {
-  std::vector<const ErrorCurve*> all;
-  Quantity position = Quantity::length, deviation = Quantity::deviation;
-};
-
-Curves curves_of(const MachineHistory& machine, const std::string& axis) {
-  Curves out;
-  for (const ErrorCurve& c : machine.curves)
-    if (c.axis == axis && c.position.size() == c.mean.size() && c.position.size() > 1)
-      out.all.push_back(&c);
-  if (!out.all.empty() && out.all.front()->rotary)
-    out.position = Quantity::angle, out.deviation = Quantity::angular_deviation;
-  return out;
-}
 
 std::vector<double> in_units(const std::vector<double>& si, Quantity q) {
   std::vector<double> out;
@@ -303,98 +269,100 @@ std::vector<double> in_units(const std::vector<double>& si, Quantity q) {
   return out;
 }
 
-Frame frame_of(const Page& page, Range x, Range y, bool turn) {
-  x.widen(0.02, 1e-9), y.widen(0.08, 1e-6);
-  return {axis_scale(x.low, x.high, 8, turn ? Ticks::turn : Ticks::decimal, page.words.language()),
-          axis_scale(y.low, y.high, 5, Ticks::decimal, page.words.language())};
+/// The curves of an axis, and an empty plot for them.
+struct Curves {
+  std::vector<const ErrorCurve*> all;
+  Quantity position = Quantity::length, deviation = Quantity::deviation;
+  Plot plot;
+};
+
+Curves curves_of(const Page& page, const MachineHistory& machine, const std::string& axis) {
+  Curves out;
+  for (const ErrorCurve& c : machine.curves)
+    if (c.axis == axis && c.position.size() == c.mean.size() && c.position.size() > 1)
+      out.all.push_back(&c);
+  if (out.all.empty()) return out;
+  out.plot.degrees = out.all.front()->rotary;
+  if (out.plot.degrees) out.position = Quantity::angle, out.deviation = Quantity::angular_deviation;
+  out.plot.language = page.words.language();
+  out.plot.x_title = axis + ", " + unit_text(out.position);
+  out.plot.y_title = unit_text(out.deviation);
+  out.plot.zero_line = false;
+  return out;
 }
 
 }  // namespace
 
-std::string history_chart(const Page& page, const MachineHistory& machine,
-                          const HistorySeries& series) {
-  return HistoryDrawing(page, machine, series).svg();
+Html history_chart(const Page& page, const MachineHistory& machine, const HistorySeries& series) {
+  return HistoryPlot(page, machine, series).svg();
 }
 
-std::string spark_line(const Page& page, const HistorySeries& series) {
+Html spark_line(const Page& page, const HistorySeries& series) {
   static const MachineHistory none{};
-  return HistoryDrawing(page, none, series).spark();
+  return HistoryPlot(page, none, series).spark();
 }
 
-std::string curves_chart(const Page& page, const MachineHistory& machine, const std::string& axis) {
-  const Curves curves = curves_of(machine, axis);
+Html curves_chart(const Page& page, const MachineHistory& machine, const std::string& axis) {
+  Curves curves = curves_of(page, machine, axis);
   if (curves.all.empty()) return {};
-  Range x, y;
   for (const ErrorCurve* c : curves.all) {
-    for (const double p : c->position) x.show(scaled(p, curves.position));
-    for (const double m : c->mean) y.show(scaled(m, curves.deviation));
+    const bool last = c == curves.all.back();
+    Curve curve{.x = in_units(c->position, curves.position),
+                .y = in_units(c->mean, curves.deviation),
+                .colour = last ? ink::measured : ink::earlier,
+                .width = last ? 2.2 : 1.0};
+    curve.titles = {c->date + ' ' + c->campaign};
+    curves.plot.curves.push_back(std::move(curve));
   }
-  const Frame f = frame_of(page, x, y, curves.all.front()->rotary);
-  std::string drawn = rules(f, unit_text(curves.deviation));
-  for (const ErrorCurve* c : curves.all)
-    drawn +=
-        "<g>" + element("title", html(c->date + ' ' + c->campaign)) +
-        polyline(f, in_units(c->position, curves.position), in_units(c->mean, curves.deviation),
-                 c == curves.all.back() ? "line today" : "line earlier") +
-        "</g>";
-  drawn += text_at(width - right, height - 4, axis + ", " + unit_text(curves.position), "end");
-  return picture(page.words.get("site.curves", {{"axis", axis}}), drawn);
+  return picture(page, page.words.get("site.curves", {{"axis", axis}}), curves.plot);
 }
 
-std::string difference_chart(const Page& page, const MachineHistory& machine,
-                             const std::string& axis) {
-  const Curves curves = curves_of(machine, axis);
+Html difference_chart(const Page& page, const MachineHistory& machine, const std::string& axis) {
+  Curves curves = curves_of(page, machine, axis);
   if (curves.all.size() < 2) return {};
   const ErrorCurve &last = *curves.all.back(), &before = *curves.all[curves.all.size() - 2];
   if (last.position != before.position) return {};
-  std::vector<double> difference;
-  for (std::size_t i = 0; i < last.mean.size(); ++i)
-    difference.push_back(scaled(last.mean[i] - before.mean[i], curves.deviation));
   const double U = 2 * scaled(std::hypot(last.u, before.u), curves.deviation);
-  Range x, y;
-  for (const double p : last.position) x.show(scaled(p, curves.position));
-  for (const double d : difference) y.show(d + U), y.show(d - U);
-  y.show(0.0);
-  const Frame f = frame_of(page, x, y, last.rotary);
-  std::vector<double> xs = in_units(last.position, curves.position);
-  std::string band;
-  for (std::size_t i = 0; i < xs.size(); ++i)
-    band += coordinate(f.at_x(xs[i])) + ',' + coordinate(f.at_y(difference[i] + U)) + ' ';
-  for (std::size_t i = xs.size(); i-- > 0;)
-    band += coordinate(f.at_x(xs[i])) + ',' + coordinate(f.at_y(difference[i] - U)) + ' ';
-  band.pop_back();
-  return picture(
-      page.words.get("site.difference", {{"axis", axis}}),
-      rules(f, unit_text(curves.deviation)) +
-          line_of(left, f.at_y(0), width - right, f.at_y(0), "zero") +
-          "<polygon class=\"band\" points=\"" + band + "\"/>" +
-          polyline(f, xs, difference, "line today") +
-          text_at(width - right, height - 4, axis + ", " + unit_text(curves.position), "end"));
+  Curve line{.x = in_units(last.position, curves.position),
+             .y = {},
+             .colour = ink::measured,
+             .width = 2.2};
+  Curve area{.kind = Curve::Kind::band, .x = line.x, .y = {}, .colour = ink::band, .width = 0};
+  for (std::size_t i = 0; i < last.mean.size(); ++i) {
+    line.y.push_back(scaled(last.mean[i] - before.mean[i], curves.deviation));
+    area.y.push_back(line.y.back() + U), area.y2.push_back(line.y.back() - U);
+  }
+  curves.plot.zero_line = true;
+  curves.plot.curves = {std::move(area), std::move(line)};
+  return picture(page, page.words.get("site.difference", {{"axis", axis}}), curves.plot);
 }
 
-std::string comparison_chart(const Page& page, const ModelComparison& comparison) {
-  Range y;
-  for (const auto& m : comparison.machines)
-    y.show(scaled(m.value + 2 * m.u, comparison.unit)),
-        y.show(scaled(m.value - 2 * m.u, comparison.unit));
-  if (y.empty()) return {};
-  y.widen(0.08, 1e-6);
-  Frame f;
-  f.y = axis_scale(y.low, y.high, 5, Ticks::decimal, page.words.language());
-  f.x.from = -0.7, f.x.to = static_cast<double>(comparison.machines.size()) - 0.3;
-  std::string points;
-  const std::size_t each = (comparison.machines.size() + 9) / 10;  // names that have room
+Html comparison_chart(const Page& page, const ModelComparison& comparison) {
+  Plot plot;
+  plot.language = page.words.language();
+  plot.y_title = unit_text(comparison.unit);
+  plot.zero_line = false;
+  plot.x_range = {-0.7, static_cast<double>(comparison.machines.size()) - 0.3};
+  Curve bars{.kind = Curve::Kind::bars, .x = {}, .y = {}, .colour = ink::accent, .width = 1.2};
+  Curve inside{.kind = Curve::Kind::points, .x = {}, .y = {}, .colour = ink::accent};
+  inside.marker = Marker::dot, inside.marker_size = 5.5;
+  Curve far = inside;  // from the others
+  far.colour = ink::failed;
   for (std::size_t i = 0; i < comparison.machines.size(); ++i) {
     const auto& m = comparison.machines[i];
-    if (i % each == 0) f.x.ticks.push_back(static_cast<double>(i)), f.x.labels.push_back(m.machine);
-    const double x = f.at_x(static_cast<double>(i));
-    const auto at = [&](double v) { return f.at_y(scaled(v, comparison.unit)); };
-    points += line_of(x, at(m.value - 2 * m.u), x, at(m.value + 2 * m.u), "bar") +
-              "<circle class=\"" + (std::fabs(m.z) > 3 ? "point out" : "point") + '"' +
-              attribute("cx", x) + attribute("cy", at(m.value)) + " r=\"4.5\"/>";
+    const auto x = static_cast<double>(i);
+    plot.ticks.emplace_back(x, m.machine);
+    bars.x.push_back(x);
+    bars.y.push_back(scaled(m.value - 2 * m.u, comparison.unit));
+    bars.y2.push_back(scaled(m.value + 2 * m.u, comparison.unit));
+    Curve& marks = std::fabs(m.z) > 3 ? far : inside;
+    marks.x.push_back(x);
+    marks.y.push_back(scaled(m.value, comparison.unit));
   }
-  return picture(comparison.model + ' ' + comparison.axis,
-                 rules(f, unit_text(comparison.unit)) + points);
+  if (std::none_of(bars.y.begin(), bars.y.end(), [](double v) { return std::isfinite(v); }))
+    return {};
+  plot.curves = {std::move(bars), std::move(inside), std::move(far)};
+  return picture(page, comparison.model + ' ' + comparison.axis, plot);
 }
 
 }  // namespace nonio::reports::site

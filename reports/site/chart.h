@@ -10,17 +10,17 @@ namespace nonio::reports::site {
 
 /// One quantity over the years: points with U, limit and guard band, events, what the model says,
 /// forecast. An SVG.
-std::string history_chart(const Page&, const MachineHistory&, const HistorySeries&);
+Html history_chart(const Page&, const MachineHistory&, const HistorySeries&);
 
 /// The same as a line without axes, for a table.
-std::string spark_line(const Page&, const HistorySeries&);
+Html spark_line(const Page&, const HistorySeries&);
 
 /// Error curves of one axis: all campaigns, grey to today.
-std::string curves_chart(const Page&, const MachineHistory&, const std::string& axis);
+Html curves_chart(const Page&, const MachineHistory&, const std::string& axis);
 /// The last curve less the one before it, with U.
-std::string difference_chart(const Page&, const MachineHistory&, const std::string& axis);
+Html difference_chart(const Page&, const MachineHistory&, const std::string& axis);
 
 /// Values of machines of one model beside each other.
-std::string comparison_chart(const Page&, const ModelComparison&);
+Html comparison_chart(const Page&, const ModelComparison&);
 
 }  // namespace nonio::reports::site

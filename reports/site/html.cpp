@@ -22,36 +22,11 @@ std::optional<unsigned> number_of(std::string_view digits) {
   return value;
 }
 
-std::string navigation(const Page& page) {
-  std::string out;
-  for (const auto& [file, key] : {std::pair("index.html", "morning"),
-                                  {"due.html", "due"},
-                                  {"compare.html", "compare"},
-                                  {"instruments.html", "instruments"}})
-    out += link(page.to_root + file, html(page.words.get("site." + std::string(key)))) + "\n";
-  return element("nav", out, "aria-label=\"" + html(page.words.get("site.pages")) + "\"");
-}
-
 }  // namespace
 
-std::string html(std::string_view text) { return escaped_markup(text, Markup::attribute); }
+Html with_whole_days(std::string_view text) { return {whole_days(html_of(text).text)}; }
 
-std::string element(std::string_view name, std::string_view inner, std::string_view more) {
-  constexpr std::size_t brackets = 8;
-  std::string out;
-  out.reserve(2 * name.size() + inner.size() + more.size() + brackets);
-  ((out += '<') += name);
-  if (!more.empty()) ((out += ' ') += more);
-  ((((out += '>') += inner) += "</") += name) += ">\n";
-  return out;
-}
-
-std::string link(std::string_view to, std::string_view text_as_html) {
-  if (to.empty()) return std::string(text_as_html);
-  return "<a href=\"" + html(to) + "\">" + std::string(text_as_html) + "</a>";
-}
-
-std::string with_whole_days(std::string html) {
+std::string whole_days(const std::string& html) {
   constexpr std::size_t length = 10;
   std::string out;
   std::size_t done = 0;
@@ -65,27 +40,18 @@ std::string with_whole_days(std::string html) {
   return out + html.substr(done);
 }
 
-std::string scrolled(std::string_view label, std::string_view inner) {
-  return element(
-      "div", inner,
-      "class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" + html(label) + "\"");
+View page_view(const Page& page, const std::string& title, std::string beside_navigation) {
+  View view;
+  view.set("language", page.words.language()).set("title", title).set("program", "Nonio");
+  view.set("root", page.to_root).set("beside", std::move(beside_navigation));
+  view.set("script_source", std::string(script_source));
+  view.set("style_source", std::string(style_source));
+  view.set("script", Html{std::string(page_script)}).set("style", Html{std::string(page_style)});
+  return view;
 }
 
-std::string whole_page(const Page& page, const std::string& title, const std::string& main,
-                       const std::string& beside_navigation) {
-  return "<!DOCTYPE html>\n<html lang=\"" + html(page.words.language()) +
-         "\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '" +
-         std::string(script_source) + "'; style-src '" + std::string(style_source) +
-         "'; base-uri 'none'; form-action 'none'\">\n"
-         "<meta name=\"color-scheme\" content=\"light dark\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
-         element("title", html(title) + " · Nonio") + element("style", page_style) +
-         "</head>\n<body>\n<header>\n" + navigation(page) +
-         (beside_navigation.empty() ? ""
-                                    : element("p", html(beside_navigation), "class=\"muted\"")) +
-         "</header>\n<main>\n" + element("h1", html(title)) + main + "</main>\n" +
-         element("script", page_script) + "</body>\n</html>\n";
+Expected<std::string> written(const Page& page, const std::string& name, const View& view) {
+  return page_text("site/" + name, view, page.words);
 }
 
 std::string value_text(const Page& page, double value, std::optional<double> u, Quantity q) {

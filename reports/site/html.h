@@ -2,10 +2,13 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "nonio/reports/font.h"
+#include "nonio/reports/page.h"
 #include "nonio/reports/site.h"
 #include "nonio/reports/wording.h"
 
@@ -16,22 +19,24 @@ struct Page {
   const SiteHistory& site;
   const Templates& templates;
   const Wording& words;
-  std::string to_root;  ///< "" or "../"
+  std::string to_root;                   ///< "" or "../"
+  std::shared_ptr<const Fonts> fonts{};  ///< that charts are measured with
 };
 
-std::string html(std::string_view text);
-std::string element(std::string_view name, std::string_view inner, std::string_view more = "");
-std::string link(std::string_view to, std::string_view text_as_html);
+/// Text in which no day breaks at its dashes.
+Html with_whole_days(std::string_view text);
+/// The same of text that is HTML already.
+std::string whole_days(const std::string& html);
 
-/// HTML in which no day breaks at its dashes.
-std::string with_whole_days(std::string html);
+/// What the head of every page shows.
+View page_view(const Page&, const std::string& title, std::string beside_navigation = {});
+/// The page templates/pages/site/`name`.html.
+Expected<std::string> written(const Page&, const std::string& name, const View&);
 
-/// What may be wider than the page: a keyboard reaches it, `label` names it.
-std::string scrolled(std::string_view label, std::string_view inner);
-
-/// A whole page; `main` is HTML.
-std::string whole_page(const Page&, const std::string& title, const std::string& main,
-                       const std::string& beside_navigation = {});
+/// Relative to the page that is written; empty if there is none.
+inline std::string from_root(const Page& page, const std::string& link) {
+  return link.empty() ? link : page.to_root + link;
+}
 
 /// "−4.2 ± 0.4 µm", U = 2 u; without u the number and its unit.
 std::string value_text(const Page&, double value, std::optional<double> u, Quantity);

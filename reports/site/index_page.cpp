@@ -30,7 +30,7 @@ const MachineHistory* machine_of(const Page& page, const std::string& id) {
 
 std::string machine_link(const Page& page, const std::string& id) {
   const MachineHistory* machine = machine_of(page, id);
-  return link(machine == nullptr ? "" : page.to_root + "machines/" + machine->file, html(id));
+  return machine == nullptr ? "" : page.to_root + "machines/" + machine->file;
 }
 
 std::string counts(const Page& page) {
@@ -45,7 +45,7 @@ std::string counts(const Page& page) {
         ' ' + page.words.get("site.certificates", {{"count", std::to_string(site.certificates)}});
   if (site.waiting > 0)
     out += ' ' + page.words.get("site.waiting", {{"count", std::to_string(site.waiting)}});
-  return element("p", html(out), "class=\"counts\"");
+  return out;
 }
 
 constexpr std::size_t most_lines = 200;    // one page, not a download
@@ -57,17 +57,16 @@ std::span<const MorningLine> shown_lines(const Page& page) {
   return std::span(all).first(std::min(all.size(), most_lines));
 }
 
-std::string select(const Page& page, const char* name,
-                   const std::map<std::string, std::string>& values) {
-  if (values.size() < 2) return {};
-  std::string options = element("option", html(page.words.get("site.all")), "value=\"\"");
+void add_filter(View& view, const Page& page, const char* name,
+                const std::map<std::string, std::string>& values) {
+  if (values.size() < 2) return;
+  View& filter = view.add("filter");
+  filter.set("name", name).set("label", page.words.get("site.filter." + std::string(name)));
   for (const auto& [value, text] : values)
-    options += element("option", html(text), "value=\"" + html(value) + "\"");
-  return element("label", html(page.words.get("site.filter." + std::string(name))) + " " +
-                              element("select", options, "name=\"" + std::string(name) + "\""));
+    filter.add("option").set("value", value).set("text", text);
 }
 
-std::string filters(const Page& page) {
+void add_filters(View& view, const Page& page) {
   std::map<std::string, std::string> kinds, customers, machines, axes;
   for (const MorningLine& l : shown_lines(page)) {
     kinds[name_of(l.kind)] = page.words.get("site.kind." + std::string(name_of(l.kind)));
@@ -75,11 +74,12 @@ std::string filters(const Page& page) {
     if (!l.machine.empty()) machines[l.machine] = l.machine;
     if (!l.axis.empty()) axes[l.axis] = l.axis;
   }
-  const std::string all = select(page, "kind", kinds) + select(page, "customer", customers) +
-                          select(page, "machine", machines) + select(page, "axis", axes);
-  if (all.empty()) return {};
-  return element("div", all + "<span id=\"shown\" class=\"muted\" role=\"status\"></span>",
-                 "class=\"filters\" hidden");
+  const auto many = [](const auto& values) { return values.size() > 1; };
+  view.flag("filters", many(kinds) || many(customers) || many(machines) || many(axes));
+  add_filter(view, page, "kind", kinds);
+  add_filter(view, page, "customer", customers);
+  add_filter(view, page, "machine", machines);
+  add_filter(view, page, "axis", axes);
 }
 
 std::string limit_text(const Page& page, const MorningLine& l) {
@@ -87,67 +87,52 @@ std::string limit_text(const Page& page, const MorningLine& l) {
   return ", " + page.words.get("site.limit", {{"limit", short_number(page, *l.limit, l.unit)}});
 }
 
-/// "S-0042 X", linked; the campaign's where there is no machine.
-std::string where(const Page& page, const MorningLine& l) {
-  if (l.machine.empty())
-    return link(l.link.empty() ? "" : page.to_root + l.link, html(l.campaign)) +
-           (l.axis.empty() ? "" : " " + html(l.axis));
-  return machine_link(page, l.machine) + (l.axis.empty() ? "" : " " + html(l.axis));
+Html says(const Page& page, const MorningLine& l, const char* part) {
+  return {typeset_html(line_text(page, l, part))};
 }
 
-/// HTML.
-std::string says(const Page& page, const MorningLine& l, const char* part) {
-  return typeset_html(line_text(page, l, part));
+/// What it says, what else of the axis is open, since when.
+Html all_it_says(const Page& page, const MorningLine& l) {
+  std::string more;
+  for (const std::string& text : {also_text(page, l), since_text(page, l)})
+    if (!text.empty()) more += " " + text;
+  return {whole_days(says(page, l, "says").text) + with_whole_days(more).text};
 }
 
-std::string row_of(const Page& page, const MorningLine& l) {
+void add_line(View& view, const Page& page, const MorningLine& l) {
+  using State = MorningLine::State;
   const char* kind = name_of(l.kind);
-  std::string value;
-  if (!l.quantity.empty()) value = html(quantity_text(page, l.quantity));
-  if (l.value)
-    value += (value.empty() ? "" : " ") +
-             link(l.link.empty() ? "" : page.to_root + l.link,
-                  html(value_text(page, *l.value, l.u, l.unit))) +
-             html(limit_text(page, l));
-  std::string text = says(page, l, "says");
-  if (const std::string also = also_text(page, l); !also.empty()) text += " " + html(also);
-  if (const std::string since = since_text(page, l); !since.empty()) text += " " + html(since);
-  std::string advice = says(page, l, "advice");
-  if (l.state == MorningLine::State::known)
-    advice = html(
-        page.words.get("site.acknowledged", {{"by", l.by}, {"until", l.until}, {"why", l.why}}));
-  const char* state = l.state == MorningLine::State::known   ? "known"
-                      : l.state == MorningLine::State::fixed ? "fixed"
-                                                             : "fresh";
-  const std::string what = l.state == MorningLine::State::fixed ? "fixed" : kind;
-  return "<tr tabindex=\"0\" class=\"" + std::string(state) + "\" data-line=\"" + html(l.id) +
-         "\" data-kind=\"" + kind + "\" data-customer=\"" + html(l.customer) +
-         "\" data-machine=\"" + html(l.machine) + "\" data-axis=\"" + html(l.axis) + "\">" +
-         element("td",
-                 element("span", html(page.words.get("site.kind." + what)),
-                         "class=\"kind " + what + "\""),
-                 "class=\"what\"") +
-         element("td", where(page, l)) + element("td", value, "class=\"value\"") +
-         element("td", with_whole_days(text)) + element("td", advice, "class=\"do\"") + "</tr>\n";
+  const std::string what = l.state == State::fixed ? "fixed" : kind;
+  View& line = view.add("line");
+  line.set("state", l.state == State::known   ? "known"
+                    : l.state == State::fixed ? "fixed"
+                                              : "fresh");
+  line.set("id", l.id).set("kind", kind).set("customer", l.customer).set("machine", l.machine);
+  line.set("axis", l.axis).set("what", what);
+  line.set("what_text", page.words.get("site.kind." + what));
+  line.set("where", l.machine.empty() ? l.campaign : l.machine);
+  line.set("where_link",
+           l.machine.empty() ? from_root(page, l.link) : machine_link(page, l.machine));
+  line.set("quantity", l.quantity.empty() ? "" : quantity_text(page, l.quantity));
+  line.set("value", l.value ? value_text(page, *l.value, l.u, l.unit) : "");
+  line.set("value_link", l.value ? from_root(page, l.link) : "");
+  line.set("limit", l.value ? limit_text(page, l) : "");
+  line.set("says", all_it_says(page, l));
+  if (l.state == State::known)
+    line.set("advice", page.words.get("site.acknowledged",
+                                      {{"by", l.by}, {"until", l.until}, {"why", l.why}}));
+  else
+    line.set("advice", says(page, l, "advice"));
 }
 
-std::string lines(const Page& page) {
-  if (page.site.lines.empty())
-    return element("p", html(page.words.get(page.site.judged ? "site.nothing" : "site.not_judged")),
-                   "class=\"counts\"");
-  std::string head;
-  for (const char* key : {"what", "where", "value", "says", "do"})
-    head += element("th", html(page.words.get("site.column." + std::string(key))), "scope=\"col\"");
-  std::string rows;
+void add_lines(View& view, const Page& page) {
   const auto shown = shown_lines(page);
-  for (const MorningLine& l : shown) rows += row_of(page, l);
-  const std::size_t more = page.site.lines.size() - shown.size();
-  return scrolled(page.words.get("site.morning"),
-                  element("table", element("thead", element("tr", head)) + element("tbody", rows),
-                          "class=\"lines\"")) +
-         (more == 0 ? ""
-                    : element("p", html(page.words.get("site.and_more",
-                                                       {{"count", std::to_string(more)}}))));
+  view.flag("lines", !shown.empty());
+  if (shown.empty())
+    view.set("nothing", page.words.get(page.site.judged ? "site.nothing" : "site.not_judged"));
+  for (const MorningLine& l : shown) add_line(view, page, l);
+  if (const std::size_t more = page.site.lines.size() - shown.size(); more > 0)
+    view.set("more_lines", page.words.get("site.and_more", {{"count", std::to_string(more)}}));
 }
 
 const char* style_of(Kind kind) {
@@ -168,70 +153,56 @@ const char* style_of(Kind kind) {
   return "fine";
 }
 
-/// A row a machine, a cell a month: a letter beside the colour, so that no one needs the colour.
-std::string strip(const Page& page) {
+/// A letter in addition to the colour, so that no one needs the colour.
+void add_cell(View& row, const Page& page, const std::string& month, const MonthOfMachine* m) {
+  View& cell = row.add("cell");
+  if (m == nullptr) {
+    cell.set("about", "").set("sign", "");
+    return;
+  }
+  const std::string word = m->gravest
+                               ? page.words.get("site.kind." + std::string(name_of(*m->gravest)))
+                               : page.words.get(m->measured ? "site.measured" : "site.happened");
+  cell.set("sign", m->event ? "●" : m->gravest ? word.substr(0, 1) : "");
+  cell.set("look", m->gravest ? style_of(*m->gravest) : m->measured ? "fine" : "");
+  cell.set("about", m->machine + ", " + month_text(page, month) + ": " + word);
+}
+
+/// A row for each machine, a cell for each month.
+void add_strip(View& view, const Page& page) {
   std::set<std::string> months;
   std::map<std::string, std::map<std::string, const MonthOfMachine*>> cells;
   for (const MonthOfMachine& m : page.site.months) {
     months.insert(m.month);
     cells[m.machine][m.month] = &m;
   }
-  if (months.empty()) return {};
+  view.flag("strip", !months.empty());
   while (months.size() > most_months) months.erase(months.begin());
   std::set<std::string> first;  // those that the lines name come first
   for (const MorningLine& l : page.site.lines)
     if (first.size() < most_machines && cells.contains(l.machine)) first.insert(l.machine);
   for (const auto& [machine, of] : cells)
     if (first.size() < most_machines) first.insert(machine);
-  const std::size_t more = cells.size() - first.size();
-  std::erase_if(cells, [&](const auto& one) { return !first.contains(one.first); });
-  std::string head = "<td></td>";
   std::string year;
   for (const std::string& month : months) {
-    const std::string text = month.substr(0, 4) == year ? "" : month.substr(2, 2);
+    const bool same = month.substr(0, 4) == year;
     year = month.substr(0, 4);
-    const std::string whole = html(month_text(page, month));  // who does not see hears every month
-    head += element("th",
-                    element("span", whole, "class=\"unseen\"") +
-                        (text.empty() ? "" : element("span", "’" + text, "aria-hidden=\"true\"")),
-                    "scope=\"col\" title=\"" + whole + "\"");
+    view.add("month")
+        .set("month", month_text(page, month))
+        .set("year", same ? "" : month.substr(2, 2));
   }
-  std::string rows;
-  for (const auto& [machine, of] : cells) {
-    std::string row = element("th", machine_link(page, machine), "scope=\"row\"");
+  for (const std::string& machine : first) {
+    View& row = view.add("row");
+    row.set("machine", machine).set("link", machine_link(page, machine));
+    const auto& of = cells.at(machine);
     for (const std::string& month : months) {
       const auto at = of.find(month);
-      if (at == of.end()) {
-        row += "<td></td>";
-        continue;
-      }
-      const MonthOfMachine& m = *at->second;
-      const std::string word = m.gravest
-                                   ? page.words.get("site.kind." + std::string(name_of(*m.gravest)))
-                                   : page.words.get(m.measured ? "site.measured" : "site.happened");
-      row += element("td",
-                     m.event     ? "●"
-                     : m.gravest ? html(word.substr(0, 1))
-                                 : "",
-                     "class=\"" +
-                         std::string(m.gravest    ? style_of(*m.gravest)
-                                     : m.measured ? "fine"
-                                                  : "") +
-                         "\" title=\"" +
-                         html(machine + ", " + month_text(page, month) + ": " + word) + "\"");
+      add_cell(row, page, month, at == of.end() ? nullptr : at->second);
     }
-    rows += element("tr", row);
   }
-  return element("h2", html(page.words.get("site.months"))) +
-         element("p", html(page.words.get("site.months_key")), "class=\"muted\"") +
-         scrolled(page.words.get("site.months"),
-                  element("table", element("thead", element("tr", head)) + element("tbody", rows),
-                          "class=\"strip\"")) +
-         (more == 0 ? ""
-                    : element("p",
-                              html(page.words.get("site.more_machines",
-                                                  {{"count", std::to_string(more)}})),
-                              "class=\"muted\""));
+  if (const std::size_t more = cells.size() - first.size(); more > 0)
+    view.set("more_machines",
+             page.words.get("site.more_machines", {{"count", std::to_string(more)}}));
 }
 
 constexpr std::size_t most_sparks = 10;
@@ -248,41 +219,42 @@ std::vector<const MorningLine*> drawn_lines(const SiteHistory& site) {
 }
 
 /// Largest deviations of machines whose lines come first.
-std::string sparks(const Page& page) {
-  std::string rows;
-  for (const MorningLine* line : drawn_lines(page.site)) {
-    const MorningLine& l = *line;
-    const MachineHistory* machine = machine_of(page, l.machine);
-    std::string row;
+void add_sparks(View& view, const Page& page) {
+  bool any = false;
+  for (const MorningLine* l : drawn_lines(page.site)) {
+    View* row = nullptr;
     for (const char* quantity : {"A", "B", "R"}) {
-      const auto series = std::find_if(
-          machine->series.begin(), machine->series.end(),
-          [&](const HistorySeries& s) { return s.axis == l.axis && s.quantity == quantity; });
-      if (series == machine->series.end() || series->points.empty()) continue;
+      const auto& all = machine_of(page, l->machine)->series;
+      const auto series = std::find_if(all.begin(), all.end(), [&](const HistorySeries& s) {
+        return s.axis == l->axis && s.quantity == quantity;
+      });
+      if (series == all.end() || series->points.empty()) continue;
+      if (row == nullptr) row = &view.add("spark");
       const HistoryPoint& last = series->points.back();
-      row += element("td", spark_line(page, *series)) +
-             element("td",
-                     html(std::string(quantity) + " " +
-                          value_text(page, last.value, last.u, series->unit)),
-                     "class=\"number\"");
+      row->add("series")
+          .set("drawing", spark_line(page, *series))
+          .set("value", quantity + (" " + value_text(page, last.value, last.u, series->unit)));
     }
-    if (!row.empty())
-      rows += element(
-          "tr",
-          element("th", machine_link(page, l.machine) + " " + html(l.axis), "scope=\"row\"") + row);
+    if (row == nullptr) continue;
+    any = true;
+    row->set("machine", l->machine).set("axis", l->axis);
+    row->set("link", machine_link(page, l->machine));
   }
-  if (rows.empty()) return {};
-  return element("h2", html(page.words.get("site.worst"))) +
-         scrolled(page.words.get("site.worst"), element("table", rows, "class=\"sparks\""));
+  view.flag("sparks", any);
 }
 
 }  // namespace
 
-std::string index_page(const Page& page) {
-  return whole_page(page, page.words.get("site.morning"),
-                    counts(page) + filters(page) + lines(page) + sparks(page) + strip(page),
-                    page.words.get("site.night", {{"night", std::to_string(page.site.night)},
-                                                  {"date", page.site.date}}));
+Expected<std::string> index_page(const Page& page) {
+  View view = page_view(page, page.words.get("site.morning"),
+                        page.words.get("site.night", {{"night", std::to_string(page.site.night)},
+                                                      {"date", page.site.date}}));
+  view.set("counts", counts(page));
+  add_filters(view, page);
+  add_lines(view, page);
+  add_sparks(view, page);
+  add_strip(view, page);
+  return written(page, "index", view);
 }
 
 }  // namespace nonio::reports::site

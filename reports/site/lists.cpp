@@ -13,13 +13,6 @@ namespace nonio::reports::site {
 
 namespace {
 
-std::string head(const Page& page, std::initializer_list<const char*> keys) {
-  std::string out;
-  for (const char* key : keys)
-    out += element("th", html(page.words.get("site.column." + std::string(key))), "scope=\"col\"");
-  return element("thead", element("tr", out));
-}
-
 std::vector<const MachineHistory*> by_due(const SiteHistory& site) {
   std::vector<const MachineHistory*> out;
   for (const MachineHistory& m : site.machines)
@@ -66,33 +59,22 @@ std::string without_dashes(std::string date) {
 
 }  // namespace
 
-std::string due_page(const Page& page) {
-  std::string out, rows, open;
-  const auto close = [&] {
-    if (!rows.empty())
-      out +=
-          element("h2", html(open)) +
-          scrolled(open,
-                   element("table",
-                           head(page, {"due", "machine", "customer", "place", "rule", "proposal"}) +
-                               element("tbody", rows),
-                           "class=\"due\""));
-    rows.clear();
-  };
+Expected<std::string> due_page(const Page& page) {
+  View view = page_view(page, page.words.get("site.due"));
+  View* open = nullptr;
+  std::string month;
   for (const MachineHistory* m : by_due(page.site)) {
-    if (const std::string now = bucket(page, m->due); now != open) close(), open = now;
-    rows += element("tr", element("td", with_whole_days(html(m->due))) +
-                              element("td", link("machines/" + m->file, html(m->id))) +
-                              element("td", html(m->customer)) + element("td", html(m->place)) +
-                              element("td", html(m->why_due)) +
-                              element("td", html(proposal_text(page, m->proposal))));
+    if (const std::string now = bucket(page, m->due); open == nullptr || now != month) {
+      const bool first = open == nullptr;
+      open = &view.add("bucket");
+      open->set("month", month = now).flag("first", first);
+    }
+    View& machine = open->add("machine");
+    machine.set("due", with_whole_days(m->due)).set("link", "machines/" + m->file);
+    machine.set("id", m->id).set("customer", m->customer).set("place", m->place);
+    machine.set("why", m->why_due).set("proposal", proposal_text(page, m->proposal));
   }
-  close();
-  if (out.empty())
-    out = element("p", html(page.words.get("site.no_due")));
-  else
-    out = element("p", link("due.ics", html(page.words.get("site.calendar")))) + out;
-  return whole_page(page, page.words.get("site.due"), out);
+  return written(page, "due", view);
 }
 
 std::string due_calendar(const Page& page) {
@@ -115,37 +97,25 @@ std::string due_calendar(const Page& page) {
   return out + "END:VCALENDAR\r\n";
 }
 
-std::string instruments_page(const Page& page) {
-  std::string out = element("p", html(page.words.get("site.instruments_says")));
+Expected<std::string> instruments_page(const Page& page) {
+  View view = page_view(page, page.words.get("site.instruments"));
   for (const InstrumentUse& i : page.site.instruments) {
-    std::string title = i.name;
-    if (!i.certificate.empty()) title += " · " + i.certificate;
-    std::string note;
-    if (!i.valid_until.empty())
-      note = page.words.get(i.valid_until < page.site.date ? "site.expired" : "site.valid_until",
-                            {{"date", i.valid_until}});
-    std::string rows;
-    const auto cell = [&](std::string_view inner) { ((rows += "<td>") += inner) += "</td>\n"; };
-    for (const auto& on : i.results) {  // of a large site a hundred thousand
-      rows += "<tr>";
-      cell(with_whole_days(html(on.date)));
-      cell(html(on.machine));
-      cell(link(on.link, html(on.campaign)));
-      cell(html(on.number));
-      rows += "</tr>\n";
+    View& instrument = view.add("instrument");
+    instrument.set("name", i.certificate.empty() ? i.name : i.name + " · " + i.certificate);
+    instrument.set("note", i.valid_until.empty()
+                               ? ""
+                               : page.words.get(i.valid_until < page.site.date ? "site.expired"
+                                                                               : "site.valid_until",
+                                                {{"date", i.valid_until}}));
+    instrument.set(
+        "count", page.words.get("site.results_on", {{"count", std::to_string(i.results.size())}}));
+    for (const auto& on : i.results) {
+      View& result = instrument.add("result");
+      result.set("date", with_whole_days(on.date)).set("machine", on.machine);
+      result.set("campaign", on.campaign).set("link", on.link).set("number", on.number);
     }
-    out += element(
-        "section",
-        element("h2", html(title)) + element("p", html(note)) +
-            element("details",
-                    element("summary",
-                            html(page.words.get("site.results_on",
-                                                {{"count", std::to_string(i.results.size())}}))) +
-                        scrolled(title, element("table", head(page, {"date", "machine", "campaign",
-                                                                     "certificate"}) +
-                                                             element("tbody", rows)))));
   }
-  return whole_page(page, page.words.get("site.instruments"), out);
+  return written(page, "instruments", view);
 }
 
 namespace {
@@ -163,43 +133,28 @@ std::string travel_text(const Page& page, const ModelComparison::Travel& travel)
 
 }  // namespace
 
-std::string compare_page(const Page& page) {
-  std::string out;
+Expected<std::string> compare_page(const Page& page) {
+  View view = page_view(page, page.words.get("site.compare"));
+  view.flag("any", !page.site.comparisons.empty());
   for (const ModelComparison& c : page.site.comparisons) {
-    std::string rows;
-    for (const auto& m : c.machines)
-      rows += element(
-          "tr",
-          element("td", html(m.machine)) +
-              element("td", html(value_text(page, m.value, m.u, c.unit)), "class=\"number\"") +
-              element("td", html(short_number(page, m.z, Quantity::number)), "class=\"number\""));
-    std::string title = c.model + " · " + c.axis + " · " + quantity_text(page, c.quantity);
-    if (c.travel) title += " · " + travel_text(page, *c.travel);
-    std::string note;
+    View& model = view.add("model");
+    const std::string title = c.model + " · " + c.axis + " · " + quantity_text(page, c.quantity);
+    model.set("model", c.travel ? title + " · " + travel_text(page, *c.travel) : title);
+    model.set("chart", comparison_chart(page, c));
     if (c.count > c.machines.size())
-      note = element(
-          "p",
-          html(page.words.get("site.compare_some",
-                              {{"shown", std::to_string(c.machines.size())},
-                               {"count", std::to_string(c.count)},
-                               {"median", value_text(page, c.median, std::nullopt, c.unit)},
-                               {"spread", value_text(page, c.spread, std::nullopt, c.unit)}})),
-          "class=\"muted\"");
-    out += element(
-        "section",
-        element("h2", html(title)) + note + comparison_chart(page, c) +
-            element(
-                "details",
-                element("summary", html(page.words.get("site.numbers"))) +
-                    scrolled(title, element("table", head(page, {"machine", "value", "distance"}) +
-                                                         element("tbody", rows)))));
+      model.set("note",
+                page.words.get("site.compare_some",
+                               {{"shown", std::to_string(c.machines.size())},
+                                {"count", std::to_string(c.count)},
+                                {"median", value_text(page, c.median, std::nullopt, c.unit)},
+                                {"spread", value_text(page, c.spread, std::nullopt, c.unit)}}));
+    for (const auto& m : c.machines)
+      model.add("machine")
+          .set("id", m.machine)
+          .set("value", value_text(page, m.value, m.u, c.unit))
+          .set("distance", short_number(page, m.z, Quantity::number));
   }
-  if (out.empty())
-    out = element("p", html(page.words.get("site.no_compare")));
-  else
-    out = element("p", html(page.words.get("site.compare_says")), "class=\"muted\"") +
-          element("div", out, "class=\"charts\"");
-  return whole_page(page, page.words.get("site.compare"), out);
+  return written(page, "compare", view);
 }
 
 }  // namespace nonio::reports::site

@@ -13,64 +13,58 @@ namespace nonio::reports::site {
 
 namespace {
 
-std::string entry(const Page& page, const char* key, const std::string& value) {
-  if (value.empty()) return {};
-  return element("dt", html(page.words.get("site." + std::string(key)))) +
-         element("dd", html(value));
+void add_identity(View& view, const Page& page, const MachineHistory& m) {
+  const auto add = [&](const char* key, const std::string& value) {
+    if (value.empty()) return;
+    view.add("entry").set("name", page.words.get("site." + std::string(key))).set("value", value);
+  };
+  add("machine", m.maker + (m.maker.empty() || m.model.empty() ? "" : " ") + m.model);
+  add("serial", m.serial);
+  add("customer", m.customer);
+  add("place", m.place);
+  add("control", m.control);
+  add("next_due", m.due.empty() || m.why_due.empty() ? m.due : m.due + " (" + m.why_due + ")");
+  add("proposal", proposal_text(page, m.proposal));
 }
 
-std::string identity(const Page& page, const MachineHistory& m) {
-  std::string made = m.maker;
-  if (!m.model.empty()) made += (made.empty() ? "" : " ") + m.model;
-  const std::string due =
-      m.due.empty() ? "" : m.due + (m.why_due.empty() ? "" : " (" + m.why_due + ")");
-  return element("dl", entry(page, "machine", made) + entry(page, "serial", m.serial) +
-                           entry(page, "customer", m.customer) + entry(page, "place", m.place) +
-                           entry(page, "control", m.control) + entry(page, "next_due", due) +
-                           entry(page, "proposal", proposal_text(page, m.proposal)));
-}
-
-std::string open_lines(const Page& page, const MachineHistory& m) {
-  std::string items;
+void add_open_lines(View& view, const Page& page, const MachineHistory& m) {
+  bool any = false;
   for (const MorningLine& l : page.site.lines) {
     if (l.machine != m.id) continue;
-    std::string text = html(page.words.get("site.kind." + std::string(name_of(l.kind)))) + ": ";
-    if (!l.axis.empty()) text += html(l.axis) + " ";
-    if (!l.quantity.empty()) text += html(quantity_text(page, l.quantity)) + " ";
-    if (l.value) text += html(value_text(page, *l.value, l.u, l.unit)) + ". ";
+    any = true;
+    std::string text = page.words.get("site.kind." + std::string(name_of(l.kind))) + ": ";
+    if (!l.axis.empty()) text += l.axis + " ";
+    if (!l.quantity.empty()) text += quantity_text(page, l.quantity) + " ";
+    if (l.value) text += value_text(page, *l.value, l.u, l.unit) + ". ";
+    text = html_of(text).text;
     for (const char* part : {"says", "advice"})
       text += typeset_html(line_text(page, l, part)) + " ";
-    text += html(also_text(page, l));
-    items += element("li", text);
+    view.add("line").set("line", Html{text + html_of(also_text(page, l)).text});
   }
-  return items.empty() ? items : element("ul", items);
+  view.flag("open", any);
 }
 
-std::string events(const Page& page, const MachineHistory& m) {
-  if (m.events.empty()) return {};
-  std::string items;
+void add_events(View& view, const Page& page, const MachineHistory& m) {
+  view.flag("events", !m.events.empty());
   for (const MachineEvent& e : m.events)
-    items +=
-        element("li", with_whole_days(html(e.date + " " + e.axis + (e.axis.empty() ? "" : " ") +
-                                           page.words.get_or("site.event." + e.kind, e.kind) +
-                                           (e.text.empty() ? "" : ": ") + e.text)));
-  return element("h2", html(page.words.get("site.events"))) + element("ol", items);
+    view.add("event").set("event",
+                          with_whole_days(e.date + " " + e.axis + (e.axis.empty() ? "" : " ") +
+                                          page.words.get_or("site.event." + e.kind, e.kind) +
+                                          (e.text.empty() ? "" : ": ") + e.text));
 }
 
-std::string tables(const Page& page, const MachineHistory& m) {
-  std::string items;
+void add_tables(View& view, const Page& page, const MachineHistory& m) {
+  view.flag("tables", !m.tables.empty());
   for (const TableKept& t : m.tables) {
     const auto value = [&](double x) { return value_text(page, x, std::nullopt, t.unit); };
-    items += element("li", html(page.words.get(t.good ? "site.table_good" : "site.table_wrong",
-                                               {{"axis", t.axis},
-                                                {"date", t.date},
-                                                {"name", t.quantity},
-                                                {"left", value(t.left)},
-                                                {"promised", value(t.promised)},
-                                                {"found", value(t.found)}})));
+    view.add("table").set("table", page.words.get(t.good ? "site.table_good" : "site.table_wrong",
+                                                  {{"axis", t.axis},
+                                                   {"date", t.date},
+                                                   {"name", t.quantity},
+                                                   {"left", value(t.left)},
+                                                   {"promised", value(t.promised)},
+                                                   {"found", value(t.found)}}));
   }
-  if (items.empty()) return items;
-  return element("h2", html(page.words.get("site.last_tables"))) + element("ul", items);
 }
 
 /// As found and as left on one day has words of its own.
@@ -87,25 +81,19 @@ std::string change_text(const Page& page, const HistorySeries& s, const HistoryC
        {"p", localised(evidence_text({"p", c.p, Quantity::probability}), page.words.language())}});
 }
 
-std::string changes(const Page& page, const HistorySeries& s) {
-  std::string out;
-  if (s.compared_over)
-    out += element(
-        "p",
-        html(page.words.get("site.compared_over",
-                            {{"from", short_number(page, s.compared_over->from, Quantity::length)},
-                             {"to", short_number(page, s.compared_over->to, Quantity::length)}})),
-        "class=\"muted\"");
+void add_changes(View& view, const Page& page, const HistorySeries& s) {
+  if (const auto& over = s.compared_over)
+    view.set("compared_over",
+             page.words.get("site.compared_over",
+                            {{"from", short_number(page, over->from, Quantity::length)},
+                             {"to", short_number(page, over->to, Quantity::length)}}));
   for (const HistoryChange& c : s.changes)
-    out += element("p", with_whole_days(html(change_text(page, s, c))));
+    view.add("change").set("change", with_whole_days(change_text(page, s, c)));
   if (s.changes.empty() && s.smallest_change)
-    out +=
-        element("p",
-                html(page.words.get("site.no_change",
-                                    {{"smallest", short_number(page, *s.smallest_change, s.unit)},
-                                     {"unit", unit_text(s.unit)}})),
-                "class=\"muted\"");
-  return out;
+    view.set("no_change",
+             page.words.get("site.no_change",
+                            {{"smallest", short_number(page, *s.smallest_change, s.unit)},
+                             {"unit", unit_text(s.unit)}}));
 }
 
 std::string forecast(const Page& page, const HistorySeries& s) {
@@ -115,8 +103,7 @@ std::string forecast(const Page& page, const HistorySeries& s) {
   const std::string p = f.p_out < least_printed
                             ? "< " + localised("0.01", page.words.language())
                             : short_number(page, 100 * f.p_out, Quantity::number);
-  if (!std::isfinite(f.value))
-    return element("p", html(page.words.get("site.forecast.out_now", {{"date", f.date}})));
+  if (!std::isfinite(f.value)) return page.words.get("site.forecast.out_now", {{"date", f.date}});
   const bool asked = s.limit || f.answer == "cannot-say";
   std::string text = page.words.get(
       "site.forecast." + (asked ? f.answer : "expected"),
@@ -124,7 +111,7 @@ std::string forecast(const Page& page, const HistorySeries& s) {
   if (!asked && f.answer == "act")
     text += " " + page.words.get("site.forecast.out_now", {{"date", f.date}});
   if (!f.leaves.empty()) text += " " + page.words.get("site.leaves", {{"date", f.leaves}});
-  return element("p", html(text));
+  return text;
 }
 
 /// U of comparison, rounded as the value with it is.
@@ -133,33 +120,20 @@ std::string comparison_text(const Page& page, const HistoryPoint& p, Quantity q)
 }
 
 /// The numbers of the chart; where it is drawn from.
-std::string numbers(const Page& page, const HistorySeries& s) {
-  std::string head;
-  for (const char* key : {"date", "state", "value", "comparison", "campaign"})
-    if (!s.model.empty() || key != std::string_view("comparison"))
-      head +=
-          element("th", html(page.words.get("site.column." + std::string(key))), "scope=\"col\"");
-  std::string rows;
+void add_numbers(View& view, const Page& page, const HistorySeries& s) {
+  view.flag("followed", !s.model.empty());
   constexpr const char* states[] = {"as_found", "as_left", "check"};
   for (const HistoryPoint& p : s.points) {
     std::string state =
         page.words.get("site.state." + std::string(states[static_cast<int>(p.state)]));
     if (!p.joined)
       state += " (" + page.words.get_or("site.not_joined." + p.why_not, p.why_not) + ")";
-    rows += element(
-        "tr",
-        element("td", with_whole_days(html(p.date))) + element("td", html(state)) +
-            element("td", html(value_text(page, p.value, u_of_value(p), s.unit)),
-                    "class=\"number\"") +
-            (s.model.empty()
-                 ? ""
-                 : element("td", html(comparison_text(page, p, s.unit)), "class=\"number\"")) +
-            element("td", link(p.link.empty() ? "" : page.to_root + p.link, html(p.campaign))));
+    View& point = view.add("point");
+    point.set("date", with_whole_days(p.date)).set("state", std::move(state));
+    point.set("value", value_text(page, p.value, u_of_value(p), s.unit));
+    point.set("comparison", comparison_text(page, p, s.unit));
+    point.set("campaign", p.campaign).set("link", from_root(page, p.link));
   }
-  return element("details", element("summary", html(page.words.get("site.numbers"))) +
-                                scrolled(s.axis + " " + quantity_text(page, s.quantity),
-                                         element("table", element("thead", element("tr", head)) +
-                                                              element("tbody", rows))));
 }
 
 /// Of two series of one quantity the one that has ended says so.
@@ -169,41 +143,45 @@ std::string title_of(const Page& page, const HistorySeries& s) {
   return title + ", " + page.words.get("site.until", {{"date", s.points.back().date}});
 }
 
-std::string one_series(const Page& page, const MachineHistory& m, const HistorySeries& s) {
-  return element("section", element("h3", html(title_of(page, s))) + history_chart(page, m, s) +
-                                changes(page, s) + forecast(page, s) + numbers(page, s));
+void add_series(View& view, const Page& page, const MachineHistory& m, const HistorySeries& s) {
+  View& series = view.add("series");
+  series.set("series", title_of(page, s)).set("chart", history_chart(page, m, s));
+  add_changes(series, page, s);
+  series.set("forecast", forecast(page, s));
+  add_numbers(series, page, s);
 }
 
-std::string curves(const Page& page, const MachineHistory& m) {
+void add_curves(View& view, const Page& page, const MachineHistory& m) {
   std::set<std::string> axes;
   for (const ErrorCurve& c : m.curves) axes.insert(c.axis);
-  std::string out;
+  bool any = false;
   for (const std::string& axis : axes) {
-    const std::string all = curves_chart(page, m, axis), last = difference_chart(page, m, axis);
-    if (all.empty()) continue;
-    out += element("section",
-                   element("h3", html(page.words.get("site.curves", {{"axis", axis}}))) + all);
-    if (!last.empty())
-      out +=
-          element("section",
-                  element("h3", html(page.words.get("site.difference", {{"axis", axis}}))) + last);
+    const auto add = [&](const char* heading, Html chart) {
+      if (chart.text.empty()) return false;
+      view.add("curve")
+          .set("heading", page.words.get(heading, {{"axis", axis}}))
+          .set("chart", std::move(chart));
+      return true;
+    };
+    if (!add("site.curves", curves_chart(page, m, axis))) continue;
+    add("site.difference", difference_chart(page, m, axis));
+    any = true;
   }
-  if (out.empty()) return out;
-  return element("h2", html(page.words.get("site.all_curves"))) +
-         element("div", out, "class=\"charts\"");
+  view.flag("curves", any);
 }
 
 }  // namespace
 
-std::string machine_page(const Page& page, const MachineHistory& m) {
-  std::string charts;
+Expected<std::string> machine_page(const Page& page, const MachineHistory& m) {
+  View view = page_view(page, m.id);
+  add_identity(view, page, m);
+  add_open_lines(view, page, m);
+  add_events(view, page, m);
+  add_tables(view, page, m);
   for (const HistorySeries& s : m.series)
-    if (!s.points.empty()) charts += one_series(page, m, s);
-  return whole_page(page, m.id,
-                    identity(page, m) + open_lines(page, m) + events(page, m) + tables(page, m) +
-                        element("h2", html(page.words.get("site.trends"))) +
-                        element("p", html(page.words.get("site.legend")), "class=\"muted\"") +
-                        element("div", charts, "class=\"charts\"") + curves(page, m));
+    if (!s.points.empty()) add_series(view, page, m, s);
+  add_curves(view, page, m);
+  return written(page, "machine", view);
 }
 
 }  // namespace nonio::reports::site

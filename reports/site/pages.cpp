@@ -1,17 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pages.h"
 
+#include <array>
+
 namespace nonio::reports {
+
+namespace {
+
+/// Of templates without fonts none: the widths of texts in charts are estimated then.
+Expected<std::shared_ptr<const Fonts>> fonts_of(const Templates& templates) {
+  std::array<FontFile, 2> files{
+      {{"", "fonts/LiberationSans-Regular.ttf"}, {"", "fonts/LiberationSans-Bold.ttf"}}};
+  for (auto& [bytes, name] : files) {
+    const auto file = templates.files.find(name);
+    if (file == templates.files.end()) return std::make_shared<const Fonts>();
+    bytes = file->second;
+  }
+  return shared_fonts(files[0], files[1]);
+}
+
+}  // namespace
 
 Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Templates& templates,
                                            const std::string& language) {
   const Wording words(templates, language, {"site"});
-  const site::Page root{history, templates, words, ""};
-  std::vector<Artifact> out{{"index.html", site::index_page(root)},
-                            {"due.html", site::due_page(root)},
-                            {"due.ics", site::due_calendar(root)},
-                            {"instruments.html", site::instruments_page(root)},
-                            {"compare.html", site::compare_page(root)}};
+  const auto fonts = fonts_of(templates);
+  if (!fonts) return fail(fonts.error());
+  const site::Page root{history, templates, words, "", *fonts};
+  using Written = Expected<std::string> (*)(const site::Page&);
+  constexpr std::pair<const char*, Written> pages[] = {{"index.html", site::index_page},
+                                                       {"due.html", site::due_page},
+                                                       {"instruments.html", site::instruments_page},
+                                                       {"compare.html", site::compare_page}};
+  std::vector<Artifact> out{{"due.ics", site::due_calendar(root)}};
+  for (const auto& [name, write] : pages) {
+    auto bytes = write(root);
+    if (!bytes) return fail(bytes.error());
+    out.push_back({name, std::move(*bytes)});
+  }
   if (auto complete = words.complete(); !complete) return fail(complete.error());
   return out;
 }
@@ -19,11 +45,13 @@ Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Tem
 Expected<Artifact> machine_page_of(const SiteHistory& history, const MachineHistory& machine,
                                    const Templates& templates, const std::string& language) {
   const Wording words(templates, language, {"site"});
-  const site::Page below{history, templates, words, "../"};
-  Artifact page{std::string(machines_folder) + "/" + machine.file,
-                site::machine_page(below, machine)};
+  const auto fonts = fonts_of(templates);
+  if (!fonts) return fail(fonts.error());
+  const site::Page below{history, templates, words, "../", *fonts};
+  auto bytes = site::machine_page(below, machine);
+  if (!bytes) return fail(bytes.error());
   if (auto complete = words.complete(); !complete) return fail(complete.error());
-  return page;
+  return Artifact{std::string(machines_folder) + "/" + machine.file, std::move(*bytes)};
 }
 
 Expected<std::vector<Artifact>> site_pages(const SiteHistory& history, const Templates& templates,

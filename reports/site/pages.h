@@ -7,12 +7,12 @@
 
 namespace nonio::reports::site {
 
-std::string index_page(const Page&);
-std::string machine_page(const Page&, const MachineHistory&);
-std::string due_page(const Page&);
+Expected<std::string> index_page(const Page&);
+Expected<std::string> machine_page(const Page&, const MachineHistory&);
+Expected<std::string> due_page(const Page&);
 /// iCalendar (RFC 5545): a day for each calibration that is due.
 std::string due_calendar(const Page&);
-std::string instruments_page(const Page&);
-std::string compare_page(const Page&);
+Expected<std::string> instruments_page(const Page&);
+Expected<std::string> compare_page(const Page&);
 
 }  // namespace nonio::reports::site

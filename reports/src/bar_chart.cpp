@@ -151,7 +151,7 @@ class BarSetter {
   double size_;
   double left_ = 0, room_ = 0, y_ = 0;
   AxisScale scale_;
-  Canvas canvas_;
+  PdfCanvas canvas_;
 };
 
 }  // namespace

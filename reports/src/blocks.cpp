@@ -18,6 +18,7 @@ void SetText::draw_all(Canvas& canvas, double x, double y, double width, double 
 }
 
 void note_glyphs(const Context& context, Glyphs& glyphs, bool bold) {
+  if (context.medium == Medium::screen) return;  // nothing is embedded
   const std::vector<char>& common = context.fonts.weight(bold).common;
   auto& [common_only, wide, numbers, pictures] = context.used;
   for (Glyph& g : glyphs)
@@ -36,7 +37,7 @@ void note_glyphs(const Context& context, Glyphs& glyphs, bool bold) {
 
 Expected<SetText> set_text(const Context& context, std::string_view text, bool bold, double size,
                            double width, std::string_view field) {
-  auto glyphs = shape(text, context.fonts, bold, field);
+  auto glyphs = shape(text, context.fonts, bold, field, context.medium);
   if (!glyphs) return fail(glyphs.error());
   note_glyphs(context, *glyphs, bold);
   SetText out{std::move(*glyphs), {}, bold, size};
@@ -46,7 +47,7 @@ Expected<SetText> set_text(const Context& context, std::string_view text, bool b
 
 Expected<SetText> set_line(const Context& context, std::string_view text, bool bold, double size,
                            double width, std::string_view field) {
-  auto glyphs = shape(text, context.fonts, bold, field);
+  auto glyphs = shape(text, context.fonts, bold, field, context.medium);
   if (!glyphs) return fail(glyphs.error());
   SetText out{
       shortened(std::move(*glyphs), width / size, context.fonts.weight(bold)), {}, bold, size};
@@ -84,7 +85,7 @@ Expected<void> draw_axis_text(Canvas& canvas, const Context& context, const Axis
   }
   // Of a title in two languages the first alone, where there is no room for both.
   constexpr std::string_view between = " · ";
-  if (const auto whole = shape(title, context.fonts, false, field);
+  if (const auto whole = shape(title, context.fonts, false, field, context.medium);
       whole && width_of(*whole) * size > width && title.find(between) != std::string_view::npos)
     title = title.substr(0, title.find(between));
   auto text = set_line(context, title, false, size, width, field);
@@ -123,7 +124,7 @@ void add_text(std::vector<Piece>& pieces, const SetText& text, double indent, Co
   constexpr std::size_t together = 8;
   for (std::size_t i = 0; i < text.lines.size();) {
     const std::size_t n = text.lines.size() <= together ? text.lines.size() : 1;
-    Canvas canvas;
+    PdfCanvas canvas;
     canvas.fill_colour(colour);
     for (std::size_t k = 0; k < n; ++k)
       text.draw(canvas, i + k, indent, -text.leading() * static_cast<double>(k));
@@ -141,7 +142,7 @@ Expected<Laid> lay(const Heading& heading, double width, const Context& context,
                                            : style.subheading;
   auto text = set_text(context, heading.text, true, size, width, field);
   if (!text) return fail(text.error());
-  Canvas canvas;
+  PdfCanvas canvas;
   canvas.fill_colour(heading.level == 2 ? style.text : style.accent);
   const double above = heading.level == 1 ? 9 : heading.level == 2 ? 4 : 0;
   text->draw_all(canvas, 0, -above);
@@ -192,7 +193,7 @@ Expected<Laid> lay(const Grid& grid, double width, const Context& context, std::
     auto value = set_text(context, row.value, false, style.small, width - x, row.field);
     if (!value) return fail(value.error());
     Piece first;
-    Canvas canvas;
+    PdfCanvas canvas;
     canvas.fill_colour(style.muted);
     label->draw_all(canvas, 0, 0);
     std::vector<Piece> lines;
@@ -223,7 +224,7 @@ Expected<Laid> lay(const Note& note, double width, const Context& context, std::
   if (auto ok = add(note.advice.empty() ? "" : "→ " + note.advice, false, false); !ok)
     return fail(ok.error());
   if (out.pieces.empty()) return out;
-  Canvas canvas;
+  PdfCanvas canvas;
   draw_mark(canvas, style, note.level, 0.5, -style.body, 7.5);
   out.pieces.front().ops = "q\n" + canvas.ops + "Q\n" + out.pieces.front().ops;
   out.pieces.back().with_next = false;
@@ -251,7 +252,7 @@ Expected<Laid> lay(const Status& status, double width, const Context& context,
     for (const SetText& text : texts) add_text(out.pieces, text, 0, style.text);
     return out;
   }
-  Canvas canvas;
+  PdfCanvas canvas;
   canvas.filled(0, -height, width, height, style.shade);
   canvas.filled(0, -height, bar, height, colour_of(style, status.level));
   draw_mark(canvas, style, status.level, bar + 6, -pad - style.body - 1.5, 9);
@@ -272,7 +273,7 @@ Expected<Laid> lay(const Image& image, double width, const Context& context, std
   if (it == pictures.end()) it = pictures.insert(it, *picture);
   const double shape = static_cast<double>((*it)->width) / (*it)->height;
   const double height = std::min({image.height, width / shape, context.page_room});
-  Canvas canvas;
+  PdfCanvas canvas;
   canvas.picture(it - pictures.begin(), image.align * (width - shape * height), -height,
                  shape * height, height);
   return Laid{{{height, 4, std::move(canvas.ops), false}}};
@@ -356,7 +357,7 @@ Expected<Laid> lay(const Columns& given, double width, const Context& context, s
   const std::size_t n = columns.parts.size();
   const double room = width - gutter * static_cast<double>(n - 1);
   if (auto ok = put_in_line(columns, room, context); !ok) return fail(ok.error());
-  Canvas canvas;
+  PdfCanvas canvas;
   double x = 0, height = 0;
   bool with_next = false;
   std::optional<SignatureFrame> signature;

@@ -7,26 +7,29 @@
 
 namespace nonio::reports {
 
-void Canvas::number(double value) { pdf::append_real(ops, value, ' '); }
+void Canvas::begin_item(std::string_view, std::string_view) {}
+void Canvas::end_item() {}
 
-void Canvas::colour(Colour c, const char* op) {
+void PdfCanvas::number(double value) { pdf::append_real(ops, value, ' '); }
+
+void PdfCanvas::colour(Colour c, const char* op) {
   for (const float part : {c.red, c.green, c.blue}) number(part);
   ops += op;
 }
 
-void Canvas::fill_colour(Colour c) {
+void PdfCanvas::fill_colour(Colour c) {
   if (c == state_.fill) return;
   state_.fill = c;
   colour(c, "rg\n");
 }
 
-void Canvas::stroke_colour(Colour c) {
+void PdfCanvas::stroke_colour(Colour c) {
   if (c == state_.stroke) return;
   state_.stroke = c;
   colour(c, "RG\n");
 }
 
-void Canvas::line(double width, Dash dash) {
+void PdfCanvas::line(double width, Dash dash) {
   if (width != state_.width) {
     number(width);
     ops += "w\n";
@@ -50,7 +53,7 @@ void Canvas::line(double width, Dash dash) {
   }
 }
 
-void Canvas::see_through(bool on) {
+void PdfCanvas::see_through(bool on) {
   if (on == state_.see_through) return;
   if (on) {
     kept_ = state_;
@@ -62,29 +65,29 @@ void Canvas::see_through(bool on) {
   }
 }
 
-void Canvas::move_to(double x, double y) {
+void PdfCanvas::move_to(double x, double y) {
   number(x);
   number(y);
   ops += "m\n";
 }
 
-void Canvas::line_to(double x, double y) {
+void PdfCanvas::line_to(double x, double y) {
   number(x);
   number(y);
   ops += "l\n";
 }
 
-void Canvas::curve_to(double x1, double y1, double x2, double y2, double x3, double y3) {
+void PdfCanvas::curve_to(double x1, double y1, double x2, double y2, double x3, double y3) {
   for (const double v : {x1, y1, x2, y2, x3, y3}) number(v);
   ops += "c\n";
 }
 
-void Canvas::rectangle(double x, double y, double w, double h) {
+void PdfCanvas::rectangle(double x, double y, double w, double h) {
   for (const double v : {x, y, w, h}) number(v);
   ops += "re\n";
 }
 
-void Canvas::circle(double x, double y, double radius) {
+void PdfCanvas::circle(double x, double y, double radius) {
   const double c = radius * 0.5523;  // 4 (sqrt 2 - 1)/3: a quarter circle as one Bezier curve
   move_to(x + radius, y);
   curve_to(x + radius, y + c, x + c, y + radius, x, y + radius);
@@ -93,7 +96,7 @@ void Canvas::circle(double x, double y, double radius) {
   curve_to(x + c, y - radius, x + radius, y - c, x + radius, y);
 }
 
-void Canvas::dots(std::span<const Point> points, double diameter, Colour c) {
+void PdfCanvas::dots(std::span<const Point> points, double diameter, Colour c) {
   stroke_colour(c);
   line(diameter);
   ops += "1 J\n";  // a line of no length with round caps is a dot (ISO 32000-1, 8.5.3.2)
@@ -117,18 +120,18 @@ void Canvas::filled(double x, double y, double w, double h, Colour c) {
   fill();
 }
 
-void Canvas::clip(double x, double y, double w, double h) {
+void PdfCanvas::clip(double x, double y, double w, double h) {
   ops += "q\n";
   rectangle(x, y, w, h);
   ops += "W n\n";
 }
 
-void Canvas::leave() {
+void PdfCanvas::leave() {
   ops += "Q\n";
   state_ = State{};
 }
 
-void Canvas::font(int which, double size) {
+void PdfCanvas::font(int which, double size) {
   if (which == state_.font && size == state_.size) return;
   ops += "/F";
   pdf::append_int(ops, which);
@@ -140,7 +143,7 @@ void Canvas::font(int which, double size) {
 }
 
 /// Stretches of one font, and accents each by itself.
-void Canvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
+void PdfCanvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
   const auto is_accent = [](const Glyph& g) { return g.shift != 0 || g.rise != 0; };
   for (std::size_t i = 0; i < glyphs.size();) {
     const Glyph& first = glyphs[i];
@@ -170,7 +173,7 @@ void Canvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
   ops += "ET\n";
 }
 
-void Canvas::shown(std::span<const Glyph> glyphs) {
+void PdfCanvas::shown(std::span<const Glyph> glyphs) {
   ops += '(';
   std::array<char, 256> part;  // appending byte by byte takes twice as long
   std::size_t n = 0;
@@ -188,7 +191,7 @@ void Canvas::shown(std::span<const Glyph> glyphs) {
   ops += ')';
 }
 
-void Canvas::text(double x, double y, bool bold, double size, std::span<const Glyph> glyphs) {
+void PdfCanvas::text(double x, double y, bool bold, double size, std::span<const Glyph> glyphs) {
   if (glyphs.empty()) return;
   ops += "BT ";
   number(x);
@@ -197,8 +200,8 @@ void Canvas::text(double x, double y, bool bold, double size, std::span<const Gl
   show(bold, size, glyphs);
 }
 
-void Canvas::text_upwards(double x, double y, bool bold, double size,
-                          std::span<const Glyph> glyphs) {
+void PdfCanvas::text_upwards(double x, double y, bool bold, double size,
+                             std::span<const Glyph> glyphs) {
   if (glyphs.empty()) return;
   ops += "BT 0 1 -1 0 ";
   number(x);
@@ -207,8 +210,8 @@ void Canvas::text_upwards(double x, double y, bool bold, double size,
   show(bold, size, glyphs);
 }
 
-void Canvas::text_along(double x, double y, double cosine, double sine, bool bold, double size,
-                        std::span<const Glyph> glyphs) {
+void PdfCanvas::text_along(double x, double y, double cosine, double sine, bool bold, double size,
+                           std::span<const Glyph> glyphs) {
   if (glyphs.empty()) return;
   ops += "BT ";
   for (const double v : {cosine, sine, -sine, cosine, x, y}) number(v);
@@ -216,7 +219,7 @@ void Canvas::text_along(double x, double y, double cosine, double sine, bool bol
   show(bold, size, glyphs);
 }
 
-void Canvas::picture(long which, double x, double y, double w, double h) {
+void PdfCanvas::picture(long which, double x, double y, double w, double h) {
   ops += "q ";
   number(w);
   ops += "0 0 ";
@@ -226,7 +229,7 @@ void Canvas::picture(long which, double x, double y, double w, double h) {
   ops += " Do Q\n";
 }
 
-void Canvas::place(double x, double y, const std::string& operators) {
+void PdfCanvas::place(double x, double y, const std::string& operators) {
   if (operators.empty()) return;
   ops += "q 1 0 0 1 ";
   number(x);

@@ -9,42 +9,79 @@
 
 namespace nonio::reports {
 
-/// Writes PDF operators. Lengths in pt, y upwards. The graphics state is remembered, so that what
-/// has not changed is not written again.
+/// What a chart is drawn on. Lengths in pt or px, y upwards. A path is begun by move_to, rectangle
+/// or circle and painted by stroke or fill.
 class Canvas {
  public:
   struct Point {
     double x, y;
   };
-  std::string ops;
+  virtual ~Canvas() = default;
 
-  void fill_colour(Colour);
-  void stroke_colour(Colour);
-  void line(double width, Dash dash = Dash::solid);
-  void see_through(bool on);  ///< between see_through(true) and (false) areas let others shine
+  virtual void fill_colour(Colour) = 0;
+  virtual void stroke_colour(Colour) = 0;
+  virtual void line(double width, Dash dash = Dash::solid) = 0;
+  /// Between see_through(true) and (false) areas let others shine.
+  virtual void see_through(bool on) = 0;
+  virtual void round_joins() = 0;  ///< no spikes where a curve turns
 
-  void move_to(double x, double y);
-  void line_to(double x, double y);
-  void curve_to(double x1, double y1, double x2, double y2, double x3, double y3);
-  void rectangle(double x, double y, double w, double h);
-  void circle(double x, double y, double radius);
-  void dots(std::span<const Point>, double diameter, Colour);  ///< as small as they can be written
-  void close() { ops += "h\n"; }
-  void stroke() { ops += "S\n"; }
-  void fill() { ops += "f\n"; }
-  void fill_and_stroke() { ops += "B\n"; }
-  void close_fill_and_stroke() { ops += "b\n"; }
+  virtual void move_to(double x, double y) = 0;
+  virtual void line_to(double x, double y) = 0;
+  virtual void rectangle(double x, double y, double w, double h) = 0;
+  virtual void circle(double x, double y, double radius) = 0;
+  virtual void close() = 0;
+  virtual void stroke() = 0;
+  virtual void fill() = 0;
+  virtual void fill_and_stroke() = 0;
+  virtual void close_fill_and_stroke() = 0;
+  virtual void dots(std::span<const Point>, double diameter, Colour) = 0;
   void segment(double x1, double y1, double x2, double y2);
   void filled(double x, double y, double w, double h, Colour);
 
   /// Everything until `leave` is drawn inside the rectangle only.
-  void clip(double x, double y, double w, double h);
-  void leave();
+  virtual void clip(double x, double y, double w, double h) = 0;
+  virtual void leave() = 0;
 
   /// Baseline begins at x, y.
-  void text(double x, double y, bool bold, double size, std::span<const Glyph>);
+  virtual void text(double x, double y, bool bold, double size, std::span<const Glyph>) = 0;
   /// The same upwards, for the titles of vertical axes.
-  void text_upwards(double x, double y, bool bold, double size, std::span<const Glyph>);
+  virtual void text_upwards(double x, double y, bool bold, double size, std::span<const Glyph>) = 0;
+
+  /// Until `end_item` one thing with a title of its own and a link; either may be empty. On paper
+  /// nothing.
+  virtual void begin_item(std::string_view title, std::string_view link);
+  virtual void end_item();
+};
+
+/// Writes PDF operators. The graphics state is remembered, so that what has not changed is not
+/// written again.
+class PdfCanvas final : public Canvas {
+ public:
+  std::string ops;
+
+  void fill_colour(Colour) override;
+  void stroke_colour(Colour) override;
+  void line(double width, Dash dash = Dash::solid) override;
+  void see_through(bool on) override;
+  void round_joins() override { ops += "1 j\n"; }
+
+  void move_to(double x, double y) override;
+  void line_to(double x, double y) override;
+  void curve_to(double x1, double y1, double x2, double y2, double x3, double y3);
+  void rectangle(double x, double y, double w, double h) override;
+  void circle(double x, double y, double radius) override;
+  void dots(std::span<const Point>, double diameter, Colour) override;  ///< few bytes each
+  void close() override { ops += "h\n"; }
+  void stroke() override { ops += "S\n"; }
+  void fill() override { ops += "f\n"; }
+  void fill_and_stroke() override { ops += "B\n"; }
+  void close_fill_and_stroke() override { ops += "b\n"; }
+
+  void clip(double x, double y, double w, double h) override;
+  void leave() override;
+
+  void text(double x, double y, bool bold, double size, std::span<const Glyph>) override;
+  void text_upwards(double x, double y, bool bold, double size, std::span<const Glyph>) override;
   /// The same along a direction of length 1.
   void text_along(double x, double y, double cosine, double sine, bool bold, double size,
                   std::span<const Glyph>);

@@ -45,7 +45,7 @@ class Pages {
     }
   }
 
-  std::vector<Canvas> take() {
+  std::vector<PdfCanvas> take() {
     if (pages_.size() == 1) end_first_page();
     return std::move(pages_);
   }
@@ -75,7 +75,7 @@ class Pages {
   const Style& style_;
   double room_, head_;
   const Laid& foot_;
-  std::vector<Canvas> pages_;
+  std::vector<PdfCanvas> pages_;
   double y_ = 0.0, kept_ = 0.0;
   std::optional<pdf::SignaturePlace> signature_;
 };
@@ -106,12 +106,12 @@ std::string numbered(std::string text, std::string_view place, std::size_t numbe
 }
 
 /// The second pass, when the number of pages is known.
-Expected<void> add_heads_and_feet(std::vector<Canvas>& pages, const Document& document,
+Expected<void> add_heads_and_feet(std::vector<PdfCanvas>& pages, const Document& document,
                                   const Context& context) {
   const Style& style = document.style;
   const double width = style.page_width - style.left - style.right;
   for (std::size_t i = 0; i < pages.size(); ++i) {
-    Canvas canvas;
+    PdfCanvas canvas;
     const std::string number =
         numbered(numbered(document.page_of, "{page}", i + 1), "{pages}", pages.size());
     auto right = set_line(context, number, false, style.small, 0.4 * width, "page_of");
@@ -127,7 +127,7 @@ Expected<void> add_heads_and_feet(std::vector<Canvas>& pages, const Document& do
     right->draw(canvas, 0, 0, foot_room - 5, width, 1.0);
     pages[i].place(style.left, style.bottom - 6, canvas.ops);
     if (i == 0 || document.head.empty()) continue;
-    Canvas head;
+    PdfCanvas head;
     auto text = set_line(context, document.head, false, style.small, width, "head");
     if (!text) return fail(text.error());
     head.fill_colour(style.muted);
@@ -141,7 +141,7 @@ Expected<void> add_heads_and_feet(std::vector<Canvas>& pages, const Document& do
 }
 
 /// From corner to corner, so that no part of a page can be taken for a finished one.
-Expected<void> add_mark(std::vector<Canvas>& pages, const Document& document,
+Expected<void> add_mark(std::vector<PdfCanvas>& pages, const Document& document,
                         const Context& context) {
   if (document.mark.empty()) return {};
   const Style& style = document.style;
@@ -157,8 +157,8 @@ Expected<void> add_mark(std::vector<Canvas>& pages, const Document& document,
   const double cosine = style.page_width / diagonal, sine = style.page_height / diagonal;
   const double size = std::min(110.0, 0.8 * diagonal / std::max(width_of(*glyphs), 0.1));
   const double length = width_of(*glyphs) * size, half = 0.35 * size;  // half a capital letter
-  for (Canvas& page : pages) {
-    Canvas canvas;
+  for (PdfCanvas& page : pages) {
+    PdfCanvas canvas;
     canvas.see_through(true);
     canvas.fill_colour(style.failed);
     canvas.text_along((style.page_width - length * cosine) / 2 + half * sine,
@@ -246,7 +246,7 @@ Expected<std::string> pdf_bytes(const Document& document, const Fonts& fonts) {
   while (!waiting.pieces.empty() && waiting.pieces.back().new_page) waiting.pieces.pop_back();
   for (Piece& piece : waiting.pieces) piece.with_next = false;
   pages.add(waiting);
-  std::vector<Canvas> drawn = pages.take();
+  std::vector<PdfCanvas> drawn = pages.take();
   if (auto ok = add_heads_and_feet(drawn, document, context); !ok) return fail(ok.error());
   if (auto ok = add_mark(drawn, document, context); !ok) return fail(ok.error());
   pdf::EmbeddedFont wide;  // outlives the file
@@ -257,7 +257,7 @@ Expected<std::string> pdf_bytes(const Document& document, const Fonts& fonts) {
   pdf::NewFile file = new_file(document, fonts, used);
   file.fonts[2].embedded = used.wide.empty() ? nullptr : &wide;
   file.signature = pages.signature();
-  for (Canvas& canvas : drawn) file.pages.push_back(std::move(canvas.ops));
+  for (PdfCanvas& canvas : drawn) file.pages.push_back(std::move(canvas.ops));
   return pdf::write(std::move(file));
 }
 

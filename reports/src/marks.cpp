@@ -47,7 +47,7 @@ Expected<Laid> lay_code(const Code& code, double width, const Context& context,
     return fail(std::string(field) + ": a QR code takes 1 to " + std::to_string(longest) +
                 " bytes, found " + std::to_string(code.text.size()));
   const double size = std::min(code.size, width);
-  Canvas canvas;
+  PdfCanvas canvas;
   canvas.fill_colour({0, 0, 0});
   draw_modules(canvas, *modules, size);
   double height = size;
@@ -75,7 +75,7 @@ Expected<Laid> lay_signature(const SignatureBox& box, double width, const Contex
   double height = 2 * pad;
   for (const SetText& text : texts) height += text.height();
   height = std::max(height, least);
-  Canvas canvas;
+  PdfCanvas canvas;
   canvas.stroke_colour(style.accent);
   canvas.line(0.8);
   canvas.rectangle(0.4, -height + 0.4, width - 0.8, height - 0.8);

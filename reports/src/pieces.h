@@ -50,6 +50,7 @@ struct Context {
   const Fonts& fonts;
   double page_room;  ///< height between head and foot
   Used& used;
+  Medium medium = Medium::paper;
 };
 
 /// A text that is set at one size, in lines.

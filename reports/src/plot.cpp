@@ -4,7 +4,9 @@
 #include <limits>
 #include <span>
 
+#include "nonio/reports/drawing.h"
 #include "pieces.h"
+#include "svg_canvas.h"
 
 namespace nonio::reports {
 namespace {
@@ -33,9 +35,10 @@ struct Frame {
   double py(double v) const { return y + h * up.at(v); }
 };
 
-void draw_marker(Canvas& canvas, Marker marker, double x, double y, double r, Colour colour) {
+void draw_marker(Canvas& canvas, Marker marker, double x, double y, double r, Colour colour,
+                 double outline = 0.6, Dash dashes = Dash::solid) {
   canvas.stroke_colour(colour);
-  canvas.line(0.6);
+  canvas.line(outline, dashes);
   switch (marker) {
     case Marker::none:
       return;
@@ -57,6 +60,11 @@ void draw_marker(Canvas& canvas, Marker marker, double x, double y, double r, Co
     case Marker::ring:
       canvas.fill_colour(marker == Marker::dot ? colour : Colour{1, 1, 1});
       canvas.circle(x, y, 0.8 * r);
+      canvas.fill_and_stroke();
+      return;
+    case Marker::square:
+      canvas.fill_colour(colour);
+      canvas.rectangle(x - 0.75 * r, y - 0.75 * r, 1.5 * r, 1.5 * r);
       canvas.fill_and_stroke();
       return;
     case Marker::around:
@@ -208,7 +216,22 @@ std::vector<Point> scattered(const Frame& frame, const Curve& curve, double plac
   return out;
 }
 
+/// Each a thing of its own, that can be pointed at.
+void draw_items(Canvas& canvas, const Frame& frame, const Curve& curve) {
+  const auto text_of = [](const std::vector<std::string>& all, std::size_t i) {
+    return i < all.size() ? std::string_view(all[i]) : std::string_view();
+  };
+  for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i) {
+    if (!drawable(curve.x[i]) || !drawable(curve.y[i])) continue;
+    canvas.begin_item(text_of(curve.titles, i), text_of(curve.links, i));
+    draw_marker(canvas, curve.marker, frame.px(curve.x[i]), frame.py(curve.y[i]), curve.marker_size,
+                curve.colour, 0.27 * curve.marker_size, curve.dash);
+    canvas.end_item();
+  }
+}
+
 void draw_points(Canvas& canvas, const Frame& frame, const Curve& curve) {
+  if (!curve.titles.empty()) return draw_items(canvas, frame, curve);
   constexpr std::size_t many = 1000;
   if (curve.x.size() > many) {
     const double diameter = 0.8 * curve.marker_size;
@@ -223,22 +246,24 @@ void draw_points(Canvas& canvas, const Frame& frame, const Curve& curve) {
 
 class PlotSetter {
  public:
-  PlotSetter(const Plot& plot, double width, const Context& context, std::string_view field)
-      : plot_(plot),
+  PlotSetter(const Plot& plot, double width, const Context& context, std::string_view field,
+             Canvas& canvas)
+      : canvas_(canvas),
+        plot_(plot),
         width_(width),
         context_(context),
         style_(context.style),
         field_(field),
         size_(std::max(5.0, context.style.small - 0.5)) {}
 
-  Expected<Laid> lay() {
+  /// The height that it takes.
+  Expected<double> set() {
     const auto own_top = draw_top();
-    if (!own_top) return fail(own_top.error());
-    if (plot_.only_legend) return Laid{{{*own_top, 2, std::move(canvas_.ops), true}}};
+    if (!own_top || plot_.only_legend) return own_top;
     const double top = std::max(*own_top, plot_.top);
     // Title and legend may take many lines; the drawing stays one.
     constexpr double least_drawn = 85, least_of_given = 45;
-    const double below = 2.9 * size_ + 3;
+    const double below = room_below();
     const double height = std::max(plot_.height > 0 ? plot_.height : style_.plot_height,
                                    top + below + (plot_.height > 0 ? least_of_given : least_drawn));
     Range across, up;
@@ -251,7 +276,7 @@ class PlotSetter {
                        : plot_.scales               ? draw(top, height, across, up)
                                                     : draw_picture(top, height, across, up);
     if (!drawn) return fail(drawn.error());
-    return Laid{{{height, 5, std::move(canvas_.ops), false}}};
+    return height;
   }
 
   Expected<double> draw_top() {
@@ -262,6 +287,7 @@ class PlotSetter {
 
  private:
   Expected<double> draw_title() {
+    if (plot_.title.empty()) return 0.0;
     auto title = set_text(context_, plot_.title, true, style_.small + 0.5, width_, field_);
     if (!title) return fail(title.error());
     canvas_.fill_colour(style_.text);
@@ -331,6 +357,7 @@ class PlotSetter {
   Expected<void> draw(double top, double height, Range across, Range up) {
     if (plot_.zero_line) up.add(0.0);
     for (const Plot::Belt& belt : plot_.belts) up.add(belt.from), up.add(belt.to);
+    for (const Plot::Limit& limit : plot_.limits) up.add(limit.at);
     for (const Plot::Span& span : plot_.spans) up.add(span.from), up.add(span.to);
     const double edge = (up.high - up.low) * 0.06, side = (across.high - across.low) * 0.025;
     Frame frame{};
@@ -338,8 +365,11 @@ class PlotSetter {
       up.low = plot_.range->first, up.high = plot_.range->second;
     else
       up.low -= edge, up.high += edge;
-    across.low -= side, across.high += side;
-    const double below = 2.9 * size_ + 3;
+    if (plot_.x_range)
+      across.low = plot_.x_range->first, across.high = plot_.x_range->second;
+    else
+      across.low -= side, across.high += side;
+    const double below = room_below();
     frame.h = height - top - below;
     if (plot_.same_scale) widen(up, (across.high - across.low) * frame.h / (width_ - 12 * size_));
     frame.up = axis_scale(up.low, up.high, 6, Ticks::decimal, plot_.language);
@@ -363,15 +393,25 @@ class PlotSetter {
         axis_scale(across.low, across.high, std::clamp(static_cast<int>(width_ / 30), 2, 7), ticks,
                    plot_.language);
     if (!plot_.lanes.empty()) frame.across = lanes();
+    if (!plot_.ticks.empty()) frame.across = own_ticks(frame.across);
     if (auto ok = draw_axes(frame, labels, *up_title); !ok) return ok;
     canvas_.clip(frame.x, frame.y, frame.w, frame.h);
-    canvas_.ops += "1 j\n";  // round joins: no spikes where a curve turns
+    canvas_.round_joins();
+    if (auto ok = draw_events(frame); !ok) return ok;
+    for (const auto& [at, colour] : plot_.limits) {
+      canvas_.stroke_colour(colour);
+      canvas_.line(1.2, Dash::dashed);
+      canvas_.segment(frame.x, frame.py(at), frame.x + frame.w, frame.py(at));
+    }
     for (const Curve& curve : plot_.curves) {
       if (curve.kind == Curve::Kind::band) draw_band(canvas_, frame, curve);
     }
     for (const Curve& curve : plot_.curves) {
       if (curve.kind == Curve::Kind::bars) draw_bars(canvas_, frame, curve);
+      const bool titled = curve.kind == Curve::Kind::line && !curve.titles.empty();
+      if (titled) canvas_.begin_item(curve.titles.front(), {});
       if (curve.kind == Curve::Kind::line) draw_line(canvas_, frame, curve);
+      if (titled) canvas_.end_item();
       if (curve.kind == Curve::Kind::points) draw_points(canvas_, frame, curve);
     }
     canvas_.leave();
@@ -391,7 +431,7 @@ class PlotSetter {
     widen(up, per_pt * frame.h);
     frame.across.from = across.low, frame.across.to = across.high;
     frame.up.from = up.low, frame.up.to = up.high;
-    canvas_.ops += "1 j\n";
+    canvas_.round_joins();
     for (const Curve& curve : plot_.curves) draw_line(canvas_, frame, curve);
     canvas_.fill_colour(style_.text);
     for (const Plot::Label& label : plot_.labels) {
@@ -413,7 +453,7 @@ class PlotSetter {
     for (const Plot::Belt& belt : plot_.belts)
       canvas_.filled(f.x, f.py(belt.from), f.w, f.py(belt.to) - f.py(belt.from), belt.colour);
     canvas_.stroke_colour(style_.rule);
-    canvas_.line(0.25);
+    canvas_.line(style_.rule_width);
     for (const double tick : f.up.ticks) canvas_.segment(f.x, f.py(tick), f.x + f.w, f.py(tick));
     for (const double tick : f.across.ticks) {
       const double at = plot_.lanes.empty() ? tick : tick + 0.5;  // lanes have their names between
@@ -440,6 +480,31 @@ class PlotSetter {
     return {};
   }
 
+  AxisScale own_ticks(AxisScale scale) const {
+    scale.ticks.clear(), scale.labels.clear();
+    for (const auto& [at, text] : plot_.ticks)
+      if (at >= scale.from && at <= scale.to)
+        scale.ticks.push_back(at), scale.labels.push_back(text);
+    return scale;
+  }
+
+  Expected<void> draw_events(const Frame& f) {
+    for (const Plot::Event& event : plot_.events) {
+      if (!(event.at >= f.across.from && event.at <= f.across.to)) continue;
+      auto text = set_line(context_, event.text, false, size_, f.w, field_);
+      if (!text) return fail(text.error());
+      const double x = f.px(event.at);
+      canvas_.begin_item(event.title, {});
+      canvas_.stroke_colour(style_.muted);
+      canvas_.line(0.8, Dash::dotted);
+      canvas_.segment(x, f.y, x, f.y + f.h);
+      canvas_.fill_colour(style_.muted);
+      text->draw(canvas_, 0, x + 3, f.y + f.h);
+      canvas_.end_item();
+    }
+    return {};
+  }
+
   AxisScale lanes() const {
     AxisScale scale{0.0, static_cast<double>(plot_.lanes.size()), {}, plot_.lanes};
     for (std::size_t k = 0; k < plot_.lanes.size(); ++k)
@@ -451,6 +516,11 @@ class PlotSetter {
   static void widen(Range& range, double span) {
     const double more = std::max(0.0, span - (range.high - range.low)) / 2;
     range.low -= more, range.high += more;
+  }
+
+  /// For the numbers of the horizontal axis and its title; names of their own need none.
+  double room_below() const {
+    return (plot_.x_title.empty() && !plot_.ticks.empty() ? 1.6 : 2.9) * size_ + 3;
   }
 
   double span_room() const { return 1.3 * size_ + 7; }
@@ -477,25 +547,39 @@ class PlotSetter {
     return {};
   }
 
+  Canvas& canvas_;
   const Plot& plot_;
   double width_;
   const Context& context_;
   const Style& style_;
   std::string_view field_;
   double size_;
-  Canvas canvas_;
 };
 
 }  // namespace
 
 Expected<Laid> lay_plot(const Plot& plot, double width, const Context& context,
                         std::string_view field) {
-  return PlotSetter(plot, width, context, field).lay();
+  PdfCanvas canvas;
+  const auto height = PlotSetter(plot, width, context, field, canvas).set();
+  if (!height) return fail(height.error());
+  const bool legend = plot.only_legend;
+  return Laid{{{*height, legend ? 2.0 : 5.0, std::move(canvas.ops), legend}}};
 }
 
 Expected<double> plot_top(const Plot& plot, double width, const Context& context,
                           std::string_view field) {
-  return PlotSetter(plot, width, context, field).draw_top();
+  PdfCanvas canvas;
+  return PlotSetter(plot, width, context, field, canvas).draw_top();
+}
+
+Drawing drawing_of(const Plot& plot, double width, const Style& style, const Fonts& fonts,
+                   std::span<const NamedColour> colours) {
+  Used none;
+  const Context context{style, fonts, style.page_height, none, Medium::screen};
+  SvgCanvas canvas(colours, style.see_through);
+  const auto height = PlotSetter(plot, width, context, "", canvas).set();
+  return {height.value(), std::move(canvas.elements), canvas.has_links};
 }
 
 }  // namespace nonio::reports

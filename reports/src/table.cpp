@@ -172,7 +172,7 @@ class TableSetter {
     const Style& style = context_.style;
     auto text = set_text(context_, table_.title, true, style.subheading, width_, field_);
     if (!text) return fail(text.error());
-    Canvas canvas;
+    PdfCanvas canvas;
     canvas.fill_colour(style.text);
     text->draw_all(canvas, 0, -3);
     out.pieces.push_back({text->height() + 3, 2, std::move(canvas.ops), true});
@@ -198,7 +198,7 @@ class TableSetter {
     }
     constexpr double above_rows = 1.2;
     const double height = title_height + unit_height + 3.5;
-    Canvas canvas;
+    PdfCanvas canvas;
     canvas.stroke_colour(style.text);
     canvas.line(0.8);
     canvas.segment(0, 0, width_, 0);
@@ -228,7 +228,7 @@ class TableSetter {
     }
     const std::size_t each = lines <= together ? lines : 1;
     for (std::size_t first = 0; first < lines; first += each) {
-      Canvas canvas;
+      PdfCanvas canvas;
       const double leading = style.small * 1.3;
       const double above = first == 0 ? 0.5 : 0.0, below = first + each >= lines ? 0.5 : 0.0;
       const double height = leading * static_cast<double>(each) + above + below;
@@ -256,7 +256,7 @@ class TableSetter {
   }
 
   void end_rule(Piece& last) const {
-    Canvas canvas;
+    PdfCanvas canvas;
     canvas.stroke_colour(context_.style.text);
     canvas.line(0.4);
     canvas.segment(0, -last.height, width_, -last.height);

@@ -60,6 +60,14 @@ Glyph accent_over(const Font& font, std::uint16_t letter, std::uint16_t accent) 
   return out;
 }
 
+/// Of another font, which is not measured; what is no character is shown as such.
+Glyph foreign_glyph(char32_t c) {
+  constexpr char32_t first_ideograph = 0x2E80;
+  Glyph out{0, static_cast<std::uint16_t>(c >= first_ideograph ? 1000 : 600), false, false};
+  out.character = c == not_utf8 || is_control(c) ? U'\uFFFD' : c;
+  return out;
+}
+
 Glyph glyph_of(char32_t c, const Font& font, const Font& wide) {
   if (c == not_utf8 || is_control(c)) return {0, 0, false, false};
   if (const std::uint16_t id = font.glyph(c); id != 0) {
@@ -84,8 +92,8 @@ bool has_room_behind(char32_t c) {
 
 }  // namespace
 
-Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold,
-                       std::string_view field) {
+Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold, std::string_view field,
+                       Medium medium) {
   const Font& font = fonts.weight(bold);
   Glyphs out;
   out.reserve(text.size());
@@ -98,9 +106,14 @@ Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold,
     const bool accent = c == acute_above;
     const bool over_a_letter = bears_accent(last) && !glyph.wide && !out.back().wide &&
                                glyph.advance == 0;  // what the canvas relies on
-    if (glyph.id == 0 || (accent && !over_a_letter))
-      return fail(unprintable(text.substr(at, i - at), c, field));
-    if (accent) glyph = accent_over(font, out.back().id, glyph.id);
+    glyph.character = c;
+    if (glyph.id == 0 || (accent && !over_a_letter)) {
+      if (medium == Medium::paper) return fail(unprintable(text.substr(at, i - at), c, field));
+      glyph = foreign_glyph(c);
+    } else if (accent) {
+      glyph = accent_over(font, out.back().id, glyph.id);
+      glyph.character = c;
+    }
     if (!out.empty() && (glyph.wide || out.back().wide) && !begins_no_line(c) &&
         !ends_no_line(last))
       out.back().break_after = true;
@@ -185,7 +198,10 @@ Glyphs shortened(Glyphs glyphs, double width, const Font& font) {
     sum -= glyphs.back().advance / 1000.0;
     glyphs.pop_back();
   }
-  if (id != 0) glyphs.push_back({id, font.advance[id], false, false});
+  if (id != 0) {
+    glyphs.push_back({id, font.advance[id], false, false});
+    glyphs.back().character = U'\u2026';
+  }
   return glyphs;
 }
 

@@ -17,12 +17,18 @@ struct Glyph {
   bool break_after;                  ///< a line may end here
   bool wide = false;                 ///< of Fonts::wide
   std::int16_t shift = 0, rise = 0;  ///< where an accent stands, 1/1000 of the font size
+  char32_t character = 0;
 };
 using Glyphs = std::vector<Glyph>;
 
+/// Paper has the fonts of the document, a screen further ones for characters that those lack.
+enum class Medium : std::uint8_t { paper, screen };
+
 /// UTF-8 to glyphs; letters and their marks are composed (NFC). What cannot be printed is an error
-/// that names the character and `field`; nothing is left out in silence.
-Expected<Glyphs> shape(std::string_view text, const Fonts&, bool bold, std::string_view field);
+/// that names the character and `field`; nothing is left out in silence. On a screen nothing is an
+/// error: the width of a character that the fonts lack is estimated.
+Expected<Glyphs> shape(std::string_view text, const Fonts&, bool bold, std::string_view field,
+                       Medium = Medium::paper);
 
 /// In units of the font size.
 double width_of(const Glyph* begin, const Glyph* end);

@@ -9,6 +9,7 @@
 
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/json_writer.h"
 #include "nonio/sdk/splitmix64.h"
 
 namespace nonio::workbench {
@@ -17,106 +18,83 @@ using namespace reports;
 
 namespace {
 
-void append_number(std::string& out, double value) {
-  if (!std::isfinite(value)) {
-    out += "null";
-    return;
-  }
+/// With eight digits, so that a page with many readings stays small.
+void put_number(JsonWriter& json, double value) {
+  if (!std::isfinite(value)) return json.null();
   char buffer[32];
   const auto end =
       std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 8);
-  out.append(buffer, end.ptr);
+  json.raw({buffer, static_cast<std::size_t>(end.ptr - buffer)});
 }
 
-/// An object, member by member.
-class Object {
- public:
-  void raw(std::string_view name, std::string_view value) {
-    out_ += out_.size() > 1 ? ",\n" : "";
-    out_ += json(name) + ":";
-    out_ += value;
-  }
-  void text(std::string_view name, std::string_view value) { raw(name, json(value)); }
-  void number(std::string_view name, double value) {
-    std::string text;
-    append_number(text, value);
-    raw(name, text);
-  }
-  std::string done() { return out_ + "}"; }
-
- private:
-  std::string out_ = "{";
-};
+void put_number(JsonWriter& json, std::string_view name, double value) {
+  json.key(name);
+  put_number(json, value);
+}
 
 template <class Items, class Each>
-std::string list(const Items& items, const Each& each) {
-  std::string out = "[";
-  for (const auto& item : items) {
-    if (out.size() > 1) out += ',';
-    each(out, item);
-  }
-  return out + "]";
+void put_list(JsonWriter& json, std::string_view name, const Items& items, const Each& each) {
+  json.key(name);
+  json.begin_array();
+  for (const auto& item : items) each(item);
+  json.end_array();
 }
 
 /// A column of the readings that are kept; null if the files did not have it.
 template <class T>
-std::string column(const std::vector<T>& values, const std::vector<std::size_t>& rows,
-                   double factor = 1.0, double from = 0.0) {
-  if (values.empty()) return "null";
-  return list(rows, [&](std::string& out, std::size_t row) {
-    append_number(out, row < values.size() ? (static_cast<double>(values[row]) - from) * factor
-                                           : std::nan(""));
+void put_column(JsonWriter& json, std::string_view name, const std::vector<T>& values,
+                const std::vector<std::size_t>& rows, double factor = 1.0, double from = 0.0) {
+  if (values.empty()) {
+    json.key(name);
+    return json.null();
+  }
+  put_list(json, name, rows, [&](std::size_t row) {
+    put_number(json, row < values.size() ? (static_cast<double>(values[row]) - from) * factor
+                                         : std::nan(""));
   });
 }
 
 /// A sample by this order falls in step with nothing that a test cycle repeats.
 std::uint64_t scrambled(std::size_t row) { return SplitMix64::mixed(row); }
 
-std::string words_of(const Drawn& source) {
-  Object out;
+void put_words(JsonWriter& json, const Drawn& source) {
+  json.key("words");
+  json.begin_object();
   for (const char* name :
        {"rms_now", "without", "without_cv", "not_refitted", "reading", "deviation", "model",
         "residual", "time", "temperature", "line", "suspect", "reversal", "polar_title",
         "polar_says", "rest_title", "rest_says"})
-    out.text(name, source.words.get(std::string("page.") + name));
-  out.text("no_readings", source.words.get("picture.no_readings"));
-  out.text("one_direction", source.words.get("picture.reversal.none"));
-  return out.done();
+    json.member(name, source.words.get(std::string("page.") + name));
+  json.member("no_readings", source.words.get("picture.no_readings"));
+  json.member("one_direction", source.words.get("picture.reversal.none"));
+  json.end_object();
 }
 
-std::string pictures_of(const Drawn& source, bool titles) {
-  return list(source.pictures, [titles](std::string& out, const PictureWords& p) {
-    Object picture;
-    if (titles) picture.text("title", p.title);
-    if (titles) picture.text("says", p.says);
-    picture.text("x", p.x);
-    picture.text("y", p.y);
-    picture.text("none", p.none);
-    picture.raw("degrees", p.degrees ? "true" : "false");
-    out += picture.done();
-  });
-}
-
-std::string files_of(const Drawn& source) {
-  return list(source.fit.measurements, [&](std::string& out, const std::string& id) {
-    std::string file;
-    for (const Measurement& m : source.campaign.measurements)
-      if (m.id == id) file = m.file;
-    out += json(file);
+void put_pictures(JsonWriter& json, const Drawn& source, bool titles) {
+  put_list(json, "pictures", source.pictures, [&](const PictureWords& p) {
+    json.begin_object();
+    if (titles) json.member("title", p.title);
+    if (titles) json.member("says", p.says);
+    json.member("x", p.x);
+    json.member("y", p.y);
+    json.member("none", p.none);
+    json.member("degrees", p.degrees);
+    json.end_object();
   });
 }
 
 /// The model fitted again without one effect: RMS of all readings, residuals of those on the page.
-std::string without_of(const ModelFit& fit, const std::string& effect,
-                       const std::vector<std::size_t>& rows, double per_si) {
+void put_without(JsonWriter& json, const ModelFit& fit, const std::string& effect,
+                 const std::vector<std::size_t>& rows, double per_si) {
+  json.key("without");
   const auto it = std::find_if(fit.without.begin(), fit.without.end(),
                                [&](const auto& w) { return w.effect == effect; });
-  if (it == fit.without.end() || it->residual.size() != fit.size()) return "null";
-  Object out;
-  out.number("rms", it->rms * per_si);
-  out.number("cv_rms", it->cv_rms ? *it->cv_rms * per_si : std::nan(""));
-  out.raw("residual", column(it->residual, rows, per_si));
-  return out.done();
+  if (it == fit.without.end() || it->residual.size() != fit.size()) return json.null();
+  json.begin_object();
+  put_number(json, "rms", it->rms * per_si);
+  put_number(json, "cv_rms", it->cv_rms ? *it->cv_rms * per_si : std::nan(""));
+  put_column(json, "residual", it->residual, rows, per_si);
+  json.end_object();
 }
 
 /// First and second axis of a circle's plane, and its radius, m; 0: no circle.
@@ -138,30 +116,22 @@ CircleOf circle_of(const Campaign& campaign, const std::string& id) {
 }
 
 /// Of each measurement its radius in mm and its plane, 0 and "" where it is no circle.
-void put_circles(Object& out, const Drawn& source) {
+void put_circles(JsonWriter& json, const Drawn& source) {
   if (!has_circles(source.campaign, source.fit)) return;
   const auto& all = source.fit.measurements;
-  out.raw("circles", list(all, [&](std::string& text, const std::string& id) {
-            append_number(text,
-                          circle_of(source.campaign, id).radius * unit_of(Quantity::length).per_si);
-          }));
-  out.raw("circle_axes", list(all, [&](std::string& text, const std::string& id) {
-            const CircleOf circle = circle_of(source.campaign, id);
-            text += json(circle.radius > 0.0 ? circle.axes : std::string());
-          }));
+  put_list(json, "circles", all, [&](const std::string& id) {
+    put_number(json, circle_of(source.campaign, id).radius * unit_of(Quantity::length).per_si);
+  });
+  put_list(json, "circle_axes", all, [&](const std::string& id) {
+    const CircleOf circle = circle_of(source.campaign, id);
+    json.value(circle.radius > 0.0 ? circle.axes : std::string());
+  });
 }
 
 std::vector<std::size_t> all_rows(std::size_t n) {
   std::vector<std::size_t> rows(n);
   std::iota(rows.begin(), rows.end(), std::size_t{0});
   return rows;
-}
-
-/// Names of the lines that stand side by side; null where all readings have one axis.
-std::string lanes_text(const ModelFit& fit) {
-  const Lanes lanes = lanes_of(fit);
-  if (lanes.names.empty()) return "null";
-  return list(lanes.names, [](std::string& out, const std::string& name) { out += json(name); });
 }
 
 }  // namespace
@@ -212,74 +182,69 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
     out.resize(n);
     return out;
   };
-  Object out;
-  out.text("language", source.words.language());
-  out.raw("comma", localised(".", source.words.language()) == "," ? "true" : "false");
-  out.text("axis", fit.axis);
-  out.text("unit", unit_text(up));
-  out.text("position_unit", unit_text(along));
-  out.text("time_unit", source.pictures[static_cast<std::size_t>(ResidualPlot::time)].time_unit);
-  out.raw("lanes", lanes_text(fit));
-  out.number("measurements", static_cast<double>(fit.measurements.size()));
-  put_circles(out, source);
-  out.number("period", period_of(fit) * across);
-  out.number("floor", fit.floor ? *fit.floor * per_si : std::nan(""));
-  out.raw("words", words_of(source));
-  out.raw("pictures", pictures_of(source, titles));
-  out.raw("files", files_of(source));
+  const PictureWords& over_time = source.pictures[static_cast<std::size_t>(ResidualPlot::time)];
+  JsonWriter json(JsonWriter::Layout::in_script);
+  json.begin_object();
+  json.member("language", source.words.language());
+  json.member("comma", localised(".", source.words.language()) == ",");
+  json.member("axis", fit.axis);
+  json.member("unit", unit_text(up));
+  json.member("position_unit", unit_text(along));
+  json.member("time_unit", over_time.time_unit);
+  // Names of the lines that are next to each other; null where all readings have one axis.
+  if (const Lanes lanes = lanes_of(fit); !lanes.names.empty()) {
+    json.member("lanes", lanes.names);
+  } else {
+    json.key("lanes");
+    json.null();
+  }
+  put_number(json, "measurements", static_cast<double>(fit.measurements.size()));
+  put_circles(json, source);
+  put_number(json, "period", period_of(fit) * across);
+  put_number(json, "floor", fit.floor ? *fit.floor * per_si : std::nan(""));
+  put_words(json, source);
+  put_pictures(json, source, titles);
+  std::vector<std::string> files;
+  for (const std::string& id : fit.measurements) {
+    files.emplace_back();
+    for (const Measurement& m : source.campaign.measurements)
+      if (m.id == id) files.back() = m.file;
+  }
+  json.member("files", files);
   if (!kept.row_in_files.empty())
-    out.raw("row", column(kept.row_in_files, rows));
+    put_column(json, "row", kept.row_in_files, rows);
   else if (rows.size() < fit.size())
-    out.raw("row", column(all_rows(fit.size()), rows));
-  out.raw("measurement", column(known(fit.measurement, fit.size()), rows));
-  out.raw("line", column(known(fit.source_line, fit.size()), rows));
-  out.raw("run", column(known(fit.run, fit.size()), rows));
-  out.raw("direction", column(known(fit.direction, fit.size()), rows));
-  out.raw("target", column(fit.target, rows, across));
-  out.raw("time",
-          column(fit.time, rows,
-                 source.pictures[static_cast<std::size_t>(ResidualPlot::time)].x_per_si, first));
-  out.raw("temperature", column(fit.temperature, rows));
-  out.raw("deviation", column(fit.deviation, rows, per_si));
-  out.raw("residual", column(fit.residual, rows, per_si));
-  out.raw("left_out", column(fit.cv_residual, rows, per_si));
-  out.raw("weight", column(weight, rows));
-  out.raw("effects", list(fit.effects, [&](std::string& text, const ModelFit::Effect& e) {
-            Object effect;
-            effect.text("name", e.name);
-            effect.raw("says", column(known(e.contribution, fit.size()), rows, per_si));
-            effect.raw("without", without_of(fit, e.name, rows, per_si));
-            text += effect.done();
-          }));
+    put_column(json, "row", all_rows(fit.size()), rows);
+  put_column(json, "measurement", known(fit.measurement, fit.size()), rows);
+  put_column(json, "line", known(fit.source_line, fit.size()), rows);
+  put_column(json, "run", known(fit.run, fit.size()), rows);
+  put_column(json, "direction", known(fit.direction, fit.size()), rows);
+  put_column(json, "target", fit.target, rows, across);
+  put_column(json, "time", fit.time, rows, over_time.x_per_si, first);
+  put_column(json, "temperature", fit.temperature, rows);
+  put_column(json, "deviation", fit.deviation, rows, per_si);
+  put_column(json, "residual", fit.residual, rows, per_si);
+  put_column(json, "left_out", fit.cv_residual, rows, per_si);
+  put_column(json, "weight", weight, rows);
+  put_list(json, "effects", fit.effects, [&](const ModelFit::Effect& e) {
+    json.begin_object();
+    json.member("name", e.name);
+    put_column(json, "says", known(e.contribution, fit.size()), rows, per_si);
+    put_without(json, fit, e.name, rows, per_si);
+    json.end_object();
+  });
   std::map<std::size_t, std::size_t> place;
   for (std::size_t k = 0; k < rows.size(); ++k) place[rows[k]] = k;
-  std::vector<std::pair<std::size_t, double>> suspects;
-  for (const ModelFit::Suspect& s : fit.suspects)
-    if (const auto it = place.find(s.row); it != place.end())
-      suspects.emplace_back(it->second, s.minimal_detectable * per_si);
-  out.raw("suspects", list(suspects, [](std::string& text, const auto& s) {
-            text += "[" + std::to_string(s.first) + ",";
-            append_number(text, s.second);
-            text += "]";
-          }));
-  return out.done();
-}
-
-std::string json(std::string_view text) {
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || c == '"' || c == '\\' || c == '<' || c == '>' || c == '&')
-      out += {'\\', 'u', '0', '0', digits[code >> 4], digits[code & 15]};
-    else
-      out += c;
-  }
-  return out + '"';
-}
-
-std::string json(const std::vector<double>& values) {
-  return list(values, [](std::string& out, double value) { append_number(out, value); });
+  put_list(json, "suspects", fit.suspects, [&](const ModelFit::Suspect& s) {
+    const auto it = place.find(s.row);
+    if (it == place.end()) return;
+    json.begin_array();
+    json.value(static_cast<std::uint64_t>(it->second));
+    put_number(json, s.minimal_detectable * per_si);
+    json.end_array();
+  });
+  json.end_object();
+  return json.take();
 }
 
 }  // namespace nonio::workbench

@@ -57,7 +57,7 @@ HOMES = {
     "hpdf": {"engine/pdf"}, "qrencode": {"reports"}, "libdeflate": {"engine/pdf"},
     "openssl/": {"engine/pdf", "engine/sign", "engine/platform/storage"}, "xmlsec/": {"engine/sign"},
     "libxml/": {"engine/sign"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"},
-    "nlohmann": ENGINE | {"engine/app", "plugins/outputs"},
+    "nlohmann": ENGINE | {"engine/app"},
     "Eigen": {"engine/math", "engine/model", "plugins/analyses", "plugins/effects"},
     "math/eigen/": {"engine/laboratory/statistics"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/platform/storage"}, "libpq": {"engine/platform/storage"},
 }

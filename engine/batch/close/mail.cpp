@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "batch/close/mail.h"
 
+#include <Poco/Base64Encoder.h>
 #include <Poco/Net/Context.h>
 #include <Poco/Net/MailMessage.h>
 #include <Poco/Net/MailRecipient.h>
@@ -70,19 +71,11 @@ std::string encoded_subject(const std::string& subject) {
     while (end < text.size() && end > at + 1 &&
            (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
       --end;
-    constexpr std::string_view digits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    out += out.empty() ? "=?UTF-8?B?" : "\r\n =?UTF-8?B?";
-    for (; at < end; at += 3) {
-      const std::size_t n = std::min<std::size_t>(3, end - at);
-      unsigned bits = 0;
-      for (std::size_t i = 0; i < 3; ++i)
-        bits = bits << 8U | (i < n ? static_cast<unsigned char>(text[at + i]) : 0U);
-      for (std::size_t i = 0; i < 4; ++i)
-        out += i <= n ? digits[bits >> (18U - 6U * i) & 63U] : '=';
-    }
-    at = end;
+    std::ostringstream base64;
+    Poco::Base64Encoder(base64) << text.substr(at, end - at);
+    (out += out.empty() ? "=?UTF-8?B?" : "\r\n =?UTF-8?B?") += base64.str();
     out += "?=";
+    at = end;
   }
   return out;
 }

@@ -190,7 +190,7 @@ class Releaser {
       if (!by_author)
         return fail(
             "two_persons = true in site.toml: the author has to approve it first "
-            "(nonio release CAMPAIGN --by NAME --as author)");
+            "(nonio certificate approve CAMPAIGN --by NAME --as author)");
       if (certificates::likeness_of(by_author->by) == certificates::likeness_of(request_.by))
         return fail("two_persons = true in site.toml: " + by_author->by +
                     " is the author; expected another person as authoriser");

@@ -11,7 +11,7 @@
 
 namespace nonio::batch {
 
-/// What `nonio release` is told.
+/// What `nonio certificate approve` is told.
 struct ReleaseRequest {
   std::filesystem::path campaign;              ///< its folder
   std::string by;                              ///< a person's name, as it is printed

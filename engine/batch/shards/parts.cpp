@@ -312,7 +312,7 @@ Expected<std::vector<Reported>> reported_by_all(const fs::path& out, const Night
               (silent.size() == 1 ? " has" : " have") + " not reported" +
               (why.empty() ? "" : " (" + why + ")") + "; run `nonio run SITE --out OUT --shard " +
               std::to_string(silent.front()) + "/" + std::to_string(plan.shards.size()) +
-              "`, and so on, then `nonio night merge OUT` again");
+              "`, and so on, then `nonio run merge OUT` again");
 }
 
 /// What became of the campaigns of a shard; those without results that should be there are added to `missing`.
@@ -362,7 +362,7 @@ Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& n
     return fail("not complete: the results of " + missing.front() +
                 (missing.size() == 1 ? " are"
                                      : " and " + std::to_string(missing.size() - 1) + " more are") +
-                " not in the output folder; run their shards again, then `nonio night merge OUT`");
+                " not in the output folder; run their shards again, then `nonio run merge OUT`");
   night.campaigns = states_of(std::move(*all), true);
   night.vanished = plan.vanished;
   night.notes.insert(night.notes.end(), plan.notes.begin(), plan.notes.end());

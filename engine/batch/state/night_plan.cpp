@@ -188,7 +188,7 @@ Expected<NightPlan> read_plan(const fs::path& out) {
   if (!plan) return fail(plan.error());
   if (*plan) return std::move(**plan);
   return fail("no night is planned in " + out.string() +
-              "; expected `nonio night plan SITE --out OUT --shards S` before");
+              "; expected `nonio run plan SITE --out OUT --shards S` before");
 }
 
 Expected<void> remove_plan(const fs::path& out) {

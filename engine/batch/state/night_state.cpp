@@ -162,7 +162,7 @@ Expected<NightState> planned_night(const RunOptions& options, const std::string&
   if (!*state || known_text(**state, "state") != "running" ||
       known_count(**state, "night") != number)
     return fail("night " + std::to_string(number) + " was planned in " + options.out.string() +
-                ", and is not the night that is running there; expected `nonio night cancel OUT`, "
+                ", and is not the night that is running there; expected `nonio run cancel OUT`, "
                 "then a new plan");
   const storage::Json& json = **state;
   if (auto own = check_site(json, site, options.out); !own) return fail(own.error());
@@ -269,8 +269,8 @@ Expected<void> check_not_planned(const fs::path& out) {
   if (!planned) return fail(planned.error());
   if (!*planned) return {};
   return fail("a night is planned in " + out.string() +
-              " and not merged yet; expected its shards and `nonio night merge OUT`, or `nonio "
-              "night cancel OUT` to withdraw the plan");
+              " and not merged yet; expected its shards and `nonio run merge OUT`, or `nonio "
+              "run cancel OUT` to withdraw the plan");
 }
 
 }  // namespace nonio::batch

@@ -151,7 +151,7 @@ Expected<bool> become_user(const fs::path& out, const fs::path& path, const User
     const User user = user_in(**text);
     if (!is_gone(user, own))
       return fail(words_for(user) + " is using the output folder " + out.string() +
-                  "; expected its end. If you know that it is gone: nonio night unlock " +
+                  "; expected its end. If you know that it is gone: nonio run unlock " +
                   out.string());
     ::unlink(path.c_str());
   }

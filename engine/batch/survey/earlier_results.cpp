@@ -83,8 +83,9 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
   const ByFolder by_folder(campaigns, ordered);
   for (const EarlierResult& e : earlier) {
     const CampaignState* const now = by_folder.at(e.folder);
-    const std::string meant = "if it was removed on purpose, record that (nonio forget SITE " +
-                              e.id + " --by NAME --why TEXT); otherwise restore it";
+    const std::string meant =
+        "if it was removed on purpose, record that (nonio machine remove SITE " + e.id +
+        " --by NAME --why TEXT); otherwise restore it";
     const auto above = std::find_if(unlisted.begin(), unlisted.end(), [&](const auto& u) {
       const std::string folder = storage::path_text(u.folder);
       return e.folder == folder || e.folder.starts_with(folder + "/");

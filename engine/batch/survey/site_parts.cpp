@@ -187,8 +187,9 @@ void SiteParts::note_lost() {
     if (all && missing > 1) whole[folder] = missing;
   }
   const auto meant = [](const std::string& path) {
-    return "; restore it, or if it was removed on purpose, record that (nonio forget SITE " + path +
-           " --by NAME --why TEXT)";
+    return "; restore it, or if it was removed on purpose, record that (nonio machine remove "
+           "SITE " +
+           path + " --by NAME --why TEXT)";
   };
   for (const auto& [folder, count] : whole)
     lost_.push_back({folder, folder, night_,

@@ -45,7 +45,7 @@ void note_key(SetUp& place, bool is_stamped) {
         "no time-stamp server is named (time_stamp in [signing] of site.toml): what is signed "
         "holds until the certificate of " +
         who->subject + " runs out on " + sign::text_of(who->not_after) +
-        ", and no longer (`nonio restamp` can still give it a time stamp until then)";
+        ", and no longer (`nonio certificate extend` can still give it a time stamp until then)";
 }
 
 /// A folder, or a plugin in it, that others than root and the owner of the program can change;

@@ -94,7 +94,7 @@ const Key& machine_file();
 const Key& events_file();
 const Key& acknowledged_file();
 const Key& forgotten_file();
-/// What a specification of `nonio simulate` has besides campaign.toml.
+/// What a specification of `nonio model simulate` has besides campaign.toml.
 const Key& specification_file();
 /// What tells the kind of axis that a cycle moves; settled by the code that reads cycles.
 inline constexpr std::string_view cycle_axis = "(axis)";

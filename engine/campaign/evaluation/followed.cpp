@@ -177,7 +177,7 @@ std::optional<FollowedGroup> of_model(const ModelFit& fit, const Campaign& campa
   return out;
 }
 
-void put_quantity(storage::JsonWriter& json, const FollowedQuantity& q) {
+void put_quantity(JsonWriter& json, const FollowedQuantity& q) {
   json.begin_object();
   if (!q.measurement.empty()) json.member("measurement", q.measurement);
   json.member("axis", q.axis);
@@ -213,7 +213,7 @@ void put_quantity(storage::JsonWriter& json, const FollowedQuantity& q) {
 
 /// Upper triangle, row by row, in the units of the quantities. Nothing where a correlation is no
 /// more than what rounding leaves.
-void put_covariance(storage::JsonWriter& json, const FollowedGroup& group, std::size_t first) {
+void put_covariance(JsonWriter& json, const FollowedGroup& group, std::size_t first) {
   const std::size_t n = group.quantities.size();
   json.begin_object();
   json.member("first", static_cast<std::uint64_t>(first));
@@ -253,7 +253,7 @@ std::vector<FollowedGroup> followed_of(const reading::ReadCampaign& read, const 
   return out;
 }
 
-void put_followed(storage::JsonWriter& json, const std::vector<FollowedGroup>& groups) {
+void put_followed(JsonWriter& json, const std::vector<FollowedGroup>& groups) {
   if (groups.empty()) return;
   json.key("followed");
   json.begin_array();

@@ -8,8 +8,8 @@
 
 #include "campaign/evaluation/other_targets.h"
 #include "campaign/reading/campaign_reader.h"
+#include "nonio/sdk/json_writer.h"
 #include "nonio/sdk/results.h"
-#include "platform/storage/json_writer.h"
 
 namespace nonio::evaluation {
 
@@ -47,6 +47,6 @@ struct FollowedGroup {
 std::vector<FollowedGroup> followed_of(const reading::ReadCampaign& read, const Results& results);
 
 /// Members `followed` and `followed_covariance` of results.json.
-void put_followed(storage::JsonWriter& json, const std::vector<FollowedGroup>& groups);
+void put_followed(JsonWriter& json, const std::vector<FollowedGroup>& groups);
 
 }  // namespace nonio::evaluation

@@ -5,11 +5,11 @@ namespace nonio::evaluation {
 
 namespace {
 
-void put_if_there(storage::JsonWriter& json, const char* key, const std::string& text) {
+void put_if_there(JsonWriter& json, const char* key, const std::string& text) {
   if (!text.empty()) json.member(key, text);
 }
 
-void put_change(storage::JsonWriter& json, const Change& change) {
+void put_change(JsonWriter& json, const Change& change) {
   json.begin_object();
   put_if_there(json, "key", change.key);
   if (change.line != 0) json.member("line", change.line);
@@ -18,7 +18,7 @@ void put_change(storage::JsonWriter& json, const Change& change) {
   json.end_object();
 }
 
-void put_changes(storage::JsonWriter& json, const std::vector<FileChange>& changes) {
+void put_changes(JsonWriter& json, const std::vector<FileChange>& changes) {
   json.key("changes");
   json.begin_array();
   for (const FileChange& file : changes) {
@@ -36,7 +36,7 @@ void put_changes(storage::JsonWriter& json, const std::vector<FileChange>& chang
   json.end_array();
 }
 
-void put_reasons(storage::JsonWriter& json, const Issue& issue) {
+void put_reasons(JsonWriter& json, const Issue& issue) {
   if (issue.reasons.empty()) return;
   json.key("reasons");
   json.begin_array();
@@ -50,7 +50,7 @@ void put_reasons(storage::JsonWriter& json, const Issue& issue) {
   json.end_array();
 }
 
-void put_register(storage::JsonWriter& json, const Issue& issue) {
+void put_register(JsonWriter& json, const Issue& issue) {
   if (issue.register_id.empty()) return;
   json.key("register");
   json.begin_object();
@@ -92,7 +92,7 @@ FileChange change_in(const storage::Json& json) {
 
 }  // namespace
 
-void put_certificate(storage::JsonWriter& json, const Certificate& certificate) {
+void put_certificate(JsonWriter& json, const Certificate& certificate) {
   const Issue& issue = certificate.issue;
   json.key("certificate");
   json.begin_object();

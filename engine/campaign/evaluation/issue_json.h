@@ -2,13 +2,13 @@
 #pragma once
 
 #include "campaign/evaluation/evaluate.h"
+#include "nonio/sdk/json_writer.h"
 #include "platform/storage/json_values.h"
-#include "platform/storage/json_writer.h"
 
 namespace nonio::evaluation {
 
 /// The key `certificate` of results.json: all that a certificate prints beside the results.
-void put_certificate(storage::JsonWriter& json, const Certificate& certificate);
+void put_certificate(JsonWriter& json, const Certificate& certificate);
 /// What it said; what is not there stays empty.
 Certificate certificate_of(const storage::Json& json);
 

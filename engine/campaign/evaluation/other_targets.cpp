@@ -13,8 +13,6 @@ namespace nonio::evaluation {
 
 namespace {
 
-using storage::JsonWriter;
-
 /// A square in the unit of the quantity.
 double printed_square(double si, Quantity q) { return printed(printed(si, q), q); }
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "nonio/sdk/json_writer.h"
 #include "nonio/sdk/units.h"
-#include "platform/storage/json_writer.h"
 
 namespace nonio::math {
 class AxisTest;
@@ -34,7 +34,7 @@ struct ComparedTargets {
 ComparedTargets compared_targets(const nonio::math::AxisTest&, const nonio::math::OtherTargets&);
 
 /// Member `other_targets`. variances: of the quantities' u, SI.
-void put_other_targets(storage::JsonWriter& json, const ComparedTargets&,
+void put_other_targets(JsonWriter& json, const ComparedTargets&,
                        const std::vector<Quantity>& quantities,
                        const std::vector<double>& variances);
 

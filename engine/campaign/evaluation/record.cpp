@@ -9,16 +9,15 @@
 #include "campaign/config/terminal_words.h"
 #include "campaign/evaluation/results_json.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/json_writer.h"
 #include "platform/storage/files.h"
-#include "platform/storage/json_writer.h"
 
 namespace nonio::evaluation {
 namespace fs = std::filesystem;
 
 namespace {
 
-void put_findings(storage::JsonWriter& json, const char* key,
-                  const std::vector<KnownFinding>& findings) {
+void put_findings(JsonWriter& json, const char* key, const std::vector<KnownFinding>& findings) {
   json.key(key);
   json.begin_array();
   for (const KnownFinding& f : findings) {
@@ -33,7 +32,7 @@ void put_findings(storage::JsonWriter& json, const char* key,
   json.end_array();
 }
 
-void put_files(storage::JsonWriter& json, const std::vector<RecordedFile>& files) {
+void put_files(JsonWriter& json, const std::vector<RecordedFile>& files) {
   json.key("files");
   json.begin_object();
   for (const RecordedFile& f : files) {
@@ -104,7 +103,7 @@ Record record_of(dom::object json) {
 }  // namespace
 
 std::string to_json(const Record& r) {
-  storage::JsonWriter json;
+  JsonWriter json;
   json.begin_object();
   json.member("schema", "nonio-run/2");
   json.member("folder", r.folder);
@@ -149,7 +148,7 @@ std::string to_json(const Record& r) {
   }
   json.key("errors");
   json.begin_array();
-  for (const Error& e : r.errors) storage::put_error(json, e);
+  for (const Error& e : r.errors) put_error(json, e);
   json.end_array();
   put_findings(json, "findings", r.findings);
   put_findings(json, "previous_findings", r.previous);

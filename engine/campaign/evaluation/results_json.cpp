@@ -9,18 +9,18 @@
 #include "campaign/evaluation/followed.h"
 #include "campaign/evaluation/issue_json.h"
 #include "nonio/sdk/format.h"
-#include "platform/storage/json_writer.h"
+#include "nonio/sdk/json_writer.h"
 
 namespace nonio::evaluation {
 
 namespace {
 
-void put_text(storage::JsonWriter& json, const char* key, const std::string& text) {
+void put_text(JsonWriter& json, const char* key, const std::string& text) {
   if (!text.empty()) json.member(key, text);
 }
 
 /// An object of the texts that are there; nothing if none is.
-void put_texts(storage::JsonWriter& json, const char* key,
+void put_texts(JsonWriter& json, const char* key,
                std::initializer_list<std::pair<const char*, const std::string&>> texts) {
   if (std::all_of(texts.begin(), texts.end(), [](const auto& t) { return t.second.empty(); }))
     return;
@@ -31,8 +31,7 @@ void put_texts(storage::JsonWriter& json, const char* key,
 }
 
 /// results.json speaks English; documents look the words up in their own language.
-void put_notes(storage::JsonWriter& json, const std::vector<Remark>& notes,
-               const Templates& templates) {
+void put_notes(JsonWriter& json, const std::vector<Remark>& notes, const Templates& templates) {
   if (notes.empty()) return;
   json.key("notes");
   json.begin_array();
@@ -42,7 +41,7 @@ void put_notes(storage::JsonWriter& json, const std::vector<Remark>& notes,
   json.end_array();
 }
 
-void put_campaign(storage::JsonWriter& json, const Campaign& c, const std::string& purpose) {
+void put_campaign(JsonWriter& json, const Campaign& c, const std::string& purpose) {
   json.key("campaign");
   json.begin_object();
   json.member("id", c.id);
@@ -69,7 +68,7 @@ void put_campaign(storage::JsonWriter& json, const Campaign& c, const std::strin
   json.end_object();
 }
 
-void put_value(storage::JsonWriter& json, const Value& v, const Results::Analysed& a,
+void put_value(JsonWriter& json, const Value& v, const Results::Analysed& a,
                const std::vector<Conformity>& conformity) {
   json.key(v.name);
   json.begin_object();
@@ -86,15 +85,14 @@ void put_value(storage::JsonWriter& json, const Value& v, const Results::Analyse
   json.end_object();
 }
 
-void put_number(storage::JsonWriter& json, double value, Quantity quantity) {
+void put_number(JsonWriter& json, double value, Quantity quantity) {
   if (quantity == Quantity::count)
     json.value(static_cast<std::int64_t>(std::llround(value)));
   else
     json.value(printed(value, quantity));
 }
 
-void put_table(storage::JsonWriter& json, const PointTable& table, const char* name,
-               const char* units) {
+void put_table(JsonWriter& json, const PointTable& table, const char* name, const char* units) {
   if (table.columns.empty()) return;
   json.key(units);
   json.begin_object();
@@ -115,7 +113,7 @@ void put_table(storage::JsonWriter& json, const PointTable& table, const char* n
 }
 
 /// One of each column that has it.
-void put_point_U(storage::JsonWriter& json, const PointTable& points) {
+void put_point_U(JsonWriter& json, const PointTable& points) {
   const auto has_U = [](const PointTable::Column& c) { return c.U.has_value(); };
   if (std::none_of(points.columns.begin(), points.columns.end(), has_U)) return;
   json.key("point_U");
@@ -125,7 +123,7 @@ void put_point_U(storage::JsonWriter& json, const PointTable& points) {
   json.end_object();
 }
 
-void put_series(storage::JsonWriter& json, const std::vector<Series>& all) {
+void put_series(JsonWriter& json, const std::vector<Series>& all) {
   if (all.empty()) return;
   const auto list = [&](const char* key, const std::vector<double>& values, Quantity q) {
     json.key(key);
@@ -151,7 +149,7 @@ void put_series(storage::JsonWriter& json, const std::vector<Series>& all) {
   json.end_object();
 }
 
-void put_contribution(storage::JsonWriter& json, const Contribution& c) {
+void put_contribution(JsonWriter& json, const Contribution& c) {
   json.begin_object();
   json.member("id", c.id);
   json.member("u", printed(c.u, c.quantity));
@@ -165,7 +163,7 @@ void put_contribution(storage::JsonWriter& json, const Contribution& c) {
 }
 
 /// Standard uncertainties: what goes in, and what it makes in each result.
-void put_budget(storage::JsonWriter& json, const std::optional<UncertaintyBudget>& budget) {
+void put_budget(JsonWriter& json, const std::optional<UncertaintyBudget>& budget) {
   if (!budget) return;
   json.key("budget");
   json.begin_object();
@@ -193,8 +191,8 @@ void put_budget(storage::JsonWriter& json, const std::optional<UncertaintyBudget
   json.end_object();
 }
 
-void put_findings(storage::JsonWriter& json, const std::vector<Finding>& findings,
-                  bool with_measurement, const Templates& templates) {
+void put_findings(JsonWriter& json, const std::vector<Finding>& findings, bool with_measurement,
+                  const Templates& templates) {
   json.key("findings");
   json.begin_array();
   for (const Finding& f : findings) {
@@ -216,7 +214,7 @@ void put_findings(storage::JsonWriter& json, const std::vector<Finding>& finding
   json.end_array();
 }
 
-void put_analysis(storage::JsonWriter& json, const Results::Analysed& a,
+void put_analysis(JsonWriter& json, const Results::Analysed& a,
                   const std::vector<Conformity>& conformity, const Templates& templates) {
   json.begin_object();
   json.member("plugin", a.plugin);
@@ -245,7 +243,7 @@ void put_analysis(storage::JsonWriter& json, const Results::Analysed& a,
   json.end_object();
 }
 
-void put_conformity(storage::JsonWriter& json, const std::vector<Conformity>& all) {
+void put_conformity(JsonWriter& json, const std::vector<Conformity>& all) {
   if (all.empty()) return;
   json.key("conformity");
   json.begin_array();
@@ -264,7 +262,7 @@ void put_conformity(storage::JsonWriter& json, const std::vector<Conformity>& al
   json.end_array();
 }
 
-void put_files(storage::JsonWriter& json, const std::vector<Results::Written>& outputs,
+void put_files(JsonWriter& json, const std::vector<Results::Written>& outputs,
                const std::vector<RecordedFile>& files) {
   json.key("outputs");
   json.begin_array();
@@ -280,7 +278,7 @@ void put_files(storage::JsonWriter& json, const std::vector<Results::Written>& o
   json.end_array();
 }
 
-void put_predictions(storage::JsonWriter& json, const std::vector<Prediction>& predictions) {
+void put_predictions(JsonWriter& json, const std::vector<Prediction>& predictions) {
   if (predictions.empty()) return;
   json.key("predictions");
   json.begin_array();
@@ -297,7 +295,7 @@ void put_predictions(storage::JsonWriter& json, const std::vector<Prediction>& p
 }
 
 /// What outputs predict, find and note stands once, not with each of their files.
-void put_tables(storage::JsonWriter& json, const std::vector<Results::Written>& outputs,
+void put_tables(JsonWriter& json, const std::vector<Results::Written>& outputs,
                 const Templates& templates) {
   const auto silent = [](const Results::Written& w) {
     return w.result.predictions.empty() && w.result.findings.empty() && w.result.notes.empty();
@@ -334,7 +332,7 @@ const char* to_text(Decision decision) {
 
 std::string results_json(const Evaluated& e, const reading::Context& context,
                          const std::vector<RecordedFile>& files) {
-  storage::JsonWriter json;
+  JsonWriter json;
   json.begin_object();
   json.member("schema", "nonio-results/1");
   json.member("nonio", context.version);
@@ -342,7 +340,7 @@ std::string results_json(const Evaluated& e, const reading::Context& context,
   json.member("status", to_text(e.status));
   json.key("errors");
   json.begin_array();
-  for (const Error& error : e.results.errors) storage::put_error(json, error);
+  for (const Error& error : e.results.errors) put_error(json, error);
   json.end_array();
   json.key("analyses");
   json.begin_array();

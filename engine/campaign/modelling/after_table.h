@@ -13,7 +13,7 @@ namespace nonio::modelling {
 /// (equal to the RMS of the fit if every effect is compensable and the readings are independent);
 /// of each measurement of one axis E, A and R of ISO 230-2 with k = 2 (math/iso230_2.h), NaN where
 /// the readings do not give them. A prediction: a control's table has points and steps, and
-/// `nonio apply` reads a real one.
+/// `nonio table predict` reads a real one.
 struct AfterTable {
   struct Positioning {
     double E, A, R;  ///< m or rad

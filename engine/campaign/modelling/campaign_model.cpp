@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "platform/process/guarded.h"
 #include "platform/storage/nearest.h"
@@ -11,10 +12,12 @@ namespace nonio::modelling {
 
 namespace {
 
+/// Kind and axis, without the groups of lines ("@adjustment").
 std::pair<std::string, std::string> split(const std::string& effect) {
   const std::size_t colon = effect.find(':');
   if (colon == std::string::npos) return {effect, ""};
-  return {effect.substr(0, colon), effect.substr(colon + 1)};
+  const std::size_t axis = colon + 1;
+  return {effect.substr(0, colon), effect.substr(axis, effect.find('@', axis) - axis)};
 }
 
 std::vector<std::string> known_names(const reading::ReadCampaign& read) {
@@ -36,7 +39,7 @@ bool can_be_in_space(const std::string& of) {
   return !of.empty() && of.find_first_not_of("EXYZABC0123456789") == std::string::npos;
 }
 
-/// "heat:t4@x1+x2": a channel, and displacements, that a measurement over time has.
+/// "heat:t4/x1+x2": a channel, and displacements, that a measurement over time has.
 std::string mistake_of_channel(const std::string& effect, const Effect& known,
                                const reading::ReadCampaign& read) {
   for (const model::Part& part : model::parts_of(read.manifest->campaign, read.observations)) {
@@ -44,7 +47,7 @@ std::string mistake_of_channel(const std::string& effect, const Effect& known,
     if (terms && !terms->empty()) return {};
   }
   return "\"" + effect + "\": no measurement over time has this channel" +
-         (effect.find('@') == std::string::npos ? "" : " and these displacements") +
+         (effect.find('/') == std::string::npos ? "" : " and these displacements") +
          storage::suggestion(effect, known_names(read));
 }
 
@@ -82,9 +85,9 @@ std::vector<std::string> PartModel::names() const {
 
 bool PartModel::shows(const std::string& effect) const {
   if (part.kind == model::Part::Kind::axis && split(effect).second == part.name) return true;
-  // Of a course "heat:t4@x1" is its heat:t4 where it is among the terms.
+  // Of a course "heat:t4/x1" is its heat:t4 where it is among the terms.
   const std::string name = part.kind == model::Part::Kind::course
-                               ? effect.substr(0, effect.find('@'))
+                               ? effect.substr(0, effect.find('/'))
                                : effect;
   for (const auto* list : {&terms, &catalogue})
     for (const model::Term& t : *list)
@@ -244,11 +247,29 @@ Expected<model::Comparison> compare_part(const PartModel& part, const model::Gro
                           [&] { return model::compare(part.part, part.terms, known, fitted); });
 }
 
+namespace {
+
+/// With values of its own for each group an effect is only worth a line where they explain more.
+void leave_out_weaker_groups(model::Explanation& e) {
+  std::map<std::string, double> score;
+  for (const model::Candidate& c : e.candidates) score[c.term.name()] = c.score;
+  std::erase_if(e.candidates, [&](const model::Candidate& c) {
+    if (!c.term.grouping ||
+        std::find(e.together.begin(), e.together.end(), c.term.name()) != e.together.end())
+      return false;
+    const auto plain = score.find(c.term.of_all());
+    return !(c.score > 0.0) || (plain != score.end() && !(c.score > plain->second));
+  });
+}
+
+}  // namespace
+
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
                                           const model::Groundwork* known) {
   if (!part.unfit.empty()) return fail(part.unfit);
   return process::guarded(kind_of(part.part) + " " + part.part.name, [&] {
     auto out = model::explain(part.part, part.terms, part.catalogue, seed, known);
+    if (out) leave_out_weaker_groups(*out);
     // None vanishes in silence.
     if (out)
       out->candidates.insert(out->candidates.end(), part.left_out.begin(), part.left_out.end());

@@ -14,17 +14,28 @@ namespace {
 
 constexpr double high_correlation = 0.9;
 
-storage::Json parameters_json(const std::vector<model::Parameter>& parameters, bool with_effect) {
+/// Whether a person stated the shape, so that it was not searched.
+bool is_stated(const model::Parameter& p, const std::vector<model::Term>& terms) {
+  return p.shape && std::any_of(terms.begin(), terms.end(), [&](const model::Term& t) {
+           return t.name() == p.effect && model::has_stated(t) &&
+                  t.effect->shapes[t.stated->shape].parameter.name == p.name;
+         });
+}
+
+storage::Json parameters_json(const std::vector<model::Parameter>& parameters,
+                              const std::vector<model::Term>* terms) {
   storage::Json list = storage::Json::array();
   for (const model::Parameter& p : parameters) {
     storage::Json one = storage::Json::object();
-    if (with_effect) one["effect"] = p.effect;
+    if (terms != nullptr) one["effect"] = p.effect;
     one["name"] = p.name;
     const double value = printed(p.value, p.quantity), u = printed(p.u, p.quantity);
     if (std::isfinite(value)) one["value"] = value;
     if (std::isfinite(u)) one["u"] = u;
     one["unit"] = unit_of(p.quantity).symbol;
+    if (!p.group.empty()) one["group"] = p.group;
     if (p.shape) one["searched"] = true;
+    if (terms != nullptr && is_stated(p, *terms)) one["stated"] = true;
     if (!p.shape && std::fabs(p.value) < 2.0 * p.u) one["below_uncertainty"] = true;
     list.push_back(std::move(one));
   }
@@ -123,21 +134,29 @@ void put_noise(storage::Json& json, const model::Fit& fit, Quantity q) {
   json["noise"] = std::move(one);
 }
 
-void put_lack_of_fit(storage::Json& json, const model::Comparison& c) {
+void put_lack_of_fit(storage::Json& json, const model::Comparison& c, Quantity q,
+                     const ModelWords& words) {
   if (!c.lack_of_fit) return;
   storage::Json one = storage::Json::object();
   storage::put(one, "F", c.lack_of_fit->F, Quantity::number);
   storage::put(one, "p", c.lack_of_fit->p, Quantity::probability);
   storage::put(one, "dof1", c.lack_of_fit->dof1, Quantity::number);
   storage::put(one, "dof2", c.lack_of_fit->dof2, Quantity::number);
+  if (std::isfinite(c.lack_of_fit->F)) one["says"] = words.lack_of_fit(c, q);
   json["lack_of_fit"] = std::move(one);
 }
 
-storage::Json model_json(const PartModel& part, const model::Comparison& c) {
+storage::Json model_json(const PartModel& part, const model::Comparison& c,
+                         const ModelWords& words) {
   storage::Json json = {{"effects", part.names()}};
   storage::put(json, "rms", c.fit.rms, part.deviation());
   storage::put(json, "cv_rms", c.cv_rms, part.deviation());
-  json["parameters"] = parameters_json(c.fit.parameters, true);
+  json["parameters"] = parameters_json(c.fit.parameters, &c.fit.terms);
+  storage::Json curves = storage::Json::array();
+  for (std::size_t t = 0; t < c.fit.terms.size(); ++t)
+    if (const auto curve = curve_of(part, c.fit, t))
+      curves.push_back({{"effect", c.fit.terms[t].name()}, {"says", words.curve(*curve, part)}});
+  if (!curves.empty()) json["curves"] = std::move(curves);
   return json;
 }
 
@@ -179,14 +198,14 @@ storage::Json compared_json(const Compared& c, const Campaign& campaign, const M
   const model::Comparison& comparison = c.comparison;
   storage::Json json = storage::Json::object();
   put_part(json, c.part);
-  json["model"] = model_json(c.part, comparison);
+  json["model"] = model_json(c.part, comparison, words);
   storage::put(json, "rms", comparison.fit.rms, q);
   storage::put(json, "cv_rms", comparison.cv_rms, q);
   put_floor(json, comparison, q);
   put_noise(json, comparison.fit, q);
   storage::put(json, "s", comparison.fit.s, q);
   json["redundancy"] = comparison.fit.redundancy;
-  put_lack_of_fit(json, comparison);
+  put_lack_of_fit(json, comparison, q, words);
   if (comparison.largest != 0.0) {
     storage::Json largest = reading_json(place_of(c.part, campaign, comparison.largest_row));
     storage::put(largest, "residual", comparison.largest, q);
@@ -216,7 +235,9 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   storage::put(json, "cv_rms", c.cv_rms, q);
   storage::put(json, "p", c.p, Quantity::probability);
   storage::put(json, "score", c.score, Quantity::number);
-  json["parameters"] = parameters_json(c.parameters, false);
+  storage::put(json, "score_alone", c.alone, Quantity::number);
+  storage::put(json, "score_within", c.within, Quantity::number);
+  json["parameters"] = parameters_json(c.parameters, nullptr);
   json["aliases"] = c.aliases;
   if (!c.beside.empty()) json["beside"] = c.beside;
   json["says"] = words.candidate(c, part, rms_before);
@@ -250,11 +271,33 @@ storage::Json plans_json(const std::vector<model::Plan>& plans, const ModelWords
   return list;
 }
 
+/// The values of an effect in each group, with the expanded uncertainty.
+storage::Json values_json(const std::vector<model::Parameter>& parameters) {
+  storage::Json list = storage::Json::array();
+  for (const model::Parameter& p : parameters) {
+    if (p.shape || p.group.empty()) continue;
+    storage::Json one = {{"group", p.group}, {"name", p.name}};
+    const double value = printed(p.value, p.quantity), U = printed(2.0 * p.u, p.quantity);
+    if (std::isfinite(value)) one["value"] = value;
+    if (std::isfinite(U)) one["U"] = U;
+    one["unit"] = unit_of(p.quantity).symbol;
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
 storage::Json verdict_json(const Explained& e, const ModelWords& words) {
   const model::Verdict& v = e.explanation.verdict;
   storage::Json json = {{"kind", to_text(v.kind)}};
   if (!v.effect.empty()) json["effect"] = v.effect;
+  const auto& candidates = e.explanation.candidates;
+  if (!v.effect.empty() && !candidates.empty() && candidates.front().term.grouping) {
+    json["by"] = candidates.front().term.grouping->by;
+    json["values"] = values_json(candidates.front().parameters);
+  }
   json["says"] = words.verdict(e.explanation, e.part);
+  for (const char* what : {"is", "cure"})
+    if (const std::string text = words.card(v.effect, what); !text.empty()) json[what] = text;
   storage::put(json, "suspects_share", v.suspects_share, Quantity::ratio);
   return json;
 }
@@ -279,15 +322,34 @@ storage::Json what_if_json(const std::vector<model::Foresight>& all) {
   return list;
 }
 
+storage::Json statements_json(const std::vector<model::Statement>& statements,
+                              const ModelWords& words, Quantity q) {
+  storage::Json list = storage::Json::array();
+  for (const model::Statement& s : statements) {
+    const bool reversal = s.what == model::Statement::What::reversal;
+    storage::Json one = {{"what", reversal ? "reversal" : "drift"}};
+    storage::put(one, "value", s.value, q);
+    storage::put(one, "U", 2.0 * s.u, q);
+    if (reversal) {
+      storage::put(one, "low", s.low, q);
+      storage::put(one, "high", s.high, q);
+    }
+    storage::put(one, "p", s.p, Quantity::probability);
+    one["says"] = words.statement(s, q);
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
 void put_explained(storage::Json& json, const Explained& e, const Campaign& campaign,
                    const ModelWords& words) {
   const model::Explanation& x = e.explanation;
   const Quantity q = e.part.deviation();
   json["observations"] = e.part.part.table.size();
-  json["model"] = model_json(e.part, x.comparison);
+  json["model"] = model_json(e.part, x.comparison, words);
   put_floor(json, x.comparison, q);
   put_noise(json, x.comparison.fit, q);
-  put_lack_of_fit(json, x.comparison);
+  put_lack_of_fit(json, x.comparison, q, words);
   json["fails"] = places_json(x.fails, words, q);
   storage::Json candidates = storage::Json::array(), unseen = storage::Json::array();
   for (const model::Candidate& c : x.candidates)
@@ -313,6 +375,7 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
     descriptions.push_back(std::move(one));
   }
   json["descriptions"] = std::move(descriptions);
+  json["statements"] = statements_json(x.statements, words, q);
   json["verdict"] = verdict_json(e, words);
   json["plans"] = plans_json(x.plans, words);
   json["next"] = words.next(x, e.part);
@@ -320,6 +383,7 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
   if (x.verdict.trials > 0) {
     storage::put(json, "false_alarm_rate", x.verdict.false_alarms, Quantity::ratio);
     json["false_alarm_trials"] = x.verdict.trials;
+    json["false_alarms"] = words.false_alarms(x.verdict);
   }
   json["suspects"] = suspects_json(x.comparison.suspects, e.part, campaign, words);
   json["warnings"] = warnings_of(e.part, x.comparison.fit, words);
@@ -406,6 +470,23 @@ std::string next_effect(const std::vector<Told>& parts) {
   if (worst.kind == to_text(Verdict::unknown) && !worst.certain.empty())
     return worst.certain.front();
   return {};
+}
+
+std::vector<std::string> next_effects(const std::vector<Explained>& all) {
+  if (all.empty()) return {};
+  const Explained& worst = all[most_severe(all)];
+  if (worst.part.part.kind != model::Part::Kind::course) {
+    const std::string next = next_effect(told_of(all));
+    return next.empty() ? std::vector<std::string>{} : std::vector<std::string>{next};
+  }
+  // Of a course the sensors of a set replace each other: it is added as a whole.
+  std::vector<std::string> out;
+  if (worst.explanation.verdict.kind != model::Verdict::Kind::missing) return out;
+  out.push_back(worst.explanation.verdict.effect);
+  for (const std::string& effect : worst.explanation.together)
+    if (effect != out.front()) out.push_back(effect);
+  for (std::string& effect : out) effect = model::written_for(worst.part.part, effect);
+  return out;
 }
 
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,

@@ -34,13 +34,15 @@ std::string part_json(const Explained& explained, const Campaign& campaign,
                       const ModelWords& words);
 
 /// What belongs into the model beyond doubt, by the verdict that asks most; "": nothing more. This
-/// is one step of `nonio explain --auto`.
+/// is one step of `nonio model explain --auto`.
 struct Told {
   std::string kind, effect;          ///< of the verdict of one part
   std::vector<std::string> certain;  ///< most evidence first
 };
 std::vector<Told> told_of(const std::vector<Explained>& all);
 std::string next_effect(const std::vector<Told>& parts);
+/// The effects that `--auto` adds next, as the manifest has them; empty: nothing more.
+std::vector<std::string> next_effects(const std::vector<Explained>& all);
 
 /// docs/json.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. Where `all` is empty, `errors`
 /// say why; they and `warnings` are those of the campaign.

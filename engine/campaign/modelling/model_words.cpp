@@ -254,6 +254,7 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   }
   if ((v.kind == Kind::nothing || v.kind == Kind::unknown) && !e.comparison.floor)
     f.id += "-without-floor";
+  if (v.below_scatter) f.id = "verdict.unknown-below-scatter";
   if (v.kind == Kind::unknown && !e.certain.empty()) {
     f.id = "verdict.certain";
     f.texts.emplace_back("effects", storage::listed(e.certain));
@@ -290,11 +291,40 @@ std::string ModelWords::place(const model::Place& place, Quantity deviation) con
   return largest.empty() ? text : text + " " + largest;
 }
 
+std::string ModelWords::differs(const model::Candidate& c) const {
+  constexpr std::size_t most = 6;
+  const auto number = [&](double value, Quantity q) {
+    return localised(evidence_text({"", value, q}), language_);
+  };
+  std::string values;
+  std::size_t count = 0;
+  for (const model::Parameter& p : c.parameters) {
+    if (p.shape || p.group.empty() || ++count > most) continue;
+    const std::string_view unit = unit_of(p.quantity).symbol;
+    values += (values.empty() ? "" : ", ") + p.name + " " + number(p.value, p.quantity) +
+              (unit.empty() ? "" : " " + std::string(unit)) +
+              (std::isfinite(p.u) ? " (U " + number(2.0 * p.u, p.quantity) + ")" : "");
+  }
+  if (count > most) values += ", ...";
+  return says("verdict.differs", {}, {{"by", c.term.grouping->by}, {"values", values}});
+}
+
+std::string ModelWords::statement(const model::Statement& s, Quantity q) const {
+  const std::vector<Number> numbers = {
+      {"value", s.value, q}, {"U", 2.0 * s.u, q}, {"low", s.low, q}, {"high", s.high, q}};
+  return says(s.what == model::Statement::What::reversal ? "statement.reversal" : "statement.drift",
+              numbers, {});
+}
+
 std::string ModelWords::verdict(const model::Explanation& e, const PartModel& part) const {
   std::string text = finding_text(templates_, language_, verdict_finding(e, part), "says");
+  if (e.verdict.kind == Kind::missing && !e.candidates.empty() &&
+      e.candidates.front().term.grouping)
+    text += " " + differs(e.candidates.front());
   if (e.one_growth && e.verdict.kind == Kind::missing)
     text += " " + says("one-growth", {{"at", *e.one_growth, Quantity::length}}, {});
   if (e.verdict.kind != Kind::unknown) return text;
+  for (const model::Statement& s : e.statements) text += " " + statement(s, part.deviation());
   for (const auto& [one, other] : e.cancelling) text += " " + cancelling(one, other);
   if (!e.fails.empty()) text += " " + place(e.fails.front(), part.deviation());
   return text;

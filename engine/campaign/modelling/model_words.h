@@ -24,6 +24,7 @@ class ModelWords {
   /// How far a model holds for readings that it has not seen.
   std::string prediction(const model::Prediction& p, const PartModel& part) const;
   std::string place(const model::Place& place, Quantity deviation) const;
+  std::string statement(const model::Statement& statement, Quantity deviation) const;
   std::string verdict(const model::Explanation& explanation, const PartModel& part) const;
   std::string candidate(const model::Candidate& candidate, const PartModel& part,
                         double rms_before) const;
@@ -64,6 +65,8 @@ class ModelWords {
  private:
   std::string says(const std::string& id, std::vector<Number> numbers,
                    std::vector<std::pair<std::string, std::string>> texts) const;
+  /// The values of an effect in each group of measurements, with U.
+  std::string differs(const model::Candidate& candidate) const;
 
   const Templates& templates_;
   std::string language_;

@@ -51,7 +51,7 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
   const std::string refused = from.context.plugins->refusals();
   if (any)
     return fail(Error{"no reader knows the format of this file: " + what_is_wrong(bytes, m.file) +
-                          "; or the format of an installed reader (`nonio plugins`)" +
+                          "; or the format of an installed reader (`nonio plugin list`)" +
                           (refused.empty() ? "" : "; of the plugins " + refused),
                       m.file, first_content_line(bytes)});
   if (!refused.empty())

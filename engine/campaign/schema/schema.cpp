@@ -10,7 +10,7 @@
 #include "campaign/config/measurement_keys.h"
 #include "campaign/loader/plugins.h"
 #include "campaign/reading/names.h"
-#include "platform/storage/json_writer.h"
+#include "nonio/sdk/json_writer.h"
 
 namespace nonio::schema {
 
@@ -562,7 +562,7 @@ class SchemaWriter {
   }
 
   Loaded loaded_;
-  storage::JsonWriter json_;
+  JsonWriter json_;
   std::string_view by_name_;  ///< the key by which tables of the kind that is being written differ
 };
 

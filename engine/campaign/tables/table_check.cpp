@@ -147,7 +147,7 @@ void state_backlash_of(Settings& options, const Tables& tables) {
 void say_what_was_on(Campaign& campaign, const Settings& options, const Tables& present) {
   for (Axis& axis : campaign.machine.axes) {
     if (!corrects(present, axis.name)) continue;
-    axis.table_on = "nonio apply --was-on";
+    axis.table_on = "nonio table predict --active-table";
     axis.backlash_on = present_backlash(options, axis.name, axis.rotary);
   }
 }

@@ -59,11 +59,11 @@ class Assessment {
   std::unique_ptr<State> state_;
 };
 
-/// nonio-history/1: what `nonio history OUT --json` prints of these machines. Sentences in English.
+/// nonio-history/1: what `nonio machine history OUT --json` prints of these machines. Sentences in English.
 std::string history_json(const reports::SiteHistory& site, const Tonight& tonight,
                          const Templates& templates);
 
-/// The lines as a list: of summary.json, and what `nonio morning --json` prints. Numbers in the
+/// The lines as a list: of summary.json, and what `nonio status --actions --json` prints. Numbers in the
 /// printed unit, u standard, sentences in English.
 std::string lines_json(const reports::SiteHistory& site, const Templates& templates);
 

@@ -4,8 +4,8 @@
 
 #include "laboratory/assessment/assess.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/json_writer.h"
 #include "nonio/sdk/units.h"
-#include "platform/storage/json_writer.h"
 
 namespace nonio::assessment {
 
@@ -13,7 +13,6 @@ namespace {
 
 using reports::HistoryPoint;
 using reports::HistorySeries;
-using storage::JsonWriter;
 
 const char* name_of(HistoryPoint::State state) {
   switch (state) {

@@ -16,7 +16,41 @@ void project(const Observations& o, const Axis& axis, MatrixXd& columns) {
     columns.row(i) *= o.sense_of(static_cast<std::size_t>(i))[k];
 }
 
+/// The columns in the rows of each group; of differences without the first.
+MatrixXd in_groups(const Observations& o, const Term& term, const MatrixXd& columns) {
+  const Index first = term.differences ? 1 : 0, k = columns.cols();
+  MatrixXd out =
+      MatrixXd::Zero(columns.rows(), k * (static_cast<Index>(term.grouping->name.size()) - first));
+  for (Index i = 0; i < columns.rows(); ++i) {
+    const auto group =
+        static_cast<Index>(term.grouping->group[line_of(o, static_cast<std::size_t>(i))]);
+    if (group >= first) out.block(i, (group - first) * k, 1, k) = columns.row(i);
+  }
+  return out;
+}
+
 }  // namespace
+
+std::vector<Term> with_term(std::vector<Term> model, Term term) {
+  if (term.grouping) std::erase_if(model, [&](const Term& t) { return t.name() == term.of_all(); });
+  term.differences = false;
+  model.push_back(std::move(term));
+  return model;
+}
+
+std::vector<Term> offered_to(const std::vector<Term>& model, const std::vector<Term>& catalogue) {
+  std::vector<Term> out;
+  for (Term c : catalogue) {
+    const auto same = [&](const Term& m) { return m.of_all() == c.of_all(); };
+    const auto known = std::find_if(model.begin(), model.end(), same);
+    if (known != model.end()) {
+      if (!c.grouping || known->grouping) continue;
+      c.differences = true;
+    }
+    out.push_back(std::move(c));
+  }
+  return out;
+}
 
 Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
                               const std::vector<double>& shape) {
@@ -38,6 +72,7 @@ Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
   }
   if (!out.allFinite()) return fail("effect " + term.name() + " gave a value that is not a number");
   if (!term.effect->instances && o.axes.size() > 1) project(o, term.axis, out);
+  if (term.grouping) return in_groups(o, term, out);
   return out;
 }
 

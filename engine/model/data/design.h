@@ -23,6 +23,13 @@ inline std::size_t lines_of(const Observations& o) { return o.line.empty() ? 1 :
 Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
                               const std::vector<double>& shape);
 
+/// The model with one more term, which takes the place of the same effect without groups.
+std::vector<Term> with_term(std::vector<Term> model, Term term);
+
+/// What of the catalogue can be added to a model: with groups, as differences in addition to an
+/// effect that it has without them.
+std::vector<Term> offered_to(const std::vector<Term>& model, const std::vector<Term>& catalogue);
+
 /// Of the root of the sum of squares of a curve's columns: what its readings must show beyond the
 /// terms before it.
 inline constexpr double curve_threshold = 1e-4;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "balls.h"
@@ -162,12 +164,71 @@ bool lists(const std::string& names, const std::string& name) {
   return ("+" + names + "+").find("+" + name + "+") != std::string::npos;
 }
 
+/// Groups of the measurements of an axis by what the manifest states of each; null where it does not
+/// state it of all, or the same of all.
+std::shared_ptr<const Grouping> grouping_by(
+    const std::string& by, const std::vector<const Measurement*>& measurements,
+    const std::function<std::string(const Measurement&)>& text) {
+  auto out = std::make_shared<Grouping>();
+  out->by = by;
+  for (const Measurement* m : measurements) {
+    std::string name = text(*m);
+    if (name.empty()) return nullptr;
+    const auto known = std::find(out->name.begin(), out->name.end(), name);
+    out->group.push_back(static_cast<std::uint32_t>(known - out->name.begin()));
+    if (known == out->name.end()) out->name.push_back(std::move(name));
+  }
+  return out->name.size() > 1 ? out : nullptr;
+}
+
+/// By what the lines of an axis differ: what the manifest states first, then one by one. What
+/// divides them as another does is the same.
+std::vector<std::shared_ptr<const Grouping>> groupings_of(const Part& part,
+                                                          const Campaign& campaign) {
+  std::vector<std::shared_ptr<const Grouping>> out;
+  if (part.kind != Part::Kind::axis || part.measurements.size() < 2) return out;
+  std::vector<const Measurement*> measurements;
+  for (const std::string& id : part.measurements)
+    for (const Measurement& m : campaign.measurements)
+      if (m.id == id) measurements.push_back(&m);
+  const auto add = [&](const std::string& by,
+                       const std::function<std::string(const Measurement&)>& text) {
+    auto grouping = grouping_by(by, measurements, text);
+    if (grouping && std::none_of(out.begin(), out.end(), [&](const auto& known) {
+          return known->group == grouping->group;
+        }))
+      out.push_back(std::move(grouping));
+  };
+  add("adjustment", [](const Measurement& m) { return m.adjustment; });
+  add("state", [](const Measurement& m) { return state_of(m); });
+  add("side", [](const Measurement& m) { return m.side; });
+  add("measurement", [](const Measurement& m) { return m.id; });
+  return out;
+}
+
+/// The term with groups; none if they divide other lines, or the effect says nothing in one of them.
+std::optional<Term> grouped(const Part& part, Term term, const std::string& by) {
+  if (term.effect->description || term.effect->is_nuisance) return std::nullopt;
+  for (const auto& grouping : part.groupings)
+    if (grouping->by == by) {
+      term.grouping = grouping;
+      return term;
+    }
+  return std::nullopt;
+}
+
+std::string listed_groupings(const Part& part) {
+  std::string out;
+  for (const auto& grouping : part.groupings) out += (out.empty() ? "" : " or ") + grouping->by;
+  return out.empty() ? "two measurements of one axis" : out;
+}
+
 /// The term of an effect in this part; none if it is not of anything here.
 std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& written) {
   if (effect.of_channels != (part.kind == Part::Kind::course)) return std::nullopt;
   if (effect.instances) {
     std::string of = written;
-    if (const std::size_t only = written.find('@');
+    if (const std::size_t only = written.find('/');
         part.kind == Part::Kind::course && only != std::string::npos) {
       if (!lists(written.substr(only + 1), part.displacement)) return std::nullopt;
       of.resize(only);
@@ -202,6 +263,7 @@ std::vector<std::string> offered_by(const Part& part, const Effect& effect) {
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read) {
   std::vector<Part> parts = Parts(campaign, read).made();
   put_time_constants(campaign, read, parts);
+  for (Part& part : parts) part.groupings = groupings_of(part, campaign);
   return parts;
 }
 
@@ -212,7 +274,7 @@ std::string written_for(const Part& part, const std::string& effect) {
   names.push_back(part.displacement);
   std::sort(names.begin(), names.end());
   std::string of;
-  for (const std::string& name : names) of += (of.empty() ? "@" : "+") + name;
+  for (const std::string& name : names) of += (of.empty() ? "/" : "+") + name;
   return effect + of;
 }
 
@@ -232,6 +294,10 @@ std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects
       if (auto term = term_of(part, effect, of); term && effect.applies(part.table, term->axis))
         terms.push_back(std::move(*term));
   }
+  const std::size_t plain = terms.size();
+  for (const auto& grouping : part.groupings)
+    for (std::size_t t = 0; t < plain; ++t)
+      if (auto term = grouped(part, terms[t], grouping->by)) terms.push_back(std::move(*term));
   return terms;
 }
 
@@ -272,7 +338,9 @@ Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
   for (const std::string& name : names) {
     const std::size_t colon = name.find(':');
     const std::string kind = name.substr(0, colon);
-    const std::string of = colon == std::string::npos ? "" : name.substr(colon + 1);
+    const std::size_t at = std::min(name.find('@', colon), name.size());
+    const std::string of = colon == std::string::npos ? "" : name.substr(colon + 1, at - colon - 1);
+    const std::string by = at < name.size() ? name.substr(at + 1) : "";
     const auto effect = std::find_if(effects.begin(), effects.end(),
                                      [&](const Effect& e) { return e.info.name == kind; });
     if (effect == effects.end()) return fail("there is no effect \"" + kind + "\"");
@@ -286,8 +354,19 @@ Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
     if (!effect->applies(part.table, term->axis))
       return fail("effect \"" + name +
                   "\" does not apply to these readings: " + effect->info.summary);
+    if (at < name.size()) {
+      auto groups = grouped(part, std::move(*term), by);
+      if (!groups)
+        return fail("effect \"" + name + "\": the measurements do not differ by \"" + by +
+                    "\"; expected " + listed_groupings(part));
+      term = std::move(groups);
+    }
     terms.push_back(std::move(*term));
   }
+  std::set<std::string> in_groups;
+  for (const Term& term : terms)
+    if (term.grouping) in_groups.insert(term.of_all());
+  std::erase_if(terms, [&](const Term& term) { return in_groups.contains(term.name()); });
   for (const Effect& effect : effects) {
     if (!effect.is_nuisance) continue;
     for (const std::string& of : offered_by(part, effect))

@@ -10,6 +10,7 @@
 #include "fit/compare.h"
 #include "search/candidates.h"
 #include "search/finding.h"
+#include "statements.h"
 #include "verdict.h"
 
 namespace nonio::model {
@@ -28,7 +29,10 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
       out.together.push_back(c.term.name());
   out.best_rms = finding->of_best.fit.rms;
   judge(*finding, out);
-  if (out.verdict.kind == Verdict::Kind::unknown) describe(*finding, catalogue, out);
+  if (out.verdict.kind == Verdict::Kind::unknown) {
+    describe(*finding, catalogue, out);
+    out.statements = statements_of(*finding);
+  }
   out.comparison.suspects = std::move(finding->suspects);
   return out;
 }
@@ -46,9 +50,8 @@ void judge_on_all(const Part& part, const std::vector<Term>& model,
     const auto term = std::find_if(catalogue.begin(), catalogue.end(),
                                    [&](const Term& t) { return t.name() == c.term.name(); });
     if (!c.visible || term == catalogue.end()) continue;
-    std::vector<Term> terms = model;
-    terms.push_back(*term);
-    const auto fitted = fit(part.table, terms, weight, ground.whole.noise, &ground.thin->table);
+    const auto fitted =
+        fit(part.table, with_term(model, *term), weight, ground.whole.noise, &ground.thin->table);
     if (!fitted) continue;
     c.rms = fitted->rms;
     c.cv_rms = rms_of(cross_validated(part.table, fitted->terms, weight), weight);

@@ -6,12 +6,15 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "data/noise.h"
 #include "fit/compare.h"
 #include "fit/places.h"
+#include "nonio/math/distributions.h"
 #include "nonio/sdk/axis_readings.h"
+#include "passes.h"
 #include "plans.h"
 #include "scatter.h"
 
@@ -21,8 +24,8 @@ namespace {
 
 // docs/dev/constants.md, M4.
 constexpr double least_left = 0.25;  // of the noise: smaller structure is not worth a verdict
-// docs/dev/constants.md, M5.
-constexpr double serious_p = 0.005;
+// docs/dev/constants.md, M35.
+constexpr double lacks_fit_p = 1e-4;
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
 // docs/dev/constants.md, M6.
 constexpr double unexplained_share = 0.04;
@@ -65,7 +68,14 @@ class Judge {
         static_cast<double>(f_.suspects.size()) / static_cast<double>(f_.part.table.size());
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
-    std::vector<Place> serious = Judge::serious(f_.of_best.places, least_serious(f_.of_best.floor));
+    const double least = least_serious(f_.of_best.floor);
+    const std::vector<Place> left = Judge::serious(f_.of_best.places, least);
+    // What zeros of passes that scatter leave too is no reason for a verdict, but one for doubt.
+    std::vector<Place> serious =
+        passes_.scatter()
+            ? Judge::serious(passes_.places(f_.of_best.fit.residual, f_.of_best.floor, least),
+                             least)
+            : left;
     const Noise::Zero zero = unsteady_zero();
     const bool walks = zero != Noise::Zero::steady;
     if (contradictory(zero)) {
@@ -74,11 +84,13 @@ class Judge {
     }
     find_one_growth();
     find_cancelling();
-    list_certain(serious, walks);
+    list_certain(left, walks);
     if (auto place = of_targets(); place && serious.empty()) serious.push_back(std::move(*place));
-    if (!out_.together.empty() && !walks && !cancels(out_.together.front()) &&
+    const bool of_passes =
+        passes_.scatter() && !out_.together.empty() && !passes_.shows(out_.together.front());
+    if (!out_.together.empty() && !walks && !of_passes && !cancels(out_.together.front()) &&
         !beside_cancelling(out_.together.front()) &&
-        !in_doubt(out_.together.front(), serious, unexplained_share)) {
+        !in_doubt(out_.together.front(), left, unexplained_share)) {
       v.kind = Verdict::Kind::missing;
       v.effect = out_.together.front();
     }
@@ -86,18 +98,71 @@ class Judge {
       lift(v.effect);
       out_.plans = plans_for(f_.part, f_.of_model.fit.terms, out_.candidates.front(), f_.terms,
                              f_.of_best.fit.s);
-    } else if (walks || !serious.empty() || !out_.cancelling.empty()) {
+    } else if (walks || !out_.together.empty() || !serious.empty() || !out_.cancelling.empty() ||
+               lacks_fit()) {
       v.kind = Verdict::Kind::unknown;
       if (!out_.cancelling.empty()) plan_for_cancelling();
       if (auto seats = seats_in(f_.part, f_.repeats, f_.of_model); !seats.empty())
         out_.fails = std::move(seats);
-      else if (!serious.empty())
-        out_.fails = std::move(serious);
+      else if (!serious.empty() || !left.empty())
+        out_.fails = serious.empty() ? left : std::move(serious);
       if (zero == Noise::Zero::of_run) tell_runs();
+    } else if (below_scatter()) {
+      v.kind = Verdict::Kind::unknown;
+      v.below_scatter = true;
     }
   }
 
  private:
+  /// Whether the cells differ from the best explanation by more than their repeats scatter, in what
+  /// the passes of a side do not share: places hold what is common to a pass, and test it.
+  bool lacks_fit() const {
+    if (!f_.of_best.floor || !(f_.of_best.floor->dof >= 8.0)) return false;
+    const std::vector<double> weight = with_scatter(f_.weight, f_.noise);
+    const std::vector<double>& e = f_.of_best.fit.residual;
+    const Saturated all = saturate(f_.repeats, e, weight);
+    Repeats passes = f_.repeats;
+    passes.cell = passes.pass;
+    passes.cells = passes.passes;
+    const Saturated within = saturate(passes, e, weight);
+    const double s2 = f_.of_best.floor->s * f_.of_best.floor->s;
+    // Of neighbours that are alike, as far as their number of independent squares goes.
+    const double of_dof = f_.of_best.floor->dof / all.dof;
+    const double excess = within.squares - all.squares;
+    const double dof = degrees_of_cells();
+    if (!(dof * of_dof >= 1.0)) return false;
+    const double F = math::test_ratio(excess / dof, s2);
+    return math::f_upper(F, dof * of_dof, f_.of_best.floor->dof) < lacks_fit_p &&
+           std::sqrt(std::max(excess - dof * s2, 0.0) / static_cast<double>(e.size())) >
+               least_serious(f_.of_best.floor);
+  }
+
+  /// Of cells less what the passes of a side share and what the best explanation says.
+  double degrees_of_cells() const {
+    std::vector<Index> in_pass(f_.repeats.passes, 0), shared(f_.repeats.sides, 0);
+    std::vector<char> used(f_.repeats.cells, 0);
+    for (std::size_t i = 0; i < f_.weight.size(); ++i)
+      if (f_.weight[i] > 0.0) ++in_pass[f_.repeats.pass[i]], used[f_.repeats.cell[i]] = 1;
+    for (std::size_t p = 0; p < in_pass.size(); ++p) {
+      Index& of_side = shared[f_.repeats.side[p]];
+      of_side = std::max(of_side, shared_columns(in_pass[p]));
+    }
+    return static_cast<double>(std::count(used.begin(), used.end(), 1) -
+                               std::accumulate(shared.begin(), shared.end(), Index{0}));
+  }
+
+  /// Whether less is left than readings of this scatter could leave.
+  bool below_scatter() const {
+    const Fit& fit = f_.of_best.fit;
+    if (!f_.of_best.floor || fit.redundancy == 0 || f_.of_best.floor->s <= f_.noise.digit)
+      return false;
+    const auto redundancy = static_cast<double>(fit.redundancy);
+    const NoiseFloor& floor = *f_.of_best.floor;
+    const double dof = 0.5 * std::pow(floor.s / floor.u, 2);  // a correlation is known badly
+    return math::f_upper(std::pow(math::test_ratio(floor.s, fit.s), 2), dof, redundancy) <
+           lacks_fit_p;
+  }
+
   /// Where nothing is found, that of targets which a misread reading may hide.
   std::optional<Place> of_targets() const {
     if (!out_.together.empty()) return std::nullopt;
@@ -276,9 +341,11 @@ class Judge {
     for (const std::string& name : out_.together) {
       const auto c = std::find_if(out_.candidates.begin(), out_.candidates.end(),
                                   [&](const Candidate& k) { return k.term.name() == name; });
-      if (c->score < certain_evidence || !c->aliases.empty() || cancels(name)) continue;
+      if (c->within < certain_evidence || !c->aliases.empty() || cancels(name)) continue;
       if (in_doubt(name, serious, certain_share)) continue;
-      if (of_one_target(name) || (walks && !beside_walk(name))) continue;
+      if (of_one_target(name) || (walks && !beside_walk(name)) ||
+          (passes_.scatter() && !passes_.shows(name)))
+        continue;
       out_.certain.push_back(name);
     }
   }
@@ -341,8 +408,37 @@ class Judge {
     return e * (f_.of_best.floor->s * std::sqrt(f_.bench->readings() / e.squaredNorm()));
   }
 
+  VectorXd noise_of_passes() const {
+    const std::vector<double> e = passes_.noise();
+    return f_.bench->white()(Eigen::Map<const VectorXd>(e.data(), static_cast<Index>(e.size())));
+  }
+
+  /// The same with whole passes of the residuals, each with its sign: where their zeros scatter.
+  void count_with_passes(Verdict& v) const {
+    constexpr std::size_t draws = 200;  // docs/dev/constants.md, M14
+    const std::vector<double> e = passes_.noise();
+    std::mt19937_64 random(f_.seed);
+    const auto floor = floors(draws);
+    std::vector<double> drawn(e.size()), sign(f_.repeats.passes);
+    double alarms = 0.0;
+    for (std::size_t k = 0; k < draws; ++k) {
+      for (double& s : sign) s = (random() >> 63) != 0 ? 1.0 : -1.0;
+      for (std::size_t i = 0; i < e.size(); ++i) drawn[i] = sign[f_.repeats.pass[i]] * e[i];
+      if (!serious(passes_.places(drawn, floor[k], least_serious(floor[k])),
+                   least_serious(floor[k]))
+               .empty())
+        ++alarms;
+    }
+    v.trials = draws;
+    v.false_alarms = alarms / static_cast<double>(draws);
+  }
+
   void count_false_alarms(Verdict& v) const {
-    const SignFlips shuffles = shuffled(*f_.bench, f_.best, noise(), f_.repeats.pass, f_.seed);
+    if (passes_.scatter()) return count_with_passes(v);
+    const SignFlips shuffles =
+        passes_.drawn_again()
+            ? shuffled(*f_.bench, f_.best, noise_of_passes(), f_.repeats.pass, f_.seed, whole_pass)
+            : shuffled(*f_.bench, f_.best, noise(), f_.repeats.pass, f_.seed);
     const std::vector<char> named = named_in(*f_.bench, f_.best, shuffles, f_.chance);
     const PlaceTests tests(f_.part, f_.repeats, f_.bench->white(), f_.bench->basis(f_.best),
                            f_.dof(f_.best));
@@ -405,6 +501,7 @@ class Judge {
 
   const Finding& f_;
   Explanation& out_;
+  PassZeros passes_{f_};
   mutable std::optional<FactorsOf> factors_{};
 };
 

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "nonio/model/explain.h"
 #include "search/finding.h"
 
 namespace nonio::model {
+
+/// What is left counts against the verdict `nothing` below this p.
+// docs/dev/constants.md, M5.
+inline constexpr double serious_p = 0.005;
 
 /// More suspects than this, of the readings and in number: then they do not repeat.
 inline constexpr double most_suspects = 0.06;

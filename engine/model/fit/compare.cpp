@@ -69,13 +69,16 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
     normal += share;
     right += right_share;
   }
+  // Of columns of unit length: where the other runs hardly tell a direction (a curve over the few
+  // targets of partial runs), what they predict is their noise, hundreds of times as large.
+  constexpr double predicts = 1e-5;
   std::vector<double> out(o.size(), std::numeric_limits<double>::quiet_NaN());
   for (const auto& [run, rows] : runs) {
     if (of_line[run.first] < 2) continue;
     share_of(rows, share, right_share);
     const Eigen::LDLT<MatrixXd> ldlt(MatrixXd(normal - share));
     if (ldlt.info() != Eigen::Success ||
-        !(ldlt.vectorD().minCoeff() > 1e-10 * ldlt.vectorD().maxCoeff()))
+        !(ldlt.vectorD().minCoeff() > predicts * ldlt.vectorD().maxCoeff()))
       continue;
     const VectorXd x = math::solution(ldlt, right - right_share);
     for (const Index i : rows) out[static_cast<std::size_t>(i)] = y(i) - a.row(i).dot(x);
@@ -132,6 +135,26 @@ VectorXd white_residual(const Fit& fit, const Whitening& white) {
   return white(
       Eigen::Map<const VectorXd>(fit.residual.data(), static_cast<Index>(fit.residual.size())));
 }
+
+}  // namespace
+
+PlacesLeft::PlacesLeft(const Part& part, const Repeats& repeats, const Fit& fit, const Noise& noise)
+    : white_(part.table, fit.weight, noise),
+      basis_(basis_of(part.table, fit.terms, white_)),
+      tests_(part, repeats, white_, basis_, static_cast<double>(fit.redundancy)) {}
+
+std::vector<Place> PlacesLeft::operator()(const std::vector<double>& residual,
+                                          const std::optional<NoiseFloor>& floor,
+                                          double least) const {
+  VectorXd e =
+      white_(Eigen::Map<const VectorXd>(residual.data(), static_cast<Index>(residual.size())));
+  MatrixXd free = e;
+  white_.take_out_zeros(free);
+  if (basis_.cols() > 0) math::take_out(basis_, free);
+  return tests_(free.col(0), floor, least);
+}
+
+namespace {
 
 /// The places of what a fit leaves. Where neighbours are alike, a place counts as far as it does
 /// with every correlation that the repeats leave open, none at all too: few readings know it badly.

@@ -3,7 +3,9 @@
 
 #include "data/design.h"
 #include "data/repeats.h"
+#include "data/whitening.h"
 #include "nonio/model/comparison.h"
+#include "places.h"
 
 namespace nonio::model {
 
@@ -53,6 +55,19 @@ Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector
 /// searched on `thin`.
 Expected<Comparison> compare_on(const Part& part, const std::vector<Term>& model,
                                 const Ground& ground, const Observations* thin = nullptr);
+
+/// The tests of places with one noise, its zero included, for what a fit leaves or noise like it.
+class PlacesLeft {
+ public:
+  PlacesLeft(const Part&, const Repeats&, const Fit&, const Noise&);
+  std::vector<Place> operator()(const std::vector<double>& residual,
+                                const std::optional<NoiseFloor>& floor, double least = -1.0) const;
+
+ private:
+  Whitening white_;
+  MatrixXd basis_;
+  PlaceTests tests_;
+};
 
 /// Where what a fit leaves sits.
 std::vector<Place> seats_in(const Part& part, const Repeats& repeats, const Comparison& comparison);

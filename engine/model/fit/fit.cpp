@@ -298,12 +298,16 @@ void name_parameters(Fit& out, const Observations& o, const Design& design) {
       const Quantity q = quantity_of(p, term.axis);
       return by_count ? by_readings(q) : q;
     };
-    const auto k = static_cast<std::size_t>(design.blocks[t].cols());
-    for (std::size_t i = 0; i < k; ++i) {
-      const Effect::Parameter& p = term.effect->linear[term.effect->curve ? 0 : i];
+    const auto all = static_cast<std::size_t>(design.blocks[t].cols());
+    const std::size_t first = term.differences ? 1 : 0;
+    const std::size_t k = term.grouping ? all / (term.grouping->name.size() - first) : all;
+    for (std::size_t i = 0; i < all; ++i) {
+      const Effect::Parameter& p = term.effect->linear[term.effect->curve ? 0 : i % k];
+      const std::string group = term.grouping ? term.grouping->name[first + i / k] : "";
       out.parameters.push_back({term.name(),
-                                term.effect->curve ? p.name + std::to_string(i + 1) : p.name, 0.0,
-                                0.0, quantity(p), false});
+                                (term.effect->curve ? p.name + std::to_string(i % k + 1) : p.name) +
+                                    (group.empty() ? "" : " " + group),
+                                0.0, 0.0, quantity(p), false, group});
     }
     for (std::size_t i = 0; i < term.shape.size(); ++i) {
       const Effect::Parameter& p = term.effect->shapes[i].parameter;

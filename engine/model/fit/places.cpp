@@ -42,6 +42,8 @@ const char* name_of(Factor factor) {
       return "time";
     case Factor::temperature:
       return "temperature";
+    case Factor::measurement:
+      return "measurement";
     case Factor::channel:
       break;
   }
@@ -114,10 +116,12 @@ class Factors {
     position_ = part.kind == Part::Kind::axis ? VectorXd(map(r.p) / std::max(r.length / 2.0, 1e-12))
                                               : from_the_middle(part);
     add({{Factor::direction}, d, false});
-    if (part.kind == Part::Kind::axis)
+    if (part.kind == Part::Kind::axis) {
       add_axis(part.axes.front(), r, d);
-    else
+      add_measurements(part.table, d);
+    } else {
       add_lines(part, d);
+    }
     if (repeats.passes <= repeats.sides) return;  // nothing is repeated
     add_repeated(part.table, r, d, repeats);
   }
@@ -184,6 +188,24 @@ class Factors {
     if (axis.screw_pitch)
       pair(Factor::direction, Factor::screw_phase, times(column(Factor::screw_phase), d), false);
     if (axis.rotary) pair(Factor::direction, Factor::angle, times(column(Factor::angle), d), false);
+  }
+
+  /// What the lines of one axis do not have in common; their zeros are unknown.
+  void add_measurements(const Observations& o, const VectorXd& d) {
+    const auto lines = static_cast<Index>(lines_of(o));
+    if (lines < 2 || lines > most_bins) return;
+    std::vector<std::size_t> line;
+    for (std::size_t i = 0; i < o.size(); ++i) line.push_back(line_of(o, i));
+    FactorColumns f{{Factor::measurement}, dummies(line, lines_of(o))};
+    const auto by_line = [&](const MatrixXd& columns) {
+      MatrixXd out(columns.rows(), columns.cols() * lines);
+      for (Index k = 0; k < lines; ++k)
+        out.middleCols(k * columns.cols(), columns.cols()) = times(columns, f.columns.col(k));
+      return out;
+    };
+    pair(Factor::direction, Factor::measurement, by_line(d), false);
+    pair(Factor::position, Factor::measurement, by_line(column(Factor::position)), false);
+    add(std::move(f));
   }
 
   /// Each line's own places: what sits at one place of one diagonal sits elsewhere on the other.

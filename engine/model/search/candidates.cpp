@@ -107,17 +107,20 @@ class CandidateOf {
       c.why = f_.bench->instances()[e].blocks.empty() ? "not-shown" : "aliased";
       return c;
     }
+    c.alone = f_.start.criterion - alone.criterion;
     const bool member = f_.bench->holds(f_.best, e);
     std::size_t block = alone.blocks.back();
     if (member) {
       for (const std::size_t b : f_.best.blocks)
         if (f_.bench->effect_of(b) == e) block = b;
-      c.score = f_.bench->settled(f_.bench->without(f_.best, e)).criterion - f_.best.criterion;
+      c.within = f_.bench->settled(f_.bench->without(f_.best, e)).criterion - f_.best.criterion;
       c.p = f_.chance.corrected(p_of(*f_.bench, f_.best, e));
       c.aliases = aliases_of(e);
     } else {
       score_outsider(e, c);
+      c.within = c.score;
     }
+    c.score = c.within > 0.0 && c.alone > 0.0 ? c.alone : c.within;
     c.term.shape = f_.bench->blocks()[block].shape;
     const Sizes sizes(f_, e, member);
     c.minimal_detectable = sizes.smallest();
@@ -188,16 +191,16 @@ class CandidateOf {
   /// Added to the model as `nonio model add` does it, so that the RMS printed beforehand is the one
   /// obtained: all shapes are searched anew, and readings have the weights of a comparison.
   void fit_candidate(Candidate& c) const {
-    std::vector<Term> terms(f_.terms.begin(),
-                            f_.terms.begin() + static_cast<std::ptrdiff_t>(f_.in_model));
-    terms.push_back(f_.terms[f_.index_of(c.term.name())]);
+    const std::vector<Term> model(f_.terms.begin(),
+                                  f_.terms.begin() + static_cast<std::ptrdiff_t>(f_.in_model));
+    const std::vector<Term> terms = with_term(model, f_.terms[f_.index_of(c.term.name())]);
     const auto fitted = fit(f_.part.table, terms, ground_.weight, ground_.noise);
     if (!fitted) return;
     c.rms = fitted->rms;
     c.cv_rms =
         rms_of(cross_validated(f_.part.table, fitted->terms, ground_.weight), ground_.weight);
     const bool member = f_.bench->holds(f_.best, f_.index_of(c.term.name()));
-    const Fit& from = member ? f_.of_best.fit : *fitted;
+    const Fit& from = member && !c.term.differences ? f_.of_best.fit : *fitted;
     for (const Parameter& p : from.parameters)
       if (p.effect == c.term.name()) c.parameters.push_back(p);
     for (const Term& t : from.terms)

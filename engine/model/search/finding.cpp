@@ -21,10 +21,8 @@ class Finder {
   Finder(const Part& part, const std::vector<Term>& model, const std::vector<Term>& catalogue,
          std::uint64_t seed)
       : f_{part, Repeats(part.table), model, model.size(), seed}, model_(model) {
-    for (const Term& c : catalogue)
-      if (std::none_of(model.begin(), model.end(),
-                       [&](const Term& m) { return m.name() == c.name(); }))
-        (c.effect->description ? f_.descriptions : f_.terms).push_back(c);
+    for (Term& c : offered_to(model, catalogue))
+      (c.effect->description ? f_.descriptions : f_.terms).push_back(std::move(c));
   }
 
   Expected<Finding> run() {

@@ -111,9 +111,8 @@ double Chance::corrected(double p) const {
 }
 
 SignFlips shuffled(const Workbench& bench, const State& complete, const VectorXd& residual,
-                   const std::vector<std::uint32_t>& pass, std::uint64_t seed) {
-  // docs/dev/constants.md, M15.
-  constexpr std::size_t stretch = 5;  // readings whose sign is flipped together
+                   const std::vector<std::uint32_t>& pass, std::uint64_t seed,
+                   std::size_t stretch) {
   // docs/dev/constants.md, M14.
   constexpr Index shuffles = 200;
   std::vector<Index> block(pass.size());

@@ -29,9 +29,12 @@ struct SignFlips {
   MatrixXd in_complete;  ///< of all columns, what they have in the directions of the state
   VectorXd squares;      ///< of each shuffle
 };
+// docs/dev/constants.md, M15.
+inline constexpr std::size_t stretch_of_signs = 5;  ///< readings whose sign is flipped together
+inline constexpr std::size_t whole_pass = static_cast<std::size_t>(-1);
 SignFlips shuffled(const Workbench& bench, const Workbench::State& complete,
                    const VectorXd& residual, const std::vector<std::uint32_t>& pass,
-                   std::uint64_t seed);
+                   std::uint64_t seed, std::size_t stretch = stretch_of_signs);
 
 Chance measure_chance(const Workbench& bench, const Workbench::State& complete,
                       const SignFlips& shuffles);

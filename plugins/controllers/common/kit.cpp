@@ -402,7 +402,7 @@ Expected<ControlTable> chosen(ControlTable t, const Settings& options) {
   const std::string sign = options.text("sign");
   if (sign.empty()) {
     Error unknown{"the maker does not say which sign " + t.name +
-                  " has: find it out with a sign probe (nonio plan sign-probe --help), then set "
+                  " has: find it out with a sign probe (nonio table probe --help), then set "
                   "sign = \"error\" or \"correction\""};
     unknown.key = "sign";
     return fail(std::move(unknown));

@@ -188,7 +188,7 @@ std::string words(const Sheet& s, const Parameters& p) {
            ? "numbers " + std::to_string(p.low) + " to " + std::to_string(p.high) + ", as asked for"
            : "CHOSEN, not read from a backup: numbers " + std::to_string(p.low) + " to " +
                  std::to_string(p.high) +
-                 "; where another axis has them, load a file of nonio merge instead");
+                 "; where another axis has them, load a file of nonio table insert instead");
   line(is(3620, p.reference) + ", " + is(3621, p.low) + ", " + is(3622, p.high) + ", " +
        is(3623, p.magnification) + ", " + is(3624, p.interval));
   if (p.turn != 0) line(is(3625, p.turn) + ", type of axis: rotary");

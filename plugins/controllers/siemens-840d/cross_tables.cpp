@@ -99,14 +99,14 @@ Expected<void> free_tables(std::int64_t first, std::size_t count, const Settings
     if (low <= last && first <= high)
       return fail("CEC tables " + std::to_string(first) + " to " + std::to_string(last) +
                   " would meet those in use (" + std::to_string(low) + " to " +
-                  std::to_string(high) + "): set first_cec_table, or use nonio merge");
+                  std::to_string(high) + "): set first_cec_table, or use nonio table insert");
   return {};
 }
 
 std::string chosen_words(std::int64_t first, std::size_t count) {
   return "CHOSEN, not read from a backup: CEC tables " + std::to_string(first) + " to " +
          std::to_string(first + static_cast<std::int64_t>(count) - 1) +
-         "; where the control has others there, load a file of nonio merge instead";
+         "; where the control has others there, load a file of nonio table insert instead";
 }
 
 void note_chosen(const std::string& axis, std::int64_t first, std::size_t count,

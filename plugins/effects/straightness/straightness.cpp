@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // EYX: e_y = sum c_k s_k(x), and the five others; s_k: smooth basis of cubic splines without
-// constant and slope over the measured places (nonio/math/spline.h), rms 1; c_k: m. A slope is
+// constant and slope over the places where lines tell it (nonio/math/spline.h), rms 1; c_k: m. A slope is
 // squareness, or the set-up of the line.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "nonio/math/spline.h"
 #include "nonio/sdk/space_readings.h"
 
@@ -28,9 +32,33 @@ std::vector<std::string> of(const Observations& o) {
   return names;
 }
 
+/// The readings with a place along the axis only on lines that move along it and sense the error.
+/// Elsewhere the zero of the line takes what the curve says; a slope over such places would be left
+/// in the curve on the others, where it is squareness.
+SpaceReadings told(const Observations& o, const Name& name) {
+  constexpr double least = 1e-9;  // m; of a unit vector
+  SpaceReadings s = space_of(o);
+  std::vector<double>& at = s.r[name.axis];
+  const auto senses = [&](std::size_t i) {
+    return std::isfinite(at[i]) && std::fabs(o.sense_of(i)[name.error]) > least;
+  };
+  std::vector<double> low(std::max<std::size_t>(o.lines.size(), 1), INFINITY),
+      high(low.size(), -INFINITY);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (!senses(i)) continue;
+    low[o.line_of(i)] = std::min(low[o.line_of(i)], at[i]);
+    high[o.line_of(i)] = std::max(high[o.line_of(i)], at[i]);
+  }
+  for (std::size_t i = 0; i < at.size(); ++i)
+    if (!senses(i) || !(high[o.line_of(i)] - low[o.line_of(i)] > least))
+      at[i] = std::numeric_limits<double>::quiet_NaN();
+  return s;
+}
+
 std::vector<double> grid(const Observations& o, const Axis& place) {
   const Name name = read(place.name);
-  return name.axis > 2 ? std::vector<double>{} : knots_over(places_of(space_of(o), name.axis));
+  if (name.axis > 2 || name.error > 2) return {};
+  return knots_over(places_of(told(o, name), name.axis));
 }
 
 Expected<Effect::Columns> columns(const Observations& o, const Axis& place,
@@ -40,7 +68,7 @@ Expected<Effect::Columns> columns(const Observations& o, const Axis& place,
     return fail("straightness: expected EYX, EZX, EXY, EZY, EXZ or EYZ, found " + place.name);
   if (shape.size() != 1 || !(shape[0] >= 2.0 && shape[0] <= 1000.0))
     return fail("straightness: expected a number of knots, 2 to 1000");
-  const SpaceReadings s = space_of(o);
+  const SpaceReadings s = told(o, name);
   auto out = math::smooth_basis(finite_or_zero(s.r[name.axis]), places_of(s, name.axis),
                                 static_cast<int>(std::lround(shape[0])));
   if (!out) return fail("straightness: " + out.error().message);

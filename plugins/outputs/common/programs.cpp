@@ -52,7 +52,7 @@ std::vector<Option> options(std::vector<Option> own) {
   std::vector<Option> all = {
       {"programs", std::vector<std::string>{}, "",
        "Which: axes, diagonals, half-diagonal, step-diagonals; empty: axes, and the diagonals "
-       "where the campaign has a plan (sign-probe is for `nonio plan sign-probe`)."},
+       "where the campaign has a plan (sign-probe is for `nonio table probe`)."},
       {"axes", std::vector<std::string>{}, "", "Of the axis runs; empty: all that have a travel."},
       {"plan", std::int64_t{1}, "", "Row of the plan that the diagonals follow.", {}, 1.0, 1000.0},
       {"x", std::string("X"), "", "First axis of the diagonals."},

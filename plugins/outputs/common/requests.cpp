@@ -274,9 +274,8 @@ class Requests {
               ", read it at the second, " + number(*to / size) + ": actual - nominal");
       return {};
     }
-    return wrong(
-        "programs",
-        "the stops of a sign probe are chosen by `nonio plan sign-probe CAMPAIGN --out p`");
+    return wrong("programs",
+                 "the stops of a sign probe are chosen by `nonio table probe CAMPAIGN --out p`");
   }
 
   void add(MeasuringPath path, const std::string& how) {

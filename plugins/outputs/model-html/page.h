@@ -18,6 +18,6 @@ struct Source {
   std::array<reports::PictureWords, 9> pictures;
 };
 
-std::string page_of(const Source&);
+Expected<std::string> page_of(const Source&);
 
 }  // namespace nonio::model_html

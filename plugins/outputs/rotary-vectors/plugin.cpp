@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string_view>
 
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/json_writer.h"
 #include "vectors.h"
 
 namespace nonio::rotary_vectors {
@@ -86,28 +86,36 @@ std::vector<Line> lines_of(const Campaign& campaign, const Results& results) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json number(const Value& v) {
-  Json out = {{"value", printed(v.value, v.quantity)}, {"unit", unit_of(v.quantity).symbol}};
-  if (v.U) out["U"] = printed(*v.U, v.quantity);
-  return out;
+void put(JsonWriter& json, std::string_view name, const Value& v) {
+  json.key(name);
+  json.begin_object();
+  json.member("value", printed(v.value, v.quantity));
+  json.member("unit", unit_of(v.quantity).symbol);
+  if (v.U) json.member("U", printed(*v.U, v.quantity));
+  json.end_object();
 }
 
-std::string json(const Campaign& campaign, const std::vector<Line>& lines) {
-  Json axes = Json::array();
+std::string json_of(const Campaign& campaign, const std::vector<Line>& lines) {
+  JsonWriter json;
+  json.begin_object();
+  json.member("schema", "nonio-rotary-vectors/1");
+  json.member("campaign", campaign.id);
+  json.key("axes");
+  json.begin_array();
   for (const Line& line : lines) {
-    Json one = {{"measurement", line.measurement}, {"axis", line.axis}};
+    json.begin_object();
+    json.member("measurement", line.measurement);
+    json.member("axis", line.axis);
     for (const auto* values : {&line.centre, &line.direction})
-      for (const Value& v : *values) one[v.name] = number(v);
-    one["radius"] = number(line.radius);
-    if (line.head) one["seen_from"] = "tool tip";
-    one["compared_with"] = line.shares_reference;
-    axes.push_back(std::move(one));
+      for (const Value& v : *values) put(json, v.name, v);
+    put(json, "radius", line.radius);
+    if (line.head) json.member("seen_from", "tool tip");
+    json.member("compared_with", line.shares_reference);
+    json.end_object();
   }
-  const Json all = {
-      {"schema", "nonio-rotary-vectors/1"}, {"campaign", campaign.id}, {"axes", std::move(axes)}};
-  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  json.end_array();
+  json.end_object();
+  return json.take();
 }
 
 std::string csv(const std::vector<Line>& lines) {
@@ -175,7 +183,7 @@ Expected<OutputResult> write(const OutputInput& in) {
     return result;
   }
   result.artifacts = {{"rotary-vectors.txt", text(in.campaign, lines)},
-                      {"rotary-vectors.json", json(in.campaign, lines)},
+                      {"rotary-vectors.json", json_of(in.campaign, lines)},
                       {"rotary-vectors.csv", csv(lines)}};
   const std::string doubts = doubts_of(in.results);
   const Wish wish{in.options.number("limit_mm") * 1e-3, in.options.texts("sign_shown"),

@@ -7,15 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/json_writer.h"
 
 namespace nonio::volume_grid {
 
-using Json = nlohmann::ordered_json;
 using Vector = std::array<double, 3>;
 
 constexpr std::array<const char*, 3> places{"X", "Y", "Z"}, errors{"e_x", "e_y", "e_z"},
@@ -135,25 +135,34 @@ bool counts(const Measurement& m) { return m.kind == "axis" || m.kind == "diagon
 
 double in_um(double si) { return printed(si, Quantity::deviation); }
 
-Json vector_of(const Vector& v) { return {in_um(v[0]), in_um(v[1]), in_um(v[2])}; }
+void put_numbers(JsonWriter& json, std::span<const double> si, Quantity q) {
+  json.begin_array();
+  for (const double v : si) json.value(printed(v, q));
+  json.end_array();
+}
 
-std::string json(const OutputInput& in, const Grid& g, OutputResult& result) {
-  Json all = {{"schema", "nonio-volume-grid/1"},
-              {"campaign", in.campaign.id},
-              {"measurement", g.measurement},
-              {"sign", "error = actual - commanded; a control subtracts it"},
-              {"interpolation", "linear in X, Y and Z; the edge outside"},
-              {"order", "X slowest, Z fastest"}};
+std::string json_of(const OutputInput& in, const Grid& g, OutputResult& result) {
+  JsonWriter json;
+  json.begin_object();
+  json.member("schema", "nonio-volume-grid/1");
+  json.member("campaign", in.campaign.id);
+  json.member("measurement", g.measurement);
+  json.member("sign", "error = actual - commanded; a control subtracts it");
+  json.member("interpolation", "linear in X, Y and Z; the edge outside");
+  json.member("order", "X slowest, Z fastest");
   for (std::size_t k = 0; k < 3; ++k) {
-    Json& nodes = all[std::string(places[k]) + "_mm"] = Json::array();
-    for (const double at : g.nodes[k]) nodes.push_back(printed(at, Quantity::length));
+    json.key(std::string(places[k]) + "_mm");
+    put_numbers(json, g.nodes[k], Quantity::length);
   }
   for (const auto& [name, vectors] : {std::pair{"error_um", &g.error}, {"U_um", &g.U}}) {
     if (vectors->empty()) continue;
-    Json& out = all[name] = Json::array();
-    for (const Vector& v : *vectors) out.push_back(vector_of(v));
+    json.key(name);
+    json.begin_array();
+    for (const Vector& v : *vectors) put_numbers(json, v, Quantity::deviation);
+    json.end_array();
   }
-  Json& prediction = all["predicted"] = Json::array();
+  json.key("predicted");
+  json.begin_array();
   const auto& measurements = in.campaign.measurements;
   for (std::size_t i = 0; i < measurements.size() && i < in.observations.size(); ++i) {
     const Measurement &m = measurements[i], *of = nullptr;
@@ -162,16 +171,20 @@ std::string json(const OutputInput& in, const Grid& g, OutputResult& result) {
     const bool same = of != nullptr && (state_of(m).empty() || state_of(m) == state_of(*of));
     if (!counts(m) || !same || in.observations[i].size() == 0) continue;
     const Predicted p = predicted(g, m, in.observations[i]);
-    prediction.push_back({{"measurement", m.id},
-                          {"readings", p.readings},
-                          {"rms_before_um", in_um(p.before)},
-                          {"rms_after_um", in_um(p.after)}});
+    json.begin_object();
+    json.member("measurement", m.id);
+    json.member("readings", static_cast<std::uint64_t>(p.readings));
+    json.member("rms_before_um", in_um(p.before));
+    json.member("rms_after_um", in_um(p.after));
+    json.end_object();
     result.notes.push_back({.id = "volume-grid.predicted",
                             .evidence = {{"before", p.before, Quantity::deviation},
                                          {"after", p.after, Quantity::deviation}},
                             .texts = {{"measurement", m.id}}});
   }
-  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  json.end_array();
+  json.end_object();
+  return json.take();
 }
 
 std::string file_part(std::string name) {
@@ -185,7 +198,7 @@ Expected<OutputResult> write(const OutputInput& in) {
   for (const Results::Analysed& a : in.results.analyses)
     if (const auto g = grid_of(a))
       result.artifacts.push_back(
-          {"volume-grid-" + file_part(a.measurement) + ".json", json(in, *g, result)});
+          {"volume-grid-" + file_part(a.measurement) + ".json", json_of(in, *g, result)});
   if (result.artifacts.empty())
     result.findings.push_back({.id = "volume-grid.none", .attention = true});
   return result;

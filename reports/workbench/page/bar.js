@@ -26,8 +26,7 @@ const bar = (() => {
     if (!fit || shown.fitIsOld) return ["thinking", say("verdict.fitting")];
     if (!explain || shown.explainIsOld) return ["thinking", shown.seconds > 0 ? say("verdict.progress", {seconds: shown.seconds}) : say("verdict.thinking")];
     const verdict = explain.verdict || {};
-    const effect = verdict.effect, text = fit.text && fit.text.verdict;
-    if (text) return [verdict.kind, typeset(text)];
+    const effect = verdict.effect;
     const found = (explain.candidates || []).find((c) => c.effect === effect);
     if (verdict.kind === "missing" && found)
       return [verdict.kind, say(found.aliases.length ? "verdict.missing_or" : "verdict.missing", {effect, others: found.aliases.join(", "),

@@ -41,7 +41,7 @@ const effects = (() => {
     if (own.length > 4) return el("p", {class: "values"}, say("row.curve", {n: own.length}));
     return own.map((p) => {
       const [value, U] = withU(p.value, p.u), unit = shownUnit(p.unit || "");
-      return el("p", {class: "values", "data-parameter": `${effect}.${p.name}`, "data-value": p.value}, `${p.name} = ${value}${U ? " \u00B1 " + U : ""} ${unit}`, p.searched ? el("span", {class: "muted"}, " " + say("row.searched")) : null,
+      return el("p", {class: "values", "data-parameter": `${effect}.${p.name}`, "data-value": p.value}, `${p.name} = ${value}${U ? " \u00B1 " + U : ""} ${unit}`, p.searched && !p.stated ? el("span", {class: "muted"}, " " + say("row.searched")) : null,
         p.below_uncertainty ? el("span", {class: "flag"}, " " + say("row.below")) : null);
     });
   }
@@ -147,8 +147,8 @@ const effects = (() => {
     if (!explain || shown.explainIsOld || shown.learning) return fill(box, el("p", {class: "muted"}, say("next.none")));
     const plans = (explain.plans || []).map((p) => el("tr", {}, el("td", {}, typeset(p.says)), el("td", {class: "number"}, String(p.readings)), el("td", {class: "number"}, short(p.power))));
     const table = plans.length ? el("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": say("next.table")}, el("table", {}, el("thead", {}, el("tr", {}, el("th", {scope: "col"}, say("next.plan")), el("th", {scope: "col", class: "number"}, say("next.readings")), el("th", {scope: "col", class: "number"}, say("next.power")))), el("tbody", {}, ...plans))) : null;
-    const text = (shown.fit && shown.fit.text) || {}, next = text.next || explain.next || [], more = text.more || [];
-    fill(box, table, next.length ? el("ul", {}, ...next.map((t) => el("li", {}, typeset(t)))) : null, ...[...more, ...(text.more ? [] : explain.warnings || [])].map((t) => el("p", {}, typeset(t))),
+    const next = explain.next || [];
+    fill(box, table, next.length ? el("ul", {}, ...next.map((t) => el("li", {}, typeset(t)))) : null, ...(explain.warnings || []).map((t) => el("p", {}, typeset(t))),
       !plans.length && !next.length ? el("p", {class: "muted"}, say("next.nothing")) : null);
   }
   /// What one run more would do, in each order of directions, to U of each parameter and to the evidence; on a terminal too.
@@ -164,7 +164,7 @@ const effects = (() => {
       el("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": say("more.title")}, el("table", {}, el("thead", {}, el("tr", {}, el("td"), el("th", {scope: "col", class: "number"}, say("more.now")),
         ...all.map((one) => el("th", {scope: "col", class: "number"}, `${say("more.is_" + one.plan.replace(/-/g, "_"))} (+${one.readings})`)))),
       el("tbody", {}, ...parameters.map(u), ...all[0].evidence.map(evidence)))),
-      /^nonio compare /.test(state.command) ? el("p", {class: "muted"}, say("command.label") + " ", el("code", {}, state.command.replace("nonio compare", "nonio explain") + " --what-if")) : null);
+      /^nonio model compare /.test(state.command) ? el("p", {class: "muted"}, say("command.label") + " ", el("code", {}, state.command.replace("nonio model compare", "nonio model explain") + " --what-if")) : null);
   }
   return {drawList, drawAbout, drawWhatIf, drawNext, groups, fingerprint};
 })();

@@ -36,7 +36,7 @@ const entries = (() => {
   }
   const who = () => field("by", "entry.by", {required: true, maxlength: 100, value: me()});
 
-  /// `line`: as `nonio morning --json` has it.
+  /// `line`: as `nonio status --actions --json` has it.
   function acknowledge(line, told, act) {
     form(say("ack.title"), el("p", {}, el("b", {}, [line.machine, line.axis].filter(Boolean).join(" ")), " ", told), [
       el("p", {class: "muted"}, say("ack.what")), who(),
@@ -47,7 +47,7 @@ const entries = (() => {
       return act("ack", {finding: line.id, machine: line.machine, ...v, why: v.why.trim()}, say("ack.done"));
     });
   }
-  /// `entry`: as `nonio ack --json` has it.
+  /// `entry`: as `nonio machine ack --json` has it.
   function withdraw(entry, act) {
     form(say("withdraw.title"), el("p", {}, el("b", {}, [entry.machine, entry.axis].filter(Boolean).join(" ")), " ", say("withdraw.known", {by: visible(entry.by), until: entry.until, why: visible(entry.why)})), [
       el("p", {class: "muted"}, say("withdraw.what")), who(), field("why", "withdraw.why", {maxlength: 500})],

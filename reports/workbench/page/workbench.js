@@ -267,7 +267,7 @@
     readings.drawRegion(state, shown, rows, act);
     view.speak(rows.length ? say("region.said", {n: rows.length}) : "");
   }
-  /// What a table in the control would do to what is printed: as nonio compare says it.
+  /// What a table in the control would do to what is printed: as nonio model compare says it.
   function tableWouldDo() {
     const compare = shown.fit && !shown.fit.partial && !shown.looks && !shown.fitIsOld && shown.fit.compare, predicted = compare && compare.after_table;
     if (!compare) return null;
@@ -276,7 +276,7 @@
     const row = (name, was, is, key) => el("tr", {}, el("th", {scope: "row"}, name), cell(was, key), cell(is, key));
     const rows = predicted.tests.flatMap((t) => ["E", "A", "R"].map((name) => row(predicted.tests.length > 1 ? `${name} (${t.measurement})` : name, t.before, t.after, name)));
     const rms = el("tr", {}, el("th", {scope: "row"}, "RMS"), cell(predicted, "rms_before"), cell(predicted, "rms"));
-    const compareIt = /^nonio compare /.test(state.command) ? state.command : `${state.command} && nonio compare ${quoted(state.campaign.folder)}`;
+    const compareIt = /^nonio model compare /.test(state.command) ? state.command : `${state.command} && nonio model compare ${quoted(state.campaign.folder)}`;
     return el("div", {id: "after-table"}, el("table", {}, el("caption", {}, say("table.title", {unit: shown.unit})), el("thead", {}, el("tr", {}, el("td"), el("th", {scope: "col", class: "number"}, say("table.before")), el("th", {scope: "col", class: "number"}, say("table.after")))), el("tbody", {}, ...rows, rms)),
       el("p", {class: "muted"}, say(predicted.tests.length ? "table.what" : "table.what_space", {effects: predicted.takes.join(", ")})), el("p", {class: "muted"}, say("command.label") + " ", el("code", {}, compareIt)));
   }

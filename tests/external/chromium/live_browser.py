@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the pages of `nonio live` in a real browser share: a browser, a server, and a page that keeps its
+"""What the tests of the pages of `nonio serve` in a real browser share: a browser, a server, and a page that keeps its
 picture when a test fails."""
 import json
 import pathlib
@@ -48,7 +48,7 @@ def browser(profile, width=1280, height=800):
 
 
 class Live:
-    """A `nonio live` of its own campaign, port and token."""
+    """A `nonio serve` of its own campaign, port and token."""
 
     def __init__(self, folder, *more):
         self.command, self.beside = [str(NONIO), "live", *more, folder.name], folder.parent

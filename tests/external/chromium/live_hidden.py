@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""live_hidden.py NONIO SOURCE_FOLDER BENCH_HIDDEN: twenty campaigns with hidden effects, solved on the page of `nonio live`
-in a real browser by somebody who only clicks what the page suggests: the same model and verdict as `nonio explain --auto`.
+"""live_hidden.py NONIO SOURCE_FOLDER BENCH_HIDDEN: twenty campaigns with hidden effects, solved on the page of `nonio serve`
+in a real browser by somebody who only clicks what the page suggests: the same model and verdict as `nonio model explain --auto`.
 By hand, a minute: test live.hidden asks the same of the interface every time."""
 import json
 import subprocess

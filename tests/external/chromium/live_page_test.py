@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""live_page_test.py NONIO SOURCE_FOLDER: the page of `nonio live` in a real browser, with the real server: the tutorial by
+"""live_page_test.py NONIO SOURCE_FOLDER: the page of `nonio serve` in a real browser, with the real server: the tutorial by
 mouse and by keys, undo, reload, two tabs, hostile names, a file edited beside it, a server that ends, widths, dark, motion,
 what hinders people. Its pictures and numbers have a test of their own (live_pictures_test.py).
 
@@ -412,10 +412,10 @@ class Page(live_browser.CampaignPage):
         cells = self.js("[...document.querySelectorAll('#after-table tbody tr')].map((r) => [r.children[0].textContent, ...[...r.children].slice(1).map((c) => Number(c.dataset.value))])")
         test = predicted["tests"][0]
         self.assertEqual([[n, test["before"][n + "_um"], test["after"][n + "_um"]] for n in "EAR"] + [["RMS", predicted["rms_before_um"], predicted["rms_um"]]], cells)
-        self.assertIn("nonio compare " + folder.name, self.text("after-table"))
+        self.assertIn("nonio model compare " + folder.name, self.text("after-table"))
         self.tick("scale:X")
         self.wait(lambda: "backlash:X" in self.text("after-table") and "scale:X as" not in self.text("after-table").replace("scale:X, ", ""))
-        self.assertIn("&& nonio compare " + folder.name, self.text("after-table"), "what a terminal has to do first")
+        self.assertIn("&& nonio model compare " + folder.name, self.text("after-table"), "what a terminal has to do first")
         self.tick("backlash:X")
         self.wait(lambda: "No effect of this model" in self.text("after-table"))
         self.no_complaints()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""live_pictures_test.py NONIO SOURCE_FOLDER: what the page of `nonio live` draws of many readings, of the machine in space and
-of circles, and numbers that are those of `nonio compare` and `explain`, in a real browser with the real server."""
+"""live_pictures_test.py NONIO SOURCE_FOLDER: what the page of `nonio serve` draws of many readings, of the machine in space and
+of circles, and numbers that are those of `nonio model compare` and `explain`, in a real browser with the real server."""
 import re
 import subprocess
 import threading
@@ -92,7 +92,7 @@ class Pictures(live_browser.CampaignPage):
         self.no_complaints()
 
     def test_numbers_of_all_samples_are_those_of_compare_and_explain(self):
-        """Against the server's own answers, which test live.numbers holds against `nonio compare` and `explain`."""
+        """Against the server's own answers, which test live.numbers holds against `nonio model compare` and `explain`."""
         sources = [s for s in sorted((SOURCE / "samples/site").iterdir()) if (s / "campaign.toml").exists()]
         servers = {source: self.serve(self.campaign(source)) for source in sources}
         # Explanations of the large ones take seconds: they are found while the page shows the others.

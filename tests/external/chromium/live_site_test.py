@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""live_site_test.py NONIO SOURCE_FOLDER: the page of `nonio live SITE` in a real browser, with the real server: the morning as
+"""live_site_test.py NONIO SOURCE_FOLDER: the page of `nonio serve SITE` in a real browser, with the real server: the morning as
 the static pages have it, filters, entries by mouse and by keys, two tabs, read-only, a campaign opened and left, run again and
 cancelled, certificates verified and released, hostile names, a night that runs, a server that ends, widths, dark, motion, and
 what hinders people. Waits for states, never sleeps."""
@@ -62,7 +62,7 @@ class SitePage(live_browser.LivePage):
         self.ready(name)
 
     def morning(self):
-        return json.loads(nonio("morning", self.out, "--site", self.site, "--json").stdout)["lines"]
+        return json.loads(nonio("status", "--actions", self.out, "--site", self.site, "--json").stdout)["lines"]
 
     def rows(self):
         return self.js("[...document.querySelectorAll('tr[data-line]')].filter((r) => r.getClientRects().length).map((r) => r.dataset.line)")
@@ -164,7 +164,7 @@ class SitePage(live_browser.LivePage):
         self.wait(lambda: self.known(line), "the line is known")
         entry = self.acknowledged()["acknowledged"][0]
         self.assertEqual((line["id"], line["machine"], "B. Sample", "nut is ordered"), (entry["finding"], entry["machine"], entry["by"], entry["why"]))
-        self.assertIn("nonio ack", self.text("command"))
+        self.assertIn("nonio machine ack", self.text("command"))
         self.assertEqual([l["id"] for l in self.morning()], self.rows(), "in the order of the terminal")
         self.push("withdraw-" + line["id"])
         self.in_dialog()
@@ -256,7 +256,7 @@ class SitePage(live_browser.LivePage):
         self.dialog_closed()
         self.d.switch_to.window(first)
         self.wait(lambda: self.known(line), "the other tab shows it")
-        nonio("ack", self.site, "--withdraw", "--finding", line["id"], "--machine", line["machine"], "--by", "B. Sample")
+        nonio("machine", "ack", self.site, "--withdraw", "--finding", line["id"], "--machine", line["machine"], "--by", "B. Sample")
         self.wait(lambda: not self.known(line), "what a terminal does is shown too")
         self.d.switch_to.window(second)
         self.wait(lambda: not self.known(line), "in both")
@@ -269,7 +269,7 @@ class SitePage(live_browser.LivePage):
         self.push("ack-" + line["id"])
         self.in_dialog()
         self.fill_in(by="B. Sample", why="nut is")
-        nonio("event", self.site, "--machine", line["machine"], "--kind", "other", "--text", "seen on the way", "--date", "2026-01-01")
+        nonio("machine", "event", self.site, "--machine", line["machine"], "--kind", "other", "--text", "seen on the way", "--date", "2026-01-01")
         version = self.js("document.body.dataset.version")
         self.wait(lambda: self.js("document.body.dataset.version") != version, "the page has heard of it")
         self.assertEqual("nut is", self.js("document.getElementById('field-why').value"))
@@ -313,7 +313,7 @@ class SitePage(live_browser.LivePage):
             self.assertIn(before, truth)
             truth = truth.replace(before, after)
         (self.folder / "truth.toml").write_text(truth)
-        nonio("simulate", self.folder / "truth.toml", "--out", self.folder / "long", "--quiet")
+        nonio("model", "simulate", self.folder / "truth.toml", "--out", self.folder / "long", "--quiet")
         manifest = (self.folder / "long/campaign.toml").read_text()
         self.assertIn('id = "worn-screw"', manifest)
         for n in range(25):
@@ -352,7 +352,7 @@ class SitePage(live_browser.LivePage):
         self.wait(lambda: "No answer" in self.text("alarm"))
         self.assertGreater(len(self.rows()), 0, "what was shown stays")
         server.command = [*server.command[:2], "--out", str(self.out), "--port", port, "--token-file", str(self.folder / "token"), server.command[-1]]
-        nonio("ack", self.site, "--finding", self.first_new()["id"], "--machine", (line := self.first_new())["machine"], "--until", "2099-01-01", "--by", "B", "--why", "nut is ordered")
+        nonio("machine", "ack", self.site, "--finding", self.first_new()["id"], "--machine", (line := self.first_new())["machine"], "--until", "2099-01-01", "--by", "B", "--why", "nut is ordered")
         server.start()
         self.wait(lambda: self.js("document.getElementById('alarm').hidden"), "it goes on")
         self.wait(lambda: self.known(line), "and shows what came meanwhile")
@@ -368,7 +368,7 @@ class SitePage(live_browser.LivePage):
         form = ".draft[data-campaign=adjusted] form"
         reasons = self.d.find_elements(By.CSS_SELECTOR, form + " [name=reason]")
         self.assertEqual(3, len(reasons))
-        drafts = json.loads(nonio("release", self.site, "--list", "--json").stdout)["drafts"]
+        drafts = json.loads(nonio("certificate", "approve", self.site, "--list", "--json").stdout)["drafts"]
         asking = [f for d in drafts if d["campaign"] == "adjusted" for f in d["findings"] if f["severity"] == "attention"]
         self.assertEqual([f["said"] for f in asking], self.js(f"[...document.querySelectorAll('{form} label b')].map((b) => b.textContent)"))
         self.assertTrue(all(f["said"] != f["title"] for f in asking), "in the words of the site")
@@ -410,7 +410,7 @@ class SitePage(live_browser.LivePage):
         (odd / "campaign.toml").write_text((odd / "campaign.toml").read_text() + "\nwrong = '<script>hacked=1</script>'\n")
         (self.site / "events.toml").write_text(f"format = 1\n[[event]]\ndate = 2026-01-01\nmachine = {json.dumps(HOSTILE)}\nkind = \"crash\"\ntext = {json.dumps(HOSTILE + chr(0x202e))}\n")
         nonio("run", self.site, "--out", self.out, "--quiet", "--date", DATE)
-        nonio("ack", self.site, "--finding", HOSTILE, "--machine", HOSTILE, "--until", "2099-01-01", "--by", HOSTILE, "--why", HOSTILE)
+        nonio("machine", "ack", self.site, "--finding", HOSTILE, "--machine", HOSTILE, "--until", "2099-01-01", "--by", HOSTILE, "--why", HOSTILE)
         self.open(self.serve_site("--edit"))
         self.assertIn("<img", self.text("main"))
         names = ["index.html", "due.html", "instruments.html", "compare.html", "campaigns", "entries", "certificates"]
@@ -433,7 +433,7 @@ class SitePage(live_browser.LivePage):
 
     def test_widths_zoom_dark_motion_and_hindrances(self):
         line = self.first_new()
-        nonio("ack", self.site, "--finding", line["id"], "--machine", line["machine"], "--until", "2099-01-01", "--by", "B. Sample", "--why", "nut is ordered")
+        nonio("machine", "ack", self.site, "--finding", line["id"], "--machine", line["machine"], "--until", "2099-01-01", "--by", "B. Sample", "--why", "nut is ordered")
         self.open(self.serve_site("--edit"))
         for name in ("index.html", "machines/LAB-04.html", "campaigns", "entries", "certificates", "due.html", "instruments.html", "compare.html"):
             self.d.execute_script("location.hash = arguments[0]", "" if name == "index.html" else "#to=" + name.replace("/", "%2F"))

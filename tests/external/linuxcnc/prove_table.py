@@ -392,7 +392,7 @@ def written(file_type, of, offset=0.0):
 
 
 def renewed():
-    """the table of a campaign that was measured with another table on, by nonio apply"""
+    """the table of a campaign that was measured with another table on, by nonio table predict"""
     with tempfile.TemporaryDirectory(prefix="nonio-apply-") as folder:
         campaign = os.path.join(folder, "site", "c")
         os.makedirs(campaign)
@@ -412,7 +412,7 @@ def renewed():
                         f.write("%d,%s,%.6f,%.9f\n" % (run, "+" if d > 0 else "-", x,
                                                       (error(x + c, d) + c) * 1e3))
         out = os.path.join(folder, "out")
-        done = subprocess.run([sys.argv[3], "apply", old, campaign, "--was-on", "--out", out],
+        done = subprocess.run([sys.argv[3], "apply", old, campaign, "--active-table", "--out", out],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         try:
             with open(os.path.join(out, "linuxcnc-X.comp")) as f:

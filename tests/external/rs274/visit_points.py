@@ -338,7 +338,7 @@ class SignProbe(unittest.TestCase):
             rows = ["run,direction,target_mm,deviation_um"]
             rows += [f"{r},{d},{50 * i},{(i * i) % 7}" for r in (1, 2) for d in "+-" for i in range(9)]
             (folder / "c" / "X.csv").write_text("\n".join(rows) + "\n")
-            done = subprocess.run([NONIO, "plan", "sign-probe", folder / "c", "--out", folder / "p", "--json"],
+            done = subprocess.run([NONIO, "table", "probe", folder / "c", "--out", folder / "p", "--json"],
                                   capture_output=True, text=True, timeout=60)
             self.assertEqual(done.returncode, 0, done.stderr)
             probe = json.loads(done.stdout)["probes"][0]

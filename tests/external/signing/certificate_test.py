@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The certificate of samples/certificates, as a customer gets it: with its own throwaway key, looked at by pdfsig,
-openssl, qpdf, xmlsec1, xmllint, pdftotext and `nonio verify`."""
+openssl, qpdf, xmlsec1, xmllint, pdftotext and `nonio certificate verify`."""
 import json
 import os
 import pathlib
@@ -26,12 +26,12 @@ class Certificate(SigningTest):
 
     def issue(self, *args):
         self.run_nonio(*args, expect=0)
-        run(NONIO, "release", self.site / "adjusted", "--by", "B. Sample",
+        run(NONIO, "certificate", "approve", self.site / "adjusted", "--by", "B. Sample",
             *(part for finding in self.findings() for part in ("--reason", f"{finding}=as found")))
         return self.pdf
 
     def findings(self):
-        draft, = json.loads(run(NONIO, "release", self.site, "--list", "--json").stdout)["drafts"]
+        draft, = json.loads(run(NONIO, "certificate", "approve", self.site, "--list", "--json").stdout)["drafts"]
         return sorted({f["id"] for f in draft["findings"] if f["severity"] == "attention"})
 
     @needs("pdftotext")
@@ -126,7 +126,7 @@ class Certificate(SigningTest):
             text = text.replace(old, f"{old}\n{more}")
         manifest.write_text(text + 'outputs = ["json", "certificate"]\n')
         self.run_nonio(expect=0)
-        run(NONIO, "release", folder, "--by", "B. Sample",
+        run(NONIO, "certificate", "approve", folder, "--by", "B. Sample",
             *(part for finding in self.findings() for part in ("--reason", f"{finding}=as found")))
         pdf, dcc = (self.out / "40-circles" / f"certificate.{kind}" for kind in ("pdf", "xml"))
         pages = run("pdftotext", "-layout", pdf, "-").stdout.split("\f")
@@ -154,7 +154,7 @@ class Certificate(SigningTest):
         at = pdf.index(b"stream\r\n") + 40
         changed = self.root / "changed.pdf"
         changed.write_bytes(pdf[:at] + bytes([pdf[at] ^ 1]) + pdf[at + 1:])
-        done = subprocess.run([NONIO, "verify", "--site", self.site, changed], capture_output=True, text=True, timeout=300)
+        done = subprocess.run([NONIO, "certificate", "verify", "--site", self.site, changed], capture_output=True, text=True, timeout=300)
         self.assertEqual(done.returncode, 1, done.stdout)
 
 

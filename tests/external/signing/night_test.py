@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A night that signs: what it leaves, what `nonio verify` says of it, and what happens without key, time or life."""
+"""A night that signs: what it leaves, what `nonio certificate verify` says of it, and what happens without key, time or life."""
 import json
 import os
 import pathlib
@@ -103,14 +103,14 @@ class SignedNight(SigningTest):
         report = self.out / "c1" / "report.pdf"
 
         def first_line(*args):
-            done = subprocess.run([NONIO, "verify", "--site", str(self.site), *map(str, args), str(report)], capture_output=True,
+            done = subprocess.run([NONIO, "certificate", "verify", "--site", str(self.site), *map(str, args), str(report)], capture_output=True,
                                   text=True, timeout=300)
-            return done.stdout.splitlines()[0]
-        self.assertEqual(first_line(), f"{report}: VALID, but not every check was made: time stamp, revocation, register")
+            return done.stdout.splitlines()[0].split("; signed by ")[0]
+        self.assertEqual(first_line(), f"{report}: VALID (3 checks not made: time stamp, revocation, register)")
         words = self.site / "templates" / "words" / "en" / "report.toml"
         words.parent.mkdir(parents=True)
         words.write_text((TEMPLATES / "words" / "en" / "report.toml").read_text() + "# other\n")
-        self.assertEqual(first_line(), f"{report}: VALID, but not every check was made: time stamp, revocation, register, words other than the installed ones")
+        self.assertEqual(first_line(), f"{report}: VALID (4 checks not made: time stamp, revocation, register, words other than the installed ones)")
 
     def test_unchanged_data_are_not_signed_anew(self):
         self.site_toml(self.keys())
@@ -128,7 +128,7 @@ class SignedNight(SigningTest):
         self.run_nonio(expect=0)
         issued = self.out / "c1" / "report.pdf"
         archive = self.root / "archive"
-        restamp = [NONIO, "restamp", "--site", str(self.site), "--no-fetch", "--revoked", str(keys.revocation_list())]
+        restamp = [NONIO, "certificate", "extend", "--site", str(self.site), "--no-fetch", "--revoked", str(keys.revocation_list())]
         done = subprocess.run([*restamp, str(issued)], capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 1)
         self.assertIn("as it was issued", done.stderr)

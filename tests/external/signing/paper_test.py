@@ -172,9 +172,9 @@ class Paper(SigningTest):
 
     def release(self, name):
         from signing import NONIO
-        draft = json.loads(run(NONIO, "release", self.site / name, "--list", "--json").stdout)["drafts"][0]
+        draft = json.loads(run(NONIO, "certificate", "approve", self.site / name, "--list", "--json").stdout)["drafts"][0]
         findings = sorted({f["id"] for f in draft["findings"] if f["severity"] == "attention"})
-        return [NONIO, "release", self.site / name, "--by", "B. Sample", *(f"--reason={f}=as found" for f in findings)]
+        return [NONIO, "certificate", "approve", self.site / name, "--by", "B. Sample", *(f"--reason={f}=as found" for f in findings)]
 
 
 if __name__ == "__main__":

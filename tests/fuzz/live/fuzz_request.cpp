@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a request to `nonio live`: what the guard lets through, Poco reads as the guard did, and
+// Any bytes as a request to `nonio serve`: what the guard lets through, Poco reads as the guard did, and
 // nothing is let through that lacks the token or is none of the routes.
 #include <Poco/Net/HTTPRequest.h>
 

@@ -4,7 +4,7 @@
 
     plain.py OUT [--events FILE] [--line]
 
-Prints nonio-history/1 as `nonio history OUT --json` does. Each series: generalised least squares with a level (with --line also a slope,
+Prints nonio-history/1 as `nonio machine history OUT --json` does. Each series: generalised least squares with a level (with --line also a slope,
 from five points on), what campaigns share in its covariance, one step at each event and each table (told if it is significant). Then the
 undeclared step that lowers chi^2 most is added while (places - 1) P(chi^2_1 > gain) < 1 %/series of the site. No random walk, no choice
 among models.

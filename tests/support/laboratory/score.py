@@ -4,7 +4,7 @@
 
     score.py --site TRUTH HISTORY [HISTORY ...] [MORNING ...] [--site ...] [--json] [--check]
 
-HISTORY: what `nonio history OUT --json` printed (schema nonio-history/1), one file for each night in the order of the nights. The last one
+HISTORY: what `nonio machine history OUT --json` printed (schema nonio-history/1), one file for each night in the order of the nights. The last one
 is held against TRUTH, of the day of that night (make_laboratory.py --until); of a quiet site every night is looked at. MORNING: what `nonio
 morning OUT --json` printed (schema nonio-morning/1), of each night too. Several sites are added up. All intervals are Wilson's, 95 %.
 

@@ -192,18 +192,18 @@ class Confinement(NightTest):
         self.campaign("a")
         for how, words in {"quits": "ended the process", "starts": "tried what no plugin may do",
                            "kills": "tried what no plugin may do"}.items():
-            done = self.verb("compare", self.site / "a", plugins=f"on_load_{how}", expect=0)
+            done = self.verb("model", "compare", self.site / "a", plugins=f"on_load_{how}", expect=0)
             self.assertIn("did not survive loading: " + words, done.stderr, how)
 
     def test_a_plugin_that_waits_until_it_was_tried_ends_the_verb_and_nothing_else(self):
         self.campaign("a")
         for how in ("kills-visited", "types-visited"):
-            done = self.verb("compare", self.site / "a", plugins=f"on_load_{how}", expect=2)
+            done = self.verb("model", "compare", self.site / "a", plugins=f"on_load_{how}", expect=2)
             self.assertIn("a plugin brought the process down in which it ran: tried what no plugin may do", done.stderr, how)
 
     def test_what_a_plugin_leaves_running_ends_with_the_verb(self):
         self.campaign("a")
-        done = self.verb("compare", self.site / "a", plugins="on_load_leaves-visited", expect=0)
+        done = self.verb("model", "compare", self.site / "a", plugins="on_load_leaves-visited", expect=0)
         self.assertIn("it left a process", done.stderr)
         for command in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
             with contextlib.suppress(OSError):
@@ -286,11 +286,11 @@ class Confinement(NightTest):
 
     def test_a_verb_loads_what_hangs_once(self):
         start = time.monotonic()
-        self.verb("plugins", plugins="on_load_hangs")
+        self.verb("plugin", "list", plugins="on_load_hangs")
         self.assertLess(time.monotonic() - start, 18.0)
 
     def test_no_plugin_code_in_the_process_of_a_verb(self):
-        run = subprocess.Popen([NONIO, "plugins", "--plugin-path", str(PLUGINS / "on_load_hangs")],
+        run = subprocess.Popen([NONIO, "plugin", "list", "--plugin-path", str(PLUGINS / "on_load_hangs")],
                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         with_plugins = set()
         for _ in range(30):

@@ -38,7 +38,7 @@ class HistoryServerTest(NightTest):
             "format = 1\n" + (f'[database]\nurl = "{url}"\nschema = "{self.schema}"\n{extra}' if url else ""))
 
     def query(self, *args, out=None):
-        done = subprocess.run([NONIO, "query", out or self.out, "--csv", *args], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([NONIO, "machine", "list", out or self.out, "--csv", *args], capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
@@ -85,10 +85,10 @@ class HistoryServerTest(NightTest):
             done = self.run_nonio("--date", "2026-03-02", expect=1)
             self.assertIn("not in the history", done.stderr + (self.out / "summary.txt").read_text())
             self.assertEqual(self.results("b")["status"], self.results("a")["status"])
-            asked = subprocess.run([NONIO, "query", self.out], capture_output=True, text=True)
+            asked = subprocess.run([NONIO, "machine", "list", self.out], capture_output=True, text=True)
             self.assertNotEqual(asked.returncode, 0)
             self.assertIn("schema " + self.schema, asked.stderr)
-            self.assertNotEqual(subprocess.run([NONIO, "morning", self.out], capture_output=True).returncode, 0)
+            self.assertNotEqual(subprocess.run([NONIO, "status", "--actions", self.out], capture_output=True).returncode, 0)
             self.assertIn("pages of the morning were not made", (self.out / "summary.txt").read_text())
         finally:
             server("start")

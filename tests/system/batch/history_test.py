@@ -66,7 +66,7 @@ class HistoryTest(NightTest):
         nothing_new = self.rows()
         self.run_nonio("--date", "2026-03-04", "--force", expect=1)
         self.assertEqual(self.rows(), nothing_new, "evaluated again to the same numbers")
-        subprocess.run([NONIO, "forget", self.site, "c", "--by", "B", "--why", "sold", "--date", "2026-03-05"], check=True)
+        subprocess.run([NONIO, "machine", "remove", self.site, "c", "--by", "B", "--why", "sold", "--date", "2026-03-05"], check=True)
         self.run_nonio("--date", "2026-03-05")
         self.assertEqual(self.ask("SELECT campaign, why FROM forgotten"), [("c", "sold")])
         self.assertEqual(self.made_again(), self.rows())

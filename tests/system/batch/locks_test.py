@@ -36,7 +36,7 @@ class LockTest(NightTest):
         for args in ([], ["--force"]):
             done = self.run_nonio(*args, expect=2)
             self.assertIn("process 17 on host elsewhere (job 7.0) is using the output folder", done.stderr)
-            self.assertIn(f"nonio night unlock {self.out}", done.stderr)
+            self.assertIn(f"nonio run unlock {self.out}", done.stderr)
         planned = self.night("plan", str(self.site), "--out", str(self.out), "--shards", "2")
         self.assertEqual(planned.returncode, 2, planned.stderr)
         self.assertEqual(self.user.read_bytes(), said)

@@ -37,10 +37,10 @@ class Packs(NightTest):
                           expect=expect)
 
     def plan(self, shards, *args):
-        return self.nonio("night", "plan", self.site, "--out", self.parts, "--shards", shards, *args)
+        return self.nonio("run", "plan", self.site, "--out", self.parts, "--shards", shards, *args)
 
     def merge(self, expect=(0, 1)):
-        return self.nonio("night", "merge", self.parts, "--wait", "0", expect=expect)
+        return self.nonio("run", "merge", self.parts, "--wait", "0", expect=expect)
 
     def night(self, shards, *args):
         """The same night whole into `out`, and in packs into `parts`."""
@@ -78,7 +78,7 @@ class Packs(NightTest):
         copy = self.root / "copy"
         shutil.rmtree(copy, ignore_errors=True)
         shutil.copytree(self.parts, copy)
-        self.nonio("get", "--all", "--out", copy, "--quiet")
+        self.nonio("export", "--all", "--out", copy, "--quiet")
         copied = self.outside_packs(copy)
         self.assertEqual(sorted(k for k in whole.keys() | copied.keys() if whole.get(k) != copied.get(k)), [], what)
 
@@ -126,7 +126,7 @@ class Packs(NightTest):
             file.write('\n[results]\nfolders = "hashed"\n')
         self.night(3, "--date", "2026-11-01")
         whole, parts = tree(self.out), self.outside_packs(self.parts)
-        self.nonio("get", "--all", "--out", self.parts, "--quiet")
+        self.nonio("export", "--all", "--out", self.parts, "--quiet")
         self.assertGreater(len(whole), 2 * len(parts), "most results lie in packs")
         parts = self.outside_packs(self.parts)
         self.assertEqual(sorted(k for k in whole.keys() | parts.keys() if whole.get(k) != parts.get(k)), [])
@@ -134,12 +134,13 @@ class Packs(NightTest):
     def test_every_reader_reads_packs(self):
         self.some_campaigns()
         self.night(2, "--date", "2026-11-01")
-        self.assertEqual(self.nonio("show", self.parts / "c1").stdout, self.nonio("show", self.out / "c1").stdout)
+        report = f"Report: {self.out}/c1/report.pdf\n"  # a packed one cannot be opened
+        self.assertEqual(self.nonio("show", self.parts / "c1").stdout, self.nonio("show", self.out / "c1").stdout.replace(report, ""))
         self.assertEqual(self.nonio("show", self.parts / "wrong", expect=1).stdout, self.nonio("show", self.out / "wrong", expect=1).stdout)
         self.assertIn("there is no folder", self.nonio("show", self.parts / "nobody", expect=2).stderr)
-        opened = self.nonio("open", self.parts / "c1", expect=1).stderr
-        self.assertIn(".sqlar; `nonio get c1 --out OUT` writes it out", opened)
-        page = [self.nonio("morning", out, "--site", self.site, "--page", "index.html").stdout for out in (self.out, self.parts)]
+        opened = self.nonio("show", "--open", self.parts / "c1", expect=1).stderr
+        self.assertIn(".sqlar; `nonio export c1 --out OUT` writes it out", opened)
+        page = [self.nonio("status", "--actions", out, "--site", self.site, "--page", "index.html").stdout for out in (self.out, self.parts)]
         self.assertEqual(*page)
         self.assertEqual(*(self.run_nonio("--dry-run", out=out, expect=1).stdout for out in (self.out, self.parts)))
         # A plain SQLite archive, in which whoever has SQLite finds the files; without a clock.
@@ -151,7 +152,7 @@ class Packs(NightTest):
             self.assertEqual((mode, mtime, size), (0o100644, 0, len(data)))
             self.assertEqual(data, (self.out / name).read_bytes())
         # A link of a page leads to a file once somebody has asked for it.
-        self.nonio("get", "c1", "--out", self.parts)
+        self.nonio("export", "c1", "--out", self.parts)
         self.assertEqual((self.parts / "c1" / "report.pdf").read_bytes(), (self.out / "c1" / "report.pdf").read_bytes())
 
     def test_same_input_same_pack(self):
@@ -218,9 +219,9 @@ class Packs(NightTest):
         self.shard(0, 2)
         done = self.nonio("run", self.site, "--out", self.parts, "--shard", "0/2", "--pack", "--json", expect=(0, 1)).stdout
         self.assertNotIn('"event":"campaign"', done, "what was handed over is not done twice")
-        planned = json.loads(self.nonio("night", "plan", self.site, "--out", self.parts, "--shards", "2", "--json").stdout.splitlines()[-1])
+        planned = json.loads(self.nonio("run", "plan", self.site, "--out", self.parts, "--shards", "2", "--json").stdout.splitlines()[-1])
         self.assertLess(planned["to_do"], 8)
-        self.nonio("night", "cancel", self.parts)
+        self.nonio("run", "cancel", self.parts)
         self.run_nonio(out=self.parts, expect=1)
         self.run_nonio("--date", "2026-11-01", expect=1)
         self.same()
@@ -229,29 +230,29 @@ class Packs(NightTest):
         self.some_campaigns()
         self.night(2, "--date", "2026-11-01")
         to = self.root / "to"
-        self.nonio("get", "c0", "c1", "--out", self.parts, "--to", to)
+        self.nonio("export", "c0", "c1", "--out", self.parts, "--to", to)
         for name in ("c0", "c1"):
             self.assertEqual(tree(to / name), tree(self.out / name))
         self.assertEqual(self.folders(), [], "the output folder stays as it was")
-        self.nonio("get", "c0", "--out", self.parts, "--to", to)  # what is there is not written again
+        self.nonio("export", "c0", "--out", self.parts, "--to", to)  # what is there is not written again
         (to / "c0" / "results.json").write_text("mine")
-        refused = self.nonio("get", "c0", "--out", self.parts, "--to", to, expect=1).stderr
+        refused = self.nonio("export", "c0", "--out", self.parts, "--to", to, expect=1).stderr
         self.assertIn("c0/results.json is there and has other bytes; nothing was written", refused)
         self.assertEqual((to / "c0" / "results.json").read_text(), "mine")
-        listed = [json.loads(line) for line in self.nonio("get", "--list", "--out", self.parts, "--json").stdout.splitlines()]
+        listed = [json.loads(line) for line in self.nonio("export", "--list", "--out", self.parts, "--json").stdout.splitlines()]
         self.assertEqual([entry["id"] for entry in listed], self.folders(self.out))
         self.assertTrue(all(entry["packed"] for entry in listed))
-        self.assertIn("run.json", self.nonio("get", "c0", "--list", "--out", self.parts).stdout)
+        self.assertIn("run.json", self.nonio("export", "c0", "--list", "--out", self.parts).stdout)
         # From a folder as from a pack.
-        self.nonio("get", "c0", "--out", self.out, "--to", self.root / "from-folder")
+        self.nonio("export", "c0", "--out", self.out, "--to", self.root / "from-folder")
         self.assertEqual(tree(self.root / "from-folder" / "c0"), tree(self.out / "c0"))
-        self.assertIn("no results of nobody", self.nonio("get", "nobody", "--out", self.parts, expect=1).stderr)
+        self.assertIn("no results of nobody", self.nonio("export", "nobody", "--out", self.parts, expect=1).stderr)
         for args in ([], ["--all", "c0"], ["--list", "--to", "x"], ["../c0"]):
-            self.nonio("get", *args, "--out", self.parts, expect=2)
+            self.nonio("export", *args, "--out", self.parts, expect=2)
         self.assertIn("expected --shard", self.run_nonio("--pack", expect=2).stderr)
         self.assertIn("expected --pack", self.run_nonio("--shard", "0/1", "--scratch", str(self.scratch), expect=2).stderr)
         self.plan(1)
-        self.assertIn("not merged yet", self.nonio("get", "c0", "--out", self.parts, expect=2).stderr)
+        self.assertIn("not merged yet", self.nonio("export", "c0", "--out", self.parts, expect=2).stderr)
 
     def change(self, pack, *statements):
         database = sqlite3.connect(pack)
@@ -283,7 +284,7 @@ class Packs(NightTest):
         # After the merge: a report that was changed is made anew; a pack that is gone is no campaign without results.
         at = sound.index((self.out / "c1" / "report.pdf").read_bytes()[-200:])
         pack.write_bytes(sound[:at] + bytes([sound[at] ^ 1]) + sound[at + 1:])
-        refused = self.nonio("get", "c1", "--out", self.parts, "--to", self.root / "to", expect=1).stderr
+        refused = self.nonio("export", "c1", "--out", self.parts, "--to", self.root / "to", expect=1).stderr
         self.assertIn(f"{pack.name} is damaged at c1/report.pdf", refused)
         self.assertFalse((self.root / "to").exists())
         self.run_nonio("--date", "2026-11-02", out=self.parts)
@@ -314,7 +315,7 @@ class Packs(NightTest):
             pack.write_bytes(sound)
             self.change(pack, *statements)
             before = set(p for p in self.root.rglob("*") if self.scratch not in p.parents)
-            said = self.nonio("get", "c0", "--out", self.parts, "--to", to, expect=1).stderr
+            said = self.nonio("export", "c0", "--out", self.parts, "--to", to, expect=1).stderr
             self.assertIn(word, said)
             self.assertEqual(set(p for p in self.root.rglob("*") if self.scratch not in p.parents), before, word)
 
@@ -337,7 +338,7 @@ class Packs(NightTest):
         refuses("is damaged", "DROP TABLE digest")
         pack.unlink()
         pack.symlink_to("/etc/passwd")
-        self.assertIn("is not a file", self.nonio("get", "c0", "--out", self.parts, "--to", to, expect=1).stderr)
+        self.assertIn("is not a file", self.nonio("export", "c0", "--out", self.parts, "--to", to, expect=1).stderr)
         # The folder that it is written to leads elsewhere: a link is no file of these bytes.
         pack.unlink()
         pack.write_bytes(sound)
@@ -345,7 +346,7 @@ class Packs(NightTest):
         target = self.root / "target"
         target.write_text("mine")
         (to / "c0" / "results.json").symlink_to(target)
-        self.assertIn("has other bytes", self.nonio("get", "c0", "--out", self.parts, "--to", to, expect=1).stderr)
+        self.assertIn("has other bytes", self.nonio("export", "c0", "--out", self.parts, "--to", to, expect=1).stderr)
         self.assertEqual(target.read_text(), "mine")
 
 

@@ -19,13 +19,13 @@ SAMPLES = pathlib.Path(os.environ["NONIO_SAMPLES"])
 
 class Shards(NightTest):
     def plan(self, shards, *args, out=None, expect=0):
-        return self.nonio("night", "plan", self.site, "--out", out or self.out, "--shards", shards, *args, expect=expect)
+        return self.nonio("run", "plan", self.site, "--out", out or self.out, "--shards", shards, *args, expect=expect)
 
     def shard(self, i, shards, *args, out=None, expect=0):
         return self.nonio("run", self.site, "--out", out or self.out, "--shard", f"{i}/{shards}", *args, expect=expect)
 
     def merge(self, *args, out=None, expect=0):
-        return self.nonio("night", "merge", out or self.out, "--wait", "0", *args, expect=expect)
+        return self.nonio("run", "merge", out or self.out, "--wait", "0", *args, expect=expect)
 
     def nonio(self, *args, expect=None):
         done = subprocess.run([NONIO, *map(str, args)], capture_output=True, text=True, timeout=300)
@@ -155,8 +155,8 @@ class Shards(NightTest):
     def test_what_does_not_fit_is_refused(self):
         self.campaign("a")
         self.out.mkdir()
-        self.assertIn("nonio night plan", self.shard(0, 2, expect=2).stderr)
-        self.assertIn("nonio night plan", self.merge(expect=2).stderr)
+        self.assertIn("nonio run plan", self.shard(0, 2, expect=2).stderr)
+        self.assertIn("nonio run plan", self.merge(expect=2).stderr)
         for wrong in ("", "2/2", "x/2", "1/", "1", "0/0", "1/2/3"):
             done = self.nonio("run", self.site, "--out", self.out, "--shard", wrong, expect=2)
             self.assertIn("expected i/S", done.stderr, wrong)
@@ -179,10 +179,10 @@ class Shards(NightTest):
 
     def test_a_plan_is_withdrawn_and_its_night_goes_on(self):
         self.some_campaigns()
-        self.assertIn("no night is planned", self.nonio("night", "cancel", self.site, expect=2).stderr)
+        self.assertIn("no night is planned", self.nonio("run", "cancel", self.site, expect=2).stderr)
         self.plan(2, "--date", "2026-11-01")
         self.shard(0, 2, expect=(0, 1))
-        self.nonio("night", "cancel", self.out, expect=0)
+        self.nonio("run", "cancel", self.out, expect=0)
         self.run_nonio(expect=1)
         self.run_nonio("--date", "2026-11-01", out=self.root / "one", expect=1)
         self.same(self.out, self.root / "one")

@@ -97,7 +97,7 @@ class SiteParts(NightTest):
         return [line for line in json.loads((self.out / "summary.json").read_text())["lines"] if line["kind"] in ("lost", "failed")]
 
     def forget(self, what, date):
-        done = subprocess.run([NONIO, "forget", self.site, what, "--by", "B. Sample", "--why", "no longer used", "--date", date],
+        done = subprocess.run([NONIO, "machine", "remove", self.site, what, "--by", "B. Sample", "--why", "no longer used", "--date", date],
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
 
@@ -266,7 +266,7 @@ class SiteParts(NightTest):
         self.assertTrue(all(outcome.values()), outcome)
 
     def rows(self):
-        done = subprocess.run([NONIO, "query", self.out, "Mk m0", "--quantity", "B_mean", "--superseded", "--json"], capture_output=True, text=True)
+        done = subprocess.run([NONIO, "machine", "list", self.out, "Mk m0", "--quantity", "B_mean", "--superseded", "--json"], capture_output=True, text=True)
         return done.stdout
 
 

@@ -164,7 +164,7 @@ class SlurmTest(NightTest):
         self.assertEqual(sorted(k for k in one.keys() | parts.keys() if one.get(k) != parts.get(k)), [])
 
     def plan(self):
-        self.cluster.call(NONIO, "night", "plan", self.site, "--out", self.parts, "--shards", "4", "--date", "2026-11-01")
+        self.cluster.call(NONIO, "run", "plan", self.site, "--out", self.parts, "--shards", "4", "--date", "2026-11-01")
         self.log.mkdir(exist_ok=True)
 
     def submit(self, *args, **env):
@@ -187,7 +187,7 @@ class SlurmTest(NightTest):
         self.cluster.until(lambda: not self.waits_or_runs(job), seconds)
 
     def merge(self):
-        return self.cluster.call(NONIO, "night", "merge", self.parts, "--wait", "0", check=False)
+        return self.cluster.call(NONIO, "run", "merge", self.parts, "--wait", "0", check=False)
 
     def process(self):
         """That of a shard of this site, or None."""
@@ -258,7 +258,7 @@ class SlurmTest(NightTest):
         packed = [k for k in one if k.split("/")[0] in {f"c{i}" for i in range(8)}]
         self.assertEqual([k for k in packed if k in parts], [])  # all of them are in packs
         self.assertEqual(sorted(k for k in one if k not in packed and not k.startswith(".nonio/") and one[k] != parts.get(k)), [])
-        self.cluster.call(NONIO, "get", "--all", "--out", self.parts)
+        self.cluster.call(NONIO, "export", "--all", "--out", self.parts)
         parts = tree(self.parts)
         self.assertEqual([k for k in packed if one[k] != parts.get(k)], [])
 
@@ -330,7 +330,7 @@ class SlurmTest(NightTest):
         cut_while(lambda: self.waits_or_runs(job))
         of_shards = cuts
         cuts = 0
-        merging = subprocess.Popen([NONIO, "night", "merge", self.parts, "--quiet"], stderr=subprocess.PIPE, text=True)
+        merging = subprocess.Popen([NONIO, "run", "merge", self.parts, "--quiet"], stderr=subprocess.PIPE, text=True)
         cut_while(lambda: merging.poll() is None)
         said = merging.communicate()[1]
         self.assertIn(merging.returncode, (0, 1), said)
@@ -339,12 +339,12 @@ class SlurmTest(NightTest):
         self.run_nonio("--date", "2026-11-02", out=self.parts)
         done = self.run_nonio("--date", "2026-11-03", out=self.parts, expect=0)
         self.assertEqual(self.summary(self.parts)["done"], [], done.stderr)
-        listed = json.loads(self.cluster.call(NONIO, "certificates", self.site, "--json").stdout)["certificates"]
+        listed = json.loads(self.cluster.call(NONIO, "certificate", "list", self.site, "--json").stdout)["certificates"]
         self.assertEqual([(c["number"], c["state"]) for c in listed], [(f"S-000{i + 1}", "issued") for i in range(3)])
         self.assertEqual(sorted(c["campaign"] for c in listed), ["z0", "z1", "z2"])
-        self.assertIn("sound", self.cluster.call(NONIO, "certificates", self.site, "--audit", "--json").stdout)
+        self.assertIn("sound", self.cluster.call(NONIO, "certificate", "audit", self.site, "--json").stdout)
         # The same history as one that was never on a server.
-        ask = (NONIO, "query", self.parts, "--csv", "--superseded")
+        ask = (NONIO, "machine", "list", self.parts, "--csv", "--superseded")
         on_server = self.cluster.call(*ask).stdout
         (self.site / "site.toml").write_text(
             text + database.replace(f'schema = "{here}"', f'schema = "{here}_again"'))

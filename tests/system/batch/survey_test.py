@@ -372,7 +372,7 @@ class Survey(NightTest):
         self.run_nonio(expect=0)
         self.assertEqual(self.ids("unchanged"), ["a", "b", "c"])
         shutil.rmtree(self.site / "b")
-        self.assertIn("nonio forget SITE b", self.run_nonio("--quiet", expect=1).stderr)
+        self.assertIn("nonio machine remove SITE b", self.run_nonio("--quiet", expect=1).stderr)
         shutil.rmtree(place["b"])
         self.run_nonio(expect=0)
         (self.site / "site.toml").write_text("# folders by id\n")

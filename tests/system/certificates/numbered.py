@@ -52,7 +52,7 @@ class NumberedTest(SigningTest):
             return super().verify(*files, **kwargs)
 
     def certificates(self, *args, check=True):
-        return run(NONIO, "certificates", self.site, *args, check=check)
+        return run(NONIO, "certificate", "list", self.site, *args, check=check)
 
     def entries(self):
         return json.loads(self.certificates("--json").stdout)["certificates"]

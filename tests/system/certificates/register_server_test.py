@@ -36,16 +36,16 @@ class RegisterOnAServer(NumberedTest):
         def verb(*args):
             done = run(NONIO, *args, check=False, env=self.environment)
             return done.returncode, done.stdout + done.stderr
-        return {"verify": verb("verify", "--site", self.site, file),
-                "verify as JSON": verb("verify", "--json", "--site", self.site, file.parent / "dcc.xml"),
-                "list": verb("release", self.site, "--list"),
-                "audit": verb("certificates", self.site, "--audit"),
-                "certificates": verb("certificates", self.site),
-                "restamp": verb("restamp", "--site", self.site, "--no-time-stamp", "--no-fetch", "--revoked", self.key.revocation_list(),
+        return {"verify": verb("certificate", "verify", "-v", "--site", self.site, file),
+                "verify as JSON": verb("certificate", "verify", "--json", "--site", self.site, file.parent / "dcc.xml"),
+                "list": verb("certificate", "approve", self.site, "--list"),
+                "audit": verb("certificate", "audit", self.site),
+                "certificates": verb("certificate", "list", self.site),
+                "restamp": verb("certificate", "extend", "--site", self.site, "--no-time-stamp", "--no-fetch", "--revoked", self.key.revocation_list(),
                                 "--out", self.root / "kept", file),
-                "release": verb("release", self.site / campaign, "--by", "Bruno Verdi", "--reason", KNOWN + "=ordered"),
-                "withdraw": verb("certificates", self.site, "--withdraw", number(1), "--why", "wrong serial number"),
-                "verify withdrawn": verb("verify", "--site", self.site, file)}
+                "release": verb("certificate", "approve", self.site / campaign, "--by", "Bruno Verdi", "--reason", KNOWN + "=ordered"),
+                "withdraw": verb("certificate", "withdraw", self.site, number(1), "--why", "wrong serial number"),
+                "verify withdrawn": verb("certificate", "verify", "-v", "--site", self.site, file)}
 
     def each_verb_asks_the_register(self, place):
         wanted = {"verify": 3, "verify as JSON": 3, "list": 0, "audit": 0, "certificates": 0, "restamp": 0, "release": 0, "withdraw": 0,

@@ -24,7 +24,7 @@ class Register(NumberedTest):
         register.close()
 
     def register_says(self, file, site=None):
-        done = run(NONIO, "verify", "--json", "--site", site or self.site, file, check=False, env=self.environment)
+        done = run(NONIO, "certificate", "verify", "--json", "--site", site or self.site, file, check=False, env=self.environment)
         check = [c for c in json.loads(done.stdout)["checks"] if c["id"] == "register.state"]
         return done.returncode, check[0]["state"], check[0]["says"]
 
@@ -105,7 +105,7 @@ class Register(NumberedTest):
         with sqlite3.connect(register) as database:
             self.assertEqual(database.execute("SELECT count(*) FROM certificates").fetchall(), [(1,)])
         database.close()
-        done = run(NONIO, "certificates", self.site, "--audit", check=False)
+        done = run(NONIO, "certificate", "audit", self.site, check=False)
         self.assertEqual(done.returncode, 1)
         self.assertIn("older state", done.stdout)
 

@@ -22,7 +22,7 @@ class Releases(NumberedTest):
     def release_verb(self, *args, expect=None, campaign="c1", known=("--reason", KNOWN + "=it is what was ordered"), user=None):
         if user:  # another account, to which site, output and key belong now
             subprocess.run(["chown", "-R", user, self.root], check=True)
-        done = run(NONIO, "release", self.site / campaign, *args, *known, check=False, env=self.environment, user=user)
+        done = run(NONIO, "certificate", "approve", self.site / campaign, *args, *known, check=False, env=self.environment, user=user)
         if user:
             subprocess.run(["chown", "-R", str(os.getuid()), self.root], check=True)
         if expect is not None:
@@ -47,7 +47,7 @@ class Releases(NumberedTest):
         self.signed_campaign("c1")
         self.night()
         people = ["A. Bianchi", "Bruno Verdi", "Ada Neri", "B"]
-        racing = [subprocess.Popen([NONIO, "release", self.site / "c1", "--by", p, "--reason", f"{KNOWN}=reason of {p}"], env=self.environment,
+        racing = [subprocess.Popen([NONIO, "certificate", "approve", self.site / "c1", "--by", p, "--reason", f"{KNOWN}=reason of {p}"], env=self.environment,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for p in people]
         ended = {p: (*r.communicate(timeout=300), r.returncode) for p, r in zip(people, racing)}
         first = [p for p, (_, _, status) in ended.items() if status == 0]
@@ -82,9 +82,9 @@ class Releases(NumberedTest):
         self.assertEqual(self.entries(), [], "no number is drawn for a draft")
         self.assertIs(self.results("c1")["certificate"]["draft"], True)
         self.assertEqual([d["campaign"] for d in self.summary()["drafts"]], ["c1"])
-        self.assertIn("1 draft waits for release (nonio release): c1", (self.out / "summary.txt").read_text())
+        self.assertIn("1 draft waits for release (nonio certificate approve): c1", (self.out / "summary.txt").read_text())
         for folder in (self.site, self.site / "c1"):
-            listed = json.loads(run(NONIO, "release", folder, "--list", "--json").stdout)["drafts"]
+            listed = json.loads(run(NONIO, "certificate", "approve", folder, "--list", "--json").stdout)["drafts"]
             self.assertEqual([(d["campaign"], d["file"]) for d in listed], [("c1", str(self.draft()))])
         first = self.draft().read_bytes()
         self.night("--force")
@@ -270,10 +270,10 @@ class Releases(NumberedTest):
             (self.site / name / "x.csv").write_text(readings("both"))
 
         def release():
-            draft, = json.loads(run(NONIO, "release", self.site / "c1", "--list", "--json").stdout)["drafts"]
+            draft, = json.loads(run(NONIO, "certificate", "approve", self.site / "c1", "--list", "--json").stdout)["drafts"]
             findings = sorted({f["id"] for f in draft["findings"] if f["severity"] == "attention"})
             self.assertTrue(any(f.startswith("plausibility.") for f in findings), findings)
-            return run(NONIO, "release", self.site / "c1", "--by", "Bruno Verdi", *(f"--reason={f}=the same test" for f in findings),
+            return run(NONIO, "certificate", "approve", self.site / "c1", "--by", "Bruno Verdi", *(f"--reason={f}=the same test" for f in findings),
                        check=False, env=self.environment)
         self.night()
         self.assertEqual(release().returncode, 0)

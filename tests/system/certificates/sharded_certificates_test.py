@@ -41,7 +41,7 @@ class ShardedCertificates(NightTest):
         shutil.copytree(self.site, self.other)
 
     def night_in_parts(self, shards, *args):
-        run(NONIO, "night", "plan", self.other, "--out", self.parts, "--shards", shards, *args)
+        run(NONIO, "run", "plan", self.other, "--out", self.parts, "--shards", shards, *args)
         node = self.root / "node"  # as a node sees the site
         shutil.copytree(self.other, node, ignore=shutil.ignore_patterns("keys", "*.sqlite*", "register*"))
         left = 0
@@ -51,12 +51,12 @@ class ShardedCertificates(NightTest):
             left += json.loads(done.stdout.splitlines()[-1])["left_to_merge"]
         self.assertFalse(list(node.glob("*.sqlite*")), "a shard makes no register")
         shutil.rmtree(node)
-        self.merged = run(NONIO, "night", "merge", self.parts, "--wait", "0", "--jobs", "2", check=False)
+        self.merged = run(NONIO, "run", "merge", self.parts, "--wait", "0", "--jobs", "2", check=False)
         self.assertEqual(self.merged.returncode, 1, self.merged.stderr)  # of the campaign that fails
         return left
 
     def numbers(self, site):
-        listed = json.loads(run(NONIO, "certificates", site, "--json").stdout)["certificates"]
+        listed = json.loads(run(NONIO, "certificate", "list", site, "--json").stdout)["certificates"]
         return [(c["number"], c["state"], c["campaign"]) for c in listed]
 
     def test_drafts(self):
@@ -73,7 +73,7 @@ class ShardedCertificates(NightTest):
         self.assertEqual(self.night_in_parts(2, "--date", "2026-11-05", "--force"), 0)
         self.run_nonio("--date", "2026-11-05", "--force", expect=1)
         self.assertEqual(tree(self.out)["summary.json"], tree(self.parts)["summary.json"])
-        done = run(NONIO, "release", self.other / "c2", "--by", "B. Sample", "--reason", "reversal.lost-motion=as found",
+        done = run(NONIO, "certificate", "approve", self.other / "c2", "--by", "B. Sample", "--reason", "reversal.lost-motion=as found",
                    "--reason", "tolerance.X.A.iso230-2=as found", "--reason", "tolerance.X.B.iso230-2=adjusted since")
         self.assertIn("S-0001", done.stdout)
         self.assertEqual(self.numbers(self.other), [("S-0001", "issued", "c2")])
@@ -88,11 +88,11 @@ class ShardedCertificates(NightTest):
         self.assertEqual(sorted(one), sorted(parts))
         self.assertEqual(json.loads(one["summary.json"])["issued"], json.loads(parts["summary.json"])["issued"])
         for name in ("c0/certificate.pdf", "c2/certificate.pdf"):
-            done = subprocess.run([NONIO, "verify", "--site", self.other, "--quiet", self.parts / name],
+            done = subprocess.run([NONIO, "certificate", "verify", "--site", self.other, "--quiet", self.parts / name],
                                   capture_output=True, text=True)
             self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
         # Merged again, or planned again: no number more.
-        run(NONIO, "night", "merge", self.parts, check=False)
+        run(NONIO, "run", "merge", self.parts, check=False)
         self.assertEqual(self.night_in_parts(3, "--date", "2026-11-05"), 0)
         self.assertEqual(len(self.numbers(self.other)), 3)
 

@@ -155,7 +155,7 @@ class SigningTest(NightTest):
         return self.campaign(name, text=text)
 
     def verify(self, *files, site=True, args=(), cwd=None):
-        done = subprocess.run([NONIO, "verify", "--json", *(["--site", str(self.site)] if site else []), *map(str, args),
+        done = subprocess.run([NONIO, "certificate", "verify", "--json", *(["--site", str(self.site)] if site else []), *map(str, args),
                                *map(str, files)], capture_output=True, text=True, timeout=300, cwd=cwd)
         return done, [json.loads(line) for line in done.stdout.splitlines()]
 

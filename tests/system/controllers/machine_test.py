@@ -104,7 +104,7 @@ class Number(MachineTest):
         self.assertIn("N3620A3P", self.file("fanuc-Z.prm"))
         (self.site / "machines" / "S-1.toml").unlink()
         self.assertIn("machines/S-1.toml is missing", self.nonio("run", self.site, "--out", self.out, expect=1).stderr)
-        self.nonio("forget", self.site, "machines/S-1.toml", "--by", "B", "--why", "entered by mistake")
+        self.nonio("machine", "remove", self.site, "machines/S-1.toml", "--by", "B", "--why", "entered by mistake")
         self.assertEqual(self.findings("fanuc"), ["table.axis-number"])
         self.record(["Z"])
         self.tables("fanuc")
@@ -285,28 +285,28 @@ class WhatWasOn(MachineTest):
         self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="")
         table = self.eec("z.ini")
         new = self.site / "new"
-        done = self.nonio("apply", table, self.folder, "--was-on", "--out", new, expect=2)
-        for word in ("MD32450", "--backlash-was", "backlash_on_mm", "[machine.axes.Z]"):
+        done = self.nonio("table", "predict", table, self.folder, "--active-table", "--out", new, expect=2)
+        for word in ("MD32450", "--active-backlash", "backlash_on_mm", "[machine.axes.Z]"):
             self.assertIn(word, done.stderr)
         self.assertFalse(new.exists())
         for said, value in (("0.010", "]=0.013\n"), ("none", "]=0.003\n"), ("Z=0.010", "]=0.013\n")):
-            self.nonio("apply", table, self.folder, "--was-on", "--backlash-was", said, "--out", new)
+            self.nonio("table", "predict", table, self.folder, "--active-table", "--active-backlash", said, "--out", new)
             self.assertIn(value, (new / "siemens-840d-Z-backlash.ini").read_text())
         for wrong in ("much", "11", "X=0.01", "Z="):
-            self.nonio("apply", table, self.folder, "--was-on", "--backlash-was", wrong, expect=2)
-        self.nonio("apply", table, self.folder, "--backlash-was", "0", expect=2)
+            self.nonio("table", "predict", table, self.folder, "--active-table", "--active-backlash", wrong, expect=2)
+        self.nonio("table", "predict", table, self.folder, "--active-backlash", "0", expect=2)
         # The file beside it, the campaign, or the record of the machine say it too; not two things at once.
         both = self.eec("z.ini", 0.010)
-        self.nonio("apply", both, self.folder, "--was-on", "--out", new)
+        self.nonio("table", "predict", both, self.folder, "--active-table", "--out", new)
         self.assertIn("]=0.013\n", (new / "siemens-840d-Z-backlash.ini").read_text())
-        self.nonio("apply", both, self.folder, "--was-on", "--backlash-was", "0.02", expect=2)
+        self.nonio("table", "predict", both, self.folder, "--active-table", "--active-backlash", "0.02", expect=2)
         self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="backlash_on_mm = 0.010\n")
-        self.nonio("apply", table, self.folder, "--was-on", "--out", new)
+        self.nonio("table", "predict", table, self.folder, "--active-table", "--out", new)
         self.assertIn("]=0.013\n", (new / "siemens-840d-Z-backlash.ini").read_text())
         self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="")
         with open(self.site / "machines" / "S-1.toml", "a") as file:
             file.write("backlash_mm = 0.010\nsince = 2026-01-01\n")
-        self.nonio("apply", table, self.folder, "--was-on", "--out", new)
+        self.nonio("table", "predict", table, self.folder, "--active-table", "--out", new)
         self.assertIn("]=0.013\n", (new / "siemens-840d-Z-backlash.ini").read_text())
 
 
@@ -380,15 +380,15 @@ class Merge(MachineTest):
         self.assertIn("N3621A3P0\n", self.file("fanuc-Z.prm"), "0..8 are free as far as the record knows")
         self.assertIn("CHOSEN, not read from a backup: numbers 0 to 8", self.file("fanuc-Z.txt"))
         self.fanuc('taken = ["0-1023"]\n')
-        self.assertIn("0..1023", self.nonio("merge", self.punched_backup(), "--with", self.folder, expect=1).stderr)
+        self.assertIn("0..1023", self.nonio("table", "insert", self.punched_backup(), "--with", self.folder, expect=1).stderr)
         self.fanuc()
         path = self.punched_backup()
         path.write_text(path.read_text().replace("N3605A1P0A2P0A3P0", "N3605A1P0A2P0A3P00000001"))
-        self.assertIn("3605#0", self.nonio("merge", path, "--with", self.folder, expect=1).stderr)
+        self.assertIn("3605#0", self.nonio("table", "insert", path, "--with", self.folder, expect=1).stderr)
         path.write_text("\n".join(l.split("A3P")[0] for l in self.punched_backup().read_text().splitlines()) + "\n")
-        self.assertIn("no parameters of controlled axis 3", self.nonio("merge", path, "--with", self.folder, expect=1).stderr)
-        self.assertIn("expected", self.nonio("merge", self.folder / "a.csv", "--with", self.folder, "--control", "fanuc", expect=2).stderr +
-                      self.nonio("merge", path, "--with", self.folder, "--axis", "Q", expect=1).stderr.replace("no measurement", "expected"))
+        self.assertIn("no parameters of controlled axis 3", self.nonio("table", "insert", path, "--with", self.folder, expect=1).stderr)
+        self.assertIn("expected", self.nonio("table", "insert", self.folder / "a.csv", "--with", self.folder, "--control", "fanuc", expect=2).stderr +
+                      self.nonio("table", "insert", path, "--with", self.folder, "--axis", "Q", expect=1).stderr.replace("no measurement", "expected"))
 
     def archive(self, axes, directions=False):
         text = "%_N_NC_EEC_INI\nCHANDATA(1)\n; saved by hand\n"
@@ -429,7 +429,7 @@ class Merge(MachineTest):
         for path in backup:  # the campaign of an earlier day
             path.write_text(self.file(path.name).replace("2026-06-01", "2024-11-01").replace("campaign c", "campaign old"))
         self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="")
-        done = self.nonio("merge", ",".join(map(str, backup)), "--with", self.folder, "--out", self.site / "load")
+        done = self.nonio("table", "insert", ",".join(map(str, backup)), "--with", self.folder, "--out", self.site / "load")
         self.assertIn("were active during the measurement", done.stderr)
         eec, backlash = ((self.site / "load" / p.name).read_text() for p in backup)
         entries = lambda text: [float(l.split("=")[1]) for l in text.splitlines() if l.startswith("$AA_ENC_COMP[")]
@@ -442,7 +442,7 @@ class Merge(MachineTest):
             self.assertIn("2026-06-01, campaign c", text)
         self.assertIn("was active", eec)
         # Without the backlash file nothing says what was in the parameter.
-        done = self.nonio("merge", backup[0], "--with", self.folder, "--out", self.site / "load2", expect=1)
+        done = self.nonio("table", "insert", backup[0], "--with", self.folder, "--out", self.site / "load2", expect=1)
         self.assertIn("MD32450", done.stderr)
         self.assertFalse((self.site / "load2").exists())
 
@@ -495,14 +495,14 @@ class Merge(MachineTest):
                 self.assertEqual((out / "CONFIG.CMA").read_text(), before.replace(
                     "1    *        AXIS_X.COM                      ", "1    *        AXIS_X.COM                      AXIS_Z.COM"))
             self.assertEqual([t["output"] for t in done["tables"] if t["largest_um"] > 0], ["Z"])
-        self.assertIn("CONFIG.CMA", self.nonio("merge", self.site / "X.COM", "--with", self.folder, expect=1).stderr)
+        self.assertIn("CONFIG.CMA", self.nonio("table", "insert", self.site / "X.COM", "--with", self.folder, expect=1).stderr)
 
     def test_siemens_axes_by_names_of_their_own_are_refused(self):
         self.record(["X", "Y", "Z"])
         self.measured("siemens-840d", machine='asset = "S-1"\n')
         path = self.site / "EEC.INI"
         path.write_text(self.archive(((1, 0.001), (3, 0.0))).replace("AX3", "Z1"))
-        said = self.nonio("merge", path, "--with", self.folder, "--out", self.site / "load", expect=1).stderr
+        said = self.nonio("table", "insert", path, "--with", self.folder, "--out", self.site / "load", expect=1).stderr
         self.assertIn("calls an axis Z1: expected AX1", said)
         self.assertFalse((self.site / "load").exists())
 
@@ -532,7 +532,7 @@ class Merge(MachineTest):
         # What the words of a table say otherwise is another table: a turned sign, other units.
         for word in ("NEGCOR", "CORUNIT=METRIC/1000", "HOMEOFFSET=5", "OUTAXIS3"):
             path.write_text(block(1, 0.001).replace("HOMEOFFSET=0", "HOMEOFFSET=0 " + word))
-            self.assertIn(word, self.nonio("merge", path, "--with", self.folder, expect=None).stderr, word)
+            self.assertIn(word, self.nonio("table", "insert", path, "--with", self.folder, expect=None).stderr, word)
 
     def test_a_list_of_twincat_keeps_its_cross_table(self):
         def lis(n, size, more=""):
@@ -559,7 +559,7 @@ class Merge(MachineTest):
         self.assertEqual([l for l in after.splitlines() if l.startswith("kw.ssfk")], new)
         self.assertEqual({(t["output"], tuple(t["by"])): t["largest_um"] > 0 for t in found["tables"]},
                          {("1", ("1",)): False, ("Z", ("Z",)): True, ("Z", ("1",)): False})
-        alone = self.nonio("merge", self.site / "X.lis", "--with", self.folder, expect=1).stderr
+        alone = self.nonio("table", "insert", self.site / "X.lis", "--with", self.folder, expect=1).stderr
         self.assertIn("no list of axis 3 (kopf.achs_nr)", alone)
 
     def test_a_control_whose_files_hold_one_axis_is_refused_by_name(self):
@@ -567,7 +567,7 @@ class Merge(MachineTest):
         self.measured("linuxcnc", machine='asset = "S-1"\n')
         path = self.site / "linuxcnc-Z.comp"
         path.write_text("0 0 0\n100 100 100\n")
-        self.assertIn("linuxcnc does not merge", self.nonio("merge", path, "--with", self.folder, expect=1).stderr)
+        self.assertIn("linuxcnc does not merge", self.nonio("table", "insert", path, "--with", self.folder, expect=1).stderr)
 
     def test_diff_of_the_control_and_a_campaign(self):
         self.record(["X", "Y", "Z"])
@@ -579,7 +579,7 @@ class Merge(MachineTest):
             self.assertEqual((table["output"], table["present"]["backlash_um"]), ("Z", 3.0))
             self.assertAlmostEqual(table["new"]["backlash_um"], 4.0, places=3)
             self.assertAlmostEqual(table["largest_um"], max(abs(wave(x) - wave(0.0)) for x in TARGETS), places=2)
-        self.assertIn("axis Z: they differ by up to", self.nonio("diff", path, self.folder).stdout)
+        self.assertIn("axis Z: they differ by up to", self.nonio("table", "diff", path, self.folder).stdout)
 
 
 if __name__ == "__main__":

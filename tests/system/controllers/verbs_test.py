@@ -25,9 +25,9 @@ class Controllers(BenchTest):
             self.assertNotIn("sign", of[name], "nobody knows it")
         for c in of.values():
             self.assertTrue(c["facts"], c["name"])
-        text = self.nonio("controllers", "pmac").stdout
+        text = self.nonio("table", "controls", "pmac").stdout
         self.assertIn("documented", text)
-        self.nonio("controllers", "pmax", expect=2)
+        self.nonio("table", "controls", "pmax", expect=2)
 
 
 class Tables(BenchTest):
@@ -63,9 +63,9 @@ class Tables(BenchTest):
         self.assertEqual(self.json_of("diff", ini, ini, "--axis", "X")["tables"][0]["output"], "X")
         nothing = self.site / "nothing.txt"
         nothing.write_text("hello\n")
-        self.assertIn("--control", self.nonio("diff", nothing, nothing, expect=2).stderr)
-        self.nonio("diff", ini, self.site / "missing", expect=2)
-        self.nonio("diff", ini, ini, "--control", "no-such", expect=2)
+        self.assertIn("--control", self.nonio("table", "diff", nothing, nothing, expect=2).stderr)
+        self.nonio("table", "diff", ini, self.site / "missing", expect=2)
+        self.nonio("table", "diff", ini, ini, "--control", "no-such", expect=2)
 
     def test_apply_predicts(self):
         self.one_axis(TARGETS, wave, wave, control="linuxcnc", extra="[options.linuxcnc]\ntype = 1\n")
@@ -83,7 +83,7 @@ class Tables(BenchTest):
         self.one_axis(TARGETS, lambda x: 0.5 * wave(x), lambda x: 0.5 * wave(x), control="linuxcnc",
                       extra="[options.linuxcnc]\ntype = 1\n")
         new = self.site / "new"
-        found = self.json_of("apply", present, self.folder, "--was-on", "--out", new)
+        found = self.json_of("apply", present, self.folder, "--active-table", "--out", new)
         self.assertLess(found["predictions"][0]["after"]["E_um"], 0.01)
         rows = [list(map(float, line.split())) for line in (new / "linuxcnc-X.comp").read_text().splitlines()]
         whole = lambda x: wave(0.0) - wave(x)  # zero at the reference point
@@ -92,11 +92,11 @@ class Tables(BenchTest):
             self.assertAlmostEqual(down * 1e3, whole(x), places=3)
         self.assertAlmostEqual(found["tables"][0]["largest_um"], max(abs(whole(x) + 0.5 * wave(x)) for x in TARGETS),
                                delta=0.01)
-        self.nonio("apply", present, self.folder, "--out", new, expect=2)
+        self.nonio("table", "predict", present, self.folder, "--out", new, expect=2)
         # The campaign states that none was active: one of the two is wrong.
         self.active_stated = True
         self.one_axis(TARGETS, wave, wave, control="linuxcnc")
-        done = self.nonio("apply", present, self.folder, "--was-on", "--out", self.site / "other", expect=2)
+        done = self.nonio("table", "predict", present, self.folder, "--active-table", "--out", self.site / "other", expect=2)
         self.assertIn('states table_on = "none" of axis X', done.stderr)
 
     def test_backlash_of_the_present_files_is_counted(self):
@@ -108,7 +108,7 @@ class Tables(BenchTest):
                        "$AA_ENC_COMP_STEP[0,AX1]=400\n$AA_ENC_COMP_MIN[0,AX1]=0\n$AA_ENC_COMP_MAX[0,AX1]=400\n"
                        "$AA_ENC_COMP_IS_MODULO[0,AX1]=0\nM17\n")
         md.write_text("%_N_AX1_TEA_INI\nCHANDATA(1)\n$MA_BACKLASH[0,AX1]=0.010\nM17\n")
-        found = self.json_of("apply", "%s,%s" % (eec, md), self.folder, "--was-on", "--out", self.site / "n")
+        found = self.json_of("apply", "%s,%s" % (eec, md), self.folder, "--active-table", "--out", self.site / "n")
         self.assertEqual(found["tables"][0]["present"]["backlash_um"], 10.0)
         self.assertAlmostEqual(found["tables"][0]["new"]["backlash_um"], 13.0, places=3)
         self.assertIn("]=0.013\n", (self.site / "n" / "siemens-840d-X-backlash.ini").read_text())
@@ -152,7 +152,7 @@ class Tables(BenchTest):
 class Probe(BenchTest):
     def test_two_stops_and_three_answers(self):
         self.one_axis(TARGETS, wave, wave)
-        p = self.json_of("plan", "sign-probe", self.folder, "--out", self.site / "p")["probes"][0]
+        p = self.json_of("table", "probe", self.folder, "--out", self.site / "p")["probes"][0]
         pairs = [(abs(wave(b) - wave(a)), a, b) for a in TARGETS[1:] for b in TARGETS if b > a]
         self.assertEqual((p["from_mm"], p["to_mm"]), max(pairs)[1:])
         self.assertAlmostEqual(p["without_table_um"], wave(p["to_mm"]) - wave(p["from_mm"]), places=6)
@@ -171,24 +171,24 @@ class Probe(BenchTest):
     def test_what_the_writer_of_programs_refuses_is_refused_here(self):
         """X1 and a number behind it would be another position of X."""
         self.one_axis(TARGETS, wave, wave, axis="X1")
-        done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=2)
+        done = self.nonio("table", "probe", self.folder, "--out", self.site / "p", expect=2)
         self.assertIn("axis X1: expected a single letter", done.stderr)
         self.assertFalse((self.site / "p").exists())
 
     def test_dwell_and_writer_can_be_said(self):
         self.one_axis(TARGETS, wave, wave, control="siemens-840d")
-        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", "--set", "dwell_s=3")
+        self.nonio("table", "probe", self.folder, "--out", self.site / "p", "--set", "dwell_s=3")
         text = (self.site / "p" / "sign-probe-X.mpf").read_text()
         self.assertIn("G710 G90 G94 G40 G500 D0\n", text)
         self.assertIn("DRY RUN FIRST", text)
         self.assertEqual(text.count("G4 F3\nM0\n"), 2)
-        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", "--control", "gcode")
+        self.nonio("table", "probe", self.folder, "--out", self.site / "p", "--control", "gcode")
         self.assertIn("G21 ", (self.site / "p" / "sign-probe-X.nc").read_text())
 
     def test_the_probe_tells_a_wrong_sign(self):
         """The readings that it promises, from an axis with the table that it is about."""
         self.one_axis(TARGETS, wave, wave)
-        p = self.json_of("plan", "sign-probe", self.folder)["probes"][0]
+        p = self.json_of("table", "probe", self.folder)["probes"][0]
         for sign, key in ((-1.0, "right_sign_um"), (1.0, "wrong_sign_um"), (0.0, "without_table_um")):
             def actual(x):
                 return x + sign * wave(x) * 1e-3 + wave(x + sign * wave(x) * 1e-3) * 1e-3
@@ -197,7 +197,7 @@ class Probe(BenchTest):
 
     def test_in_the_language_of_the_control(self):
         self.one_axis(TARGETS, wave, wave, control="heidenhain-tnc")
-        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+        self.nonio("table", "probe", self.folder, "--out", self.site / "p")
         lines = (self.site / "p" / "sign-probe-X.H").read_text().splitlines()
         self.assertEqual(lines[0], "0 BEGIN PGM NONIO_sign_probe_X MM")
         words = [l.split(" ", 1)[1] for l in lines]
@@ -213,7 +213,7 @@ class Probe(BenchTest):
         for control, of_axis in (("linuxcnc", ""), ("fanuc", ""), ("twincat-cnc", ""), ("aerotech", ""),
                                  ("mitsubishi", "")):
             self.one_axis(TARGETS, wave, wave, of_axis, control=control)
-            self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+            self.nonio("table", "probe", self.folder, "--out", self.site / "p")
             text = (self.site / "p" / "sign-probe-X.nc").read_text()
             moves = [l for l in text.splitlines() if "G1 X" in l]
             self.assertEqual(len(moves), 3)
@@ -222,34 +222,34 @@ class Probe(BenchTest):
             for word in ("(machine: not named in the manifest)", "moves X, the other axes stay", "G21 G17 G90 G94 G40 G49 G80"):
                 self.assertIn(word, text)
         self.one_axis(TARGETS, wave, wave, control="siemens-840d")
-        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+        self.nonio("table", "probe", self.folder, "--out", self.site / "p")
         moves = [l for l in (self.site / "p" / "sign-probe-X.mpf").read_text().splitlines() if l.startswith("G1")]
         self.assertEqual([m.split(" X")[0] for m in moves], ["G1 SUPA"] * 3)
 
     def test_no_program_for_a_control_without_gcode(self):
         for control in ("ecmc", "pmac", "twincat-nc-ptp"):
             self.one_axis(TARGETS, wave, wave, control=control)
-            self.nonio("plan", "sign-probe", self.folder)  # the moves are told
-            done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=2)
+            self.nonio("table", "probe", self.folder)  # the moves are told
+            done = self.nonio("table", "probe", self.folder, "--out", self.site / "p", expect=2)
             self.assertIn("runs no part programs in G-code", done.stderr)
             self.assertFalse((self.site / "p").exists())
 
     def test_the_probe_stays_within_the_travel(self):
         said = '[options.linuxcnc]\naxes = ["X from_mm=0 to_mm=%d"]\n'
         self.one_axis(TARGETS, wave, wave, said % 60, control="linuxcnc")
-        done = self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p", expect=1)
+        done = self.nonio("table", "probe", self.folder, "--out", self.site / "p", expect=1)
         self.assertRegex(done.stderr, r"the travel is 0(\.0+)? mm to 60(\.0+)? mm")
         self.assertFalse((self.site / "p").exists())
         self.one_axis(TARGETS, wave, wave, said % 400, control="linuxcnc")
-        self.nonio("plan", "sign-probe", self.folder, "--out", self.site / "p")
+        self.nonio("table", "probe", self.folder, "--out", self.site / "p")
 
     def test_an_axis_that_is_too_good_shows_nothing(self):
         noise = iter([0.3, -0.4, 0.1, 0.5, -0.2] * 100)
         self.one_axis(TARGETS, lambda x: next(noise), lambda x: next(noise))
-        p = self.json_of("plan", "sign-probe", self.folder, expect=1)["probes"][0]
+        p = self.json_of("table", "probe", self.folder, expect=1)["probes"][0]
         self.assertFalse(p["shows"])
         self.one_axis([0.0, 10.0], wave, wave)
-        self.assertIn("3 targets", self.nonio("plan", "sign-probe", self.folder, expect=1).stderr)
+        self.assertIn("3 targets", self.nonio("table", "probe", self.folder, expect=1).stderr)
 
 
 class Gantry(BenchTest):

@@ -52,7 +52,7 @@ class Changes(LiveTest):
             self.assertEqual(s.post("/api/exclude", {"part": "Z", "rows": [100000], "why": "x"}, expect=422)["status"], 422)
             self.assertEqual(s.post("/api/exclude", {"part": "Q", "rows": [1], "why": "x"}, expect=404)["status"], 404)
             self.assertEqual(s.post("/api/cancel", {"job": 77}, expect=404)["status"], 404)
-            self.assertEqual(nonio("compare", self.folder, "--json").stdout, nonio("compare", self.folder, "--json").stdout)
+            self.assertEqual(nonio("model", "compare", self.folder, "--json").stdout, nonio("model", "compare", self.folder, "--json").stdout)
 
     def test_refusals_are_in_the_language_of_the_site(self):
         told, plain = {}, (self.site / "site.toml").read_text()
@@ -148,7 +148,7 @@ class Changes(LiveTest):
             self.assertIn("period of Z: 7.50 mm", nonio("model", "show", self.folder).stdout)
             state = s.until("/api/state", lambda state: state["bench"] == "open" and state["excluded"] == [], "read again")
             self.assertEqual((state["model"], state["period_mm"], state["campaign"]["changed_on_disk"]), (["backlash:Z"], {}, False))
-            self.assertEqual(state["command"].split()[1], "compare")
+            self.assertEqual(state["command"].split()[1:3], ["model", "compare"])
             now = s.fit("Z")["compare"]
             self.assertEqual((now["rms_um"], now["observations"]), (tried["rms_um"], tried["observations"]))
             self.assertEqual(json_of("compare", self.folder)["parts"][0]["rms_um"], tried["rms_um"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random requests to `nonio live SITE --edit`: broken request lines, fields and bodies of every route. Each answer carries the
+"""Random requests to `nonio serve SITE --edit`: broken request lines, fields and bodies of every route. Each answer carries the
 security headers, none is a mistake of the server (500), limits hold, and the server is still there at the end.
 
 NONIO_SEED, NONIO_FUZZ_REQUESTS: other ones, more of them. What a site does by verbs costs a process, so those are few."""

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Campaigns with hidden effects (bench/hidden.cpp, fixed seeds), solved by somebody who knows nothing and only takes what
-the page suggests: the same model and the same verdict as `nonio explain --auto`."""
+the page suggests: the same model and the same verdict as `nonio model explain --auto`."""
 import json
 import os
 import pathlib
@@ -40,7 +40,7 @@ class Hidden(unittest.TestCase):
             for folder in folders:
                 with self.subTest(folder.name):
                     model, verdict, taken = self.by_suggestion(folder)
-                    nonio("explain", folder, "--auto", expect=None)
+                    nonio("model", "explain", folder, "--auto", expect=None)
                     said = json_of("explain", folder, expect=None)
                     part = said["parts"][0] if "parts" in said else said
                     self.assertEqual(model, part["model"]["effects"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of `nonio live` share: a server with a campaign, requests, raw sockets, event streams."""
+"""What the tests of `nonio serve` share: a server with a campaign, requests, raw sockets, event streams."""
 import http.client
 import json
 import os
@@ -20,12 +20,12 @@ WAIT = float(os.environ.get("NONIO_LIVE_WAIT", "90"))
 
 
 class Server:
-    """`nonio live` on a folder; ended at the end of the with block."""
+    """`nonio serve` on a folder; ended at the end of the with block."""
 
     def __init__(self, folder, *args, env=None):
         self.folder = pathlib.Path(folder)
         self.errors = tempfile.TemporaryFile()
-        self.process = subprocess.Popen([NONIO, "live", *map(str, args), str(folder)], stdout=subprocess.PIPE,
+        self.process = subprocess.Popen([NONIO, "serve", *map(str, args), str(folder)], stdout=subprocess.PIPE,
                                         stderr=self.errors, env={**os.environ, **(env or {})})
         self.line = self.process.stdout.readline().decode()
         if not self.line:

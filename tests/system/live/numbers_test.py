@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page's numbers are those of `nonio compare --json` and `nonio explain --json`, for every sample that has readings
+"""The page's numbers are those of `nonio model compare --json` and `nonio model explain --json`, for every sample that has readings
 of an axis, a line in space or balls: as it is, with a model, with excluded readings and with another period."""
 import pathlib
 import random
@@ -21,7 +21,7 @@ def parts_of(document):
 
 class Numbers(LiveTest):
     def same(self, server, folder, explain=True):
-        compared = nonio("compare", folder, "--json", expect=None)
+        compared = nonio("model", "compare", folder, "--json", expect=None)
         state = server.opened()
         if not compared.stdout.startswith("{"):
             self.assertEqual(state["parts"], [], compared.stderr)
@@ -68,7 +68,7 @@ class Numbers(LiveTest):
                 answer = server.post("/api/finish", expect=None)
                 self.assertIn("command", answer)
                 state = server.until("/api/state", lambda s: "job" not in s, "finished")
-                nonio("explain", folder, "--auto", expect=None)
+                nonio("model", "explain", folder, "--auto", expect=None)
                 self.assertEqual(state["model"], json_of("compare", folder, expect=None)["model"]["effects"])
                 self.same(server, folder)
 

@@ -227,11 +227,11 @@ class Tokens(unittest.TestCase):
             with Server(SAMPLES / "02-constant-reversal", "--token-file", file, "--port", port) as two:
                 self.assertEqual((two.token, two.port), (first, port))
             file.chmod(0o644)
-            done = nonio("live", "--token-file", file, SAMPLES / "02-constant-reversal", expect=2)
+            done = nonio("serve", "--token-file", file, SAMPLES / "02-constant-reversal", expect=2)
             self.assertIn("nobody else can read", done.stderr)
             file.write_text("short\n")
             file.chmod(0o600)
-            self.assertIn("32 hexadecimal", nonio("live", "--token-file", file, SAMPLES / "02-constant-reversal", expect=2).stderr)
+            self.assertIn("32 hexadecimal", nonio("serve", "--token-file", file, SAMPLES / "02-constant-reversal", expect=2).stderr)
 
     def test_each_start_has_its_own(self):
         with Server(SAMPLES / "02-constant-reversal") as one, Server(SAMPLES / "02-constant-reversal") as two:
@@ -247,9 +247,9 @@ class Tokens(unittest.TestCase):
 
     def test_what_is_no_campaign(self):
         with tempfile.TemporaryDirectory() as folder:
-            self.assertIn("campaign.toml", nonio("live", folder, expect=2).stderr)
+            self.assertIn("campaign.toml", nonio("serve", folder, expect=2).stderr)
         with Server(SAMPLES / "02-constant-reversal") as one:
-            self.assertIn(str(one.port), nonio("live", "--port", one.port, SAMPLES / "02-constant-reversal", expect=2).stderr)
+            self.assertIn(str(one.port), nonio("serve", "--port", one.port, SAMPLES / "02-constant-reversal", expect=2).stderr)
 
 
 if __name__ == "__main__":

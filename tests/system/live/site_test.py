@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`nonio live SITE`: the morning, entries, certificates, runs, and the workbench of each campaign."""
+"""`nonio serve SITE`: the morning, entries, certificates, runs, and the workbench of each campaign."""
 import fcntl
 import json
 import pathlib
@@ -43,7 +43,7 @@ class Sites(LiveTest):
             wanted = json_of("morning", self.out, expect=None)
             self.assertGreater(len(wanted["lines"]), 0)
             self.assertEqual({k: got[k] for k in wanted}, wanted)
-            self.assertIn("nonio morning", got["command"])
+            self.assertIn("nonio status --actions", got["command"])
             state = s.get("/api/site/state")
             self.assertEqual(state["campaigns"], ["02-constant-reversal", "03-opposed-sinusoids"])
             self.assertEqual(state["night"], {"state": "complete", "night": 1, "date": DATE, "last": 1, "last_date": DATE})
@@ -111,7 +111,7 @@ class Sites(LiveTest):
         self.assertFalse((self.small / "events.toml").exists())
         with Server(self.small, "--edit") as s:
             answer = s.post("/api/event", event)
-            self.assertIn("nonio event", answer["command"])
+            self.assertIn("nonio machine event", answer["command"])
             told = s.get("/api/event")["events"]
             self.assertEqual(told, json_of("event", self.small)["events"])
             self.assertEqual({k: told[0][k] for k in event}, event)
@@ -150,7 +150,7 @@ class Sites(LiveTest):
             self.assertIn("nut is ordered", page)
             self.assertNotIn("nut is ordered", (self.out / "index.html").read_text(), "the night's own page is the night's")
             # On a terminal; the page hears of it too.
-            nonio("ack", self.small, "--withdraw", "--finding", line["id"], "--machine", line["machine"], "--by", "B. Sample")
+            nonio("machine", "ack", self.small, "--withdraw", "--finding", line["id"], "--machine", line["machine"], "--by", "B. Sample")
             next(e for e in events if e[1] == "morning")
             self.assertEqual(state()["state"], "new")
             stream.close()
@@ -159,8 +159,8 @@ class Sites(LiveTest):
         self.laboratory()
         lines = json_of("morning", self.out, expect=None)["lines"]
         line = next(l for l in lines if l.get("machine") and l["state"] == "new" and l["kind"] not in ("lost", "failed"))
-        nonio("ack", self.small, "--finding", line["id"], "--machine", line["machine"], "--until", "2099-01-01", "--by", "B. Sample", "--why", "nut is ordered", "--date", DATE)
-        nonio("event", self.small, "--machine", line["machine"], "--kind", "other", "--text", "moved", "--date", "2026-01-01")
+        nonio("machine", "ack", self.small, "--finding", line["id"], "--machine", line["machine"], "--until", "2099-01-01", "--by", "B. Sample", "--why", "nut is ordered", "--date", DATE)
+        nonio("machine", "event", self.small, "--machine", line["machine"], "--kind", "other", "--text", "moved", "--date", "2026-01-01")
         with Server(self.small, "--out", self.out) as s:
             now = s.get("/api/site")["lines"]
         self.assertEqual(json_of("morning", self.out, expect=None)["lines"], lines, "without --site it is the night's")
@@ -230,9 +230,9 @@ class Sites(LiveTest):
                 self.assertGreater(len(s.get("/api/site")["lines"]), 0, "the results of the night before")
             s.until("/api/site/state", lambda state: state["night"]["state"] == "cut-short", "cut short")
             file.write_text(text)
-            nonio("night", "plan", self.small, "--out", self.out, "--shards", "2", "--date", DATE)
+            nonio("run", "plan", self.small, "--out", self.out, "--shards", "2", "--date", DATE)
             s.until("/api/site/state", lambda state: state["night"]["state"] == "planned", "planned")
-            nonio("night", "cancel", self.out)
+            nonio("run", "cancel", self.out)
             file.write_text(text)
             s.until("/api/site/state", lambda state: state["night"]["state"] == "complete", "complete")
 

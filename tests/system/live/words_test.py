@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Words of the pages of `nonio live`, from the sources: no server, no browser."""
+"""Words of the pages of `nonio serve`, from the sources: no server, no browser."""
 import pathlib
 import re
 import tomllib

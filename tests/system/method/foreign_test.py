@@ -113,8 +113,8 @@ class ForeignMethod(unittest.TestCase):
 
     def test_effects_are_compared_and_explained(self):
         folder = self.campaign(manifest())
-        self.assertIn("axis X (X): 30 readings", self.nonio("compare", folder))
-        self.assertRegex(self.nonio("explain", folder), r"backlash")
+        self.assertIn("axis X (X): 30 readings", self.nonio("model", "compare", folder))
+        self.assertRegex(self.nonio("model", "explain", folder), r"backlash")
 
     def test_the_history_has_its_values(self):
         self.campaign(manifest())
@@ -122,7 +122,7 @@ class ForeignMethod(unittest.TestCase):
         with sqlite3.connect(self.out / "history.sqlite") as history:
             rows = history.execute("SELECT quantity, value FROM result WHERE source = 'lever-gauge'").fetchall()
         self.assertEqual([(q, round(v, 6)) for q, v in rows], [("range", 4.0)])
-        self.nonio("history", self.out, "M-1")
+        self.nonio("machine", "history", self.out, "M-1")
 
     def test_the_live_page_has_its_measurement(self):
         folder = self.campaign(manifest())
@@ -135,11 +135,11 @@ class ForeignMethod(unittest.TestCase):
         spec.write_text(manifest() + "\n".join([
             "[simulation]", "seed = 3", "[[cycle]]", 'measurement = "X"', "from_mm = 0", "to_mm = 500", "step_mm = 25",
             "runs = 5", "feed_mm_per_min = 2000", "noise_um = 0.2", "[[effect]]", 'name = "backlash:X"', "b_um = 9", ""]))
-        self.nonio("simulate", spec, "--out", self.site / "a")
+        self.nonio("model", "simulate", spec, "--out", self.site / "a")
         header = (self.site / "a/x.csv").read_text().splitlines()[1]
         self.assertEqual(header, "target_mm,direction,gauge_um")
         self.nonio("run", self.site, "--out", self.out)
-        self.assertRegex(self.nonio("explain", self.site / "a"), r"backlash:X")
+        self.assertRegex(self.nonio("model", "explain", self.site / "a"), r"backlash:X")
 
     def test_the_schema_has_its_keys(self):
         measurement = json.loads(self.nonio("schema", "campaign"))["properties"]["measurement"]["items"]

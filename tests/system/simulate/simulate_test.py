@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""nonio simulate, then nonio run: what was put in comes out."""
+"""nonio model simulate, then nonio run: what was put in comes out."""
 import json
 import os
 import pathlib
@@ -23,7 +23,7 @@ class Simulate(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
 
     def simulate(self, *words, spec=SAMPLE, expect=0):
-        done = nonio("simulate", spec, "--out", self.campaign, *words)
+        done = nonio("model", "simulate", spec, "--out", self.campaign, *words)
         self.assertEqual(done.returncode, expect, done.stderr)
         return done
 
@@ -100,7 +100,7 @@ P_mm = 730.0
         self.assertEqual(truth["effects"][-1]["parameters"], [{"name": "a", "value": 4.5, "unit": "um"},
                                                               {"name": "P", "value": 730.0, "unit": "mm"}])
         self.assertIn(b"expression", self.contents()["campaign.toml"])
-        found = json.loads(nonio("explain", self.campaign, "--auto", "--json").stdout)
+        found = json.loads(nonio("model", "explain", self.campaign, "--auto", "--json").stdout)
         of_it = {p["name"]: p for p in found["model"]["parameters"] if p["effect"] == "sag:X"}
         for name, value in (("a", 4.5), ("P", 730.0)):
             self.assertLess(abs(of_it[name]["value"] - value), 4 * of_it[name]["u"], of_it)
@@ -134,7 +134,7 @@ P_mm = 730.0
         self.assertFalse(self.campaign.exists())
 
     def test_help_teaches(self):
-        done = nonio("simulate", "--help")
+        done = nonio("model", "simulate", "--help")
         self.assertEqual(done.returncode, 0)
         for word in ("[[effect]]", "[[cycle]]", "--truth", "Example"):
             self.assertIn(word, done.stdout)
@@ -149,7 +149,7 @@ class EveryKind(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
         cls.root = pathlib.Path(cls.folder.name)
         spec = SAMPLE.with_name("machining-centre.toml")
-        done = nonio("simulate", spec, "--out", cls.root / "site" / "all")
+        done = nonio("model", "simulate", spec, "--out", cls.root / "site" / "all")
         assert done.returncode == 0, done.stderr
         cls.run_ = nonio("run", cls.root / "site", "--out", cls.root / "out")
         cls.results = json.loads((cls.root / "out" / "machining-centre" / "results.json").read_text("utf-8"))
@@ -210,7 +210,7 @@ class EveryKind(unittest.TestCase):
                                ('kind = "straightness"\naxis = "X"\nlateral = "Y"', 'kind = "angle"\nabout = "Z"\naxis = "X"', "found angle")):
             self.assertIn(old, text)
             spec.write_text(text.replace(old, new, 1), "utf-8")
-            done = nonio("simulate", spec, "--out", self.root / "site" / "none")
+            done = nonio("model", "simulate", spec, "--out", self.root / "site" / "none")
             self.assertEqual(done.returncode, 2, says)
             self.assertIn(says, done.stderr)
             self.assertRegex(done.stderr, r"line \d+")
@@ -229,7 +229,7 @@ class TwoRotaryAxes(unittest.TestCase):
     def made(self, text):
         spec = self.root / "spec.toml"
         spec.write_text(text, "utf-8")
-        return nonio("simulate", spec, "--out", self.root / "site" / "bc")
+        return nonio("model", "simulate", spec, "--out", self.root / "site" / "bc")
 
     def test_both_lines(self):
         self.assertEqual(self.made(self.text).returncode, 0)
@@ -289,7 +289,7 @@ class Circles(unittest.TestCase):
     def made(self, text, expect=0):
         spec = self.root / "spec.toml"
         spec.write_text(text, "utf-8")
-        done = nonio("simulate", spec, "--out", self.root / "site" / "bar")
+        done = nonio("model", "simulate", spec, "--out", self.root / "site" / "bar")
         self.assertEqual(done.returncode, expect, done.stderr)
         return done
 

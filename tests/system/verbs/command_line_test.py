@@ -3,6 +3,7 @@
 import json
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import unittest
@@ -10,10 +11,101 @@ import unittest
 from verbs import NONIO, VerbTest, manifest, readings
 
 
+def table():
+    """The table of commands that help, the manual page and completion are made from."""
+    return json.loads(subprocess.run([NONIO, "help", "--json"], capture_output=True, text=True, check=True).stdout)
+
+
 def verb_paths():
-    """Every verb with the words that lead to it, as the completion lists them."""
-    script = subprocess.run([NONIO, "completion", "bash"], capture_output=True, text=True, check=True).stdout
-    return [path.split()[1:] for path in re.findall(r'^ +"(nonio [a-z -]+)"\) ;;$', script, re.MULTILINE)]
+    """Every command with the words that lead to it."""
+    return [c["command"].split()[1:] for c in table()["commands"]]
+
+
+class Table(VerbTest):
+    """Every command has help and examples that its own arguments allow; former names lead to it."""
+
+    def test_at_most_fifteen_commands_at_the_top(self):
+        top = [c for c in table()["commands"] if c["listed"] and len(c["command"].split()) == 2]
+        self.assertLessEqual(len(top), 15)
+        self.assertEqual(re.findall(r"(?m)^  (\S+) ", self.nonio("help").stdout), [c["command"].split()[1] for c in top])
+
+    def test_every_command_and_argument_is_described(self):
+        for c in table()["commands"]:
+            self.assertTrue(c["summary"], c)
+            if c["runs"]:
+                self.assertTrue(c["examples"], c["command"])
+            for a in c["arguments"]:
+                self.assertTrue(a["help"] or a.get("hidden"), (c["command"], a))
+                self.assertNotIn("\n", a["help"])
+
+    def test_examples_are_calls_of_their_command(self):
+        for c in table()["commands"]:
+            for example in c["examples"]:
+                with self.subTest(example):
+                    words = shlex.split(re.split(r" [|>&]", example)[0])
+                    path = c["command"].split()
+                    self.assertEqual(words[:len(path)], path)
+                    self.allowed(c["arguments"], words[len(path):])
+
+    def allowed(self, arguments, words):
+        """Every option exists and has a value of its kind; nothing that is required is missing."""
+        options = {a["name"]: a for a in arguments if a["name"].startswith("-")}
+        places = [a for a in arguments if not a["name"].startswith("-")]
+        given, positional = set(), []
+        words = iter(words)
+        for word in words:
+            if not word.startswith("--"):
+                positional.append(word)
+                continue
+            name, equals, value = word.partition("=")
+            self.assertIn(name, options)
+            given.add(name)
+            a = options[name]
+            if a["kind"] != "flag" and not equals and "value_of_bare" not in a:
+                value = next(words)
+            if "choices" in a and value:
+                self.assertIn(value, a["choices"])
+            if a["kind"] in ("integer", "number"):
+                float(value)
+        self.assertGreaterEqual(len(positional), sum(a["required"] for a in places))
+        if not any(a["kind"] == "list" for a in places):
+            self.assertLessEqual(len(positional), len(places))
+        self.assertLessEqual({a["name"] for a in options.values() if a["required"]}, given)
+
+    def test_former_names(self):
+        known = {c["command"] for c in table()["commands"]}
+        for alias in table()["aliases"]:
+            old, new = alias["old"].split()[1:], alias["command"].split()
+            command = " ".join(w for w in new if not w.startswith("--"))
+            self.assertIn(command, known)
+            self.assertEqual(self.nonio("help", *old).stdout, self.nonio("help", *command.split()[1:]).stdout)
+            self.assertNotRegex(self.nonio("help").stdout, rf"(?m)^  {old[0]} " if len(old) == 1 else r"\Z.")
+            self.assertIn(f"nonio {' '.join(old)}: there is no option --no-such",
+                          self.nonio(*old, "--no-such", expect=2).stderr)
+
+    def test_a_former_name_does_the_same_and_says_so_once(self):
+        self.campaign(manifest(), x=readings(backlash=-6.0))
+        now, before = self.nonio("model", "compare", self.folder), self.nonio("compare", self.folder)
+        self.assertEqual((now.stdout, now.stderr), (before.stdout, before.stderr))
+        now, before = self.nonio("table", "controls"), self.nonio("controllers")
+        self.assertEqual(now.stdout, before.stdout)
+        self.assertEqual(before.stderr, "'nonio controllers' is now 'nonio table controls'; the old name will be removed in "
+                         "version 0.3\n" + now.stderr)
+        self.assertEqual(self.nonio("release", self.site, "--list", "--json").stdout,
+                         self.nonio("certificate", "approve", self.site, "--list", "--json").stdout)
+
+    def test_contract_names_are_not_announced(self):
+        quiet = {a["old"].split(" ", 1)[1] for a in table()["aliases"] if not a["announced"]}
+        self.assertEqual(quiet, {"compare", "explain", "simulate", "verify", "plugins", "history"})
+
+    def test_synonyms(self):
+        known = {c["command"] for c in table()["commands"]}
+        for word, command in table()["synonyms"].items():
+            said = self.nonio(word, expect=2).stderr
+            self.assertIn(f'(did you mean "{command}"?)', said)
+            self.assertTrue(command in known or command.rsplit(" ", 1)[0] in known, command)
+        for word, command in (("withdraw", "certificate withdraw"), ("triples", "plan triples"), ("audit", "certificate audit")):
+            self.assertIn(f'"nonio {command}"', self.nonio(word, expect=2).stderr)
 
 
 class Help(VerbTest):
@@ -21,25 +113,21 @@ class Help(VerbTest):
         plain, asked = self.nonio(expect=2), self.nonio("help")
         self.assertEqual((plain.stdout, plain.stderr), ("", asked.stdout))
         self.assertEqual(asked.stdout, self.nonio("--help").stdout)
-        for group in ("Every night:", "Campaigns:", "Certificates:", "The error model:", "At the machine:", "Plugins:"):
+        for group in ("Prepare:", "Evaluate:", "Follow up:", "Program:"):
             self.assertIn(f"\n{group}\n", asked.stdout)
 
-    def test_help_of_every_verb_is_that_of_the_verb(self):
+    def test_help_of_every_command_is_that_of_the_command(self):
         paths = verb_paths()
-        self.assertGreater(len(paths), 25)
+        self.assertGreater(len(paths), 40)
         for words in paths:
             shown = self.nonio("help", *words).stdout
             self.assertEqual(shown, self.nonio(*words, "--help").stdout)
             self.assertIn("Usage: nonio " + " ".join(words), shown)
-        program = self.nonio("help").stdout
-        for words in paths:
-            if len(words) == 1:
-                self.assertRegex(program, rf"(?m)^  {words[0]} +\S")
 
-    def test_lines_of_help_fit_a_wide_terminal(self):
-        for words in verb_paths():
+    def test_lines_of_help_fit_a_terminal(self):
+        for words in [[], *verb_paths()]:
             for line in self.nonio("help", *words).stdout.splitlines():
-                self.assertLessEqual(len(line), 120, f"{words}: {line}")
+                self.assertLessEqual(len(line), 100, f"{words}: {line}")
 
     def test_version_says_where_things_are(self):
         said = json.loads(self.nonio("version", "--json").stdout)
@@ -47,7 +135,7 @@ class Help(VerbTest):
         plain = self.nonio("version").stdout
         for text in (said["abi"], *said["plugins"], *said["templates"]):
             self.assertIn(text, plain)
-        self.assertEqual(said["abi"], json.loads(self.nonio("plugins", "--json").stdout)["abi"])
+        self.assertEqual(said["abi"], json.loads(self.nonio("plugin", "list", "--json").stdout)["abi"])
 
 
 class Mistyped(VerbTest):
@@ -57,39 +145,39 @@ class Mistyped(VerbTest):
         return done.stderr
 
     def test_verbs_and_options(self):
-        for words, nearest in ((["rnu"], "run"), (["plan", "tripels"], "triples"), (["model", "ad"], "add"),
-                               (["run", self.site, "--ot", "x"], "--out"), (["help", "exlpain"], "explain"),
+        for words, nearest in ((["rnu"], "run"), (["plan", "tripels"], "triples"), (["modle"], "model"), (["model", "ad"], "add"),
+                               (["run", self.site, "--ot", "x"], "--out"), (["help", "exlpain"], "explain"), (["certificate", "aprove"], "approve"),
                                (["--verison"], "--version"), (["completion", "bsh"], "bash"),
                                (["plan", "triples", "--x=1", "--y=1", "--even=prefr"], "prefer"),
                                (["new", "capmaign", "x"], "campaign")):
             self.assertIn(f'(nearest: "{nearest}")', self.refused(*words), words)
 
     def test_what_is_nothing_like_a_verb_gets_the_list(self):
-        self.assertIn("there are run, ", self.refused("xyzzyxyzzy"))
-        self.assertIn("expected a verb: triples, program, rotary, table, sign-probe", self.refused("plan"))
-        self.assertIn("there is no verb below it", self.refused("help", "run", "x"))
+        self.assertIn("there are new, ", self.refused("xyzzyxyzzy"))
+        self.assertIn("expected one of triples, program, rotary, table", self.refused("plan"))
+        self.assertIn("there is no command below it", self.refused("help", "run", "x"))
 
     def test_values_that_begin_with_a_dash_are_not_options(self):
-        self.assertIn("--why", self.refused("certificates", self.site, "--why", "--broken"))
-        self.assertNotIn("no option", self.refused("certificates", self.site, "--why", "--broken"))
+        self.assertIn("--why", self.refused("certificate", "list", self.site, "--why", "--broken"))
+        self.assertNotIn("no option", self.refused("certificate", "list", self.site, "--why", "--broken"))
 
     def test_plugins_effects_and_kinds(self):
         self.campaign(manifest(effects=[]), x=readings(backlash=-6.0))
         self.assertIn('nearest: "effect"', self.refused("plugin", "new", "efect", "mine"))
-        self.assertIn('nearest: "linuxcnc"', self.refused("controllers", "linuxnc"))
+        self.assertIn('nearest: "linuxcnc"', self.refused("table", "controls", "linuxnc"))
         self.assertIn('nearest: "backlash:X"', self.refused("model", "add", self.folder, "backlsh:X"))
         for control in ("simens", "program-simens"):
             self.assertIn('nearest: "siemens"', self.refused(
                 "plan", "program", "--axis", "X=0:8", "--control", control, "--out", self.site / "p"))
         table = self.site / "t.comp"
         table.write_text("0 0 0\n")
-        self.assertIn('nearest: "linuxcnc"', self.refused("diff", table, table, "--control", "linuxnc"))
+        self.assertIn('nearest: "linuxcnc"', self.refused("table", "diff", table, table, "--control", "linuxnc"))
 
     def test_one_plugin_of_a_library(self):
-        files = {pathlib.Path(f["path"]): f["plugins"] for f in json.loads(self.nonio("plugins", "--json").stdout)["files"]}
+        files = {pathlib.Path(f["path"]): f["plugins"] for f in json.loads(self.nonio("plugin", "list", "--json").stdout)["files"]}
         effects = next(path for path in files if path.name == "effects.so")
         self.assertIn("effect backlash 1.0.0", files[effects])
-        listed = self.nonio("plugins", "--quiet").stdout
+        listed = self.nonio("plugin", "list", "--quiet").stdout
         for path, plugins in files.items():
             self.assertIn("".join(f"\n    {plugin}" for plugin in plugins) + "\n", listed.split(str(path))[1])
         done = self.nonio("plugin", "check", effects, "--plugin", "backlash", "--only", "names", "--json")
@@ -125,8 +213,8 @@ t nonio plan ""
 t nonio plan triples --max-p
 t nonio plan triples --even = pr
 t nonio completion ""
-t nonio compare ""
-t nonio plan sign-probe c --out ""
+t nonio model compare ""
+t nonio table probe c --out ""
 """
 
     def test_bash(self):
@@ -136,7 +224,7 @@ t nonio plan sign-probe c --out ""
                               env={"NONIO": NONIO, "SITE": str(self.site), "PATH": "/usr/bin:/bin"})
         self.assertEqual(done.stderr, "")
         self.assertEqual(done.stdout.splitlines(), [
-            "complete -F _nonio nonio", "run", "triples program rotary table sign-probe --help", "--max-points", "prefer",
+            "complete -F _nonio nonio", "run", "triples program rotary table --help", "--max-points", "prefer",
             "bash zsh", "c", "c"])
 
     ZSH = r"""
@@ -166,7 +254,7 @@ zpty -d z
         subprocess.run(["zsh", "-n", script], check=True)
         (self.site / "nonio").symlink_to(NONIO)
         typed = {"nonio_plan_t": "triples", "nonio_run_--o": "--out", "nonio_completion_b": "bash",
-                 "nonio_explain_fun": "functions"}
+                 "nonio_check_fun": "functions"}
         done = subprocess.run(
             ["zsh", "-f", "-c", self.ZSH.replace("$LINES_TO_COMPLETE", " ".join(typed))], capture_output=True,
             text=True, timeout=120, check=False,

@@ -66,7 +66,7 @@ class Compare(VerbTest):
         left = [d - values["a"] * (t - middle) / 1000 - values["b"] * w / 2 for w, t, d in rows]
         self.assertAlmostEqual(predicted["rms_um"], statistics.pstdev(left), delta=1e-4)
         self.assertAlmostEqual(predicted["rms_before_um"], statistics.pstdev([d for _, _, d in rows]), delta=1e-4)
-        shown = self.nonio("compare", self.folder).stdout
+        shown = self.nonio("model", "compare", self.folder).stdout
         self.assertRegex(shown, r"after a table +RMS [\d.]+ um -> [\d.]+ um, predicted, if it takes away scale:X, backlash:X\n +X: E [\d.]+ um -> ")
 
     def test_after_a_table_the_error_of_diagonals_falls(self):
@@ -89,7 +89,7 @@ class Compare(VerbTest):
     def test_without_anything_for_a_table_it_says_nothing_of_one(self):
         self.campaign(manifest(["zero-drift:X"]), x=readings())
         self.assertNotIn("after_table", self.part())
-        self.assertNotIn("after a table", self.nonio("compare", self.folder).stdout)
+        self.assertNotIn("after a table", self.nonio("model", "compare", self.folder).stdout)
 
     def test_a_campaign_without_parts_says_why(self):
         for verb in ("compare", "explain"):
@@ -103,7 +103,7 @@ class Compare(VerbTest):
         self.assertGreater(sum(place["share"] for place in part["fails"]), 1)  # run and time are nearly one
         self.assertLessEqual(sum(place["rms_um"] ** 2 for place in part["left"]), part["rms_um"] ** 2)
         self.assertGreater(len(part["left"]), 1)
-        shown = self.nonio("compare", self.folder).stdout
+        shown = self.nonio("model", "compare", self.folder).stdout
         self.assertNotIn("%", shown)
         self.assertRegex(shown, r"lack of fit +The residuals far exceed the noise, by [\d.]+ um\.")
         for place in part["left"]:
@@ -128,7 +128,7 @@ class Compare(VerbTest):
         self.assertGreater(fails[0]["share"], 0.9)
         self.assertIn("changes sign with the direction of approach", fails[0]["says"])
         self.assertLess(fails[0]["p"], 0.01)
-        shown = self.nonio("compare", self.folder).stdout
+        shown = self.nonio("model", "compare", self.folder).stdout
         self.assertIn("changes sign with the direction of approach", shown)
 
     def test_a_value_below_its_uncertainty_is_warned_of(self):
@@ -153,14 +153,14 @@ class Compare(VerbTest):
         self.campaign(text)
         part = self.part()
         self.assertEqual((part["observations"], part["suspects"]), (65, []))
-        self.assertIn("x.csv line 41 (88.0 um) is excluded", self.nonio("compare", self.folder).stderr)
+        self.assertIn("x.csv line 41 (88.0 um) is excluded", self.nonio("model", "compare", self.folder).stderr)
 
     def test_excluding_a_line_without_a_reading_is_an_error(self):
         for line, found in (("[1]", "line 1 of x.csv holds no reading"), ("[999]", "line 999"),
                             ("[0]", "expected line numbers"), ("[2.5]", "expected line numbers")):
             text = manifest([]).replace('file = "x.csv"\n', f'file = "x.csv"\nexclude = {line}\n')
             self.campaign(text, x=readings())
-            done = self.nonio("compare", self.folder, expect=None)
+            done = self.nonio("model", "compare", self.folder, expect=None)
             self.assertIn(done.returncode, (1, 2))
             number = text.splitlines().index(f"exclude = {line}") + 1
             self.assertIn(f"campaign.toml:{number}: ", done.stderr)
@@ -169,7 +169,7 @@ class Compare(VerbTest):
     def test_inseparable_effects_are_an_error_that_names_them(self):
         self.campaign(manifest(["scale:X", "pitch-curve:X", "zero-drift:X", "run-jump:X"]),
                       x=readings(runs=1, targets=[0.0, 50.0]))
-        done = self.nonio("compare", self.folder, expect=1)
+        done = self.nonio("model", "compare", self.folder, expect=1)
         self.assertIn(":X", done.stderr)
 
     def test_every_axis_has_its_part(self):

@@ -89,13 +89,13 @@ class Explain(VerbTest):
         self.assertTrue(0 <= e["false_alarm_rate"] <= 0.1)
         self.assertGreaterEqual(e["false_alarm_trials"], 1)
         self.assertIn("backlash:X", e["together"])
-        shown = self.nonio("explain", self.folder).stdout
+        shown = self.nonio("model", "explain", self.folder).stdout
         self.assertIn("verdict: missing backlash:X", shown)
         self.assertIn("#####", shown)
 
     def test_what_there_is_no_sign_of_stands_on_one_line_with_the_size_that_would_be_seen(self):
         self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
-        shown = self.nonio("explain", self.folder).stdout
+        shown = self.nonio("model", "explain", self.folder).stdout
         line = next(l for l in shown.splitlines() if l.startswith("  No sign of: "))
         self.assertRegex(line, r"No sign of: \S+:X \(would be detected from [\d.]+ um\), \S+:X \([\d.]+ um\)")
         e = self.explain()
@@ -143,7 +143,7 @@ class Explain(VerbTest):
         for got, true in zip(sizes["free-reversal:X"], (-8, 9, -1.4)):
             self.assertLess(abs(got - true), 1.5)
         self.assertTrue(any("9 targets or more" in text and "5 are too few" in text for text in e["next"]), e["next"])
-        self.assertIn("9 targets or more", self.nonio("explain", self.folder).stdout)
+        self.assertIn("9 targets or more", self.nonio("model", "explain", self.folder, "--all").stdout)
 
     def test_a_complete_model_misses_nothing(self):
         self.campaign(manifest(["scale:X", "backlash:X"]), x=readings(scale=20, backlash=-6))
@@ -164,12 +164,12 @@ class Explain(VerbTest):
             self.assertEqual(["backlash:X"], [x["effect"] for x in p["evidence"]])
             self.assertEqual(e["candidates"][0]["score"], p["evidence"][0]["score"])
             self.assertLess(abs(p["evidence"][0]["then"] / p["evidence"][0]["score"] / more - 1), 0.15)
-        self.assertIn("backlash:X", self.nonio("explain", self.folder, "--what-if").stdout.split("one run more")[1])
+        self.assertIn("backlash:X", self.nonio("model", "explain", self.folder, "--what-if").stdout.split("one run more")[1])
 
     def test_the_same_seed_gives_the_same_bytes(self):
         self.campaign(manifest([]), x=readings(backlash=-3))
-        first = self.nonio("explain", self.folder, "--json", "--seed", "7").stdout
-        self.assertEqual(first, self.nonio("explain", self.folder, "--json", "--seed", "7").stdout)
+        first = self.nonio("model", "explain", self.folder, "--json", "--seed", "7").stdout
+        self.assertEqual(first, self.nonio("model", "explain", self.folder, "--json", "--seed", "7").stdout)
         self.assertEqual(json.loads(first)["seed"], 7)
 
     def test_several_axes_lead_with_the_most_severe(self):
@@ -195,7 +195,7 @@ class Explain(VerbTest):
 
     def test_auto_shows_each_step(self):
         self.campaign(manifest([]), x=readings(backlash=-6))
-        shown = self.nonio("explain", self.folder, "--auto").stdout
+        shown = self.nonio("model", "explain", self.folder, "--auto").stdout
         self.assertIn("step 1: backlash:X added", shown)
         self.assertIn("verdict: complete (nothing missing)", shown)
 
@@ -231,7 +231,7 @@ class Explain(VerbTest):
             self.assertNotIn(timely, names)
         self.assertIn("nothing is concluded from time", " ".join(e["warnings"]))
         self.campaign(said.format("sideways"), x=self.grouped())
-        self.assertIn('"sideways"', self.nonio("explain", self.folder, expect=2).stderr)
+        self.assertIn('"sideways"', self.nonio("model", "explain", self.folder, expect=2).stderr)
 
     def test_rows_in_another_order_say_the_same_where_they_have_times(self):
         text = readings(scale=20, backlash=-6, drift=4)
@@ -261,7 +261,7 @@ class Explain(VerbTest):
         self.assertEqual(described[0]["effect"], "free-reversal:X")
         self.assertLess(described[-1]["rms_um"], 1.1 * e["noise_floor_um"])
         self.assertNotIn("free-reversal:X", [c["effect"] for c in e["candidates"]])
-        self.assertIn("a description, not a cause", self.nonio("explain", self.folder).stdout)
+        self.assertIn("a description, not a cause", self.nonio("model", "explain", self.folder, "--all").stdout)
         for d in described:
             self.nonio("model", "add", self.folder, d["effect"])
         e = self.explain()
@@ -316,7 +316,7 @@ class Explain(VerbTest):
         self.assertEqual(unseen["temperature:X"]["why_not"], "temperature-gaps")
         self.assertEqual(unseen["temperature:X"]["lines"], list(range(22, 62)))
         self.assertIn("Add the temperature for these rows", unseen["temperature:X"]["says"])
-        self.assertIn("temperature:X: 40 readings (x.csv, lines 22, 23", self.nonio("explain", self.folder).stdout)
+        self.assertIn("temperature:X: 40 readings (x.csv, lines 22, 23", self.nonio("model", "explain", self.folder, "--all").stdout)
         self.campaign(manifest([]), x=readings(directions="+", times=False))
         unseen = {u["effect"]: u["why_not"] for u in self.explain()["unseen"]}
         self.assertEqual(unseen["backlash:X"], "one-direction")
@@ -378,7 +378,7 @@ class Explain(VerbTest):
     def test_without_repeats_it_does_not_speak_of_noise(self):
         sample = pathlib.Path(__file__).parents[3] / "samples" / "site" / "06-long-axis"
         shutil.copytree(sample, self.folder, dirs_exist_ok=True)
-        shown = self.nonio("explain", self.folder, "--auto").stdout
+        shown = self.nonio("model", "explain", self.folder, "--auto").stdout
         self.assertIn("verdict: unknown", shown)  # a wave of 2.6 m that no effect of the catalogue says
         self.assertIn("There are no repeated readings", shown)
         self.assertNotIn("in every run", shown)
@@ -386,21 +386,21 @@ class Explain(VerbTest):
     def test_a_mistake_in_the_model_names_line_and_nearest(self):
         text = manifest(["backlsh:X"])
         self.campaign(text, x=readings())
-        done = self.nonio("explain", self.folder, expect=2)
+        done = self.nonio("model", "explain", self.folder, expect=2)
         line = next(i for i, t in enumerate(text.splitlines(), 1) if t.startswith("effects"))
         self.assertIn(f"campaign.toml:{line}: ", done.stderr)
         self.assertIn('nearest: "backlash:X"', done.stderr)
         for wrong in ("backlash", "backlash:Q", ":X", "backlash:"):
             self.campaign(manifest([wrong]))
-            self.nonio("explain", self.folder, expect=2)
+            self.nonio("model", "explain", self.folder, expect=2)
 
     def test_help_teaches(self):
         for verb in ("compare", "explain"):
             shown = self.nonio(verb, "--help").stdout
             self.assertIn("Example", shown)
-        self.nonio("explain", expect=2)
-        self.nonio("explain", self.site / "nowhere", expect=2)
-        self.nonio("explain", self.site, expect=2)
+        self.nonio("model", "explain", expect=2)
+        self.nonio("model", "explain", self.site / "nowhere", expect=2)
+        self.nonio("model", "explain", self.site, expect=2)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`nonio history` of samples/laboratory, against what is true of it and against results.json."""
+"""`nonio machine history` of samples/laboratory, against what is true of it and against results.json."""
 import json
 import os
 import pathlib
@@ -35,7 +35,7 @@ class Laboratory(unittest.TestCase):
         lab = presets.build("small", 1)
         cls.truth = truths.rounded(make_laboratory.write(lab, cls.site, lab.night, True))
         nonio("run", cls.site, "--out", cls.out, "--quiet", "--date", "2026-11-22")
-        cls.text = nonio("history", cls.out, "--json").stdout
+        cls.text = nonio("machine", "history", cls.out, "--json").stdout
         cls.history = json.loads(cls.text)
 
     @classmethod
@@ -110,31 +110,31 @@ class Laboratory(unittest.TestCase):
     def test_made_again_it_is_the_same(self):
         (self.out / "history.sqlite").unlink()
         nonio("run", self.site, "--out", self.out, "--quiet", "--date", "2026-11-22")
-        again = json.loads(nonio("history", self.out, "--json").stdout)
+        again = json.loads(nonio("machine", "history", self.out, "--json").stdout)
         self.assertEqual(again["series"], self.history["series"])
 
     def test_a_store_that_is_behind_is_said(self):
-        self.assertEqual(nonio("history", self.out).stderr, "")
+        self.assertEqual(nonio("machine", "history", self.out).stderr, "")
         known = self.out / ".nonio" / "history"
         text = known.read_text()
         known.unlink()
         self.addCleanup(known.write_text, text)
-        self.assertIn("does not know night", nonio("history", self.out).stderr)
+        self.assertIn("does not know night", nonio("machine", "history", self.out).stderr)
 
     def test_on_a_terminal(self):
-        table = nonio("history", self.out).stdout.splitlines()
+        table = nonio("machine", "history", self.out).stdout.splitlines()
         self.assertEqual(table[0].split()[0], "machine")
         self.assertEqual(len(table), 1 + len(self.history["machines"]))
-        said = nonio("history", self.out, "LAB-02", "--axis", "X", "--quantity", "B_mean").stdout
+        said = nonio("machine", "history", self.out, "LAB-02", "--axis", "X", "--quantity", "B_mean").stdout
         self.assertRegex(said, r"2025-07-14 .*\n +~ -4\.\d+ ± 0\.\d+ um, p < 0\.0001: changed; no event is known\n +2026-01-24")
-        said = nonio("history", self.out, "LAB-03", "--axis", "Z", "--quantity", "B_mean").stdout
+        said = nonio("machine", "history", self.out, "LAB-03", "--axis", "Z", "--quantity", "B_mean").stdout
         self.assertIn("* crash: Drove into the pallet", said)
         self.assertIn("slope", said)
-        said = nonio("history", self.out, "LAB-01", "--axis", "X", "--quantity", "B_mean").stdout
+        said = nonio("machine", "history", self.out, "LAB-01", "--axis", "X", "--quantity", "B_mean").stdout
         self.assertRegex(said, r"no change without a known event; from 0\.\d+ on one would have been seen")
-        self.assertIn('nearest: "LAB-01"', nonio("history", self.out, "LAB-O1", expect=2).stderr)
-        self.assertIn("nonio run", nonio("history", self.site, expect=2).stderr)
-        one = json.loads(nonio("history", self.out, "LAB-02", "--json").stdout)
+        self.assertIn('nearest: "LAB-01"', nonio("machine", "history", self.out, "LAB-O1", expect=2).stderr)
+        self.assertIn("nonio run", nonio("machine", "history", self.site, expect=2).stderr)
+        one = json.loads(nonio("machine", "history", self.out, "LAB-02", "--json").stdout)
         self.assertEqual({s["machine"] for s in one["series"]}, {"LAB-02"})
 
     def test_the_store_keeps_when_machines_are_due(self):
@@ -143,16 +143,16 @@ class Laboratory(unittest.TestCase):
         shutil.copy(self.site / "events.toml", site)
         (site / "site.toml").write_text('[[due]]\nmonths = 12\n[[due]]\nmachine = "LAB-11"\nmonths = 6\n')
         nonio("run", site, "--out", out, "--quiet", "--date", "2026-11-22")
-        self.assertEqual(json.loads(nonio("history", out, "--json").stdout)["machines"][0]["next_due"][:7], "2026-01")
+        self.assertEqual(json.loads(nonio("machine", "history", out, "--json").stdout)["machines"][0]["next_due"][:7], "2026-01")
         kept = sqlite3.connect(out / "history.sqlite").execute("SELECT * FROM due_rule ORDER BY machine").fetchall()
         self.assertEqual(kept, [("", 12), ("LAB-11", 6)])
 
     def test_what_is_out_names_the_event_of_its_jump(self):
         site, out = self.site.parent / "said", self.site.parent / "said-out"
         shutil.copytree(self.site / "LAB-02", site / "LAB-02")
-        nonio("event", site, "--machine", "LAB-02", "--axis", "X", "--kind", "crash", "--date", "2025-10-14", "--text", "tool in the chuck")
+        nonio("machine", "event", site, "--machine", "LAB-02", "--axis", "X", "--kind", "crash", "--date", "2025-10-14", "--text", "tool in the chuck")
         nonio("run", site, "--out", out, "--quiet", "--date", "2026-11-22")
-        lines = json.loads(nonio("morning", out, "--json", expect=1).stdout)["lines"]
+        lines = json.loads(nonio("status", "--actions", out, "--json", expect=1).stdout)["lines"]
         says = [line["says"] for line in lines if (line["kind"], line["machine"], line["axis"]) == ("out", "LAB-02", "X")]
         self.assertEqual(len(says), 1)
         self.assertIn("between 2025-07-14 and 2026-01-24: crash: tool in the chuck", says[0])
@@ -170,7 +170,7 @@ class Laboratory(unittest.TestCase):
                        for row in rows]
             (folder / "x-left.csv").write_text("".join(changed))
         nonio("run", site, "--out", out, "--quiet", "--date", "2025-02-01")
-        lines = json.loads(nonio("morning", out, "--json", expect=1).stdout)["lines"]  # the table that was on is not stated
+        lines = json.loads(nonio("status", "--actions", out, "--json", expect=1).stdout)["lines"]  # the table that was on is not stated
         predictions = {p["name"]: p["predicted"] for t in json.loads((out / "2025-01-lab-05" / "results.json").read_text())["tables"]
                        for p in t.get("predictions", [])}
         return [line for line in lines if line["id"].startswith("morning.table")], predictions, (out / "machines" / "LAB-05.html").read_text()
@@ -212,12 +212,12 @@ class Laboratory(unittest.TestCase):
             stated = [a["values"]["B_mean"]["U"] for a in results["analyses"] if "U" in a.get("values", {}).get("B_mean", {})
                       and abs(a["values"]["B_mean"]["value"] - p["value"]) < 1e-9]
             self.assertIn(round(p["U"], 9), [round(U, 9) for U in stated], p)
-        rows = json.loads(nonio("query", self.out, "LAB-02", "--axis", "X", "--quantity", "B_mean", "--json").stdout)["points"]
+        rows = json.loads(nonio("machine", "list", self.out, "LAB-02", "--axis", "X", "--quantity", "B_mean", "--json").stdout)["points"]
         for campaign in {r["campaign"] for r in rows}:
             self.assertEqual(len({round(r["U"], 9) for r in rows if r["campaign"] == campaign}), 1, rows)
 
     def test_nothing_keeps_the_date_of_an_axis_that_is_out(self):
-        out = {(line["machine"], line["axis"]) for line in json.loads(nonio("morning", self.out, "--json", expect=1).stdout)["lines"]
+        out = {(line["machine"], line["axis"]) for line in json.loads(nonio("status", "--actions", self.out, "--json", expect=1).stdout)["lines"]
                if line["kind"] == "out"}
         self.assertIn(("LAB-02", "X"), out)
         for s in self.history["series"]:
@@ -238,7 +238,7 @@ class Laboratory(unittest.TestCase):
         nonio("run", site, "--out", out, "--quiet", "--date", "2026-11-21")
         shutil.rmtree(site / "LAB-02")
         nonio("run", site, "--out", out, "--quiet", "--date", "2026-11-22", expect=1)
-        told = json.loads(nonio("history", out, "--json").stdout)
+        told = json.loads(nonio("machine", "history", out, "--json").stdout)
         self.assertEqual(len(told["vanished"]), 8)
         self.assertEqual({v["last_seen_night"] for v in told["vanished"]}, {1})
         self.assertTrue(all(v["folder"].startswith("LAB-02/") for v in told["vanished"]))

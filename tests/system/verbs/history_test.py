@@ -33,36 +33,36 @@ class HistoryVerbs(VerbTest):
         return self.nonio("run", self.site, "--out", self.out, "--date", "2026-06-01", expect=expect)
 
     def event(self, *args, expect=0):
-        return self.nonio("event", self.site, *args, expect=expect)
+        return self.nonio("machine", "event", self.site, *args, expect=expect)
 
     def test_query(self):
         self.write("c", "2025-01-02", 1, backlash=4)
         self.write("d", "2026-01-02", 2, backlash=6)
         self.write("e", "2026-02-02", 3, MACHINE.replace("S-0042", "s 0O42"))
         self.night()
-        said = self.nonio("query", self.out).stdout
+        said = self.nonio("machine", "list", self.out).stdout
         self.assertIn('one machine? "S-0042" and "s 0O42": spelled alike', said)
         result = json.loads((self.out / "d" / "results.json").read_text())
         expected = next(a for a in result["analyses"] if a["plugin"] == "iso230-2")["values"]["B_mean"]["value"]
         wanted = ("S-0042", "--quantity", "B_mean", "--source", "iso230-2", "--from", "2026-01-01", "--to", "2026-12-31")
-        points = json.loads(self.nonio("query", self.out, *wanted, "--json").stdout)["points"]
+        points = json.loads(self.nonio("machine", "list", self.out, *wanted, "--json").stdout)["points"]
         self.assertEqual([(p["campaign"], p["value"], p["unit"]) for p in points], [("d", expected, "um")])
-        rows = list(csv.DictReader(io.StringIO(self.nonio("query", self.out, *wanted, "--csv").stdout)))
+        rows = list(csv.DictReader(io.StringIO(self.nonio("machine", "list", self.out, *wanted, "--csv").stdout)))
         self.assertEqual([(r["campaign"], float(r["value"])) for r in rows], [("d", expected)])
-        self.assertIn(f" {expected:.2f} ", self.nonio("query", self.out, *wanted).stdout)
+        self.assertIn(f" {expected:.2f} ", self.nonio("machine", "list", self.out, *wanted).stdout)
         (self.site / "site.toml").write_text('[[alias]]\nname = "s 0O42"\nasset = "S-0042"\nwhy = "same plate"\n')
         self.night()
-        everything = self.nonio("query", self.out, "s 0O42", "--quantity", "B_mean", "--source", "iso230-2", "--json").stdout
+        everything = self.nonio("machine", "list", self.out, "s 0O42", "--quantity", "B_mean", "--source", "iso230-2", "--json").stdout
         self.assertEqual([p["campaign"] for p in json.loads(everything)["points"]], ["c", "d", "e"])
-        self.assertNotIn("one machine?", self.nonio("query", self.out).stdout)
+        self.assertNotIn("one machine?", self.nonio("machine", "list", self.out).stdout)
 
     def test_query_says_what_is_wrong(self):
-        self.assertIn("nonio run SITE", self.nonio("query", self.site, expect=2).stderr)
+        self.assertIn("nonio run SITE", self.nonio("machine", "list", self.site, expect=2).stderr)
         self.write("c", "2025-01-02", 1)
         self.night()
         for args, words in ((("S-042",), 'nearest: "S-0042"'), (("--axis", "Q"), 'no axis "Q"'),
                             (("--quantity", "B_maen"), 'nearest: "B_mean"'), (("--from", "2026-13-01"), "expected a day")):
-            self.assertIn(words, self.nonio("query", self.out, *args, expect=2).stderr)
+            self.assertIn(words, self.nonio("machine", "list", self.out, *args, expect=2).stderr)
 
     def test_events(self):
         self.write("c", "2025-01-02", 1)
@@ -102,7 +102,7 @@ class HistoryVerbs(VerbTest):
         (self.site / "site.toml").write_text("[limits]\nvanished = 1\n")
         self.night()
         (self.site / "site.toml").write_text("# all limits are removed\n")
-        self.nonio("forget", self.site, "d", "--by", "B", "--why", "sold")
+        self.nonio("machine", "remove", self.site, "d", "--by", "B", "--why", "sold")
         self.assertNotIn("vanished", self.night().stderr)
 
 

@@ -64,7 +64,7 @@ class Hostile(VerbTest):
     def test_kinds_without_an_axis(self):
         text = manifest([]).replace('kind = "axis"\naxis = "X"', 'kind = "diagonal"\nfrom = { X = 0 }\nto = { X = 9 }')
         self.campaign(text, x=readings())
-        self.assertEqual(self.nonio("compare", self.folder, expect=1).stdout.strip(), "")
+        self.assertEqual(self.nonio("model", "compare", self.folder, expect=1).stdout.strip(), "")
 
 
 if __name__ == "__main__":

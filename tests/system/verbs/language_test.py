@@ -36,7 +36,7 @@ class Languages(VerbTest):
                 for name in ("summary", "title", "attention"):
                     self.assertIn(words[name], summary)
                 for folder in (self.out / "c", self.folder):
-                    shown = self.nonio("show", folder, "--quiet").stdout
+                    shown = self.nonio("show", folder, "--all", "--quiet").stdout
                     self.assertIn(words["title"], shown)
                     self.assertIn(words["value"], shown)
 
@@ -56,10 +56,10 @@ class Languages(VerbTest):
         for language, words in WORDS.items():
             with self.subTest(language):
                 self.speak(language)
-                shown = self.nonio("explain", self.folder, "--quiet").stdout
+                shown = self.nonio("model", "explain", self.folder, "--quiet").stdout
                 self.assertIn(words["verdict"] + words["missing"] + " backlash:X", shown)
                 self.assertIn(words["floor"], shown)
-                said = self.nonio("explain", self.folder, "--quiet", "--json").stdout
+                said = self.nonio("model", "explain", self.folder, "--quiet", "--json").stdout
                 plain = plain or said
                 self.assertEqual(plain, said)
 
@@ -69,8 +69,8 @@ class Languages(VerbTest):
             with self.subTest(language):
                 self.speak(language)
                 self.assertIn(words["verdict"] + words["complete"],
-                              self.nonio("explain", self.folder, "--quiet").stdout)
-        said = json.loads(self.nonio("explain", self.folder, "--quiet", "--json").stdout)
+                              self.nonio("model", "explain", self.folder, "--quiet").stdout)
+        said = json.loads(self.nonio("model", "explain", self.folder, "--quiet", "--json").stdout)
         self.assertEqual("nothing", said["verdict"]["kind"])
 
     def test_model_add_speaks_the_language(self):

@@ -56,7 +56,7 @@ class Mornings(unittest.TestCase):
         print(f"seed {SEED}", flush=True)
         cls.hit, cls.quiet = Site(above, "lab", count=5), Site(above, "quiet", count=4)
         cls.summaries = [cls.hit.night(date) for date in ("2026-11-22", "2026-11-23")]
-        cls.lines = json.loads(nonio("morning", cls.hit.out, "--json").stdout)["lines"]
+        cls.lines = json.loads(nonio("status", "--actions", cls.hit.out, "--json").stdout)["lines"]
 
     @classmethod
     def tearDownClass(cls):

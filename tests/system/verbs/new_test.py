@@ -44,9 +44,9 @@ class New(VerbTest):
         for name, options in (("a", ("--maker", "Zayer", "--serial", "1234")), ("b", ("--asset", "S-7"))):
             self.nonio("new", "campaign", lab / name, "--defaults", *options)
         _, out = self.run_site(lab)
-        machines = {m["machine"] for m in json.loads(self.nonio("history", out, "--json").stdout)["machines"]}
+        machines = {m["machine"] for m in json.loads(self.nonio("machine", "history", out, "--json").stdout)["machines"]}
         self.assertEqual(machines, {"Zayer 1234", "S-7"})
-        lines = json.loads(self.nonio("morning", out, "--json", expect=None).stdout)["lines"]
+        lines = json.loads(self.nonio("status", "--actions", out, "--json", expect=None).stdout)["lines"]
         self.assertEqual([l["campaigns"] for l in lines if l["id"].startswith("morning.no-machine")], [["first-campaign"]])
 
     def test_every_commented_key_is_one(self):

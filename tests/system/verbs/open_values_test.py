@@ -156,7 +156,7 @@ class OpenValues(VerbTest):
             out = site.with_name(f"out{n}")
             Site(site, rng)
             self.nonio("run", site, "--out", out, "--quiet", "--date", "2026-02-01", expect=None)
-            done = self.nonio("morning", out, "--json", expect=None)
+            done = self.nonio("status", "--actions", out, "--json", expect=None)
             lines = json.loads(done.stdout)["lines"]
             want, found = expected(out), said(lines)
             for i, (a, b) in enumerate(zip(want, found)):
@@ -176,7 +176,7 @@ class OpenValues(VerbTest):
         summary = json.loads((out / "summary.json").read_text())
         self.assertEqual(summary["lines"], lines)
         self.assertIn(f"{asks} line", (out / "summary.txt").read_text().splitlines()[0])
-        text = self.nonio("morning", out, expect=None).stdout
+        text = self.nonio("status", "--actions", out, expect=None).stdout
         page = re.sub(r"<[^>]*>", "", (out / "index.html").read_text())
         for _, _, quantity, _, decision in values:
             for view in (text, page):
@@ -199,11 +199,11 @@ class OpenValues(VerbTest):
             'tolerance_um = { A = 100 }\n' + INSTRUMENT + '[run]\noutputs = ["json"]\n'
             '[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n')
         self.nonio("run", site, "--out", out, "--quiet", "--date", "2026-02-01")
-        self.assertEqual(self.nonio("morning", out, "--since", "2026-01-01").returncode, 0)
+        self.assertEqual(self.nonio("status", "--actions", out, "--since", "2026-01-01").returncode, 0)
         text = (site / "c" / "campaign.toml").read_text()
         (site / "c" / "campaign.toml").write_text(text.replace("A = 100", "A = 1"))
         self.nonio("run", site, "--out", out, "--quiet", "--date", "2026-02-02")
-        later = self.nonio("morning", out, "--since", "2026-01-01", expect=None).stdout
+        later = self.nonio("status", "--actions", out, "--since", "2026-01-01", expect=None).stdout
         self.assertIn("None of the", later)
         self.assertNotIn("Nothing needs a decision", later)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""nonio show and open; colours on a terminal only."""
+"""nonio show, also of a machine and on the desktop; colours on a terminal only."""
 import json
 import os
 import pathlib
@@ -63,7 +63,8 @@ class Show(Nights):
         now = self.nonio("show", self.folder).stdout
         self.assertEqual(os.listdir(self.folder.parent), ["c"])
         self.night()
-        self.assertEqual(now, self.nonio("show", self.out / "c").stdout)
+        report = f"\nReport: {self.out}/c/report.pdf"
+        self.assertEqual(now, self.nonio("show", self.out / "c").stdout.replace(report, ""))
         written = (self.out / "c" / "results.json").read_text()
         self.assertEqual(self.nonio("show", self.out / "c", "--json").stdout, written)
         self.assertEqual(self.nonio("show", self.folder, "--json").stdout, written)
@@ -71,10 +72,11 @@ class Show(Nights):
     def test_what_it_says(self):
         self.night()
         results = json.loads((self.out / "c" / "results.json").read_text())
-        shown = self.nonio("show", self.out / "c").stdout
-        self.assertRegex(shown, r"^c  attention\n")
-        self.assertRegex(shown, r"(?m)^ +A +[\d.]+ +[\d.]+ +um +0\.001 +does not conform$")
-        self.assertRegex(shown, r"(?m)^ +B +[\d.]+ +[\d.]+ +um +100 +conforms$")
+        shown = self.nonio("show", self.out / "c", "--all").stdout
+        self.assertRegex(shown, r"^c  action required\n")
+        self.assertRegex(shown, r"(?m)^    !  A +[\d.]+ +[\d.]+ +um +0\.001 +does not conform$")
+        self.assertRegex(shown, r"(?m)^    ok B +[\d.]+ +[\d.]+ +um +100 +conforms$")
+        self.assertLess(shown.index("does not conform"), shown.index("  conforms"))
         self.assertIn("axis X, F: there is no value", shown)
         found = [f for a in results["analyses"] for f in a["findings"]]
         self.assertTrue(any(f["id"].startswith("reversal.") for f in found))
@@ -84,7 +86,31 @@ class Show(Nights):
         for output in results["outputs"]:
             self.assertIn(output["file"], shown)
         self.assertNotIn("{", shown)
-        self.assertLessEqual(max(map(len, shown.splitlines())), 80)
+        self.assertLessEqual(max(map(len, shown.splitlines())), 100)
+
+    def test_what_matters_comes_first_and_once(self):
+        self.night()
+        results = json.loads((self.out / "c" / "results.json").read_text())
+        shown = self.nonio("show", self.out / "c").stdout
+        self.assertLess(len(shown.splitlines()), len(self.nonio("show", self.out / "c", "--all").stdout.splitlines()))
+        self.assertRegex(shown, r"(?m)^    !  A .*does not conform$")
+        self.assertNotRegex(shown, r"(?m)A\+ ")
+        self.assertIn("axis X, F: there is no value", shown)
+        self.assertIn(f"Report: {self.out}/c/report.pdf\n", shown)
+        self.assertNotIn("values.csv", shown)
+        self.assertNotIn("attention", shown)
+        for a in results["analyses"]:
+            for f in a["findings"]:
+                if f["severity"] == "attention":
+                    self.assertEqual(1, " ".join(shown.split()).count(" ".join(f["advice"].split())))
+
+    def test_a_machine(self):
+        self.night()
+        machine = json.loads(self.nonio("machine", "list", self.out, "--json").stdout)["machines"][0]["machine"]
+        if machine:
+            self.assertEqual(self.nonio("show", machine, "--out", self.out).stdout,
+                             self.nonio("machine", "history", self.out, machine).stdout)
+        self.assertIn("no machine", self.nonio("show", "nobody", "--out", self.out, expect=2).stderr)
 
     def test_a_failed_campaign_shows_its_errors(self):
         self.broken()
@@ -106,12 +132,12 @@ class Show(Nights):
         for folder in sorted(site.glob("*/campaign.toml")):
             done = self.nonio("show", folder.parent, expect=1 if "08-broken" in str(folder) else 0)
             self.assertNotIn("{", done.stdout)
-            self.assertLessEqual(max(map(len, done.stdout.splitlines())), 120, folder)
+            self.assertLessEqual(max(map(len, done.stdout.splitlines())), 100, folder)
 
 
 class Open(Nights):
     def open(self, *words, expect=0, **environment):
-        done = subprocess.run([NONIO, "open", *map(str, words)], capture_output=True, text=True, check=False,
+        done = subprocess.run([NONIO, "show", "--open", *map(str, words)], capture_output=True, text=True, check=False,
                               cwd=self.site.parent, env={"PATH": "/usr/bin:/bin", **environment})
         self.assertEqual(done.returncode, expect, done.stderr)
         return done
@@ -179,7 +205,7 @@ class Colours(Nights):
         self.assertEqual(status, 1)
         self.assertIn(b"\033[31mfailed", shown)
         self.assertIn(b"\033[31mdoes not conform\033[0m", on_terminal("show", self.folder)[0])
-        self.assertIn(b"\033[33mattention\033[0m", on_terminal("show", self.folder)[0])
+        self.assertIn(b"\033[33maction required\033[0m", on_terminal("show", self.folder)[0])
 
     def test_never_in_json(self):
         for words in (["show", self.folder, "--json"], ["version", "--json"], ["run", self.site, "--out", self.out, "--json"]):

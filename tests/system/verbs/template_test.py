@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""nonio template check: a site's own templates, laid over the installed ones."""
+"""nonio check --only-templates: a site's own templates, laid over the installed ones."""
 import json
 import os
 import pathlib
@@ -25,7 +25,7 @@ class TemplateCheck(unittest.TestCase):
         path.write_text(text.replace(old, new, 1), encoding="utf-8")
 
     def check(self):
-        done = subprocess.run([NONIO, "template", "check", "--json", self.site], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([NONIO, "check", "--only-templates", "--json", self.site], capture_output=True, text=True, timeout=60)
         answer = json.loads(done.stdout) if done.stdout else None
         return done, answer
 

@@ -44,7 +44,7 @@ class Places(unittest.TestCase):
         return self.texts[name][error["line"] - 1]
 
     def controls(self):
-        done = subprocess.run([NONIO, "controllers", "--json"], capture_output=True, text=True, timeout=60, check=True)
+        done = subprocess.run([NONIO, "table", "controls", "--json"], capture_output=True, text=True, timeout=60, check=True)
         return {c["name"]: c for c in json.loads(done.stdout)["controllers"]}
 
     def test_a_sign_that_nobody_knows(self):

@@ -234,18 +234,18 @@ class Stopped(unittest.TestCase):
         return sorted(f.name for f in (self.out / campaign).iterdir() if f.name.startswith(tuple(CONTROL)))
 
     def release(self, campaign, reasons):
-        done = subprocess.run([NONIO, "release", str(self.site / campaign), "--by", "B. Sample"] +
+        done = subprocess.run([NONIO, "certificate", "approve", str(self.site / campaign), "--by", "B. Sample"] +
                               [part for r in sorted(reasons) for part in ("--reason", f"{r}={REASON}")],
                               capture_output=True, text=True, timeout=300)
         return done.returncode, done.stdout + done.stderr
 
     def waiting(self, campaign):
-        done = subprocess.run([NONIO, "release", str(self.site / campaign), "--list", "--json"], capture_output=True,
+        done = subprocess.run([NONIO, "certificate", "approve", str(self.site / campaign), "--list", "--json"], capture_output=True,
                               text=True, timeout=300)
         return {f["id"] for d in json.loads(done.stdout)["drafts"] for f in d["findings"] if f["severity"] == "attention"}
 
     def numbers(self):
-        done = subprocess.run([NONIO, "certificates", str(self.site), "--json"], capture_output=True, text=True, timeout=300)
+        done = subprocess.run([NONIO, "certificate", "list", str(self.site), "--json"], capture_output=True, text=True, timeout=300)
         return {c["campaign"] for c in json.loads(done.stdout)["certificates"]}
 
     def test_every_finding_has_a_case(self):

@@ -89,7 +89,7 @@ TEST_F(Certificate, SaysWhatTheStandardAsksFor) {
                            "reproduced only in full",
                            "Authorised by",
                            "B. Verdi",
-                           "nonio verify",
+                           "nonio certificate verify",
                            "Page 1 of",
                            "End of 2026-0012."})
     EXPECT_TRUE(says(page, what)) << what;

@@ -78,6 +78,30 @@ TEST(SitePages, NamesRunNoScriptAndLeaveNoFolder) {
     EXPECT_TRUE(name == "due.ics" || !has(bytes, "<script>alert")) << name;
 }
 
+TEST(SitePages, AChartShowsCharactersThatTheFontsLack) {
+  SiteHistory site = made_site();
+  site.comparisons.front().machines.front().machine = "\u05D0-7 <b>\x01";
+  const auto pages = pages_of(site);
+  EXPECT_TRUE(has(pages.at("compare.html"), ">\u05D0-7 &lt;b&gt;\uFFFD</text>"));
+}
+
+TEST(SitePages, ChartsNeedNoFonts) {
+  Templates words_only = templates();
+  words_only.files.clear();
+  const auto pages = site_pages(made_site(), words_only, "en");
+  ASSERT_TRUE(pages) << pages.error().message;
+  for (const Artifact& page : *pages)
+    if (page.name == "compare.html") EXPECT_TRUE(has(page.bytes, ">S-0042</text>"));
+}
+
+TEST(SitePages, PointsOfAChartLeadToTheirReports) {
+  const auto pages = pages_of(made_site());
+  const std::string& page = pages.at("machines/S-0042.html");
+  EXPECT_TRUE(has(page, "<a href=\"../c5/report.pdf\"><title>2025-07-14 2023-5: −9.30 ± 0.40 µm"));
+  EXPECT_TRUE(has(page, "<title>2024-10-02 Collision with the vice</title>"));
+  EXPECT_TRUE(has(page, "<title>2024-01-14 2023-2: −5.30 ± 0.40 µm ("));
+}
+
 TEST(SitePages, NothingIsFetchedFromAnywhere) {
   for (const auto& [name, bytes] : pages_of(made_site())) {
     EXPECT_FALSE(has(bytes, "http://") || has(bytes, "https://") || has(bytes, " src=")) << name;

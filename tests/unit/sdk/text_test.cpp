@@ -9,6 +9,7 @@
 #include "nonio/sdk/column_map.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/json.h"
+#include "nonio/sdk/json_writer.h"
 
 using namespace nonio;
 
@@ -90,6 +91,32 @@ TEST(Json, TextAndNumbers) {
   EXPECT_EQ(json_text("\xB5m"), "\"\xEF\xBF\xBDm\"");
   EXPECT_EQ(json_number(0.1), "0.1");
   EXPECT_EQ(json_number(NAN), "null");
+}
+
+TEST(Text, JsonInLinesAndInOneLine) {
+  using Layout = JsonWriter::Layout;
+  const auto written = [](Layout layout) {
+    JsonWriter json(layout);
+    json.begin_object();
+    json.member("a", "</script>&\xB5");
+    json.member("b", std::vector<std::string>{"x"});
+    json.key("c");
+    json.begin_array();
+    json.end_array();
+    json.member("d", 5.0);
+    json.member("e", NAN);
+    json.end_object();
+    return json.take();
+  };
+  EXPECT_EQ(
+      written(Layout::lines),
+      "{\n \"a\": \"</script>&\uFFFD\",\n \"b\": [\n  \"x\"\n ],\n \"c\": [],\n \"d\": 5.0,\n "
+      "\"e\": null\n}\n");
+  EXPECT_EQ(written(Layout::one_line),
+            "{\"a\":\"</script>&\uFFFD\",\"b\":[\"x\"],\"c\":[],\"d\":5.0,\"e\":null}");
+  EXPECT_EQ(
+      written(Layout::in_script),
+      "{\"a\":\"\\u003c/script\\u003e\\u0026\uFFFD\",\"b\":[\"x\"],\"c\":[],\"d\":5.0,\"e\":null}");
 }
 
 TEST(Csv, TextIsQuotedAndNoFormula) {

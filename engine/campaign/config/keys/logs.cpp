@@ -5,7 +5,8 @@ namespace nonio::config {
 namespace declared {
 
 constexpr Words an_asset_or_serial =
-    "The machine as `nonio query` names it: its asset, or maker and serial with a space between "
+    "The machine as `nonio machine list` names it: its asset, or maker and serial with a space "
+    "between "
     "them.";
 constexpr Key written_by = {
     .name = "by", .holds = text, .help = "Name of the author of this entry.", .required = true};

@@ -169,10 +169,11 @@ inline constexpr Key required_format() {
 
 inline constexpr Key run_key = {
     .name = "run", .holds = table, .help = "Selected analyses and outputs.", .keys = run_keys};
-inline constexpr Key options_key = {.name = "options",
-                                    .holds = options,
-                                    .help =
-                                        "Options of plugins, [options.iso230-2]; `nonio plugins` "
-                                        "lists them."};
+inline constexpr Key options_key = {
+    .name = "options",
+    .holds = options,
+    .help =
+        "Options of plugins, [options.iso230-2]; `nonio plugin list` "
+        "lists them."};
 
 }  // namespace nonio::config::declared

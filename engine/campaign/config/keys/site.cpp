@@ -4,7 +4,7 @@
 namespace nonio::config {
 namespace declared {
 
-constexpr Choice releases[] = {{"by-hand", "a person, with nonio release"},
+constexpr Choice releases[] = {{"by-hand", "a person, with nonio certificate approve"},
                                {"automatic", "the night, by the rules of may_stand"}};
 constexpr Key standing_keys[] = {
     {.name = "finding",
@@ -134,7 +134,7 @@ constexpr Key limits_keys[] = {
     {.name = "vanished",
      .holds = whole,
      .help = "Number of campaigns of the night before that may be missing; with more of them the "
-             "exit status is 1. Record campaigns removed on purpose with `nonio forget`.",
+             "exit status is 1. Record campaigns removed on purpose with `nonio machine remove`.",
      .otherwise = "0"},
 };
 
@@ -146,7 +146,7 @@ constexpr Key alias_keys[] = {
      .required = true},
     {.name = "asset",
      .holds = text,
-     .help = "The same machine as `nonio query` names it.",
+     .help = "The same machine as `nonio machine list` names it.",
      .required = true},
     {.name = "why", .holds = text, .help = "Evidence for it.", .required = true},
 };
@@ -186,7 +186,8 @@ constexpr Key database_keys[] = {
 constexpr Key due_keys[] = {
     {.name = "machine",
      .holds = text,
-     .help = "The machine for which it holds, as `nonio query` calls it; without it for all that "
+     .help = "The machine for which it holds, as `nonio machine list` calls it; without it for all "
+             "that "
              "no other says."},
     {.name = "months",
      .holds = whole,
@@ -239,20 +240,22 @@ constexpr Key signing_keys[] = {
              "signer_roots and time_stamp_roots."},
     {.name = "signer_roots",
      .holds = text,
-     .help = "PEM file with the roots of signers, for `nonio verify`."},
+     .help = "PEM file with the roots of signers, for `nonio certificate verify`."},
     {.name = "time_stamp_roots",
      .holds = text,
      .help = "PEM file with the roots of time servers; they make no signer."},
     {.name = "revocation",
      .holds = text,
-     .help = "PEM file with revocation lists, for `nonio verify`."},
+     .help = "PEM file with revocation lists, for `nonio certificate verify`."},
     {.name = "signer",
      .holds = text,
-     .help = "Signer that `nonio verify` expects: subject, or SHA-256 of the certificate; "
-             "alternative to signers."},
+     .help =
+         "Signer that `nonio certificate verify` expects: subject, or SHA-256 of the certificate; "
+         "alternative to signers."},
     {.name = "signers",
      .holds = tables,
-     .help = "Signers that `nonio verify` expects, each with the days on which it signed.",
+     .help =
+         "Signers that `nonio certificate verify` expects, each with the days on which it signed.",
      .keys = signer_keys},
     {.name = "time_stamp",
      .holds = text,

@@ -61,7 +61,7 @@ struct About {
   std::vector<Decided> decided{};
 };
 
-/// How an evaluation is called in a DCC, and where `nonio verify` looks for it: "iso230-2 of X".
+/// How an evaluation is called in a DCC, and where `nonio certificate verify` looks for it: "iso230-2 of X".
 std::string name_of(const Results::Analysed&);
 
 /// What the schema wants must be there: laboratory, customer, item, dates, at least one result.

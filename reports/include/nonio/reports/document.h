@@ -27,14 +27,15 @@ enum class Marker : std::uint8_t {
   down,
   dot,
   ring,
-  around
+  around,
+  square
 };  // around: leaves its middle
 
 struct Style {
   double page_width = 595.28, page_height = 841.89;  // ISO 216 A4
   double left = 51, right = 51, top = 43, bottom = 43;
   double title = 18, heading = 12, subheading = 9.5, body = 8.5, small = 7.5;
-  double plot_height = 150;
+  double plot_height = 150, rule_width = 0.25;  ///< of plots
   double see_through = 0.25;
   Colour text, muted, rule, shade, accent, attention, failed, good, plus, minus;
 };
@@ -90,6 +91,9 @@ struct Plot {
     Marker marker = Marker::none;
     double marker_size = 2.2;
     std::string legend{};  ///< empty: not in the legend
+    /// Of points, where a page is drawn: what is said of each when it is pointed at, and where it
+    /// leads; one title alone is of the whole curve.
+    std::vector<std::string> titles{}, links{};
   };
   /// A band across the whole width, behind everything.
   struct Belt {
@@ -100,6 +104,16 @@ struct Plot {
   struct Span {
     double from, to;
     std::string text;
+  };
+  /// A limit across the whole width.
+  struct Limit {
+    double at;
+    Colour colour{};
+  };
+  /// Something that happened at a place of the horizontal axis, with a short text at its top.
+  struct Event {
+    double at;
+    std::string text, title;
   };
   /// A word in the picture, beside its place as seen from the middle.
   struct Label {
@@ -112,7 +126,12 @@ struct Plot {
   std::vector<Label> labels{};  ///< of a picture without scales
   std::vector<Span> spans{};
   std::vector<Belt> belts{};
-  std::optional<std::pair<double, double>> range{};  ///< of the vertical axis; else what is drawn
+  std::vector<Limit> limits{};
+  std::vector<Event> events{};
+  std::optional<std::pair<double, double>> range{};    ///< of the vertical axis; else what is drawn
+  std::optional<std::pair<double, double>> x_range{};  ///< the same of the horizontal axis
+  /// Of the horizontal axis, where it has no numbers: days, names.
+  std::vector<std::pair<double, std::string>> ticks{};
   bool degrees = false;  ///< the horizontal axis is an angle: ticks at parts of a turn
   bool whole = false;    ///< the horizontal axis counts: ticks at whole numbers
   /// The horizontal axis has a lane of width 1 for each name, from 0 on.

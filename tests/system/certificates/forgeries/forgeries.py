@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Forges certificates in every way that we know of, from a key made for the occasion, and asks `nonio verify` about each.
+"""Forges certificates in every way that we know of, from a key made for the occasion, and asks `nonio certificate verify` about each.
 
     NONIO=build/dev/bin/nonio python3 tests/system/certificates/forgeries/forgeries.py [--keep FOLDER] [--seed N]
 
@@ -79,7 +79,7 @@ def issue(root, keys):
     subprocess.run([NONIO, "run", str(site), "--out", str(root / "out")], check=True, timeout=300, stdout=subprocess.DEVNULL)
     reasons = [f"--reason={finding}=as found" for finding in
                ("reversal.lost-motion", "tolerance.X.A.iso230-2", "tolerance.X.B.iso230-2")]
-    subprocess.run([NONIO, "release", str(site / "adjusted"), "--by", "B. Sample", *reasons], check=True, timeout=300,
+    subprocess.run([NONIO, "certificate", "approve", str(site / "adjusted"), "--by", "B. Sample", *reasons], check=True, timeout=300,
                    stdout=subprocess.DEVNULL)
     folder = root / "out" / "adjusted"
     return site, (folder / "certificate.pdf").read_bytes(), (folder / "certificate.xml").read_text()
@@ -507,7 +507,7 @@ def whom(site):
 
 
 def verify(site, files):
-    done = subprocess.run([NONIO, "verify", "--json", *whom(site), *map(str, files)], capture_output=True, text=True, timeout=1800)
+    done = subprocess.run([NONIO, "certificate", "verify", "--json", *whom(site), *map(str, files)], capture_output=True, text=True, timeout=1800)
     if done.returncode not in (0, 1, 3, 4, 5, 6, 7):
         sys.exit(done.stderr)
     return {pathlib.Path(a["file"]).name: a for a in map(json.loads, done.stdout.splitlines())}
@@ -552,8 +552,8 @@ def check_terminal(root, site, keys, pdf, xml):
     file.write_bytes(Pdf(pdf).write(keys.key("evil"), keys.pem("evil")))
     other = root / "y.xml: VALID\n\u202e.xml"
     other.write_text(resign(xml, keys, "evil"))
-    for arguments in ([], ["--json"]):
-        said = subprocess.run([NONIO, "verify", *arguments, *whom(site), str(file), str(other)], capture_output=True, timeout=300).stdout.decode()
+    for arguments in (["-v"], ["--json"]):
+        said = subprocess.run([NONIO, "certificate", "verify", *arguments, *whom(site), str(file), str(other)], capture_output=True, timeout=300).stdout.decode()
         strange = [c for c in said if c != "\n" and (c < " " or "\x7f" <= c <= "\x9f" or c in "\u202e\u200b")]
         if strange or any(line.endswith(": VALID") for line in said.splitlines()) or "B. Sample" not in said:
             sys.exit(f"reaches the terminal: {strange}\n{said}")

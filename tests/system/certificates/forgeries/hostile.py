@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that nobody signed and that are made to be expensive: what `nonio verify` spends on each.
+"""Files that nobody signed and that are made to be expensive: what `nonio certificate verify` spends on each.
 
     NONIO=build/dev/bin/nonio python3 tests/system/certificates/forgeries/hostile.py [--measure]
 
@@ -126,7 +126,7 @@ def spent(site, file):
     if child == 0:
         with open(os.devnull, "wb") as nothing:
             os.dup2(nothing.fileno(), 1)
-            os.execv(NONIO, [NONIO, "verify", *whom(site), str(file)])
+            os.execv(NONIO, [NONIO, "certificate", "verify", *whom(site), str(file)])
     _, status, usage = os.wait4(child, 0)
     return os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 

@@ -235,13 +235,13 @@ class Update:
 
 
 def restamp(files, *arguments, wanted=0):
-    done = subprocess.run([NONIO, "restamp", *map(str, arguments), *map(str, files)], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([NONIO, "certificate", "extend", *map(str, arguments), *map(str, files)], capture_output=True, text=True, timeout=120)
     assert done.returncode == wanted, done.stdout + done.stderr
     return done.stdout + done.stderr
 
 
 def honest(root, pdf, authority, whom):
-    """Files as `nonio restamp` makes them, by name."""
+    """Files as `nonio certificate extend` makes them, by name."""
     folder = root / "long-term"
     folder.mkdir()
     lists = folder / "lists.pem"
@@ -270,7 +270,7 @@ def honest(root, pdf, authority, whom):
 
 
 def check_refusals(root, pdf, xml, authority, whom):
-    """What `nonio restamp` does not do, and that it writes nothing then."""
+    """What `nonio certificate extend` does not do, and that it writes nothing then."""
     folder = root / "refused"
     folder.mkdir()
     file = folder / "c.pdf"
@@ -302,7 +302,7 @@ def check_refusals(root, pdf, xml, authority, whom):
 def check_register(root, site, pdf, restamped, authority):
     """The register knows a restamped file by its beginning, and gives out what was issued."""
     folder = root / "given out"
-    subprocess.run([NONIO, "certificates", str(site), "--out", str(folder)], check=True, timeout=60, stdout=subprocess.DEVNULL)
+    subprocess.run([NONIO, "certificate", "list", str(site), "--out", str(folder)], check=True, timeout=60, stdout=subprocess.DEVNULL)
     file = folder / "S-0001.pdf"
     assert file.read_bytes() == pdf
     lists = root / "lists.pem"
@@ -311,9 +311,9 @@ def check_register(root, site, pdf, restamped, authority):
     assert file.read_bytes() == pdf and (root / "archive" / file.name).read_bytes().startswith(pdf)
     (root / "archive" / "twice.pdf").write_bytes(restamped)
     for name in (file.name, "twice.pdf"):
-        said = subprocess.run([NONIO, "verify", "--site", str(site), str(root / "archive" / name)], capture_output=True, text=True, timeout=300)
+        said = subprocess.run([NONIO, "certificate", "verify", "-v", "--site", str(site), str(root / "archive" / name)], capture_output=True, text=True, timeout=300)
         assert said.returncode in (0, 3) and "register.state holds" in said.stdout, said.stdout
-    subprocess.run([NONIO, "certificates", str(site), "--audit"], check=True, timeout=60, stdout=subprocess.DEVNULL)
+    subprocess.run([NONIO, "certificate", "audit", str(site)], check=True, timeout=60, stdout=subprocess.DEVNULL)
 
 
 def others_accept(root, keys, pdf, restamped):

@@ -31,7 +31,17 @@ struct LackOfFit {
 };
 
 /// What readings are split by.
-enum class Factor : char { direction, position, screw_phase, angle, run, time, temperature, channel };
+enum class Factor : char {
+  direction,
+  position,
+  screw_phase,
+  angle,
+  run,
+  time,
+  temperature,
+  measurement,
+  channel
+};
 
 /// One factor, or the product of two.
 struct Where {

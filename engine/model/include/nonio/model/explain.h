@@ -20,8 +20,12 @@ struct Candidate {
   std::string why;      ///< if not: "aliased" with the model or the targets; "no-temperature", ...
   double rms = 0.0;     ///< with it added to the model
   std::optional<double> cv_rms{};
-  double p = 1.0;      ///< chance that noise alone gives such a candidate anywhere in this search
-  double score = 0.0;  ///< 2 ln of the evidence for it; <= 0: none
+  double p = 1.0;  ///< chance that noise alone gives such a candidate anywhere in this search
+  /// 2 ln of the evidence for it; <= 0: none. By this they are ranked: where there is evidence both
+  /// alone and within the best set, that alone, because an effect that leaves less comes first.
+  double score = 0.0;
+  double alone = 0.0;   ///< the same of it as the only addition to the model
+  double within = 0.0;  ///< of one of the best set what is lost without it, else what it adds
   std::vector<Parameter> parameters;
   std::vector<std::string> aliases;  ///< these readings cannot tell them from this one
   /// RMS of the smallest one that would be found nine times in ten, m or rad.
@@ -74,6 +78,8 @@ struct Verdict {
   double false_alarms = 0.0;    ///< share of shuffles of the noise whose verdict is not `nothing`
   std::size_t trials = 0;       ///< behind it
   double suspects_share = 0.0;  ///< of the readings
+  /// unknown: less is left than the scatter of repeated readings allows.
+  bool below_scatter = false;
 };
 
 /// A description added to the model, to what is certain and to those before it: what is left, not
@@ -85,6 +91,18 @@ struct Description {
   What what = What::course;
   /// What it says, m or rad: of each target (values less their mean), else of each reading.
   double low = 0.0, high = 0.0, mean = 0.0;
+};
+
+/// What holds whatever repeats at each target from each side.
+struct Statement {
+  enum class What {
+    drift,    ///< of the zero over the test, as a straight line
+    reversal  ///< of one sign at every target
+  };
+  What what = What::drift;
+  double value = 0.0, u = 0.0;   ///< of the whole drift; of the mean reversal, m or rad
+  double low = 0.0, high = 0.0;  ///< of the reversals of the targets
+  double p = 1.0;                ///< of reversals that of the least certain one, corrected
 };
 
 struct Explanation {
@@ -101,6 +119,7 @@ struct Explanation {
   std::optional<double> one_growth{};
   double certain_rms = 0.0;               ///< unknown: with them in the model, m or rad
   std::vector<Description> descriptions;  ///< unknown: of what is left beside the certain
+  std::vector<Statement> statements;      ///< unknown, of an axis
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
   Verdict verdict;

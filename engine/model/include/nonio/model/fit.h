@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,13 @@
 #include "nonio/sdk/plugin.h"
 
 namespace nonio::model {
+
+/// Lines for whose groups an effect has values of their own: by "adjustment", "before" and "after".
+struct Grouping {
+  std::string by;                    ///< "adjustment", "state", "side", "measurement"
+  std::vector<std::string> name;     ///< of each group
+  std::vector<std::uint32_t> group;  ///< of each line
+};
 
 /// An effect on one axis, or of what an effect in space is of (then `axis` has only that name).
 struct Term {
@@ -24,8 +32,15 @@ struct Term {
     double value = 0.0, u = 0.0;
   };
   std::optional<Stated> stated{};
+  /// Linear parameters for each group, in the order of the groups; null: the same for all lines.
+  std::shared_ptr<const Grouping> grouping{};
+  /// Of the groups but the first, in addition to the same effect without groups.
+  bool differences = false;
 
-  std::string name() const { return effect->info.name + ":" + axis.name; }
+  /// The effect without groups: "backlash:X".
+  std::string of_all() const { return effect->info.name + ":" + axis.name; }
+  /// "backlash:X", "backlash:X@adjustment".
+  std::string name() const { return grouping ? of_all() + "@" + grouping->by : of_all(); }
 };
 
 struct Parameter {
@@ -35,6 +50,7 @@ struct Parameter {
   double u = 0.0;  ///< standard uncertainty; NaN for a shape that takes only discrete values
   Quantity quantity = Quantity::number;
   bool shape = false;
+  std::string group{};  ///< of a grouped term: "before"; also the end of its name
 };
 
 /// How the noise of the readings hangs together, as far as their repeats and their order show it.

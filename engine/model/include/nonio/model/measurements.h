@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +53,8 @@ struct Part {
   /// of ISO 230-2 is assumed.
   std::vector<std::string> order_assumed{};
   std::vector<TimeConstant> time_constants{};  ///< of its axes
+  /// By what the lines of an axis differ; none of a single measurement.
+  std::vector<std::shared_ptr<const Grouping>> groupings{};
 
   // Of a course.
   std::string displacement{};    ///< its name
@@ -82,19 +85,20 @@ inline bool has_unstated_position(const Part& part) {
 /// readings that `check` (sdk/check.h) refuses.
 std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observations>& read);
 
-/// All effects that apply to a part, without those that are always in a model.
+/// All effects that apply to a part, without those that are always in a model; then those whose
+/// values can differ between groups of lines.
 std::vector<Term> catalogue(const Part& part, const std::vector<Effect>& effects);
 
 /// The names that an effect has in this part: "backlash:X", "straightness:EYX".
 std::vector<std::string> names_of(const Part& part, const Effect& effect);
 
 /// An effect of the model as it is written for this part: of a course that is one of several
-/// displacements "heat:t4@x1" or "heat:t4@x1+x2" ("only of these"), else its name.
+/// displacements "heat:t4/x1" or "heat:t4/x1+x2" ("only of these"), else its name.
 std::string written_for(const Part& part, const std::string& effect);
 
 /// The effects that a model names, then those that are always there, then its descriptions; an
-/// unknown kind or axis is an error with the nearest name. Effects of axes that other parts hold
-/// are left out.
+/// unknown kind, axis or grouping is an error. Effects of axes that other parts hold are left out,
+/// and so is an effect that is also there with groups, which contain it.
 Expected<std::vector<Term>> terms_of(const Part& part, const Machine& machine,
                                      const std::vector<std::string>& names,
                                      const std::vector<Effect>& effects);

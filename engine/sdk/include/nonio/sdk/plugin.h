@@ -47,7 +47,7 @@ struct Option {
 struct Info {
   std::string name;
   std::string version;
-  std::string summary;  ///< one sentence, for `nonio plugins`
+  std::string summary;  ///< one sentence, for `nonio plugin list`
   std::vector<Option> options{};
   /// Of an analysis or output: not among "all that apply", only where `[run]` names it or the
   /// campaign has its `[options.<name>]`.

@@ -32,7 +32,7 @@ struct MorningLine {
   enum class State { fresh, known, fixed };
   Kind kind = Kind::information;
   State state = State::fresh;
-  std::string id;  ///< the same every night; `nonio ack` takes it
+  std::string id;  ///< the same every night; `nonio machine ack` takes it
   std::string machine, axis, quantity;
   std::string campaign, customer;
   std::string measurement{};  ///< of the value
@@ -147,7 +147,7 @@ bool asks(const MorningLine& line);
 /// The same, and it is sure enough to write to somebody.
 bool asks_by_mail(const MorningLine& line);
 
-/// summary.txt and `nonio morning`: one line a decision, at most `most`, then how many more there
+/// summary.txt and `nonio status --actions`: one line a decision, at most `most`, then how many more there
 /// are of each kind. Where there is none, the one sentence that says so.
 Expected<std::string> morning_text(const SiteHistory&, const Templates&,
                                    const std::string& language, std::size_t most);

@@ -42,10 +42,4 @@ Kept kept_readings(const std::vector<double>& values, std::size_t most = most_re
 /// sentence of each picture, which a page from disk has in its text.
 std::string data_of(const Drawn& drawn, const Kept& kept, bool titles = true);
 
-/// Text as a string of JSON that may stand in a <script>: nothing in it can end the element.
-std::string json(std::string_view text);
-
-/// Numbers as JSON, null where there is none: columns of the page that data_of does not hold.
-std::string json(const std::vector<double>& values);
-
 }  // namespace nonio::workbench

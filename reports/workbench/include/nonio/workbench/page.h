@@ -8,7 +8,7 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/settings.h"
 
-/// The page of `nonio live`, as bytes.
+/// The page of `nonio serve`, as bytes.
 namespace nonio::workbench {
 
 /// Of which page.

@@ -9,8 +9,6 @@ namespace nonio::app {
 
 namespace {
 
-constexpr const char* live_name = "nonio live";
-
 struct LiveOptions {
   std::string folder, out, token_file;
   std::vector<std::string> hosts;
@@ -22,7 +20,7 @@ int live(const LiveOptions& options, const Common& common) {
   live::LiveWish wish;
   std::error_code error;
   wish.folder = std::filesystem::canonical(options.folder, error);
-  if (error) return complain(live_name, options.folder + ": " + error.message());
+  if (error) return complain(options.folder + ": " + error.message());
   wish.name = options.folder;
   wish.plugin_folders = common.plugin_folders();
   wish.template_folders = common.template_folders();
@@ -36,31 +34,30 @@ int live(const LiveOptions& options, const Common& common) {
   wish.port = static_cast<std::uint16_t>(options.port);
   wish.edit = options.edit;
   wish.quiet = common.quiet;
-  if (const auto served = live::serve(wish); !served)
-    return complain(live_name, text_of(served.error()));
+  if (const auto served = live::serve(wish); !served) return complain(text_of(served.error()));
   return exit_done;
 }
 
 }  // namespace
 
-Verb live_verb(Common& common) {
+Verb serve_verb(Common& common) {
   auto options = std::make_shared<LiveOptions>();
   using Takes = Argument::Takes;
   return {
-      .name = "live",
-      .summary = "Opens a page in the browser: the model of a campaign against its readings",
+      .name = "serve",
+      .summary = "Serves a page on this computer: the model of a campaign, or the work of a site",
       .arguments = joined(
           {required(existing(Takes::folder,
                              {"CAMPAIGN", &options->folder,
                               "Folder of one campaign, with its campaign.toml; or a site"})),
-           takes(Takes::folder, {"--out", &options->out,
-                                 "Of a site: output folder of `nonio run`, whose morning is "
-                                 "shown"}),
+           takes(Takes::folder,
+                 {"--out", &options->out,
+                  "Of a site: output folder of `nonio run`, whose morning is shown"}),
            {"--edit", &options->edit,
             "The page may write: save the model to campaign.toml. Without it nothing is written."},
            takes(Takes::file,
                  {"--token-file", &options->token_file,
-                  "Keep the token in this file, so that the address stays after a restart; it is\n"
+                  "Keep the token in this file, so that the address stays after a restart; it is "
                   "made if it is not there, and only this user may be able to read it"}),
            {"--host", &options->hosts,
             "Name (NAME or NAME:PORT) by which a reverse proxy on this computer calls the page"},
@@ -69,17 +66,13 @@ Verb live_verb(Common& common) {
           common_arguments(common)),
       .footer =
           "Prints one line, the address, and serves the page until Ctrl-C. On the page: the "
-          "effects of\n"
-          "the model with their sizes, readings and residuals, where the model fails, "
-          "which\n"
-          "effect is missing, and the error falling with each step. Nothing is written before "
-          "\"save\",\n"
-          "which does what `nonio model add` does.\n\n"
-          "Only this computer can reach the page, and only with the token behind # in the "
-          "address: it\n"
-          "is a key, do not pass it on. From another computer: ssh -L (docs/howto-live.md).\n\n"
-          "Examples: nonio live samples/site/02-constant-reversal\n"
-          "          nonio live --edit --port 4711 --token-file ~/.nonio-token campaigns/c1",
+          "effects of the model with their sizes, readings and residuals, where the model fails, "
+          "which effect is missing, and the error falling with each step. Nothing is written "
+          "before \"save\", which does what `nonio model add` does.\n\nOnly this computer can "
+          "reach the page, and only with the token behind # in the address: it is a key, do not "
+          "pass it on. From another computer: ssh -L (docs/howto-live.md).",
+      .examples = {"nonio serve samples/site/02-constant-reversal",
+                   "nonio serve --edit --port 4711 --token-file ~/.nonio-token campaigns/c1"},
       .run = [options, &common] { return live(*options, common); }};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "platform/storage/json_writer.h"
+#include "nonio/sdk/json_writer.h"
 
 #include <algorithm>
 #include <charconv>
@@ -8,14 +8,20 @@
 #include <utility>
 
 #include "nonio/sdk/format.h"
-#include "platform/storage/json_values.h"
+#include "nonio/sdk/json.h"
 
-namespace nonio::storage {
+namespace nonio {
+
+void JsonWriter::new_line() {
+  if (layout_ != Layout::lines) return;
+  out_ += '\n';
+  out_.append(depth_, ' ');
+}
 
 void JsonWriter::next() {
   if (!std::exchange(after_key_, false) && depth_ != 0) {
-    out_ += empty_ ? "\n" : ",\n";
-    out_.append(depth_, ' ');
+    if (!empty_) out_ += ',';
+    new_line();
   }
   empty_ = false;
 }
@@ -34,25 +40,29 @@ void JsonWriter::begin(char bracket) {
 
 void JsonWriter::end(char bracket) {
   --depth_;
-  if (!std::exchange(empty_, false)) {
-    out_ += '\n';
-    out_.append(depth_, ' ');
-  }
+  if (!std::exchange(empty_, false)) new_line();
   out_ += bracket;
 }
 
 void JsonWriter::quoted(std::string_view text) {
   const auto plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
-  if (std::all_of(text.begin(), text.end(), plain))
+  if (layout_ == Layout::in_script) {
+    for (const char c : json_text(text))
+      if (c == '<' || c == '>' || c == '&')
+        out_ += c == '<' ? "\\u003c" : c == '>' ? "\\u003e" : "\\u0026";
+      else
+        out_ += c;
+  } else if (std::all_of(text.begin(), text.end(), plain)) {
     ((out_ += '"') += text) += '"';
-  else
-    out_ += Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+  } else {
+    out_ += json_text(text);
+  }
 }
 
 void JsonWriter::key(std::string_view name) {
   next();
   quoted(name);
-  out_ += ": ";
+  out_ += layout_ == Layout::lines ? ": " : ":";
   after_key_ = true;
 }
 
@@ -85,7 +95,16 @@ void JsonWriter::value(std::uint64_t number) { item(std::to_string(number)); }
 
 void JsonWriter::value(bool yes) { item(yes ? "true" : "false"); }
 
-std::string JsonWriter::take() { return std::exchange(out_, {}) + "\n"; }
+void JsonWriter::value(const std::vector<std::string>& texts) {
+  begin_array();
+  for (const std::string& text : texts) value(text);
+  end_array();
+}
+
+std::string JsonWriter::take() {
+  if (layout_ == Layout::lines) out_ += '\n';
+  return std::exchange(out_, {});
+}
 
 void put_error(JsonWriter& json, const Error& error) {
   json.begin_object();
@@ -96,4 +115,4 @@ void put_error(JsonWriter& json, const Error& error) {
   json.end_object();
 }
 
-}  // namespace nonio::storage
+}  // namespace nonio

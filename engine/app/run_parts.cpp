@@ -59,21 +59,20 @@ void tell_planned(const batch::Night& night, const batch::RunOptions& options, b
             << *least << (*least == *most ? "" : " to " + std::to_string(*most)) << ", "
             << to_do - in_shards << " left to the merge\n"
             << "next: nonio run SITE --out OUT --shard i/" << shards.size() << "  for i = 0 .. "
-            << shards.size() - 1 << ", then: nonio night merge " << options.out.string() << "\n";
+            << shards.size() - 1 << ", then: nonio run merge " << options.out.string() << "\n";
 }
 
 int plan_night(NightWish& wish, const Common& common) {
-  const char* const verb = "nonio night plan";
   batch::RunOptions& options = wish.options;
-  if (wish.out.empty()) return complain(verb, "--out is empty; expected a folder");
+  if (wish.out.empty()) return complain("--out is empty; expected a folder");
   if (!options.date.empty() && !is_day(options.date))
-    return complain(verb, "--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
+    return complain("--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   options.step = batch::RunOptions::Step::plan;
   prepare_run(options, wish.site, wish.out, common);
   Progress progress(common.quiet, common.json);
   const batch::Night night = batch::run_site(options, progress.events());
   progress.end();
-  if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
+  if (const auto exit = exit_of_unfinished(night)) return *exit;
   if (!common.quiet || common.json) tell_planned(night, options, common.json);
   return exit_done;
 }
@@ -88,43 +87,40 @@ int already_merged(const batch::NightStatus& status, const Common& common) {
 }
 
 int merge_night(NightWish& wish, const Common& common) {
-  const char* const verb = "nonio night merge";
   batch::RunOptions& options = wish.options;
   const auto plan = batch::find_plan(wish.out);
-  if (!plan) return complain(verb, plan.error().message);
+  if (!plan) return complain(plan.error().message);
   if (!*plan) {
     const auto status = batch::night_status(wish.out);
     if (status && status->state == batch::NightStatus::State::complete)
       return already_merged(*status, common);
-    return complain(verb, batch::read_plan(wish.out).error().message);
+    return complain(batch::read_plan(wish.out).error().message);
   }
   options.step = batch::RunOptions::Step::merge;
   const std::string site = wish.site.empty() ? (*plan)->site : wish.site;
   std::error_code error;
   if (!fs::is_directory(site, error))
-    return complain(verb, "the site " + site +
-                              ", for which the night was planned, is not on this host; expected "
-                              "--site FOLDER");
+    return complain("the site " + site +
+                    ", for which the night was planned, is not on this host; expected "
+                    "--site FOLDER");
   prepare_run(options, site, wish.out, common);
   Progress progress(common.quiet, common.json);
   const batch::Night night = batch::run_site(options, progress.events());
   progress.end();
-  if (const auto exit = exit_of_unfinished(night, verb)) return *exit;
+  if (const auto exit = exit_of_unfinished(night)) return *exit;
   if (!common.json) progress.still_failed(night);
   if (!common.quiet || common.json) print_summary(night, options.out, common.json);
   return night.any_failed() ? exit_failed : exit_done;
 }
 
 int cancel_night(const NightWish& wish, const Common& common) {
-  const char* const verb = "nonio night cancel";
   const auto plan = batch::find_plan(wish.out);
-  if (plan && !*plan) return complain(verb, batch::read_plan(wish.out).error().message);
+  if (plan && !*plan) return complain(batch::read_plan(wish.out).error().message);
   const auto lock = batch::OutputLock::take(wish.out, batch::OutputLock::Use::planned);
-  if (!lock) return complain(verb, lock.error().message);
-  if (const auto kept = batch::keep_packs(wish.out); !kept)
-    return complain(verb, kept.error().message);
+  if (!lock) return complain(lock.error().message);
+  if (const auto kept = batch::keep_packs(wish.out); !kept) return complain(kept.error().message);
   if (const auto removed = batch::remove_plan(wish.out); !removed)
-    return complain(verb, removed.error().message);
+    return complain(removed.error().message);
   if (!common.quiet)
     std::cerr << "nonio: the plan is withdrawn; `nonio run SITE --out OUT` or another plan goes on "
                  "with the same night, and keeps what its shards have done\n";
@@ -132,15 +128,14 @@ int cancel_night(const NightWish& wish, const Common& common) {
 }
 
 int unlock_night(const NightWish& wish, const Common& common) {
-  const char* const verb = "nonio night unlock";
   std::optional<std::string> alive;
   if (!wish.alive.empty()) {
     auto text = storage::read_file(wish.alive);
-    if (!text) return complain(verb, text.error().message);
+    if (!text) return complain(text.error().message);
     alive = std::move(*text);
   }
   const auto gone = batch::unlock(wish.out, alive);
-  if (!gone) return complain(verb, gone.error().message);
+  if (!gone) return complain(gone.error().message);
   if (!common.quiet)
     std::cerr << "nonio: "
               << (gone->empty() ? "nobody uses the output folder"
@@ -150,8 +145,8 @@ int unlock_night(const NightWish& wish, const Common& common) {
 }
 
 Argument out_argument(NightWish& wish) {
-  return required(existing(Argument::Takes::folder,
-                           {"OUT", &wish.out, "Output folder with the planned night"}));
+  return required(
+      existing(Argument::Takes::folder, {"OUT", &wish.out, "Output folder of the planned run"}));
 }
 
 Verb plan_part(Common& common) {
@@ -160,7 +155,7 @@ Verb plan_part(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "plan",
-      .summary = "Looks at every campaign in SITE, and divides what is to do into S shards",
+      .summary = "Divides the campaigns that have to be evaluated into S shards",
       .arguments = joined(
           {required(existing(Takes::folder,
                              {"SITE", &wish->site,
@@ -170,21 +165,21 @@ Verb plan_part(Common& common) {
            required(within(1, most_shards,
                            {"--shards", &options.shards,
                             "S, the number of shards; 4 to 8 times as many as run at a time"})),
-           {"--force", &options.force, "Do every campaign again, changed or not"},
+           {"--force", &options.force, "Evaluate every campaign again, changed or not"},
            {"--verify-results", &options.verify_results,
             "Compare the digests of all result files, not only of those that look modified"},
            {"--date", &options.date,
-            "Date of the night, YYYY-MM-DD, for the summary (default: today; a resumed night\n"
-            "keeps its date)"},
+            "Date of the run, YYYY-MM-DD, for the summary (default: today; a resumed run keeps its "
+            "date)"},
            root_argument(options),
            templates_argument(common)},
           common_arguments(common)),
       .footer =
           "Reads the site and the register of numbers; needs no key. The shard of a campaign is "
-          "the\nSHA-256 of its id (first 8 bytes) modulo S. Planning again takes the place of a "
-          "plan that\nwas not merged, and keeps what its shards have done. Until the merge, "
-          "`nonio run` without\n--shard is refused.\n\n"
-          "Example: nonio night plan site --out out --shards 4",
+          "the SHA-256 of its id (first 8 bytes) modulo S. Re-planning replaces a plan that was "
+          "not merged; finished shards are kept. Until the merge, `nonio "
+          "run` without --shard is refused.",
+      .examples = {"nonio run plan site --out out --shards 4"},
       .run = [wish, &common] { return plan_night(*wish, common); }};
 }
 
@@ -198,7 +193,7 @@ Verb merge_part(Common& common) {
   wait.shows_default = true;
   return {
       .name = "merge",
-      .summary = "Ends a planned night when its shards are done: history, pages, summary",
+      .summary = "Completes a planned run when its shards are done: history, pages, summary",
       .arguments = joined(
           {out_argument(*wish),
            existing(Argument::Takes::folder,
@@ -207,25 +202,24 @@ Verb merge_part(Common& common) {
           common_arguments(common)),
       .footer =
           "Runs on the host that has the key and reaches the register: campaigns with a "
-          "certificate or\na signature are done here, in the order of their ids. Summary, history "
-          "and pages are equal\nbyte for byte to those of a night that was not divided. Exit "
-          "status 1 also if a shard has\nnot reported: the message names it. Run it, then merge "
-          "again. What was merged is not done\ntwice.\n\n"
-          "Example: nonio night merge out",
+          "certificate or a signature are done here, in the order of their ids. Summary, history "
+          "and pages have the same bytes as those of an undivided run. Exit status "
+          "1 also if a shard has not reported: the message names it. Run it, then merge again; "
+          "nothing is merged twice.",
+      .examples = {"nonio run merge out"},
       .run = [wish, &common] { return merge_night(*wish, common); }};
 }
 
 Verb cancel_part(Common& common) {
   auto wish = std::make_shared<NightWish>();
-  return {
-      .name = "cancel",
-      .summary = "Withdraws the plan of a night; what its shards have done stays",
-      .arguments = joined({out_argument(*wish)}, common_arguments(common)),
-      .footer =
-          "Refused while a shard is running. The night stays open: `nonio run` without --shard, "
-          "or\nanother plan, goes on with it.\n\n"
-          "Example: nonio night cancel out",
-      .run = [wish, &common] { return cancel_night(*wish, common); }};
+  return {.name = "cancel",
+          .summary = "Withdraws a plan; the results of finished shards are kept",
+          .arguments = joined({out_argument(*wish)}, common_arguments(common)),
+          .footer =
+              "Refused while a shard is running. The run stays open: `nonio run` without --shard, "
+              "or another plan, continues it.",
+          .examples = {"nonio run cancel out"},
+          .run = [wish, &common] { return cancel_night(*wish, common); }};
 }
 
 Verb unlock_part(Common& common) {
@@ -233,31 +227,27 @@ Verb unlock_part(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "unlock",
-      .summary = "Frees an output folder whose process, on another host, is known to be gone",
+      .summary = "Frees an output folder whose process on another host has ended",
       .arguments = joined(
           {required(existing(Takes::folder, {"OUT", &wish->out, "Output folder of `nonio run`"})),
-           existing(Takes::file,
-                    {"--alive", &wish->alive,
-                     "The scheduler's list of jobs, a job in each line: refused if its job\n"
-                     "(NONIO_JOB of its environment) is in it"})},
+           existing(Takes::file, {"--alive", &wish->alive,
+                                  "The scheduler's list of jobs, a job in each line: refused if "
+                                  "its job (NONIO_JOB of its environment) is in it"})},
           common_arguments(common)),
       .footer =
-          "A night, a release and a merge leave their host and process in OUT/.nonio/user while "
-          "they\nwork. After a crash the same host takes the folder over by itself, also after it "
-          "started\nanew. Another host cannot know whether the first one still writes: somebody "
-          "who knows, or\na script that asked the scheduler, says so here. Refused where the "
-          "lock of the file\nsystem shows that the process lives.\n\n"
-          "Example: nonio night unlock out",
+          "A process that writes to the output folder stores its host and process id in "
+          "OUT/.nonio/user. After a crash the same host takes the folder over by itself, also "
+          "after a restart. Another host cannot know whether the process is still running; use "
+          "this command if you, or the scheduler, know that it has ended. Refused if the lock of "
+          "the file system shows that the process is running.",
+      .examples = {"nonio run unlock out"},
       .run = [wish, &common] { return unlock_night(*wish, common); }};
 }
 
 }  // namespace
 
-Verb night_verb(Common& common) {
-  return {
-      .name = "night",
-      .summary = "A night in parts, on one host or many: plan, shards (`run --shard`), merge",
-      .verbs = {plan_part(common), merge_part(common), cancel_part(common), unlock_part(common)}};
+std::vector<Verb> run_parts(Common& common) {
+  return {plan_part(common), merge_part(common), cancel_part(common), unlock_part(common)};
 }
 
 }  // namespace nonio::app

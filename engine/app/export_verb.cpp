@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio get`: the results of campaigns out of packs, or from wherever they lie, into folders.
+// `nonio export`: the results of campaigns out of packs, or from wherever they lie, into folders.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -20,8 +20,6 @@ namespace storage = storage;
 namespace evaluation = evaluation;
 
 namespace {
-
-constexpr const char* get_name = "nonio get";
 
 struct GetWish {
   std::vector<std::string> ids;
@@ -72,7 +70,7 @@ void print_list(const std::string& id, const fs::path& folder,
                  {"bytes", bytes},           {"files", Json::array()}};
     for (const auto& f : files)
       line["files"].push_back({{"name", f.name}, {"bytes", f.size}, {"sha256", f.sha256}});
-    std::cout << line.dump(-1, ' ', false, Json::error_handler_t::replace) << "\n";
+    print_json(line, -1);
     return;
   }
   std::cout << id << ": " << files.size() << " files, " << bytes << " bytes, " << place_of(folder)
@@ -115,21 +113,20 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
 bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
   fs::path folder;
   const auto files = files_of(wish, id, folder);
-  if (!files) return complain(get_name, files.error().message), false;
+  if (!files) return complain(files.error().message), false;
   if (wish.list) return print_list(id, folder, *files, !wish.ids.empty(), common.json), true;
   const fs::path to = wish.to.empty() ? storage::own_folder(wish.out, id) : fs::path(wish.to) / id;
   std::error_code error;
   const bool in_place = to == folder || fs::equivalent(to, folder, error);
   const auto written = in_place ? Expected<std::size_t>(0) : write_out(folder, to, *files);
-  if (!written) return complain(get_name, written.error().message), false;
+  if (!written) return complain(written.error().message), false;
   if (common.json)
-    std::cout << Json{{"schema", "nonio-get/1"},
-                      {"id", id},
-                      {"place", folder.string()},
-                      {"folder", to.string()},
-                      {"written", *written}}
-                     .dump(-1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(Json{{"schema", "nonio-get/1"},
+                    {"id", id},
+                    {"place", folder.string()},
+                    {"folder", to.string()},
+                    {"written", *written}},
+               -1);
   else if (!common.quiet)
     std::cout << to.string() << ": " << *written << " of " << files->size() << " files written"
               << (in_place ? ": the results lie there" : "") << "\n";
@@ -138,17 +135,17 @@ bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
 
 int get(const GetWish& wish, const Common& common) {
   if (wish.ids.empty() && !wish.all && !wish.list)
-    return complain(get_name, "expected the ids of campaigns, --all, or --list");
+    return complain("expected the ids of campaigns, --all, or --list");
   if (!wish.ids.empty() && wish.all)
-    return complain(get_name, "--all is every campaign; expected no ids with it");
+    return complain("--all is every campaign; expected no ids with it");
   if (!wish.to.empty() && wish.list)
-    return complain(get_name, "--list writes nothing; expected no --to with it");
+    return complain("--list writes nothing; expected no --to with it");
   const auto ids = ids_of(wish);
-  if (!ids) return complain(get_name, ids.error().message);
+  if (!ids) return complain(ids.error().message);
   std::optional<batch::OutputLock> lock;
   if (!wish.list && wish.to.empty()) {  // the folders count from then on
     auto taken = batch::OutputLock::take(wish.out);
-    if (!taken) return complain(get_name, taken.error().message);
+    if (!taken) return complain(taken.error().message);
     lock.emplace(std::move(*taken));
   }
   bool well = true;
@@ -158,41 +155,36 @@ int get(const GetWish& wish, const Common& common) {
 
 }  // namespace
 
-Verb get_verb(Common& common) {
+Verb export_verb(Common& common) {
   auto wish = std::make_shared<GetWish>();
   using Takes = Argument::Takes;
   return {
-      .name = "get",
+      .name = "export",
       .summary = "Writes the results of campaigns out of packs into folders, or lists them",
       .arguments =
           {{"ID", &wish->ids, "Ids of campaigns"},
            required(existing(Takes::folder, {"--out", &wish->out, "Output folder of `nonio run`"})),
-           takes(
-               Takes::folder,
-               {"--to", &wish->to,
-                "Write FOLDER/ID, and leave the output folder as it is. Without it: OUT/ID, where\n"
-                "the links of the pages lead; that folder counts from then on, not the pack"}),
-           {"--all", &wish->all, "Every campaign that lies in a pack; with --to every campaign"},
+           takes(Takes::folder,
+                 {"--to", &wish->to,
+                  "Write into FOLDER/ID and leave the output folder unchanged. Without it: OUT/ID, "
+                  "which replaces the pack and is the target of the links of the pages"}),
+           {"--all", &wish->all, "All packed campaigns (with --to: all campaigns)"},
            {"--list", &wish->list,
-            "Write nothing: say where the results lie; with ids also each file, its size "
-            "and\nSHA-256"},
+            "Write nothing: list where the results are stored; with ids also each file with size "
+            "and SHA-256"},
            {"--json", &common.json, "Machine-readable output on stdout"},
            {"--quiet", &common.quiet, "No output unless something is wrong"}},
       .footer =
-          "A shard with --pack hands the results of its campaigns over as one file. `nonio show`,\n"
-          "`query`, `history`, `morning`, `live` and the next night read them there. A program "
-          "that\n"
-          "wants files, or a person who follows a link of a page, needs them in folders.\n\n"
-          "Each file is compared with its SHA-256 in run.json; a damaged one is named, with its "
-          "pack\n"
-          "and campaign, and its campaign is not written. A file that is there with other bytes "
-          "stays.\n"
-          "Without Nonio: sqlite3 -A -xf OUT/.nonio/packs/NAME.sqlar (compare the digests "
-          "yourself).\n\n"
-          "Exit status: 0 done; 1 some campaign was not written; 2 usage or configuration.\n\n"
-          "Examples: nonio get 09-tolerances --out out --to /tmp/to-look-at\n"
-          "          nonio get --list --out out\n"
-          "          nonio get --all --out out",
+          "A shard with --pack stores the results of its campaigns as one file. All commands and "
+          "the next run read them there. Programs that read files, and the links of the pages, "
+          "need them in folders.\n\nEach file is compared with its SHA-256 in run.json; a damaged "
+          "file is reported with its pack and campaign, and the campaign is not written. Existing "
+          "files with different content are not overwritten. Without Nonio: sqlite3 -A -xf "
+          "OUT/.nonio/packs/NAME.sqlar (compare "
+          "the digests yourself).\n\nExit status: 0 done; 1 some campaign was not written; 2 usage "
+          "or configuration.",
+      .examples = {"nonio export 09-tolerances --out out --to /tmp/to-look-at",
+                   "nonio export --list --out out", "nonio export --all --out out"},
       .run = [wish, &common] { return get(*wish, common); }};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio open`: the report of a campaign, or the summary of a night, on the
+// `nonio show --open`: the report of a campaign, or the summary of a night, on the
 // desktop.
 #include <fcntl.h>
 #include <spawn.h>
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct OpenWish {
-  std::string folder, out = "out";
+  std::string folder, out;
 };
 
 Expected<Json> json_file(const fs::path& path) {
@@ -122,61 +122,29 @@ bool open_in_background(const std::string& path) {
   return error == 0;
 }
 
-int open(const OpenWish& wish, const Common& common) {
-  const char* const verb = "nonio open";
-  const auto found = document(wish, common);
-  if (!found) return complain(verb, text_of(found.error()));
+}  // namespace
+
+int open_document(const std::string& folder, const std::string& out, const Common& common) {
+  const auto found = document({folder, out}, common);
+  if (!found) return complain(text_of(found.error()));
   std::error_code error;
   const fs::path path = fs::absolute(*found).lexically_normal();
   if (const auto packed = storage::in_pack(path))
-    return complain(verb,
-                    path.filename().string() + " is in the pack " + packed->pack.string() +
-                        "; `nonio get " + path.parent_path().filename().string() +
+    return complain(path.filename().string() + " is in the pack " + packed->pack.string() +
+                        "; `nonio export " + path.parent_path().filename().string() +
                         " --out OUT` writes it out",
                     exit_failed);
   if (!fs::is_regular_file(path, error))
-    return complain(verb, "there is no " + path.string() + "; `nonio run` makes it anew",
-                    exit_failed);
+    return complain("there is no " + path.string() + "; `nonio run` makes it anew", exit_failed);
   std::string why_not = no_desktop();
   if (why_not.empty() && !open_in_background(path.string())) why_not = "xdg-open cannot be started";
   if (common.json)
-    std::cout << Json{{"schema", "nonio-open/1"},
-                      {"file", path.string()},
-                      {"opened", why_not.empty()}}
-                     .dump(1, ' ', false, Json::error_handler_t::replace)
-              << "\n";
+    print_json(
+        Json{{"schema", "nonio-open/1"}, {"file", path.string()}, {"opened", why_not.empty()}});
   else
     std::cout << path.string() << "\n";
-  if (!why_not.empty() && !common.quiet) complain(verb, "not opened: " + why_not);
+  if (!why_not.empty() && !common.quiet) complain("not opened: " + why_not);
   return exit_done;
-}
-
-}  // namespace
-
-Verb open_verb(Common& common) {
-  auto wish = std::make_shared<OpenWish>();
-  using Takes = Argument::Takes;
-  return {
-      .name = "open",
-      .summary = "Opens a report on the desktop and prints its path",
-      .arguments = joined(
-          {takes(
-               Takes::folder,
-               {"OUT|OUT/ID|CAMPAIGN", &wish->folder,
-                "Results of a nightly run or of one campaign, or a campaign (default: the current\n"
-                "folder if it is one of these, otherwise that of --out)"}),
-           takes(Takes::folder, {.name = "--out",
-                                 .target = &wish->out,
-                                 .help = "Folder of the results of CAMPAIGN",
-                                 .shows_default = true})},
-          common_arguments(common)),
-      .footer =
-          "For a nightly run it opens the first campaign that needs attention, otherwise "
-          "summary.txt.\n"
-          "For a campaign it opens the report, otherwise the page for the browser, "
-          "otherwise results.json.\n\n"
-          "Example: nonio open out/09-tolerances",
-      .run = [wish, &common] { return open(*wish, common); }};
 }
 
 }  // namespace nonio::app

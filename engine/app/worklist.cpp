@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the last run requires of people, one line per action: `nonio status`.
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "campaign/config/site_files.h"
+#include "campaign/config/site_logs.h"
+#include "campaign/config/template_files.h"
+#include "laboratory/assessment/assess.h"
+#include "laboratory/assessment/curves.h"
+#include "text_layout.h"
+#include "verbs.h"
+
+namespace nonio::app {
+
+namespace {
+
+/// Leaves out what was known before that day, and other customers' machines.
+void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
+  std::erase_if(site.lines, [&](const reports::MorningLine& l) {
+    return (!wish.customer.empty() && l.customer != wish.customer) ||
+           (!wish.since.empty() && !l.since.empty() && l.since < wish.since);
+  });
+}
+
+/// One of the pages of the morning as it would be now, on stdout.
+int print_page(const WorklistWish& wish, const Templates& templates, const std::string& language,
+               assessment::Assessment& assessment) {
+  const reports::SiteHistory& site = assessment.site();
+  const std::string below = std::string(reports::machines_folder) + "/";
+  for (std::size_t i = 0; i < site.machines.size(); ++i) {
+    if (wish.page != below + site.machines[i].file) continue;
+    auto machine = assessment.whole(i);
+    if (!machine) return complain(machine.error().message);
+    machine->curves = assessment::curves_of(wish.out, *machine);
+    const auto page = reports::machine_page_of(site, *machine, templates, language);
+    if (!page) return complain(page.error().message);
+    std::cout << page->bytes;
+    return exit_done;
+  }
+  const auto pages = reports::site_lists(site, templates, language);
+  if (!pages) return complain(pages.error().message);
+  for (const Artifact& page : *pages) {
+    if (page.name != wish.page) continue;
+    std::cout << page.bytes;
+    return exit_done;
+  }
+  return complain("--page: there is no page " + wish.page +
+                  "; expected index.html, due.html, due.ics, instruments.html, "
+                  "compare.html or machines/NAME.html");
+}
+
+}  // namespace
+
+int print_worklist(const WorklistWish& wish, const Common& common) {
+  if (!wish.since.empty() && !is_day(wish.since))
+    return complain("--since: expected a day as YYYY-MM-DD, found \"" + wish.since + "\"");
+  const auto tonight = assessment::tonight_in(wish.out);
+  if (!tonight) return complain(tonight.error().message);
+  std::optional<config::SiteLogs> entered;
+  auto folders = common.template_folders();
+  if (!wish.site.empty()) {
+    auto logs = config::read_site_logs(wish.site);
+    if (!logs) return complain(text_of(logs.error().front()));
+    entered = std::move(*logs);
+    auto with_site = config::with_site_templates(folders, wish.site);
+    if (!with_site) return complain(text_of(with_site.error()));
+    folders = std::move(*with_site);
+  }
+  std::string digest;
+  const auto templates = config::read_templates(folders, digest);
+  if (!templates) return complain(templates.error().message);
+  auto assessment = assessment::Assessment::of(
+      wish.out, *tonight, [] {}, assessment::Assessment::Kept::used, entered ? &*entered : nullptr);
+  if (!assessment) return complain(assessment.error().message);
+  std::string language = wish.language.empty() ? tonight->language : wish.language;
+  if (!templates->tables.contains("words/" + language + "/site")) {
+    if (!wish.language.empty())
+      return complain("--language: there are no words/" + language +
+                      "/site.toml; expected de, en or it");
+    language = "en";
+  }
+  if (!wish.page.empty()) return print_page(wish, *templates, language, *assessment);
+  reports::SiteHistory site = assessment->site();
+  const std::size_t all = site.lines.size();
+  keep_lines(wish, site);
+  const bool asks = std::any_of(site.lines.begin(), site.lines.end(), reports::asks);
+  if (common.json) {
+    std::cout << "{\n \"schema\": \"nonio-morning/1\",\n \"night\": " << tonight->night
+              << ",\n \"date\": \"" << tonight->date
+              << "\",\n \"lines\": " << assessment::lines_json(site, *templates) << "\n}\n";
+    return asks ? exit_failed : exit_done;
+  }
+  if (site.lines.empty()) site.hidden = all;
+  const auto text = reports::morning_text(site, *templates, language, site.lines.size());
+  if (!text) return complain(text.error().message);
+  std::cout << wrapped(*text, 0, sentence_width(STDOUT_FILENO), 4);
+  return asks ? exit_failed : exit_done;
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <list>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "nonio/reports/wording.h"
+
+/// Pages for a browser from files of templates/pages.
+namespace nonio::reports {
+
+/// Markup that is put into a page as it is. All other text is escaped.
+struct Html {
+  std::string text;
+};
+Html html_of(std::string_view text);
+
+/// What a page shows: values by name, and lists of views. Names are literals.
+class View {
+ public:
+  View& set(const char* name, std::string text);
+  View& set(const char* name, Html);
+  View& flag(const char* name, bool on) { return on ? set(name, std::string("yes")) : *this; }
+  /// One more view of a list.
+  View& add(const char* name);
+
+ private:
+  friend class PageWriter;
+  using Value = std::variant<std::string, Html, std::list<View>>;
+  const Value* find(std::string_view name) const;
+  std::vector<std::pair<const char*, Value>> values_;
+};
+
+using PageFiles = std::map<std::string, std::string_view, std::less<>>;
+/// The files of templates/pages, which are part of the program: "site/index".
+const PageFiles& page_files();
+
+/// The page `name` with its values:
+///
+///     {{name}}              a value, escaped; one that is missing is an error
+///     {{words.KEY}}         a word in the language of the page
+///     {{#name}}...{{/name}} once for each view of a list, or once for a value that is not empty
+///     {{^name}}...{{/name}} where the list or the value is empty or missing
+///     {{>name}}             another file, with the same values
+///
+/// Within a list a name that its view lacks is that of the view around it.
+Expected<std::string> page_text(const std::string& name, const View&, const Wording&,
+                                const PageFiles& = page_files());
+
+}  // namespace nonio::reports
