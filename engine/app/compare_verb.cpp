@@ -77,25 +77,27 @@ Verb compare_verb(Common& common) {
           campaign_arguments(*folder, common),
           {{.name = "--model-of",
             .target = &options->model_of,
-            .help = "Predict this campaign with the model of another one, fitted there: displacements "
-                    "over time only",
+            .help =
+                "Predict this campaign with the model of another one, fitted there: displacements "
+                "over time only",
             .takes = Argument::Takes::folder,
             .exists = true},
-           one_of({"free", "kept"}, {.name = "--zero",
-                                     .target = &options->zero,
-                                     .help = "With --model-of: the zero is a new unknown, or that of "
-                                             "the model",
-                                     .shows_default = true})}),
-      .footer = "Shows for each axis the residuals (RMS, largest residual, RMS of left-out runs), "
-                "the noise floor of repeated readings, the parameters with their uncertainty, and "
-                "the factors that the residuals depend on: direction, position, run, time, "
-                "temperature, screw or angle.",
+           one_of({"free", "kept"},
+                  {.name = "--zero",
+                   .target = &options->zero,
+                   .help = "With --model-of: the zero is a new unknown, or that of "
+                           "the model",
+                   .shows_default = true})}),
+      .footer =
+          "Shows for each axis the residuals (RMS, largest residual, RMS of left-out runs), "
+          "the noise floor of repeated readings, the parameters with their uncertainty, and "
+          "the factors that the residuals depend on: direction, position, run, time, "
+          "temperature, screw or angle.",
       .examples = {"nonio model compare samples/site/02-constant-reversal"},
-      .run =
-          [folder, options, &common] {
-            return options->model_of.empty() ? compare(*folder, common)
-                                             : predict(*folder, *options, common);
-          }};
+      .run = [folder, options, &common] {
+        return options->model_of.empty() ? compare(*folder, common)
+                                         : predict(*folder, *options, common);
+      }};
 }
 
 }  // namespace nonio::app

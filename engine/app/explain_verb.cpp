@@ -77,9 +77,8 @@ class Explain {
       const auto known = std::find_if(before.begin(), before.end(), [&](const auto& one) {
         return one.part.part.name == part.part.name && one.part.names() == part.names();
       });
-      auto explanation = known == before.end()
-                             ? modelling::explain_part(part, options_.seed)
-                             : Expected<model::Explanation>(known->explanation);
+      auto explanation = known == before.end() ? modelling::explain_part(part, options_.seed)
+                                               : Expected<model::Explanation>(known->explanation);
       if (explanation) {
         all_.push_back({std::move(part), std::move(*explanation)});
         continue;

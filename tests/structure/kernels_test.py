@@ -12,7 +12,8 @@ MAY = {
         "findings": {"statistics", "uncertainty", "axis", "planning"}, "volumetric": {"statistics", "uncertainty"},
         "rotary": {"statistics"}, "circles": {"statistics"}, "heat": {"statistics", "uncertainty"}, "compensation": {"statistics", "axis"}, "followed": {"statistics", "axis"}},
     "engine/model": {
-        "data": set(), "fit": {"data"}, "search": {"data", "fit"}, "diagnosis": {"data", "fit", "search"}},
+        "data": set(), "course": {"data"}, "fit": {"data", "course"}, "search": {"data", "fit"},
+        "diagnosis": {"data", "course", "fit", "search"}},
 }
 # folders that belong to no other and that all of a part may include
 OPEN = {"include", "eigen", "common"}

@@ -447,8 +447,7 @@ std::size_t most_severe_of(const std::vector<Told>& parts) {
 
 std::vector<Told> told_of(const std::vector<Explained>& all) {
   std::vector<Told> told;
-  for (const Explained& e : all)
-  {
+  for (const Explained& e : all) {
     const auto& part = e.part.part;
     std::vector<std::string> certain;
     for (const std::string& effect : e.explanation.certain)

@@ -46,9 +46,9 @@ Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
     out.push_back({*part, std::move(other), std::move(*predicted)});
   }
   if (out.empty())
-    return fail("no displacement over time is in both campaigns: " +
-                seen.manifest->campaign.id + " has " + listed_parts(*known) + ", " +
-                unseen.manifest->campaign.id + " has " + listed_parts(others));
+    return fail("no displacement over time is in both campaigns: " + seen.manifest->campaign.id +
+                " has " + listed_parts(*known) + ", " + unseen.manifest->campaign.id + " has " +
+                listed_parts(others));
   return out;
 }
 

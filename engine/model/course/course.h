@@ -7,10 +7,6 @@
 /// "Heat and time".
 namespace nonio::model {
 
-/// Adds a part for each displacement of a measurement over time.
-void append_courses(const Measurement& measurement, const Observations& read,
-                    std::vector<Part>& parts);
-
 /// As `fit` of model/fit.h, with noise that is correlated in time: u from the number of independent
 /// residuals.
 Expected<Fit> fit_course(const Part& part, const std::vector<Term>& terms);

@@ -45,7 +45,8 @@ VectorXd CourseData::means(const std::vector<double>& column) const {
 
 MatrixXd CourseData::means(const Effect::Columns& columns) const {
   MatrixXd out(size(), static_cast<Index>(columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k) out.col(static_cast<Index>(k)) = means(columns[k]);
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    out.col(static_cast<Index>(k)) = means(columns[k]);
   return out;
 }
 

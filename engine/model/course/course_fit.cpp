@@ -24,7 +24,8 @@ class CourseFit {
     for (Term& term : terms_) {
       searched_.push_back(term.shape.empty() && !term.effect->shapes.empty());
       auto grid = columns_on_grid(data_, term);
-      if (grid.empty()) return fail("effect \"" + term.name() + "\": these readings cannot show it");
+      if (grid.empty())
+        return fail("effect \"" + term.name() + "\": these readings cannot show it");
       chosen_.push_back(grid.front());
       term.shape = grid.front().shape;
       grids_.push_back(std::move(grid));
@@ -73,8 +74,8 @@ class CourseFit {
     for (const double share : {0.0, 0.5, 1.0}) {
       std::vector<std::size_t> at;
       for (std::size_t k = 0; k < terms_.size(); ++k)  // neighbours begin apart
-        at.push_back(static_cast<std::size_t>(
-            (k % 2 == 0 ? share : 1.0 - share) * static_cast<double>(grids_[k].size() - 1)));
+        at.push_back(static_cast<std::size_t>((k % 2 == 0 ? share : 1.0 - share) *
+                                              static_cast<double>(grids_[k].size() - 1)));
       const double l = descend(at);
       if (best.empty() || l < least) least = l, best = at;
     }
@@ -106,7 +107,8 @@ class CourseFit {
     CoursePool pool(data_);
     std::vector<Index> columns;
     for (std::size_t t = 0; t < terms_.size(); ++t)
-      for (const Index at : pool.add(t == k ? instead : chosen_[t].columns, terms_[t].effect->linear))
+      for (const Index at :
+           pool.add(t == k ? instead : chosen_[t].columns, terms_[t].effect->linear))
         columns.push_back(at);
     pool.finish();
     return level(left_out(pool, CourseSides(pool, y_), columns));
@@ -316,8 +318,7 @@ double left_out_rms(const Part& part, const std::vector<Term>& terms) {
     const VectorXd here = y.segment(from, rows);
     VectorXd rest = here;
     if (a.cols() > 0) {
-      const Eigen::LDLT<MatrixXd> ldlt(
-          MatrixXd(normal - math::transposed_product(own, own)));
+      const Eigen::LDLT<MatrixXd> ldlt(MatrixXd(normal - math::transposed_product(own, own)));
       rest -= own * math::solution(ldlt, right - math::transposed_times(own, here));
     }
     squares += rest.squaredNorm();

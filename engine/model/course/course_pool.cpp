@@ -9,7 +9,8 @@ namespace nonio::model {
 
 namespace {
 
-constexpr double most_per_kelvin = 50e-6;  // m/K: two metres of aluminium; docs/dev/constants.md, M40
+constexpr double most_per_kelvin =
+    50e-6;  // m/K: two metres of aluminium; docs/dev/constants.md, M40
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -77,7 +78,8 @@ CourseSides::CourseSides(const CoursePool& pool, const MatrixXd& displacements) 
   }
 }
 
-Eigen::RowVectorXd left_out(const CoursePool& pool, const CourseSides& sides, const std::vector<Index>& columns) {
+Eigen::RowVectorXd left_out(const CoursePool& pool, const CourseSides& sides,
+                            const std::vector<Index>& columns) {
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(sides.whole.cols());
   const auto p = static_cast<Index>(columns.size());
   MatrixXd normal(p, p), own(p, p), right(p, sum.size()), here(p, sum.size());

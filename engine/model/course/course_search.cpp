@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <tuple>
 #include <unsupported/Eigen/FFT>
 
 #include "course.h"
@@ -22,10 +23,10 @@ using Set = std::vector<std::size_t>;  // of entries, ascending
 
 // docs/dev/constants.md, M40.
 constexpr std::size_t most_terms = 6, kept_sets = 12, copies = 100;
-constexpr double worth_a_term = 0.9;   // of the RMS of what is left out
-constexpr double same_rms = 1.05;         // RMS of two explanations that cannot be separated
+constexpr double worth_a_term = 0.9;  // of the RMS of what is left out
+constexpr double same_rms = 1.05;     // RMS of two explanations that cannot be separated
 constexpr double named_p = 0.01;
-constexpr double of_floor = 1.5;       // what noise explains
+constexpr double of_floor = 1.5;  // what noise explains
 constexpr std::size_t most_instances = 64;
 
 /// A shape of an effect that is not in the model.
@@ -140,8 +141,9 @@ class CourseSearch {
       std::vector<std::pair<Set, double>> all(grown.begin(), grown.end());
       if (all.empty()) break;
       const auto last = all.begin() + static_cast<std::ptrdiff_t>(std::min(kept_sets, all.size()));
-      std::partial_sort(all.begin(), last, all.end(),
-                        [](const auto& a, const auto& b) { return a.second < b.second; });
+      std::partial_sort(all.begin(), last, all.end(), [](const auto& a, const auto& b) {
+        return std::tie(a.second, a.first) < std::tie(b.second, b.first);
+      });
       if (!std::isfinite(all.front().second)) break;
       beam.clear();
       for (auto it = all.begin(); it != last; ++it) beam.push_back(it->first);
@@ -373,7 +375,7 @@ class CourseExplanation {
     }
     const auto& floor = out_.comparison.floor;
     v.kind = floor && out_.comparison.fit.rms <= of_floor * floor->s ? Verdict::Kind::nothing
-                                                                    : Verdict::Kind::unknown;
+                                                                     : Verdict::Kind::unknown;
   }
 
   const Part& part_;

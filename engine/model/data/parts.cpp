@@ -7,7 +7,7 @@
 #include <set>
 
 #include "balls.h"
-#include "course/course.h"
+#include "courses.h"
 #include "design.h"
 #include "lines.h"
 #include "nonio/math/rotary.h"

@@ -7,7 +7,6 @@
 //     heat-difference:T1-T2   g (L(T1, tau) - L(T2, tau))   g: m/K
 //     heat-source:n        a L(|n/n0|^m, tau)               a: m at the largest n0; m: 1 or 2
 //     heat-source-slow:n   a L(|n/n0|^m, tau), tau longer than that of heat-source:n
-//     drift:time           v t                              v: m/s
 //     settling:time        z exp(-t/tau)                    z: m
 #include <algorithm>
 #include <cmath>
@@ -86,14 +85,17 @@ Effect::Shape slow(const char* name, const char* help) {
   return {.parameter = {name, help, Quantity::time},
           .grid = [](const Observations& o, const Axis&) {
             const std::vector<double> all = time_constants_for(o.time);
-            return std::vector<double>(
-                all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
+            return std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2),
+                                       all.end());
           }};
 }
 
 Effect::Shape power() {
   return {.parameter = {"m", "power of the channel", Quantity::number},
-          .grid = [](const Observations&, const Axis&) { return std::vector<double>{1.0, 2.0}; },
+          .grid =
+              [](const Observations&, const Axis&) {
+                return std::vector<double>{1.0, 2.0};
+              },
           .continuous = false};
 }
 
@@ -131,20 +133,12 @@ Expected<Columns> source(const Observations& o, const Axis& of, const std::vecto
   return Columns{lagged(power, shape[0], o.time)};
 }
 
-Expected<Columns> over_time(const Observations& o, double (*f)(double, double), double tau) {
-  const double first = o.time.empty() ? 0.0 : *std::min_element(o.time.begin(), o.time.end());
-  std::vector<double> column;
-  for (const double t : o.time) column.push_back(f(t - first, tau));
-  return Columns{std::move(column)};
-}
-
-Expected<Columns> drift(const Observations& o, const Axis&, const std::vector<double>&) {
-  return over_time(o, [](double t, double) { return t; }, 0.0);
-}
-
 Expected<Columns> settling(const Observations& o, const Axis&, const std::vector<double>& shape) {
   if (shape.size() != 1 || !(shape[0] > 0.0)) return fail("settling: expected a time constant");
-  return over_time(o, [](double t, double tau) { return std::exp(-t / tau); }, shape[0]);
+  const double first = o.time.empty() ? 0.0 : *std::min_element(o.time.begin(), o.time.end());
+  std::vector<double> column;
+  for (const double t : o.time) column.push_back(std::exp(-(t - first) / shape[0]));
+  return Columns{std::move(column)};
 }
 
 Effect effect(const char* name, const char* summary, std::vector<Effect::Parameter> linear,
@@ -174,19 +168,17 @@ NONIO_PLUGIN(registry) {
                       "A second, slower displacement follows a measured temperature too",
                       {{"g", "displacement per kelvin", per_kelvin}},
                       {slow("tau", "time constant of the slow part")}, temperatures, heat));
-  registry.add(effect("heat-difference", "A structure bends with the difference of two temperatures",
+  registry.add(effect("heat-difference",
+                      "A structure bends with the difference of two temperatures",
                       {{"g", "displacement per kelvin of difference", per_kelvin}},
                       {lag("tau", "time constant of the lag")}, differences, difference));
-  registry.add(effect(
-      "heat-source", "A displacement follows a speed or a load with a lag",
-      {{"a", "displacement at the largest value, settled", Quantity::deviation}},
-      {decay("tau", "time constant"), power()}, sources, source));
-  registry.add(effect(
-      "heat-source-slow", "A second, slower displacement follows a speed or a load too",
-      {{"a", "displacement at the largest value, settled", Quantity::deviation}},
-      {slow("tau", "time constant of the slow part"), power()}, sources, source));
-  registry.add(effect("drift", "A displacement grows in proportion to time",
-                      {{"v", "rate", Quantity::deviation_per_time}}, {}, of_time, drift));
+  registry.add(effect("heat-source", "A displacement follows a speed or a load with a lag",
+                      {{"a", "displacement at the largest value, settled", Quantity::deviation}},
+                      {decay("tau", "time constant"), power()}, sources, source));
+  registry.add(effect("heat-source-slow",
+                      "A second, slower displacement follows a speed or a load too",
+                      {{"a", "displacement at the largest value, settled", Quantity::deviation}},
+                      {slow("tau", "time constant of the slow part"), power()}, sources, source));
   registry.add(effect("settling", "A displacement that dies away from the first reading on",
                       {{"z", "displacement at the start", Quantity::deviation}},
                       {decay("tau", "time constant")}, of_time, settling));

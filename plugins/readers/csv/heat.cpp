@@ -102,7 +102,8 @@ Expected<std::vector<Displacement>> displacements_of(const Table& table) {
   }
   for (const auto& [name, values] : table.numbers)
     if (name.ends_with(displacement_end) &&
-        std::none_of(out.begin(), out.end(), [&, &n = name](const auto& d) { return d.column == n; }))
+        std::none_of(out.begin(), out.end(),
+                     [&, &n = name](const auto& d) { return d.column == n; }))
       out.push_back({name, without(name, displacement_end), {}});
   if (out.empty())
     return fail("missing column: expected a displacement, a column whose name ends with _um");

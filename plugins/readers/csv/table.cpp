@@ -108,7 +108,8 @@ class TableReader {
   }
 
   bool has(std::string_view name) const {
-    return std::any_of(own_.begin(), own_.end(), [&](const auto* own) { return own->name == name; });
+    return std::any_of(own_.begin(), own_.end(),
+                       [&](const auto* own) { return own->name == name; });
   }
 
   Error unknown(std::string_view name) const {

@@ -57,8 +57,8 @@ struct Part {
   std::vector<std::shared_ptr<const Grouping>> groupings{};
 
   // Of a course.
-  std::string displacement{};    ///< its name
-  std::size_t displacements{};   ///< how many the measurement has
+  std::string displacement{};   ///< its name
+  std::size_t displacements{};  ///< how many the measurement has
   /// Displacements of the same measurement that move with this one, at the same times: m. Their
   /// effects are searched together; each has sizes of its own.
   std::vector<std::vector<double>> companions{};

@@ -10,13 +10,13 @@ namespace nonio::model {
 
 /// A fitted model applied to readings that it has not seen: only the zero may be new.
 struct Prediction {
-  std::vector<double> error;         ///< reading - prediction, of each reading, m or rad
-  std::vector<double> u;             ///< its standard uncertainty, of each reading, m or rad
-  double rms = 0.0;                  ///< of `error`, m or rad
-  double sd = 0.0;                   ///< of the readings, m or rad: what no model would leave
-  double inside = 0.0;               ///< share of the readings with |error| <= 2 u
+  std::vector<double> error;           ///< reading - prediction, of each reading, m or rad
+  std::vector<double> u;               ///< its standard uncertainty, of each reading, m or rad
+  double rms = 0.0;                    ///< of `error`, m or rad
+  double sd = 0.0;                     ///< of the readings, m or rad: what no model would leave
+  double inside = 0.0;                 ///< share of the readings with |error| <= 2 u
   std::optional<double> fails_from{};  ///< s: from here on the errors are larger than their U
-  bool outside = false;              ///< a channel leaves the range that the model has seen
+  bool outside = false;                ///< a channel leaves the range that the model has seen
 };
 
 /// `zero_kept`: the zero is that of the fit, not a new unknown. `seen`: the part that the terms were fitted to; `unseen`: the same displacement at another time.

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "courses.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nonio::model {
+
+namespace {
+
+/// Readings of one line, in time.
+std::vector<std::size_t> rows_of(const Observations& o, std::uint32_t line) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (o.line_of(i) == line && std::isfinite(o.time[i])) rows.push_back(i);
+  std::stable_sort(rows.begin(), rows.end(),
+                   [&](std::size_t a, std::size_t b) { return o.time[a] < o.time[b]; });
+  return rows;
+}
+
+Part part_of(const Measurement& m, const Observations& o, std::uint32_t line,
+             const std::vector<std::size_t>& rows) {
+  Part part;
+  part.kind = Part::Kind::course;
+  part.name = m.id + "/" + o.lines[line].name;
+  part.measurements = {m.id};
+  part.axes = {Axis{.name = o.lines[line].name}};
+  part.displacement = o.lines[line].name;
+  Observations& t = part.table;
+  t.measurement = o.measurement;
+  t.lines = {o.lines[line]};
+  t.channels = o.channels;
+  for (const std::size_t i : rows) {
+    t.deviation.push_back(o.deviation[i]);
+    t.time.push_back(o.time[i]);
+    if (!o.source_line.empty()) t.source_line.push_back(o.source_line[i]);
+    part.row.push_back(static_cast<std::uint32_t>(i));
+    part.along.push_back(o.time[i]);
+  }
+  part.measurement.assign(rows.size(), 0);
+  part.way.assign(rows.size(), 0);
+  return part;
+}
+
+/// Correlation of the changes over a hundredth of the test.
+double move_together(const std::vector<double>& a, const std::vector<double>& b) {
+  const std::size_t step = std::max<std::size_t>(1, a.size() / 100);
+  double aa = 0.0, ab = 0.0, bb = 0.0;
+  for (std::size_t i = 0; i + step < a.size(); ++i) {
+    const double da = a[i + step] - a[i], db = b[i + step] - b[i];
+    aa += da * da, ab += da * db, bb += db * db;
+  }
+  return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
+}
+
+}  // namespace
+
+void append_courses(const Measurement& m, const Observations& o, std::vector<Part>& parts) {
+  // docs/dev/constants.md, M40.
+  constexpr double together = 0.9;
+  constexpr std::size_t least = 60;
+  if (o.time.size() != o.size() || o.angular) return;
+  const std::size_t first = parts.size();
+  for (std::uint32_t line = 0; line < o.lines.size(); ++line) {
+    const auto rows = rows_of(o, line);
+    if (rows.size() >= least) parts.push_back(part_of(m, o, line, rows));
+  }
+  for (std::size_t a = first; a < parts.size(); ++a) {
+    parts[a].displacements = parts.size() - first;
+    for (std::size_t b = first; b < parts.size(); ++b)
+      if (a != b && parts[a].table.time == parts[b].table.time &&
+          std::fabs(move_together(parts[a].table.deviation, parts[b].table.deviation)) > together) {
+        parts[a].companions.push_back(parts[b].table.deviation);
+        parts[a].companion_names.push_back(parts[b].displacement);
+      }
+  }
+}
+
+}  // namespace nonio::model

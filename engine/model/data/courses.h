@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "nonio/model/measurements.h"
+
+namespace nonio::model {
+
+/// Adds a part for each displacement of a measurement over time.
+void append_courses(const Measurement& measurement, const Observations& read,
+                    std::vector<Part>& parts);
+
+}  // namespace nonio::model
