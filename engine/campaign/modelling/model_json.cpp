@@ -341,11 +341,29 @@ storage::Json statements_json(const std::vector<model::Statement>& statements,
   return list;
 }
 
+/// Of a displacement over time: how it was judged, and which effects cannot be separated.
+void put_course(storage::Json& json, const PartModel& part, const model::Explanation& e) {
+  if (part.part.kind != model::Part::Kind::course) return;
+  json["part"] = part.part.name;
+  storage::Json cv = {{"kind", "blocks"}, {"n", model::course_blocks}};
+  storage::put(cv, "rms", e.comparison.cv_rms, part.deviation());
+  json["cv"] = std::move(cv);
+  storage::Json groups = storage::Json::array();
+  for (const model::Candidate& c : e.candidates) {
+    if (c.aliases.empty()) continue;
+    std::vector<std::string> group = c.aliases;
+    group.insert(group.begin(), c.term.name());
+    groups.push_back(std::move(group));
+  }
+  json["indistinguishable"] = std::move(groups);
+}
+
 void put_explained(storage::Json& json, const Explained& e, const Campaign& campaign,
                    const ModelWords& words) {
   const model::Explanation& x = e.explanation;
   const Quantity q = e.part.deviation();
   json["observations"] = e.part.part.table.size();
+  put_course(json, e.part, x);
   json["model"] = model_json(e.part, x.comparison, words);
   put_floor(json, x.comparison, q);
   put_noise(json, x.comparison.fit, q);
@@ -545,7 +563,8 @@ std::string explain_json(const std::vector<Explained>& all, const Campaign& camp
     put_explained(json, all[most_severe(all)], campaign, words);
     json["axis"] = all[most_severe(all)].part.part.name;
   }
-  if (all.size() != 1) {
+  // Of displacements over time there are parts even where there is one.
+  if (all.size() != 1 || all.front().part.part.kind == model::Part::Kind::course) {
     storage::Json parts = storage::Json::array();
     for (const Explained& e : all) {
       storage::Json one = storage::Json::object();

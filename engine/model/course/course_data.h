@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "data/design.h"
-#include "nonio/model/measurements.h"
+#include "nonio/model/explain.h"
 
 /// Displacements over time. What the fit and the search of a course have in common.
 namespace nonio::model {
@@ -14,7 +14,7 @@ namespace nonio::model {
 /// other in time. Each block has a zero of its own: what wanders slowly stays out of the gains.
 class CourseData {
  public:
-  static constexpr Index blocks = 6, most_bins = 1501;
+  static constexpr Index blocks = course_blocks, most_bins = 1501;
 
   explicit CourseData(const Part& part);
 

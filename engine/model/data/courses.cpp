@@ -18,14 +18,22 @@ std::vector<std::size_t> rows_of(const Observations& o, std::uint32_t line) {
   return rows;
 }
 
+/// The sensors X, X1, ... Z of a nest are columns in small letters.
+std::string column_of(std::string line) {
+  const bool nest = !line.empty() && line.size() <= 2 && line[0] >= 'X' && line[0] <= 'Z' &&
+                    (line.size() == 1 || line[1] == '1' || line[1] == '2');
+  if (nest) line[0] = static_cast<char>(line[0] - 'X' + 'x');
+  return line;
+}
+
 Part part_of(const Measurement& m, const Observations& o, std::uint32_t line,
              const std::vector<std::size_t>& rows) {
   Part part;
   part.kind = Part::Kind::course;
-  part.name = m.id + "/" + o.lines[line].name;
+  part.displacement = column_of(o.lines[line].name);
+  part.name = m.id + "/" + part.displacement;
   part.measurements = {m.id};
-  part.axes = {Axis{.name = o.lines[line].name}};
-  part.displacement = o.lines[line].name;
+  part.axes = {Axis{.name = part.displacement}};
   Observations& t = part.table;
   t.measurement = o.measurement;
   t.lines = {o.lines[line]};

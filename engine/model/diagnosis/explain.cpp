@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/model/explain.h"
 
-#include "course/course.h"
 #include <algorithm>
 #include <optional>
 
 #include "beside.h"
+#include "course/course.h"
 #include "data/thin.h"
 #include "fit/compare.h"
 #include "search/candidates.h"

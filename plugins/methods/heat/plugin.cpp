@@ -21,8 +21,9 @@ Option period() {
   return {.name = "period",
           .default_value = std::vector<double>{},
           .unit = "s",
-          .help = "From and to (time_s) of the readings that are used, the end not included; "
-                  "temperatures and speeds before it still count for what lags behind them.",
+          .help =
+              "From and to (time_s) of the readings that are used, the end not included; "
+              "temperatures and speeds before it still count for what lags behind them.",
           .expected = "expected two times, the first one earlier"};
 }
 
@@ -37,7 +38,8 @@ NONIO_PLUGIN(registry) {
                                  .unit = "",
                                  .help = "The linear axis that is exercised; without it the "
                                          "columns are those of sensors."},
-                                period(), sensor_distance()}}});
+                                period(),
+                                sensor_distance()}}});
   registry.add(Method{.info = {"spindle",
                                "1.0",
                                "Displacement of a rotating test mandrel over its angle",

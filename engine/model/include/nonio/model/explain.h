@@ -14,6 +14,9 @@
 /// sentences made from it by templates/words.
 namespace nonio::model {
 
+/// Blocks of time that are left out of a course, one after the other.
+inline constexpr int course_blocks = 6;
+
 struct Candidate {
   Term term;            ///< with the shapes found
   bool visible = true;  ///< false: these readings cannot show it

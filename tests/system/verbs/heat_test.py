@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Displacements over time: the effects of channels in compare, explain and model add."""
+import json
+import math
+import random
+import unittest
+
+from verbs import VerbTest
+
+MANIFEST = """format = 1
+[campaign]
+id = "{id}"
+date = 2026-11-03
+[machine]
+maker = "M"
+model = "T"
+serial = "1"
+structure = "other"
+[[measurement]]
+id = "warm"
+kind = "thermal"
+file = "warm.csv"
+{more}"""
+STEP, ROWS = 30.0, 1500
+# The bearing follows the speed and the displacement the bearing.
+CAUSES = ("heat:bearing", "heat-slow:bearing", "heat-source:spindle", "heat-source-slow:spindle")
+
+
+def follow(values, tau):
+    """A body that is heated by its surroundings, in small steps: no formula of the program."""
+    y, out = values[0], []
+    for v in values:
+        for _ in range(10):
+            y += STEP / 10 / tau * (v - y)
+        out.append(y)
+    return out
+
+
+def record(seed, sizes):
+    """time, displacement, a cause that is recorded, another channel, a speed."""
+    rng = random.Random(seed)
+    speed, level = [], 0
+    while len(speed) < ROWS:
+        level = rng.choice([0, 3000, 6000, 9000])
+        speed += [level] * rng.randint(80, 200)
+    speed = speed[:ROWS]
+    bearing = follow([20 + 12 * (s / 9000) ** 2 for s in speed], 700.0)
+    hall = [21 + 1.5 * math.sin(2 * math.pi * i / 1100 + 1) + 0.6 * math.sin(2 * math.pi * i / 370) for i in range(ROWS)]
+    late = follow(bearing, 1500.0)
+    rows = []
+    for i in range(ROWS):
+        d = [size * (late[i] - late[0]) + rng.gauss(0, 0.05) for size in sizes]
+        rows.append([i * STEP, *d, bearing[i] + rng.gauss(0, 0.01), hall[i] + rng.gauss(0, 0.01), speed[i]])
+    return rows
+
+
+def table(rows, displacements):
+    head = ["time_s", *[f"{d}_um" for d in displacements], "bearing_c", "hall_c", "spindle_rpm"]
+    return "\n".join([",".join(head), *[",".join(f"{v:.4f}" for v in row) for row in rows]]) + "\n"
+
+
+class Heat(VerbTest):
+    def campaign(self, name, rows, displacements=("z",), more=""):
+        return self.write(name, MANIFEST.format(id=name, more=more), **{"warm.csv": table(rows, displacements)})
+
+    def write(self, name, manifest, **files):
+        folder = self.site / name
+        folder.mkdir()
+        (folder / "campaign.toml").write_text(manifest)
+        for file, text in files.items():
+            (folder / file).write_text(text)
+        return folder
+
+    def json(self, *arguments, status=0):
+        return json.loads(self.nonio(*arguments, "--json", expect=status).stdout)
+
+    def test_the_cause_is_named_added_and_predicts_what_it_has_not_seen(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            rows = record(seed, [3.0])
+            half = rows[ROWS * 6 // 10][0]
+            seen = self.campaign("seen", rows, more=f"period = [0, {half}]\n")
+            unseen = self.campaign("unseen", rows, more=f"period = [{half}, 1e9]\n")
+            first = self.json("explain", seen)
+            self.assertEqual(first["part"], "warm/z")
+            self.assertEqual(first["verdict"]["kind"], "missing")
+            self.assertIn(first["verdict"]["effect"], CAUSES)
+            before = first["model"]["rms_um"]
+            after = self.json("explain", seen, "--auto")
+            self.assertLess(after["model"]["rms_um"], 0.1 * before)
+            self.assertEqual(after["verdict"]["kind"], "nothing", after["verdict"])
+            predicted = self.json("compare", unseen, "--model-of", seen)
+            self.assertEqual(predicted["schema"], "nonio-predict/1")
+            part, = predicted["parts"]
+            self.assertEqual(part["part"], "warm/z")
+            self.assertLess(part["rms_um"], 0.1 * part["sd_um"])
+            self.assertEqual(part["terms"], len(after["model"]["effects"]))
+            kept = self.json("compare", unseen, "--model-of", seen, "--zero", "kept")
+            self.assertGreaterEqual(kept["parts"][0]["rms_um"], part["rms_um"] - 1e-9)
+
+    def test_displacements_that_move_together_share_their_effects_and_others_do_not(self):
+        rows = record(5, [3.0, -1.5])
+        rng = random.Random(6)
+        for row in rows:
+            row.insert(3, rng.gauss(0, 0.05))
+        folder = self.campaign("nest", rows, ("x", "y", "z"))
+        answer = self.json("explain", folder, "--auto")
+        kinds = {p["part"]: p["verdict"]["kind"] for p in answer["parts"]}
+        self.assertEqual(kinds, {"warm/x": "nothing", "warm/y": "nothing", "warm/z": "nothing"})
+        text = (folder / "campaign.toml").read_text()
+        self.assertIn("/x+y", text)
+        self.assertEqual(answer["parts"][0]["cv"]["kind"], "blocks")
+        z, = [p for p in answer["parts"] if p["part"] == "warm/z"]
+        self.assertEqual(z["model"]["effects"], [])
+
+    def test_noise_is_complete_and_an_unrecorded_cause_unknown(self):
+        noise = self.campaign("noise", record(7, [0.0]))
+        self.assertEqual(self.json("explain", noise)["verdict"]["kind"], "nothing")
+        rows = record(8, [0.0])
+        for i, row in enumerate(rows):
+            row[1] += 4 * math.sin(i / 9.0)
+        wave = self.campaign("wave", rows)
+        self.assertEqual(self.json("explain", wave)["verdict"]["kind"], "unknown")
+
+    def test_a_model_is_edited_and_its_mistakes_are_named(self):
+        folder = self.campaign("edit", record(9, [2.0]))
+        self.nonio("model", "add", folder, "heat:bearing")
+        wrong = self.nonio("model", "add", folder, "heat:bering", expect=2)
+        self.assertIn("heat:bearing", wrong.stderr)
+        wrong = self.nonio("model", "add", folder, "heat:hall/q", expect=2)
+        self.assertIn("no measurement over time has this channel and these displacements", wrong.stderr)
+
+    def test_files_with_gaps_and_without_displacements(self):
+        rows = record(10, [2.0])
+        text = table(rows, ("z",)).split("\n")
+        for i in range(100, 160):
+            cells = text[i].split(",")
+            cells[2] = ""
+            text[i] = ",".join(cells)
+        gaps = self.write("gaps", MANIFEST.format(id="gaps", more=""), **{"warm.csv": "\n".join(text)})
+        self.assertIn(self.json("explain", gaps)["verdict"]["effect"], CAUSES)
+        bare = self.write("bare", MANIFEST.format(id="bare", more=""),
+                          **{"warm.csv": "time_s,bearing_c\n0,20\n30,21\n"})
+        done = self.nonio("compare", bare, expect=1)
+        self.assertIn("a column whose name ends with _um", done.stderr)
+
+    def test_campaigns_without_a_common_displacement(self):
+        one = self.campaign("one", record(11, [2.0]))
+        other = self.campaign("other", record(12, [2.0]), ("q",))
+        done = self.nonio("compare", other, "--model-of", one, expect=2)
+        self.assertIn("one has warm/z, other has warm/q", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
