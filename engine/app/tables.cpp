@@ -219,6 +219,9 @@ void print_advice(std::ostream& out, const modelling::Explained& e, const std::s
   for (const auto& [what, label] : {std::pair{"is", "why"}, {"cure", "do"}})
     if (const std::string text = words.card(x.verdict.effect, what); !text.empty())
       sentence(out, 2, say(label) + ": " + text);
+  for (const model::Candidate& c : x.candidates)
+    if (c.term.price > 0.0 && c.term.name() == x.verdict.effect)
+      sentence(out, 2, say("rare", {{"price", fixed_text(c.term.price, 1)}}));
   for (const std::string& text : words.next(x, e.part))
     sentence(out, 2, say(x.plans.empty() ? "next" : "next.apart") + ": " + text);
   if (x.verdict.kind == model::Verdict::Kind::missing && !x.verdict.effect.empty())

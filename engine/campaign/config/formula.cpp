@@ -64,6 +64,14 @@ class Trial {
     point_[E::t] = n == 0 ? 0.0 : sized(1.0, 1e4);
     point_[E::K] = n == 0 ? 0.0 : sign() * sized(0.01, 3.0);
     point_[E::run] = 1.0 + n % 5;
+    point_[E::length] = n == 0 ? 1.0 : sized(0.1, 4.0);
+    point_[E::duration] = n == 0 ? 1e4 : sized(1e3, 1e5);
+    point_[E::runs] = 1.0 + n % 7;
+    point_[E::pitch] = n == 0 ? 0.01 : sized(1e-3, 0.1);
+    point_[E::teeth] = n == 0 ? 90.0 : 36.0 + n;
+    point_[E::air] = n == 0 ? 0.0 : sign() * sized(0.01, 3.0);
+    point_[E::pressure] = n == 0 ? 0.0 : sign() * sized(0.1, 20.0);
+    point_[E::humidity] = n == 0 ? 0.0 : sign() * sized(0.1, 20.0);
     for (std::size_t k = 0; k < formula_.parameters.size(); ++k) {
       const auto& p = formula_.parameters[k];
       double& slot = point_[E::parameter_slot(k)];
@@ -164,8 +172,7 @@ class Trial {
   SplitMix64 numbers_{1};
 };
 
-std::vector<double> search(const Formula::Parameter& p) {
-  constexpr int count = 128;
+std::vector<double> search(const Formula::Parameter& p, int count) {
   const auto [low, high] = *p.range;
   const bool ratios = low > 0.0 && high > 4.0 * low;
   std::vector<double> grid{p.start};
@@ -177,6 +184,33 @@ std::vector<double> search(const Formula::Parameter& p) {
   grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
   return grid;
 }
+
+/// None unless every reading has a value.
+std::optional<double> mean_of_all(const Observations& o, const std::vector<double>& column) {
+  double sum = 0.0;
+  for (const double x : column) sum += x;
+  if (column.size() != o.size() || column.empty() || !std::isfinite(sum)) return std::nullopt;
+  return sum / static_cast<double>(column.size());
+}
+
+/// What the expression uses besides position, direction, time and run: nothing that is missing.
+struct Wants {
+  bool K, pitch, teeth, air, pressure, humidity;
+
+  explicit Wants(const Expression& e)
+      : K(e.uses("K")),
+        pitch(e.uses("pitch")),
+        teeth(e.uses("teeth")),
+        air(e.uses("air")),
+        pressure(e.uses("pressure")),
+        humidity(e.uses("humidity")) {}
+
+  bool met(const Observations& o, const Axis& axis, const AxisReadings& r) const {
+    return (!K || r.temperature) && (!pitch || axis.screw_pitch) && (!teeth || axis.teeth) &&
+           (!air || mean_of_all(o, o.air)) && (!pressure || mean_of_all(o, o.pressure)) &&
+           (!humidity || mean_of_all(o, o.humidity));
+  }
+};
 
 Expected<Effect::Columns> columns(const Formula& formula, const Observations& o, const Axis& axis,
                                   const std::vector<double>& shape) {
@@ -196,11 +230,28 @@ Expected<Effect::Columns> columns(const Formula& formula, const Observations& o,
   if (shapes != shape.size())
     return fail("formula " + formula.name + ": expected " + std::to_string(shapes) +
                 " shape parameters, found " + std::to_string(shape.size()));
+  const double last_run =
+      o.run.empty() ? 1.0 : static_cast<double>(*std::max_element(o.run.begin(), o.run.end()));
+  const auto air = mean_of_all(o, o.air), pressure = mean_of_all(o, o.pressure),
+             humidity = mean_of_all(o, o.humidity);
   Effect::Columns out(linear.size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!r->moved[i]) continue;
     const std::array<double, Expression::variables> row{
-        r->p[i], r->theta[i], r->d[i], r->t[i], r->K[i], o.run.empty() ? 1.0 : o.run[i]};
+        r->p[i],
+        r->theta[i],
+        r->d[i],
+        r->t[i],
+        r->K[i],
+        o.run.empty() ? 1.0 : o.run[i],
+        r->length,
+        r->duration,
+        last_run,
+        axis.screw_pitch.value_or(0.0),
+        static_cast<double>(axis.teeth.value_or(0)),
+        air ? o.air[i] - *air : 0.0,
+        pressure ? o.pressure[i] - *pressure : 0.0,
+        humidity ? o.humidity[i] - *humidity : 0.0};
     std::copy(row.begin(), row.end(), slots.begin());
     for (std::size_t k = 0; k < linear.size(); ++k) {
       const double one = amount(formula.parameters[linear[k]]);
@@ -220,7 +271,7 @@ Expected<Effect::Columns> columns(const Formula& formula, const Observations& o,
 
 }  // namespace
 
-Expected<Effect> formula_effect(const Formula& formula, const Axis& axis) {
+Expected<Effect> formula_effect(const Formula& formula, const Axis& axis, bool tried, int most) {
   constexpr std::size_t most_linear = 8, most_shapes = 3;
   const auto wrong = [&](const std::string& why) {
     return fail(Error{"formula " + formula.name + ": " + why, {}, formula.line});
@@ -229,24 +280,30 @@ Expected<Effect> formula_effect(const Formula& formula, const Axis& axis) {
   if (!expression) return wrong(expression.error().message);
   Effect e;
   e.info = {formula.name, "formula", formula.expression, {}};
+  const auto searched = std::count_if(formula.parameters.begin(), formula.parameters.end(),
+                                      [](const auto& p) { return p.range.has_value(); });
+  // The search between the values of the grid does the rest: with more shapes fewer of each.
+  const int values = searched < 2 ? most : searched == 2 ? most * 5 / 16 : most / 9;
   for (const Formula::Parameter& p : formula.parameters) {
     const Effect::Parameter parameter{p.name, "of the formula", p.quantity};
     if (!p.range)
       e.linear.push_back(parameter);
     else
       e.shapes.push_back(
-          {parameter, [p](const Observations&, const Axis&) { return search(p); }, true});
+          {parameter, [p, values](const Observations&, const Axis&) { return search(p, values); }, true});
   }
   if (e.linear.empty()) return wrong("expected a linear parameter, one without start and range");
   if (e.linear.size() > most_linear || e.shapes.size() > most_shapes)
     return wrong("too many parameters: at most " + std::to_string(most_linear) +
                  " linear ones and " + std::to_string(most_shapes) + " with a range");
-  if (const std::string why = Trial(formula, axis, *expression).run(); !why.empty())
-    return wrong(why);
-  const bool temperature = expression->uses("K");
-  e.applies = [name = axis.name, temperature](const Observations& o, const Axis& a) {
-    const auto r = a.name == name ? readings_of(o, a) : fail("another axis");
-    return r && (!temperature || r->temperature);
+  if (!tried)
+    if (const std::string why = Trial(formula, axis, *expression).run(); !why.empty())
+      return wrong(why);
+  e.applies = [name = formula.axis, rotary = axis.rotary, wants = Wants(*expression)](
+                  const Observations& o, const Axis& a) {
+    if (name.empty() ? a.rotary != rotary : a.name != name) return false;
+    const auto r = readings_of(o, a);
+    return r && wants.met(o, a, *r);
   };
   e.columns = [formula](const Observations& o, const Axis& a, const std::vector<double>& shape) {
     return columns(formula, o, a, shape);

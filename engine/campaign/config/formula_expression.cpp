@@ -28,7 +28,15 @@ constexpr std::array<Name, Expression::variables> readings{{{"p", 0.0, distance}
                                                             {"d", 0.0, no_dimension},
                                                             {"t", 0.0, duration},
                                                             {"K", 0.0, temperature},
-                                                            {"run", 0.0, no_dimension}}};
+                                                            {"run", 0.0, no_dimension},
+                                                            {"length", 1.0, distance},
+                                                            {"duration", 1.0, duration},
+                                                            {"runs", 1.0, no_dimension},
+                                                            {"pitch", 1.0, distance},
+                                                            {"teeth", 1.0, no_dimension},
+                                                            {"air", 0.0, temperature},
+                                                            {"pressure", 0.0, no_dimension},
+                                                            {"humidity", 0.0, no_dimension}}};
 constexpr std::array<Name, 9> units{{{"m", 1.0, distance},
                                      {"mm", 1e-3, distance},
                                      {"um", 1e-6, distance},
@@ -39,7 +47,7 @@ constexpr std::array<Name, 9> units{{{"m", 1.0, distance},
                                      {"deg", 1.0 / deg_per_rad, no_dimension},
                                      {"arcsec", 1.0 / arcsec_per_rad, no_dimension}}};
 
-constexpr std::size_t most_characters = 400;
+constexpr std::size_t most_characters = 600;
 
 /// What the parser would take and no formula needs: assignments, texts, several results.
 std::string forbidden(const std::string& text) {
@@ -135,8 +143,15 @@ Expected<Expression> Expression::parse(const Formula& formula, const Axis& axis)
     own.slots.push_back(si);
     own.dimensions.push_back(dimension);
   };
-  for (const Name& v : readings)
-    add(v.name, v.si, axis.rotary && v.dimension == distance ? no_dimension : v.dimension);
+  const auto is_parameter = [&](const std::string& name) {
+    return std::any_of(formula.parameters.begin(), formula.parameters.end(),
+                       [&](const Formula::Parameter& p) { return p.name == name; });
+  };
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    const Name& v = readings[k];
+    add(k >= Expression::length && is_parameter(v.name) ? "" : v.name, v.si,
+        axis.rotary && v.dimension == distance ? no_dimension : v.dimension);
+  }
   for (const Name& u : units) add(u.name, u.si, u.dimension);
   for (const Formula::Parameter& p : formula.parameters) {
     if (std::find(names.begin(), names.end(), p.name) != names.end())
@@ -144,7 +159,8 @@ Expected<Expression> Expression::parse(const Formula& formula, const Axis& axis)
     add(p.name, 0.0, dimension_of(p.quantity));
   }
   try {
-    for (std::size_t k = 0; k < names.size(); ++k) own.parser.DefineVar(names[k], &own.slots[k]);
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (!names[k].empty()) own.parser.DefineVar(names[k], &own.slots[k]);
   } catch (const mu::ParserError&) {
     return fail(
         "the name of a parameter is no name: expected letters, digits and _, not the name of a "

@@ -17,7 +17,24 @@ using Dimension = std::array<int, 3>;
 /// The expression of a formula over slots: variables, units, parameters, each a number in SI.
 class Expression {
  public:
-  enum Variable : std::size_t { p, theta, d, t, K, run, variables };
+  enum Variable : std::size_t {
+    p,
+    theta,
+    d,
+    t,
+    K,
+    run,
+    // A parameter may have the name of one of these: then it is the parameter.
+    length,
+    duration,
+    runs,
+    pitch,
+    teeth,
+    air,
+    pressure,
+    humidity,
+    variables
+  };
 
   /// Fails where the expression cannot be understood, with its position.
   static Expected<Expression> parse(const Formula& formula, const Axis& axis);

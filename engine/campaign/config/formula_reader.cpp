@@ -9,8 +9,6 @@
 
 namespace nonio::config {
 
-namespace {
-
 Formula::Parameter read_parameter(TableReader& reader) {
   Formula::Parameter p;
   p.name = reader.text("name");
@@ -26,6 +24,8 @@ Formula::Parameter read_parameter(TableReader& reader) {
   reader.finish();
   return p;
 }
+
+namespace {
 
 Formula read_formula(TableReader& reader) {
   Formula f;

@@ -10,4 +10,6 @@ namespace nonio::config {
 /// said with the rest.
 std::vector<Formula> read_formulas(TableReader& table, const Machine& machine);
 
+Formula::Parameter read_parameter(TableReader& reader);
+
 }  // namespace nonio::config

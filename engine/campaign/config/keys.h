@@ -94,6 +94,8 @@ const Key& machine_file();
 const Key& events_file();
 const Key& acknowledged_file();
 const Key& forgotten_file();
+/// causes/*.toml of the templates and of a site.
+const Key& causes_file();
 /// What a specification of `nonio model simulate` has besides campaign.toml.
 const Key& specification_file();
 /// What tells the kind of axis that a cycle moves; settled by the code that reads cycles.

@@ -17,6 +17,7 @@ namespace nonio::config {
 inline constexpr const char* manifest_name = "campaign.toml";
 inline constexpr const char* site_name = "site.toml";
 inline constexpr const char* templates_folder = "templates";
+inline constexpr const char* causes_folder = "causes";
 
 /// Stands for the SHA-256 of a file that cannot be read.
 inline constexpr const char* absent = "absent";

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "campaign/config/causes.h"
 #include "campaign/config/machines.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
@@ -38,13 +39,15 @@ Checked<SiteFile> read_site(const fs::path& site, std::string& digest) {
 
 Expected<std::vector<fs::path>> with_site_templates(std::vector<fs::path> folders,
                                                     const fs::path& site) {
-  const fs::path own = site / "templates";
-  const auto there = storage::is_there(own);
-  if (!there) return fail(there.error());
-  std::error_code error;
-  const auto kind = fs::status(own, error).type();
-  if (*there && error) return fail("cannot read " + own.string() + ": " + error.message());
-  if (*there && kind == fs::file_type::directory) folders.push_back(own);
+  for (const char* name : {templates_folder, causes_folder}) {
+    const fs::path own = site / name;
+    const auto there = storage::is_there(own);
+    if (!there) return fail(there.error());
+    std::error_code error;
+    const auto kind = fs::status(own, error).type();
+    if (*there && error) return fail("cannot read " + own.string() + ": " + error.message());
+    if (*there && kind == fs::file_type::directory) folders.push_back(own);
+  }
   return folders;
 }
 
@@ -61,15 +64,18 @@ Expected<SiteFiles> read_site_files(const fs::path& site,
   reading(site / "templates");
   const auto own = with_site_templates({}, site);
   if (!own) return fail(own.error());
-  if (own->empty()) return files;
-  files.templates.folder = own->front();
-  const auto paths = template_paths(own->front());
-  if (!paths) return fail(paths.error());
-  for (const auto& [name, path] : *paths) {
-    reading(path);
-    auto bytes = storage::read_file(path);
-    if (!bytes) return fail(bytes.error());
-    files.templates.files[name] = std::move(*bytes);
+  files.templates.folder = site / templates_folder;
+  for (const fs::path& folder : *own) {
+    const auto paths = template_paths(folder);
+    if (!paths) return fail(paths.error());
+    const std::string under = folder.filename() == causes_folder ? std::string(site_causes) : "";
+    for (const auto& [name, path] : *paths) {
+      if (!under.empty() && !is_causes_file(under + name)) continue;
+      reading(path);
+      auto bytes = storage::read_file(path);
+      if (!bytes) return fail(bytes.error());
+      files.templates.files[under + name] = std::move(*bytes);
+    }
   }
   return files;
 }
@@ -113,7 +119,8 @@ fs::path site_of(const fs::path& campaign) {
     return std::nullopt;
   };
   if (const auto site = nearest(has(site_name))) return *site;
-  return nearest(has(machines_folder)).value_or(campaign);
+  if (auto site = nearest(has(machines_folder))) return *site;
+  return nearest(has(causes_folder)).value_or(campaign);
 }
 
 }  // namespace nonio::config

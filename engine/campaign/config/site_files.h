@@ -29,7 +29,7 @@ Expected<SiteFiles> read_site_files(
 /// The same from files that were read.
 Checked<SiteFile> site_in(const SiteFiles& files, std::string& digest);
 
-/// `folders` and, behind them, the site's own templates if it has some.
+/// `folders` and, behind them, the site's own templates and causes if it has some.
 Expected<std::vector<std::filesystem::path>> with_site_templates(
     std::vector<std::filesystem::path> folders, const std::filesystem::path& site);
 
@@ -37,7 +37,7 @@ std::string to_hex(std::string_view bytes);
 Expected<std::string> from_hex(const std::string& text);
 
 /// The nearest folder at or above the campaign that holds a site.toml, else one with records of
-/// machines; else the campaign's own.
+/// machines, else one with causes; else the campaign's own.
 std::filesystem::path site_of(const std::filesystem::path& campaign);
 
 }  // namespace nonio::config

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 bool is_site_part(std::string_view path) {
   for (const std::string_view file : {site_name, events_name, acknowledged_name, forgotten_name})
     if (path == file) return true;
-  for (const std::string_view folder : {machines_folder, templates_folder})
+  for (const std::string_view folder : {machines_folder, templates_folder, causes_folder})
     if (path == folder || (path.starts_with(folder) && path[folder.size()] == '/')) return true;
   return false;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "campaign/config/causes.h"
 #include "campaign/config/site_files.h"
 #include "nonio/sdk/gathered_words.h"
 #include "platform/storage/digest.h"
@@ -47,13 +48,20 @@ bool travels(std::string_view name) { return !name.starts_with("fonts/"); }
 
 namespace {
 
+/// Causes of a site lie next to its templates.
+fs::path path_of(const TemplateFiles& own, const std::string& name) {
+  return name.starts_with(site_causes)
+             ? own.folder.parent_path() / causes_folder / name.substr(site_causes.size())
+             : own.folder / name;
+}
+
 std::string line_of(const std::string& name, const std::string& digest) {
   return name + " " + digest + "\n";
 }
 
 Expected<void> keep(Templates& templates, const std::string& name, std::string bytes,
                     const std::string& path) {
-  if (!name.ends_with(".toml")) {
+  if (!name.ends_with(".toml") || is_causes_file(name)) {
     templates.files[name] = std::move(bytes);
     return {};
   }
@@ -72,9 +80,11 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
   for (const fs::path& folder : folders) {
     auto here = template_paths(folder);
     if (!here) return fail(here.error());
-    for (auto& [name, path] : *here) files[name] = std::move(path);
+    const std::string under = folder.filename() == causes_folder ? std::string(site_causes) : "";
+    for (auto& [name, path] : *here)
+      if (under.empty() || is_causes_file(under + name)) files[under + name] = std::move(path);
   }
-  for (const auto& [name, bytes] : own.files) files[name] = own.folder / name;
+  for (const auto& [name, bytes] : own.files) files[name] = path_of(own, name);
   std::erase_if(files, [&](const auto& file) {
     return !below.empty() &&
            std::none_of(below.begin(), below.end(),
@@ -97,6 +107,10 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
     if (auto kept = keep(templates, name, std::move(*bytes), path.string()); !kept)
       return fail(kept.error());
   }
+  if (auto read = causes_in(templates))
+    add_words(*read, templates);
+  else
+    return fail(read.error().front());
   gather_words(templates);
   digest = storage::sha256(all);
   if (json != nullptr)
@@ -148,6 +162,10 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
   if (ours.is_object() && ours.contains("files"))
     for (const auto& [name, file] : ours["files"].items())
       if (!json["files"].contains(name) && travels(name)) out.strange.push_back(name);
+  if (auto read = causes_in(out.templates))
+    add_words(*read, out.templates);
+  else
+    return fail(read.error().front());
   gather_words(out.templates);
   out.sha256 = storage::sha256(all);
   return out;

@@ -88,7 +88,7 @@ bool PartModel::shows(const std::string& effect) const {
   // Of a course "heat:t4/x1" is its heat:t4 where it is among the terms.
   const std::string name =
       part.kind == model::Part::Kind::course ? effect.substr(0, effect.find('/')) : effect;
-  for (const auto* list : {&terms, &catalogue})
+  for (const auto* list : {&terms, &catalogue, &library})
     for (const model::Term& t : *list)
       if (t.name() == name) return true;
   return false;
@@ -193,7 +193,21 @@ Error nothing_to_compare(const reading::ReadCampaign& read) {
 }
 
 void fill_catalogue(PartModel& part, const reading::ReadCampaign& read) {
-  part.catalogue = model::catalogue(part.part, read.effects);
+  const auto cause_of = [&](const model::Term& t) {
+    return std::find_if(read.causes.begin(), read.causes.end(), [&](const config::Cause& c) {
+      return c.formula.name == t.effect->info.name;
+    });
+  };
+  part.catalogue.clear(), part.library.clear();
+  for (model::Term& term : model::catalogue(part.part, read.effects)) {
+    const auto cause = cause_of(term);
+    if (cause == read.causes.end()) {
+      part.catalogue.push_back(std::move(term));
+    } else if (part.part.kind == model::Part::Kind::axis && !term.grouping) {
+      term.price = cause->price();
+      part.library.push_back(std::move(term));
+    }
+  }
   part.left_out = model::not_applying(part.part, read.effects);
   fill_interpolated(part, read);
 }
@@ -261,6 +275,27 @@ void leave_out_weaker_groups(model::Explanation& e) {
   });
 }
 
+/// Common effects first: where those of the catalogue leave an error unexplained, its causes are
+/// searched together with those of the library. What then is certain by the same rules is the
+/// answer. Whether there is an error at all is settled before, and so is the rate of false alarms.
+void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
+                     model::Explanation& out) {
+  using Kind = model::Verdict::Kind;
+  if (out.verdict.kind != Kind::unknown || part.library.empty()) return;
+  std::vector<model::Term> all = part.catalogue;
+  all.insert(all.end(), part.library.begin(), part.library.end());
+  auto more = model::explain(part.part, part.terms, all, seed, known);
+  if (!more || more->verdict.kind != Kind::missing) return;
+  const auto found = [&](const model::Term& t) {
+    return std::find(more->together.begin(), more->together.end(), t.name()) !=
+           more->together.end();
+  };
+  if (std::none_of(part.library.begin(), part.library.end(), found)) return;
+  more->verdict.false_alarms = out.verdict.false_alarms;
+  more->verdict.trials = out.verdict.trials;
+  out = std::move(*more);
+}
+
 }  // namespace
 
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
@@ -268,6 +303,7 @@ Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t s
   if (!part.unfit.empty()) return fail(part.unfit);
   return process::guarded(kind_of(part.part) + " " + part.part.name, [&] {
     auto out = model::explain(part.part, part.terms, part.catalogue, seed, known);
+    if (out) look_up_library(part, seed, known, *out);
     if (out) leave_out_weaker_groups(*out);
     // None vanishes in silence.
     if (out)

@@ -23,6 +23,8 @@ struct PartModel {
   std::string unfit;  ///< why these readings cannot show the model; "" if they can
   std::vector<model::Candidate> left_out{};  ///< effects that do not apply, and why
   RowsPlace interpolated{};                  ///< readings whose temperature is interpolated
+  /// Causes of the library: searched where the catalogue does not explain.
+  std::vector<model::Term> library{};
 
   Quantity deviation() const { return deviation_of(part.table.angular); }
   /// Of what readings are told apart by along their line: a position, an angle or a time.

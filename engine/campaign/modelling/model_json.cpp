@@ -237,6 +237,7 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   storage::put(json, "score", c.score, Quantity::number);
   storage::put(json, "score_alone", c.alone, Quantity::number);
   storage::put(json, "score_within", c.within, Quantity::number);
+  if (c.term.price > 0.0) storage::put(json, "prior_price", c.term.price, Quantity::number);
   json["parameters"] = parameters_json(c.parameters, nullptr);
   json["aliases"] = c.aliases;
   if (!c.beside.empty()) json["beside"] = c.beside;

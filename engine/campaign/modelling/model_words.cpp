@@ -498,7 +498,10 @@ std::string ModelWords::unmeasured(const std::string& effect) const {
 }
 
 std::string ModelWords::card(const std::string& effect, const std::string& what) const {
-  return words(templates_, language_, "effect." + kind_of(effect) + "." + what);
+  const std::string name = "effect." + kind_of(effect) + "." + what;
+  std::string text = words(templates_, language_, name);
+  // Causes of the library have English texts at least.
+  return text.empty() ? words(templates_, "en", name) : text;
 }
 
 }  // namespace nonio::modelling

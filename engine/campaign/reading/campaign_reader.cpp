@@ -174,6 +174,40 @@ void add_own_effects(ReadCampaign& out) {
   }
 }
 
+void add_library(const Context& context, ReadCampaign& out) {
+  auto causes = config::causes_in(context.templates);
+  if (!causes) {
+    for (Error& e : causes.error()) report_in(out, std::move(e));
+    return;
+  }
+  for (config::Cause& cause : *causes) {
+    const std::string& name = cause.formula.name;
+    const auto own = std::find_if(campaign_in(out).formulas.begin(), campaign_in(out).formulas.end(),
+                                  [&](const Formula& f) { return f.name == name; });
+    if (own != campaign_in(out).formulas.end()) {
+      report_in(out, Error{"model.formula \"" + name + "\": the library has a cause of this name (" +
+                               cause.file + ":" + std::to_string(cause.formula.line) +
+                               "); give one of them another name",
+                           config::manifest_name, own->line});
+      continue;
+    }
+    if (std::any_of(out.effects.begin(), out.effects.end(),
+                    [&](const Effect& e) { return e.info.name == name; })) {
+      report_in(out, Error{"cause \"" + name +
+                               "\": a plugin has an effect of this name; give the cause another name",
+                           cause.file, cause.formula.line});
+      continue;
+    }
+    auto effect = cause.effect(true);
+    if (!effect) {
+      report_in(out, Error{effect.error().message, cause.file, cause.formula.line});
+      continue;
+    }
+    out.effects.push_back(std::move(*effect));
+    out.causes.push_back(std::move(cause));
+  }
+}
+
 }  // namespace
 
 ReadCampaign read_campaign(const fs::path& folder, const Context& context, const Stage& stage) {
@@ -185,6 +219,7 @@ ReadCampaign read_campaign(const fs::path& folder, const Context& context, const
   look_up_what_was_on(from, out);
   read_measurements(from, out);
   add_own_effects(out);
+  add_library(context, out);
   return out;
 }
 

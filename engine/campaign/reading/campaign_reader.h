@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "campaign/config/causes.h"
 #include "campaign/reading/context.h"
 
 namespace nonio::reading {
@@ -20,7 +21,8 @@ struct ReadCampaign {
   /// Of each axis: files of the table that was on while it was measured, where it was one.
   std::map<std::string, std::vector<Artifact>> tables_on{};
   std::vector<Observations> observations;  ///< of each measurement; empty where none could be read
-  std::vector<Effect> effects;             ///< of the plugins and of the campaign
+  std::vector<Effect> effects;             ///< of the plugins, the campaign and the library
+  std::vector<config::Cause> causes{};     ///< the library
   std::vector<Finding> doubts{};           ///< what makes the files themselves implausible
   std::vector<Remark> notes;
   std::vector<std::string> unread;  ///< measurements of a kind that no plugin reads

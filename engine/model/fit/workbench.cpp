@@ -175,6 +175,7 @@ void Workbench::add(const Observations& o, std::size_t effect, std::vector<Matri
 
 double Workbench::price(const Block& block, Index columns) const {
   return static_cast<double>(columns + block.searched) * std::log(used_) + block.cost_of_shape +
+         instances_[block.effect].term.price +
          2.0 * std::log(static_cast<double>(std::max<std::size_t>(instances_.size(), 2)));
 }
 

@@ -36,6 +36,8 @@ struct Term {
   std::shared_ptr<const Grouping> grouping{};
   /// Of the groups but the first, in addition to the same effect without groups.
   bool differences = false;
+  /// 2 ln of the odds against it before there are readings: rare causes need more evidence.
+  double price = 0.0;
 
   /// The effect without groups: "backlash:X".
   std::string of_all() const { return effect->info.name + ":" + axis.name; }

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/config/causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "campaign/config/formula_reader.h"
+#include "campaign/config/toml_reader.h"
+#include "nonio/sdk/axis_readings.h"
+
+namespace nonio::config {
+
+namespace {
+
+constexpr int values_of_a_range = 32;
+
+Cause read_cause(TableReader& reader) {
+  Cause c;
+  c.file = reader.file();
+  c.formula.name = reader.text("name");
+  c.formula.expression = reader.text("expression");
+  c.formula.line = reader.line_of("expression");
+  for (TableReader& parameter : reader.tables("parameters"))
+    c.formula.parameters.push_back(read_parameter(parameter));
+  c.rotary = reader.text("axis") == "rotary";
+  c.title = reader.text("title");
+  c.is = reader.text("is");
+  c.size = reader.text("size");
+  c.looks = reader.text("looks");
+  c.alike = reader.text("alike");
+  c.cure = reader.text("cure");
+  c.compensable = reader.flag("compensable").value_or(false);
+  c.prior = reader.text("prior");
+  for (const std::string& column : reader.texts("columns").value_or(std::vector<std::string>{}))
+    c.timed = c.timed || column == "time_s";
+  reader.finish();
+  return c;
+}
+
+/// How a file is called in messages: as it lies in the site.
+std::string place_of(std::string_view name) {
+  return name.starts_with(site_causes)
+             ? std::string(causes_folder) + "/" + std::string(name.substr(site_causes.size()))
+             : std::string(templates_folder) + "/" + std::string(name);
+}
+
+}  // namespace
+
+double Cause::price() const {
+  return 2.0 * std::log(prior == "very-rare" ? 100.0 : prior == "rare" ? 10.0 : 1.0);
+}
+
+Expected<Effect> Cause::effect(bool tried) const {
+  Axis axis;
+  axis.rotary = rotary;
+  auto made = formula_effect(formula, axis, tried, values_of_a_range);
+  if (!made) return made;
+  made->info.summary = title;
+  made->compensable = compensable;
+  if (timed)
+    made->applies = [inner = made->applies](const Observations& o, const Axis& a) {
+      if (!inner(o, a)) return false;
+      const auto r = readings_of(o, a);
+      return r && r->timed;
+    };
+  return made;
+}
+
+bool is_causes_file(std::string_view name) {
+  const std::size_t under = name.starts_with(site_causes) ? site_causes.size()
+                            : name.starts_with("causes/") ? std::string_view("causes/").size()
+                                                          : 0;
+  return under > 0 && name.ends_with(".toml") &&
+         name.find('/', under) == std::string_view::npos && name.substr(under) != manifest_name;
+}
+
+Checked<std::vector<Cause>> causes_in(const Templates& templates) {
+  std::vector<Cause> all;
+  std::vector<Error> errors;
+  std::map<std::string, std::string> there;  // name, place
+  for (const auto& [name, text] : templates.files) {
+    if (!is_causes_file(name)) continue;
+    const std::string file = place_of(name);
+    const auto root = parse_toml(text, file);
+    if (!root) {
+      errors.push_back(root.error());
+      continue;
+    }
+    TableReader top(*root, causes_file(), file, errors);
+    top.integer("format");
+    for (TableReader& reader : top.tables("cause")) {
+      const std::size_t before = reader.errors();
+      Cause cause = read_cause(reader);
+      const auto [first, is_new] = there.try_emplace(
+          cause.formula.name, file + ":" + std::to_string(reader.line_of("name")));
+      if (!is_new)
+        reader.error("name", "\"" + cause.formula.name + "\" is in " + first->second +
+                                 " already; give one of them another name");
+      if (reader.errors() == before && name.starts_with(site_causes))
+        if (const auto effect = cause.effect(false); !effect)
+          reader.error("expression", effect.error().message);
+      all.push_back(std::move(cause));
+    }
+    top.finish();
+  }
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return all;
+}
+
+void add_words(const std::vector<Cause>& causes, Templates& templates) {
+  if (causes.empty()) return;
+  auto& words = templates.tables["words/en/causes"].values;
+  for (const Cause& c : causes) {
+    const std::string at = "effect." + c.formula.name + ".";
+    for (const auto& [key, text] : {std::pair{"title", &c.title},
+                                    {"is", &c.is},
+                                    {"size", &c.size},
+                                    {"looks", &c.looks},
+                                    {"alike", &c.alike},
+                                    {"cure", &c.cure}})
+      if (!text->empty()) words[at + key] = *text;
+  }
+}
+
+}  // namespace nonio::config
