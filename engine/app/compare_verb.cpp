@@ -49,7 +49,7 @@ Verb compare_verb(Common& common) {
           .summary = "Compares the model in campaign.toml with the measurements",
           .arguments = campaign_arguments(*folder, common),
           .footer =
-              "Shows for each axis the residuals (RMS, largest residual, RMS of left-out runs), "
+              "Shows for each axis the residuals (RMS, largest residual, cross-validated RMS), "
               "the noise floor of repeated readings, the parameters with their uncertainty, and "
               "the factors that the residuals depend on: direction, position, run, time, "
               "temperature, screw or angle.",
