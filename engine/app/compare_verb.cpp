@@ -89,7 +89,7 @@ Verb compare_verb(Common& common) {
                            "the model",
                    .shows_default = true})}),
       .footer =
-          "Shows for each axis the residuals (RMS, largest residual, RMS of left-out runs), "
+          "Shows for each axis the residuals (RMS, largest residual, cross-validated RMS), "
           "the noise floor of repeated readings, the parameters with their uncertainty, and "
           "the factors that the residuals depend on: direction, position, run, time, "
           "temperature, screw or angle.",

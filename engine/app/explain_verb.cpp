@@ -142,10 +142,10 @@ Verb explain_verb(Common& common) {
           campaign_arguments(options->folder, common),
           {{"--all", &options->all, "Every candidate, and why an effect could not be tested"},
            {"--what-if", &options->what_if,
-            "Also predicts what one run more, in each order of directions, would do to the "
+            "Also predicts what one more run, in each order of directions, would do to the "
             "uncertainties and to the evidence"},
            {"--auto", &options->automatic,
-            "While an effect is missing or certain, add it to campaign.toml; show each step"},
+            "While an effect is missing or significant, add it to campaign.toml; show each step"},
            {.name = "--seed",
             .target = &options->seed,
             .help = "Random seed of the false-alarm estimate",

@@ -95,7 +95,7 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
       const auto now = storage::sha256_of_file(path);
       if (!now || *now != f.sha256)
         return fail(path.string() +
-                    " is there and has other bytes; nothing was written. Expected "
+                    " exists with different content; nothing was written. Expected "
                     "--to with a folder without it");
       continue;
     }

@@ -221,8 +221,8 @@ Verb event_verb(Common& common) {
       .footer =
           "Without --kind and --text: lists the events, of one machine or all. Appends to "
           "SITE/events.toml. You can also edit this file; comments stay. Correct a wrong entry "
-          "there. The machine's history contains the event from the next night on: a step of its "
-          "values on that day then counts as its effect.",
+          "there. The machine's history contains the event from the next run on: a step of its "
+          "values on that day is then attributed to it.",
       .examples =
           {"nonio machine event site --machine S-0042 --axis X --kind crash --date 2026-03-04 "
            "--text \"tool hit the vice\""},
@@ -237,7 +237,7 @@ Verb ack_verb(Common& common) {
       .summary = "Acknowledge a finding of a machine until a given day",
       .arguments =
           joined({site_argument(wish->site),
-                  {"--finding", &a.finding, "Id of the finding, as the night's summary has it"},
+                  {"--finding", &a.finding, "Id of the finding, as printed in the summary of the run"},
                   {"--machine", &a.machine, "As `nonio machine list` names it"},
                   {"--axis", &a.axis, "The axis; default: all"},
                   {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
@@ -277,7 +277,7 @@ Verb remove_verb(Common& common) {
                            {"--date", &wish->date, "Day of the entry, YYYY-MM-DD; default: today"}},
                           common_arguments(common)),
       .footer =
-          "The nightly run reports a campaign that has vanished every night, with exit status 1, "
+          "The nightly run reports a missing campaign in every run, with exit status 1, "
           "until it is back or forgotten. Appends to SITE/forgotten.toml. The results of the "
           "campaign stay in the output folder and in the history.",
       .examples = {"nonio machine remove site 2021-03-02-rossi --by \"B. Sample\" --why \"machine "

@@ -123,7 +123,7 @@ Expected<std::vector<NewAxis>> axes_of(const std::vector<std::string>& texts) {
     const auto axis = axis_of(text);
     if (!axis) return fail(axis.error());
     for (const NewAxis& other : axes)
-      if (other.axis.name == axis->name) return fail("--axis: " + axis->name + " is there twice");
+      if (other.axis.name == axis->name) return fail("--axis: " + axis->name + " is given twice");
     axes.push_back({.axis = *axis, .file = {}, .bytes = {}});
   }
   return axes;
@@ -422,10 +422,10 @@ Verb new_verb(Common& common) {
            {"--address", &wish->address, "For a site: its address"},
            {"--country", &wish->country, "For a site: country, two letters"},
            {"--empty", &wish->empty, "A site without a first campaign"},
-           {"--defaults", &wish->defaults, "Do not ask for missing options"}},
+           {"--defaults", &wish->defaults, "Do not prompt for missing options"}},
           common_arguments(common)),
       .footer =
-          "On a terminal the command asks for missing options, with the default in brackets; an "
+          "On a terminal the command prompts for missing options, with the default in brackets; an "
           "empty line accepts it, and ^D or ^C ends without writing anything. Example readings are "
           "marked: every report prints EXAMPLE, NOT MEASURED next to the customer and the machine. "
           "Existing files are never overwritten.",

@@ -192,7 +192,7 @@ int plan_program(const ProgramWish& p, const Common& common) {
     const auto axis = axis_of(text);
     if (!axis) return complain(axis.error().message);
     if (machine.axis(axis->name) != nullptr)
-      return complain("--axis: " + axis->name + " is there twice");
+      return complain("--axis: " + axis->name + " is given twice");
     machine.axes.push_back(*axis);
   }
   const auto rows = grid_of(p);

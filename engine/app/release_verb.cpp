@@ -131,7 +131,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
     for (const fs::path& f : done.files) std::cout << "  " << f.string() << "\n";
   }
   if (!done.why.empty())
-    complain(done.why + " (it is issued; the next night gives its files)", exit_failed);
+    complain(done.why + " (issued; the next run writes its files)", exit_failed);
   return done.why.empty() ? exit_done : exit_failed;
 }
 

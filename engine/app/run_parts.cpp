@@ -53,7 +53,7 @@ void tell_planned(const batch::Night& night, const batch::RunOptions& options, b
     return;
   }
   const auto [least, most] = std::minmax_element(shards.begin(), shards.end());
-  std::cout << "night " << night.night.number << " of " << night.night.date
+  std::cout << "run " << night.night.number << " of " << night.night.date
             << " is planned: " << counted(night.campaigns.size(), "campaign") << ", " << to_do
             << " to do: " << in_shards << " in " << counted(shards.size(), "shard") << " of "
             << *least << (*least == *most ? "" : " to " + std::to_string(*most)) << ", "
@@ -81,7 +81,7 @@ int plan_night(NightWish& wish, const Common& common) {
 int already_merged(const batch::NightStatus& status, const Common& common) {
   const std::uint64_t failed = status.last ? status.last->failed : 0;
   if (!common.quiet)
-    std::cerr << "nonio: night " << status.night.number
+    std::cerr << "nonio: run " << status.night.number
               << " is complete: there is nothing to merge\n";
   return failed > 0 ? exit_failed : exit_done;
 }
@@ -101,7 +101,7 @@ int merge_night(NightWish& wish, const Common& common) {
   std::error_code error;
   if (!fs::is_directory(site, error))
     return complain("the site " + site +
-                    ", for which the night was planned, is not on this host; expected "
+                    ", for which the run was planned, is not on this host; expected "
                     "--site FOLDER");
   prepare_run(options, site, wish.out, common);
   Progress progress(common.quiet, common.json);
@@ -123,7 +123,7 @@ int cancel_night(const NightWish& wish, const Common& common) {
     return complain(removed.error().message);
   if (!common.quiet)
     std::cerr << "nonio: the plan is withdrawn; `nonio run SITE --out OUT` or another plan goes on "
-                 "with the same night, and keeps what its shards have done\n";
+                 "with the same run, and keeps the finished shards\n";
   return exit_done;
 }
 
@@ -138,7 +138,7 @@ int unlock_night(const NightWish& wish, const Common& common) {
   if (!gone) return complain(gone.error().message);
   if (!common.quiet)
     std::cerr << "nonio: "
-              << (gone->empty() ? "nobody uses the output folder"
+              << (gone->empty() ? "the output folder is not in use"
                                 : "the output folder is free; it was used by " + *gone)
               << "\n";
   return exit_done;

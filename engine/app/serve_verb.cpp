@@ -52,7 +52,7 @@ Verb serve_verb(Common& common) {
                               "Folder of one campaign, with its campaign.toml; or a site"})),
            takes(Takes::folder,
                  {"--out", &options->out,
-                  "Of a site: output folder of `nonio run`, whose morning is shown"}),
+                  "Of a site: output folder of `nonio run`, whose worklist is shown"}),
            {"--edit", &options->edit,
             "The page may write: save the model to campaign.toml. Without it nothing is written."},
            takes(Takes::file,
@@ -69,7 +69,7 @@ Verb serve_verb(Common& common) {
           "effects of the model with their sizes, readings and residuals, where the model fails, "
           "which effect is missing, and the error falling with each step. Nothing is written "
           "before \"save\", which does what `nonio model add` does.\n\nOnly this computer can "
-          "reach the page, and only with the token behind # in the address: it is a key, do not "
+          "reach the page, and only with the token after # in the address: it is a key, do not "
           "pass it on. From another computer: ssh -L (docs/howto-live.md).",
       .examples = {"nonio serve samples/site/02-constant-reversal",
                    "nonio serve --edit --port 4711 --token-file ~/.nonio-token campaigns/c1"},

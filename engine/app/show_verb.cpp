@@ -441,7 +441,7 @@ int show(const ShowWish& wish, const Common& common) {
   if (holds == Holds::nothing && !fs::exists(folder) && what_holds(wish.out) == Holds::night)
     return show_machine(wish.out, wish.folder, common);
   if (holds == Holds::night)
-    return complain(folder.string() + " holds the results of a night; expected " +
+    return complain(folder.string() + " contains the results of a run; expected " +
                     (folder / "ID").string() + " (summary.txt lists them)");
   if (holds == Holds::nothing) return complain(holds_nothing(folder));
   const auto shown =
@@ -486,7 +486,7 @@ Verb show_verb(Common& common) {
            templates_argument(common)},
           common_arguments(common)),
       .footer =
-          "Results with a tolerance come first: ! does not conform, ? cannot be decided, ok "
+          "Results with a tolerance come first: ! does not conform, ? indeterminate, ok "
           "conforms. Findings with the severity warning require action. --json prints the text of "
           "results.json (of a machine: nonio-history/1).\n\n"
           "Exit status: 0 shown; 1 shown, and the campaign failed; 2 usage or configuration.",

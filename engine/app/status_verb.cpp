@@ -20,7 +20,7 @@ struct StatusWish {
 };
 
 std::string night_text(const evaluation::NightOf& night) {
-  return "night " + std::to_string(night.number) + (night.date.empty() ? "" : " of " + night.date);
+  return "run " + std::to_string(night.number) + (night.date.empty() ? "" : " of " + night.date);
 }
 
 std::string hours_text(double hours) {
@@ -35,7 +35,7 @@ std::string trouble(const NightStatus& s, const StatusWish& wish) {
     return night_text(s.night) + " began and did not end";
   const bool goes_on =
       s.state == NightStatus::State::running || s.state == NightStatus::State::planned;
-  if (!s.last) return goes_on ? "" : "no night is complete";
+  if (!s.last) return goes_on ? "" : "no run is complete";
   if (s.age < -60.0) return "summary.json is from the future; expected a clock that is right";
   if (wish.max_age > 0.0 && s.age > wish.max_age * 3600.0)
     return "older than " + hours_text(wish.max_age);
@@ -55,7 +55,7 @@ std::string line_of(const NightStatus& s, const std::string& wrong) {
             (s.last->seen == 1 ? " campaign, " : " campaigns, ") + std::to_string(s.last->failed) +
             " failed";
   else
-    line += "no night is complete yet";
+    line += "no run is complete yet";
   return line + (wrong.empty() ? "" : "; WRONG: " + wrong);
 }
 
@@ -126,7 +126,7 @@ Verb status_verb(Common& common) {
       .footer =
           "The first line states number, date and age of the last run and its campaigns; with "
           "--quiet it is printed only if something is wrong. The actions follow, most urgent "
-          "first: lost, failed, out of its limit, changed, soon out, overdue, undecided, note. "
+          "first: lost, failed, out of its limit, changed, soon out, overdue, indeterminate, note. "
           "Each names the machine and axis, the value with U (k = 2), the limit, since when, what "
           "to do, and the page that shows it. Known: acknowledged (`nonio machine ack`) and not "
           "changed since.\n\nExit status: 0 the last run is complete and recent enough, also while "

@@ -199,13 +199,13 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
       const auto known =
           t.backlash ? t.backlash : tables::stated_backlash(options, t.output, t.rotary);
       if (known && std::fabs(*known * per - b.value) > 5e-7)
-        return fail("--active-backlash says " + short_text(b.value, 6) + " for axis " + t.output +
-                    ", its files or the campaign say " + short_text(*known * per, 6));
+        return fail("--active-backlash states " + short_text(b.value, 6) + " for axis " + t.output +
+                    ", its files or the campaign state " + short_text(*known * per, 6));
       if (!known) tables::state_backlash(options, t.output, t.rotary, b.value / per);
     }
     const bool has_parameter = !present.control->table.backlash.empty();
     if (has_parameter && !t.backlash && !tables::stated_backlash(options, t.output, t.rotary))
-      return fail(w.table + " does not say what was in " + present.control->table.backlash +
+      return fail(w.table + " does not state what was in " + present.control->table.backlash +
                   " of axis " + t.output +
                   " while it was measured: give its file too, or --active-backlash VALUE|none, or "
                   "backlash_on_" +
@@ -239,7 +239,7 @@ int apply(const TableWish& w, const Common& common) {
   if (!w.out.empty() && !w.was_on)
     return complain("--out writes the renewed table: it needs --active-table");
   if (!w.backlash_was.empty() && !w.was_on)
-    return complain("--active-backlash is about a table that was on: it needs --active-table");
+    return complain("--active-backlash describes an active table: it requires --active-table");
   const auto opened = open_campaign(w.folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;
@@ -321,7 +321,7 @@ Verb predict_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "predict",
-      .summary = "Predicts the error of a campaign after a table is loaded",
+      .summary = "Predicts the error of a campaign after compensation with a table",
       .arguments = joined(
           {required(
               takes(Takes::file,

@@ -47,7 +47,7 @@ std::string unfit_output(const fs::path& site, const fs::path& out) {
   if (folder == root) return "the output folder is the site itself; expected another folder";
   for (; folder != folder.parent_path(); folder = folder.parent_path())
     if (fs::exists(folder / config::manifest_name, error))
-      return "the output folder lies in the campaign " + folder.string() +
+      return "the output folder is inside the campaign " + folder.string() +
              "; expected another folder";
   return {};
 }
@@ -113,8 +113,8 @@ Morning morning_of(Night& night, const RunOptions& options, const RunEvents& eve
     return std::move(*made);
   }
   if (process::is_stop_requested()) return {};
-  night.morning_error = "the pages of the morning were not made: " + made.error().message;
-  night.notes.push_back(night.morning_error + "; the next night makes them");
+  night.morning_error = "the pages of the worklist were not made: " + made.error().message;
+  night.notes.push_back(night.morning_error + "; the next run makes them");
   events.note(night.notes.back());
   return {};
 }
@@ -128,7 +128,7 @@ void write_mail(Night& night, const RunOptions& options, const RunEvents& events
       "mail.subject", {{"number", std::to_string(night.night.number)}, {"date", night.night.date}});
   const auto sent = send_mail(*context.site.mail, options.site, {subject, morning.mail});
   if (sent) return;
-  night.morning_error = "the mail of this night was not sent: " + sent.error().message;
+  night.morning_error = "the mail of this run was not sent: " + sent.error().message;
   night.notes.push_back(night.morning_error);
   events.note(night.notes.back());
 }

@@ -105,7 +105,7 @@ Expected<void> attach_sources(const evaluation::Evaluated& evaluated, CampaignFi
       const auto record = config::record_of(context.machines, evaluated.campaign.machine);
       if (record && *record != nullptr)
         to.push_back({config::machine_record_name, config::packed(**record), "application/json",
-                      "Source", "what the site knows of the machine"});
+                      "Source", "the site's data of the machine"});
       continue;
     }
     auto one = attached_input(input, digest, files);
@@ -114,7 +114,7 @@ Expected<void> attach_sources(const evaluation::Evaluated& evaluated, CampaignFi
   }
   if (!context.site.settings.empty())
     to.push_back({settings_name, context.site.settings, "application/toml", source_relation,
-                  "what of the laboratory's settings has a say in the results"});
+                  "what of the laboratory's settings has an effect in the results"});
   if (!context.templates_json.empty())
     to.push_back({templates_name, context.templates_json, "application/json", "Source",
                   "words and layout of the documents"});

@@ -19,7 +19,7 @@ inline constexpr const char* templates_name = "templates.json";
 
 /// Why nothing can be signed where `signer` is null.
 inline constexpr const char* no_key =
-    "an output is to be signed, and site.toml says nothing of a key; expected [signing]";
+    "an output is to be signed, and site.toml does not contain a key; expected [signing]";
 
 /// Signs the artifacts that outputs want signed: XML documents first, then PDFs, into which go the
 /// manifest, the readings, what of site.toml has a say in them, results.json and the signed XML

@@ -215,7 +215,7 @@ Expected<void> Numbers::check_release(const reading::Inputs& now) const {
   if (other.empty() && now.size() == releasing_->draft.made_from.size()) return {};
   return fail("not the draft any more that is to be released; changed since: " +
               (other.empty() ? "files that are gone" : other) +
-              ". Run the night again, and look at the new draft");
+              ". Run `nonio run` again, and check the new draft");
 }
 
 Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
@@ -240,7 +240,7 @@ Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
     issue.why += (issue.why.empty() ? "" : "; ") + stated;
   if (issue.why.empty())
     missing.push_back(std::string(amendment_key) + " (why " + before.number + " is replaced" +
-                      (is_old ? "; what it says was there for " + before.number + " already" : "") +
+                      (is_old ? "; what it states was there for " + before.number + " already" : "") +
                       ")");
   return {};
 }
@@ -378,7 +378,7 @@ Expected<void> Numbers::issue_new(evaluation::Evaluated& evaluated) const {
       if (f.attention && std::none_of(seen.begin(), seen.end(),
                                       [&](const evaluation::KnownFinding& k) { return k.same(f); }))
         return fail("the finding " + finding_key(f) +
-                    " was not there when the draft was made: run the night again");
+                    " did not exist when the draft was made: run `nonio run` again");
   }
   evaluated.certificate->released = released_json(findings);
   auto opened = open();

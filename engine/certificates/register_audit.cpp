@@ -85,7 +85,7 @@ class Auditor {
     }
     for (const Journal::Entry& e : entries_)
       if (!e.number.empty() && known.insert(e.number).second)
-        wrong("the number " + e.number + " was taken out: " + name_of(e) + " tells of it");
+        wrong("the number " + e.number + " was taken out: " + name_of(e) + " mentions it");
   }
 
   void check_number(std::int64_t id, const std::string& number, const std::string& campaign,
@@ -102,7 +102,7 @@ class Auditor {
     const Journal::Entry* withdrawn = noted("withdrawn", number);
     if ((state != "drawn") != (issued != nullptr) ||
         (state == "withdrawn") != (withdrawn != nullptr))
-      wrong(number + " is " + state + ", and the journal says that it " +
+      wrong(number + " is " + state + ", and the journal states that it " +
             (withdrawn != nullptr ? "was withdrawn"
              : issued != nullptr  ? "was issued"
                                   : "was only drawn"));
@@ -144,7 +144,7 @@ class Auditor {
         if (anchor.value("id", "") != audit_.id ||
             anchor.value("entry", "") != std::to_string(drawn.place) ||
             anchor.value("sha256", "") != drawn.sha256)
-          wrong(number + ": the signed file tells of another journal: what was before " +
+          wrong(number + ": the signed file states another journal: the entries before " +
                 name_of(drawn) + " was written anew");
         return;
       }

@@ -112,12 +112,12 @@ Expected<std::optional<sign::Check>> check_register(const sign::Verified& verifi
     check.essential = false;
     return says(State::not_checked,
                 "whether " + stated.number +
-                    " was withdrawn or replaced: only the register of its site knows (--site)");
+                    " was withdrawn or replaced: requires the register of its site (--site)");
   }
   if (!rows.no_answer.empty()) return fail(no_verdict(rows, stated.number));
   if (!rows.exists) {
     check.essential = stated.by_register;
-    return says(State::not_checked, "the site has no register that knows " + stated.number);
+    return says(State::not_checked, "the site has no register that states this " + stated.number);
   }
   const auto issued = rows.issued.find(storage::sha256(bytes));
   if (issued != rows.issued.end()) stated.number = issued->second;

@@ -60,7 +60,7 @@ Expected<std::vector<WaitingDraft>> drafts_of(const std::vector<storage::Databas
       drafts.push_back(draft_of(row[0], storage::Json::parse(row[1])));
     } catch (const storage::Json::exception&) {
       return fail("the register's draft of " + row[0] +
-                  " cannot be read; expected what `nonio run` writes: run the night with --force");
+                  " cannot be read; expected a draft of `nonio run`: run with --force");
     }
   return drafts;
 }

@@ -54,14 +54,14 @@ Expected<Restamped> restamp(const fs::path& file, const sign::Prolonging& with,
   std::error_code error;
   if (fs::exists(folder / evaluation::record_name, error))
     return fail(
-        "lies in the output of a night, which writes it again as it was issued: expected "
+        "is in the output of a run, which writes it again as it was issued: expected "
         "another folder (--out), found " +
         (folder / evaluation::record_name).string());
   const auto bytes = read_bounded(file);
   if (!bytes) return fail(bytes.error());
   if (bytes->starts_with("<?xml"))
     return fail(
-        "is a DCC by itself: long-term validation of XAdES (B-LT, B-LTA) is not made; restamp the "
+        "is a separate DCC: long-term validation of XAdES (B-LT, B-LTA) is not supported; extend the "
         "PDF that carries the DCC");
   sign::Prolonging how = with;
   how.verifier.issued_by = issued_by(rows, *bytes);

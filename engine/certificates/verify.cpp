@@ -52,7 +52,7 @@ std::optional<std::string> why_no_certificate(std::string_view bytes) {
   if (bytes.starts_with("%PDF-")) {
     if (!has("/ByteRange"))
       return "is a PDF without a signature: as it is printed, joined or converted by another "
-             "program; ask for the file as it was issued";
+             "program; request the file as it was issued";
     if (!has("ETSI.CAdES.detached") || !has(evaluation::results_name))
       return "is a PDF that another program signed";
     return std::nullopt;

@@ -12,7 +12,7 @@
 #include "campaign/modelling/campaign_model.h"
 #include "platform/storage/json_values.h"
 
-/// What the bench process calculates of its campaign, each answer as JSON (docs/live.md). All of it
+/// What the bench process calculates of its campaign, each answer as JSON (docs/dev/live.md). All of it
 /// runs plugins.
 namespace nonio::live {
 

@@ -34,7 +34,7 @@ Expected<modelling::Exclusion> exclusion_of(const Bench& bench, const Json& one)
   for (const std::size_t row : rows) {
     if (row >= o.size() || row >= o.source_line.size() || o.source_line[row] == 0)
       return fail("the reader of " + m->file +
-                  " does not say in which line a reading stands: it cannot be excluded there");
+                  " does not state the line of a reading, so it cannot be excluded there");
     lines.insert(o.source_line[row]);
   }
   for (std::size_t row = 0; row < o.size(); ++row)

@@ -22,7 +22,7 @@ Expected<std::string> read_token(const std::string& file, int fd) {
   struct stat s {};
   if (::fstat(fd, &s) != 0) return fail(file + ": " + std::strerror(errno));
   if (!S_ISREG(s.st_mode) || s.st_uid != ::geteuid() || (s.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-    return fail(file + ": expected a file of this user that nobody else can read (chmod 600)");
+    return fail(file + ": expected a file of this user that no other user can read (chmod 600)");
   std::array<char, digits + 2> bytes{};
   const ssize_t n = ::read(fd, bytes.data(), bytes.size());
   std::string token(bytes.data(), n > 0 ? static_cast<std::size_t>(n) : 0);

@@ -435,7 +435,7 @@ Verdict analysis_says(const Analysis& a, const Bench& bench) {
     if (error.empty() && said.failed()) error = "; sample " + s.name + ": " + said.error;
   }
   if (!tried) return skipped(no_sample);
-  const std::string nothing = "of no sample that it applies to it says anything" + error;
+  const std::string nothing = "of no sample that it applies to it states anything" + error;
   return a.info.opt_in
              ? skipped(nothing +
                        "; put a campaign with its options into cases/<name>/campaign.toml")

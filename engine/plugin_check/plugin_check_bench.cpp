@@ -54,7 +54,7 @@ Expected<Sample> open_source(const Source& source, const std::vector<Reader>& re
     if (file == nullptr) return fail(place + ": there is no such file");
     const Method* method = method_of(m, methods);
     const Reader* reader = reader_of(m, method, file->bytes, readers);
-    if (reader == nullptr) return fail(place + ": no reader knows it");
+    if (reader == nullptr) return fail(place + ": no reader recognizes it");
     const Settings options = settings_for(reader->info, s);
     auto read = reading::checked_read(*reader, {file->bytes, s.campaign, m, options, {}, method});
     if (!read) return fail(place + ": " + read.error().message);

@@ -228,7 +228,7 @@ Verdict table_declared(const Controller& o, const Bench&) {
       if (!(x > 0.0) || !std::isfinite(x)) return failed("a unit or step that is not above 0");
   if (t.increment && !(t.increment->first < t.increment->second))
     return failed("a range of increments that is empty");
-  if (t.facts.empty()) return failed("it does not say how well anything is known (facts)");
+  if (t.facts.empty()) return failed("it does not state how well anything is known (facts)");
   std::set<std::string> ids;
   for (const auto& fact : t.facts) {
     if (fact.id.empty() || fact.description.empty()) return failed("a fact without id or words");
@@ -383,7 +383,7 @@ const std::vector<Check<Controller>>& controller_checks() {
   static const std::vector<Check<Controller>> of_tables = {
       {"declared", "Name, units, steps and the confidence of each fact are declared.",
        table_declared},
-      {"truth", "Files of the maker do what table.csv says.",
+      {"truth", "Files of the maker do what table.csv states.",
        [](const Controller& x, const Bench& bench) { return truth(x, bench); }},
       {"cancels", "Its table, read back, removes a planted error.", table_cancels},
       {"sign", "Where the error rises, the control adds a correction that falls equally.",

@@ -161,7 +161,7 @@ Verdict effect_again(const Effect& e, const Bench& bench) {
 
 /// A row in which the axis stood, far away, is added to the readings.
 Verdict effect_still(const Effect& e, const Bench& bench) {
-  if (e.instances) return skipped("an effect in space: an axis that stands still counts");
+  if (e.instances) return skipped("an effect in space: a stationary axis is included");
   return everywhere(e, bench, [&](const Shown& s, const std::vector<double>& shape) -> std::string {
     std::vector<std::uint32_t> order(s.table().size());
     std::iota(order.begin(), order.end(), 0U);
@@ -175,7 +175,7 @@ Verdict effect_still(const Effect& e, const Bench& bench) {
     const auto columns = e.columns(o, s.term.axis, shape);
     if (!columns) return "it gives no columns: " + columns.error().message;
     for (const auto& c : *columns)
-      if (c.empty() || c.back() != 0.0) return "it is not 0 where the axis stood still";
+      if (c.empty() || c.back() != 0.0) return "it is not 0 where the axis was stationary";
     return {};
   });
 }
@@ -403,7 +403,7 @@ Verdict effect_explained(const Effect& e, const Bench& bench) {
     // A cause that comes near is named before a description; a free curve of time may look as if
     // the readings did not repeat.
     if (e.description && x->verdict.kind != model::Verdict::Kind::nothing) continue;
-    return failed(s.where() + ": planted alone, explain says " +
+    return failed(s.where() + ": planted alone, explain states " +
                   (x->verdict.effect.empty() ? "nothing" : x->verdict.effect) + " instead");
   }
   return skipped("no sample determines its parameters");
@@ -469,7 +469,7 @@ Verdict fingerprint(const Effect& e, const Bench& bench) {
 const std::vector<Check<Effect>>& effect_checks() {
   static const std::vector<Check<Effect>> checks = {
       {"columns", "One column per parameter, one entry per reading, only numbers.", effect_columns},
-      {"truth", "Its columns are those of the formula beside it.",
+      {"truth", "Its columns are those of its formula file.",
        [](const Effect& x, const Bench& bench) { return truth(x, bench); }},
       {"again", "The same input gives the same bytes.", effect_again},
       {"still", "Columns are 0 for readings with the axis at rest.", effect_still},

@@ -139,7 +139,7 @@ Verdict reader_again(const Reader& r, const Bench& bench) {
 }
 
 Verdict reader_empty(const Reader& r, const Bench& bench) {
-  if (r.recognises && r.recognises("")) return failed("it says that it knows an empty file");
+  if (r.recognises && r.recognises("")) return failed("it accepts an empty file");
   return each_file(r, bench, [&](const ReadFile& f, const Observations&) -> std::string {
     for (const char* bytes : {"", "\n", "\xef\xbb\xbf", " \r\n \r\n"})
       if (const auto o = read(r, f, bytes); o && o->size() > 0)
@@ -329,7 +329,7 @@ Verdict reader_truth(const Reader& r, const Bench& bench) {
   });
   if (v.state == Verdict::State::passed && compared == 0)
     return skipped(
-        "no readings.csv beside a file of a case: write down what the instrument showed");
+        "no readings.csv next to a file of a case: write down what the instrument showed");
   return v;
 }
 
@@ -348,7 +348,7 @@ Verdict reader_foreign(const Reader& r, const Bench& bench) {
   for (const auto& [name, bytes] : foreign) {
     bench.stage(name);
     const bool knows = r.recognises(std::string_view(bytes).substr(0, 4096));
-    if (knows) return failed(std::string("it says that it knows ") + name);
+    if (knows) return failed(std::string("it accepts ") + name);
     for (const Sample& s : bench.samples) {
       const auto o =
           r.read({bytes, s.campaign, s.campaign.measurements[0], settings_for(r.info, s)});

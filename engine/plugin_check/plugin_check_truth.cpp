@@ -354,7 +354,7 @@ Verdict truth(const Controller& o, const Bench& bench) {
     }
   return compared > 0 ? passed()
                       : skipped(
-                            "no case has a table.csv: write down what the maker's manual says "
+                            "no case has a table.csv: write down what the maker's manual states "
                             "that a file of its does");
 }
 

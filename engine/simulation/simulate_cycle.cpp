@@ -98,11 +98,11 @@ class CycleReader {
     const double share = reader_.number("random_offset_pct", 0.01).value_or(0.0);
     if (share > 0.45) reader_.error("random_offset_pct", "expected at most 45, targets keep order");
     if (c_.steps > 0) {
-      if (given || first || last || distance) reader_.error("steps", "stands beside targets");
+      if (given || first || last || distance) reader_.error("steps", "is not allowed with targets");
       const double whole = length_of(c_.measurement) / unit_;
       for (std::uint32_t i = 0; i <= c_.steps; ++i) c_.targets.push_back(whole * i / c_.steps);
     } else if (given) {
-      if (first || last || distance) reader_.error(list, "stands beside a range");
+      if (first || last || distance) reader_.error(list, "is not allowed with a range");
       c_.targets = *given;
     } else if (first && last && distance && *distance > 0.0 && *last > *first &&
                (*last - *first) / *distance < 1e5) {
@@ -182,7 +182,7 @@ class CycleReader {
       c_.ball_offset = offset.front();
     if (c_.sensor.empty()) reader_.error("sensor", "is missing: turns, stands or probe");
     if (c_.sensor == "probe" ? !c_.senses.empty() : c_.senses.empty())
-      reader_.error("sense", c_.sensor == "probe" ? "stands beside a probe, which senses all"
+      reader_.error("sense", c_.sensor == "probe" ? "is not allowed with a probe, which senses all"
                                                   : "is missing: where the gauge points");
   }
 
@@ -216,7 +216,7 @@ class CycleReader {
     c_.pendulum = reader_.text("order") != "unidirectional";
     const std::string direction = reader_.text("direction");
     if (!direction.empty() && c_.pendulum)
-      reader_.error("direction", "stands only beside order = \"unidirectional\"");
+      reader_.error("direction", "is only allowed with order =  \"unidirectional\"");
     c_.direction = direction == "-" ? -1.0 : 1.0;
   }
 
@@ -267,7 +267,7 @@ std::vector<CycleSpec> read_cycles(config::TableReader& top, const Campaign& cam
     if (of_it == found.end()) {
       if (errors.empty())
         complain(top.line_of("measurement"),
-                 "measurement \"" + m.id + "\" has no [[cycle]] that says how it is taken");
+                 "measurement \"" + m.id + "\" has no [[cycle]] that states how it is taken");
       continue;
     }
     const auto again = std::find_if(of_it + 1, found.end(), is_its);

@@ -164,7 +164,7 @@ Expected<Observations> rotary_rows(const Specification& s, const CycleSpec& c) {
   const RotarySpec* r = s.rotary(c.axis.name);
   if (r == nullptr)
     return fail("measurement \"" + c.measurement.id + "\": expected a [[simulation.rotary]] of " +
-                "axis " + c.axis.name + ", which says where it is");
+                "axis " + c.axis.name + ", which states where it is");
   const RotarySpec* carrier = c.carrier.empty() ? nullptr : s.rotary(c.carrier);
   if (carrier == nullptr && !c.carrier.empty())
     return fail("measurement \"" + c.measurement.id + "\": expected a [[simulation.rotary]] of " +

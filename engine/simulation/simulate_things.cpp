@@ -59,7 +59,7 @@ void read_things(config::TableReader& simulation, Specification& s) {
     if (!r.axis.empty() && std::find(axes.begin(), axes.end(), r.axis) == axes.end())
       reader.error("axis", "the machine has no rotary axis \"" + r.axis + "\"" +
                                storage::suggestion(r.axis, axes));
-    if (s.rotary(r.axis) != nullptr) reader.error("axis", r.axis + " stands twice");
+    if (s.rotary(r.axis) != nullptr) reader.error("axis", r.axis + " is given twice");
     r.centre = one_vector(reader, "centre_mm", 1e-3).value_or(Vector{});
     r.direction = one_direction(reader, "direction").value_or(Vector{0.0, 0.0, 1.0});
     r.control_centre = one_vector(reader, "control_centre_mm", 1e-3);

@@ -60,7 +60,7 @@ std::string read_png(std::string_view bytes, Picture& picture) {
     }
   }
   if (error.empty() && image.warning_or_error != 0)
-    error = std::string("libpng says: ") + std::data(image.message);
+    error = std::string("libpng states: ") + std::data(image.message);
   png_image_free(&image);
   return error;
 }

@@ -72,7 +72,7 @@ class Documents(unittest.TestCase):
         rows = re.findall(r"^\|.*$", (ROOT / "docs" / "manifest.md").read_text(), re.M)
         keys = [row.split(" | ")[0] for row in rows if "`[" in row.split(" | ")[0] or "`kind`" in row]
         self.assertEqual([], sorted({k for k in keys if keys.count(k) > 1 and k != "| `kind`"}))
-        self.assertEqual(1, sum(row.startswith("| `kind` | required") for row in rows))
+        self.assertEqual(1, sum(row.startswith("| `kind` | Required") for row in rows))
 
     def test_links_lead_to_files_that_are_there(self):
         lost = [f"{page.relative_to(ROOT)}: {target}" for page in PAGES

@@ -43,7 +43,7 @@ std::vector<config::Event> events_of(const config::MachineRecords& records) {
 
 Expected<store::Told> read_told(const RunOptions& options, const reading::Context& context) {
   auto logs = read_apart<config::SiteLogs>(
-      "what the site says of its machines", context.site.limits.disk_seconds,
+      "what the site states of its machines", context.site.limits.disk_seconds,
       [&](process::SignsOfLife& signs) -> Expected<config::SiteLogs> {
         signs.reading((options.site / config::events_name).string());
         auto read = config::read_site_logs(options.site);

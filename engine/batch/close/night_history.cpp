@@ -13,8 +13,8 @@ void write_history(Night& night, HistoryUpdate& history, std::uint64_t known,
   auto notes = history.end(known, night.night.number, done, told);
   if (!notes) {
     night.history_error = notes.error().message;
-    notes = {"this night is not in the history: " + night.history_error +
-             "; the results are all there, and the next night enters them"};
+    notes = {"this run is not in the history: " + night.history_error +
+             "; the results are complete, and the next run enters them"};
   } else if (!notes->empty()) {
     night.history_error = notes->front();
   }
@@ -54,7 +54,7 @@ bool show_histories(const RunOptions& options, const RunEvents& events,
     if (const auto ended = shown.end(night.campaigns, *told); !ended) error = ended.error().message;
   if (error.empty() || process::is_stop_requested()) return !process::is_stop_requested();
   night.history_error = "histories in reports are not up to date: " + error;
-  night.notes.push_back(night.history_error + "; the next night writes them");
+  night.notes.push_back(night.history_error + "; the next run writes them");
   events.note(night.notes.back());
   return true;
 }

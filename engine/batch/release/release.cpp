@@ -62,7 +62,7 @@ std::string mistake_in(const ReleaseRequest& request) {
   for (const auto& [finding, reason] : request.reasons)
     if (!says_something(reason) || !is_one_line(reason))
       return "the reason for " + finding +
-             " says nothing or has a control character; expected one line of text";
+             " is empty or has a control character; expected one line of text";
   return {};
 }
 
@@ -220,7 +220,7 @@ class Releaser {
     lock_.emplace(std::move(*taken));
     const fs::path results = storage::results_folder(options_.out, id_);
     auto record = evaluation::read_record(results);
-    if (!record) return fail("no result of a night in " + results.string());
+    if (!record) return fail("no result of a run in " + results.string());
     night_.number = record->night;
     twins_ = twins_of(record->inputs);
     return {};
@@ -238,7 +238,7 @@ class Releaser {
     auto place = set_up(options_);
     if (!place) return refuse(place.error().message);
     out_.notes = (*place)->notes;
-    if (!(*place)->signer) return refuse("site.toml says nothing of a key; expected [signing]");
+    if (!(*place)->signer) return refuse("site.toml does not contain a key; expected [signing]");
     if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
     const certificates::Releasing releasing{seen_, approval, twins_};
     ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
@@ -305,8 +305,8 @@ std::string why_stale(const certificates::WaitingDraft& draft) {
   const fs::path file = fs::path(draft.out) / draft.campaign / draft.file;
   const auto now = storage::sha256_of_file(file);
   if (now && *now == draft.sha256) return {};
-  return "the draft " + file.string() + (now ? " is not what the night left" : " is not there") +
-         ": run the night again (or name its output folder with --out, if that was moved)";
+  return "the draft " + file.string() + (now ? " has changed since the last run" : " is not there") +
+         ": run `nonio run` again (or name its output folder with --out, if that was moved)";
 }
 
 Released release(const ReleaseRequest& request, const RunOptions& base, const RunEvents& events) {

@@ -192,7 +192,7 @@ Night run_shard(const RunOptions& options, const RunEvents& events) {
   if (!plan) return refuse(plan.error().message);
   night.night = plan->night;
   if (plan->shards.size() != options.shards)
-    return refuse("night " + std::to_string(plan->night.number) + " is planned for " +
+    return refuse("run " + std::to_string(plan->night.number) + " is planned for " +
                   std::to_string(plan->shards.size()) + " shards; expected --shard i/" +
                   std::to_string(plan->shards.size()) + ", found " + std::to_string(options.shard) +
                   "/" + std::to_string(options.shards));

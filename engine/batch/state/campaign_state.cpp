@@ -6,7 +6,7 @@
 
 namespace nonio::batch {
 
-static_assert(sizeof(CampaignState) == 56, "docs/dev/scale.md says what a campaign takes");
+static_assert(sizeof(CampaignState) == 56, "docs/dev/scale.md states what a campaign takes");
 
 const CampaignState::Seldom& CampaignState::seldom() const {
   static const Seldom nothing;

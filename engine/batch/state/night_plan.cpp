@@ -187,7 +187,7 @@ Expected<NightPlan> read_plan(const fs::path& out) {
   auto plan = find_plan(out);
   if (!plan) return fail(plan.error());
   if (*plan) return std::move(**plan);
-  return fail("no night is planned in " + out.string() +
+  return fail("no run is planned in " + out.string() +
               "; expected `nonio run plan SITE --out OUT --shards S` before");
 }
 
@@ -209,10 +209,10 @@ Expected<void> check_made_with(const NightPlan& plan, const reading::Context& co
       add(one.first);
   if (other.empty() && here.size() != plan.made_with.size()) add("what all campaigns share");
   if (other.empty()) return {};
-  return fail("not the same as when night " + std::to_string(plan.night.number) +
+  return fail("not the same as when run " + std::to_string(plan.night.number) +
               " was planned: " + other +
               "; expected the same program, plugins and templates on every host; if site.toml or a "
-              "template was changed, plan the night again");
+              "template was changed, plan the run again");
 }
 
 Expected<std::vector<Listed>> read_shard_list(const fs::path& out, const NightPlan& plan,

@@ -139,7 +139,7 @@ Expected<NightState> reopen_night(const RunOptions& options, const std::string& 
   if (!state) return fail(state.error());
   if (!*state || known_text(**state, "state") != "complete")
     return fail(
-        "--only does one campaign of a complete night again; expected `nonio run SITE --out OUT` "
+        "--only evaluates one campaign of a complete run again; expected `nonio run SITE --out OUT` "
         "before");
   const storage::Json& json = **state;
   if (auto own = check_site(json, site, options.out); !own) return fail(own.error());
@@ -161,8 +161,8 @@ Expected<NightState> planned_night(const RunOptions& options, const std::string&
   if (!state) return fail(state.error());
   if (!*state || known_text(**state, "state") != "running" ||
       known_count(**state, "night") != number)
-    return fail("night " + std::to_string(number) + " was planned in " + options.out.string() +
-                ", and is not the night that is running there; expected `nonio run cancel OUT`, "
+    return fail("run " + std::to_string(number) + " was planned in " + options.out.string() +
+                ", and is not the run in progress there; expected `nonio run cancel OUT`, "
                 "then a new plan");
   const storage::Json& json = **state;
   if (auto own = check_site(json, site, options.out); !own) return fail(own.error());
@@ -219,7 +219,7 @@ Expected<NightStatus> night_status(const fs::path& out) {
   const auto state = read_state(out);
   if (!state) return fail(state.error());
   if (!*state)
-    return fail("no night was begun in " + out.string() +
+    return fail("no run was started in " + out.string() +
                 "; expected the output folder of `nonio run`");
   const storage::Json& json = **state;
   NightStatus status;
@@ -258,7 +258,7 @@ Expected<void> settle_folders(const fs::path& out, bool hashed, bool dry_run) {
     return fail("the output folder " + out.string() + " has its results in OUT/" +
                 (hashed ? "<id>" : "ab/<id>") + ", and site.toml wants them in OUT/" +
                 (hashed ? "ab/<id> ([results] folders = \"hashed\")" : "<id>") +
-                "; expected a new output folder, or the layout that is there");
+                "; expected a new output folder, or its present layout");
   if (dry_run || !hashed) return {};
   return storage::publish((out / storage::hashed_mark).parent_path(),
                           {{(out / storage::hashed_mark).filename().string(), "OUT/ab/<id>\n"}});
@@ -268,7 +268,7 @@ Expected<void> check_not_planned(const fs::path& out) {
   const auto planned = storage::is_there(out / state_folder / plan_folder / plan_name);
   if (!planned) return fail(planned.error());
   if (!*planned) return {};
-  return fail("a night is planned in " + out.string() +
+  return fail("a run is planned in " + out.string() +
               " and not merged yet; expected its shards and `nonio run merge OUT`, or `nonio "
               "run cancel OUT` to withdraw the plan");
 }

@@ -151,7 +151,7 @@ Expected<bool> become_user(const fs::path& out, const fs::path& path, const User
     const User user = user_in(**text);
     if (!is_gone(user, own))
       return fail(words_for(user) + " is using the output folder " + out.string() +
-                  "; expected its end. If you know that it is gone: nonio run unlock " +
+                  ". Wait until it ends. If you are sure that it has ended: nonio run unlock " +
                   out.string());
     ::unlink(path.c_str());
   }
@@ -194,7 +194,7 @@ Expected<std::string> unlock(const fs::path& out, const std::optional<std::strin
   const User user = user_in(**text);
   if (alive && user.job.empty())
     return fail(words_for(user) + ", which uses the output folder " + out.string() +
-                ", is of no job; expected somebody who knows that it is gone: without --alive");
+                ", was not started by a batch job. If you are sure that it has ended, repeat without --alive");
   if (alive && is_line_of(*alive, user.job))
     return fail(words_for(user) + " is using the output folder " + out.string() +
                 ", and its job is alive; expected its end");

@@ -106,7 +106,7 @@ Listed listed_in(const Json& json) {
 }  // namespace
 
 Error damaged(const fs::path& path, const std::string& why) {
-  return Error{path.string() + " is damaged (" + why + "); plan the night again"};
+  return Error{path.string() + " is damaged (" + why + "); plan the run again"};
 }
 
 Expected<std::vector<Listed>> read_list(const fs::path& path, const NightPlan::List& list) {

@@ -92,7 +92,7 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
     });
     if (now != nullptr && now->id == e.id) continue;
     if (now != nullptr && e.failed)
-      notes.push_back(storage::own_folder(out, e.id).string() + " is left over: it says that " +
+      notes.push_back(storage::own_folder(out, e.id).string() + " is left over: it states that " +
                       e.folder + " failed, which is the campaign " + now->id.str() + " now");
     else if (now != nullptr)
       vanished.push_back(
@@ -104,7 +104,7 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
                               " could not be listed"});
     else
       vanished.push_back({e.id, e.folder, e.night,
-                          "its folder " + e.folder + " is gone, or has no " +
+                          "its folder " + e.folder + " no longer exists, or has no " +
                               std::string(config::manifest_name) + " any more; " + meant});
   }
   return vanished;

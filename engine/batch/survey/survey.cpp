@@ -93,7 +93,7 @@ CampaignState failed_folder(const SiteWalk::Unlisted& unlisted) {
   state.status = evaluation::Status::failed;
   state.reason = "the folder cannot be listed";
   state.set_errors({Error{"the folder " + storage::path_text(unlisted.folder) +
-                          " cannot be listed, and what lies in it is not known: " + unlisted.why}});
+                          " cannot be listed, so its content is not known: " + unlisted.why}});
   return state;
 }
 

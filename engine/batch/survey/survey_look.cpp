@@ -173,7 +173,7 @@ std::optional<std::uint64_t> ChangeDetector::look_at_file(const CampaignState& s
   if (now.value_or(config::absent) != digest)
     why.push_back(!now && path && fs::exists(*path, error)
                       ? now.error().message
-                      : "file " + name + (now ? " changed" : " is gone"));
+                      : "file " + name + (now ? " changed" : " no longer exists"));
   return now ? std::optional(storage::short_digest(*now)) : std::nullopt;
 }
 

@@ -185,7 +185,7 @@ Expected<void> look_at_all(const SurveyInput& input, std::span<const std::uint32
 Error unknown_number(const std::string& number, const std::filesystem::path& out) {
   return Error{"the register of certificates does not know the number " + number + ", which " +
                out.string() +
-               " says was issued: restore the register, or numbers would be used twice"};
+               " states was issued: restore the register, or numbers would be used twice"};
 }
 
 }  // namespace nonio::batch

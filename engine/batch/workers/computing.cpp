@@ -117,7 +117,7 @@ bool Evaluator::hand_out(const fs::path& folder, const std::string& path) const 
 namespace {
 
 constexpr const char* no_process_of_ours =
-    "the process that evaluates says what no process of ours says";
+    "the process that evaluates states what no process of ours states";
 
 }  // namespace
 

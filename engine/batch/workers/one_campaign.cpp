@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* register_elsewhere = "the register of certificates is on another host";
 constexpr const char* register_locked =
-    "the register of certificates: another process keeps it locked since the begin of the night";
+    "the certificate register has been locked by another process since the run started";
 
 /// Memory that was refused, and a disk or share that did not answer, say nothing about the
 /// readings.
@@ -148,7 +148,7 @@ Answer work(const SiteWork& site, const RegisterState& state, std::size_t index,
       !evaluated.results.errors.empty())
     site.numbers.note_failure(c.id, evaluated.results.errors.front().message);
   if (site.twins != nullptr && !(evaluated.certificate && evaluated.certificate->issued)) {
-    stage.set(evaluated.results.errors.empty() ? "data are missing: run the night again"
+    stage.set(evaluated.results.errors.empty() ? "data are missing: run `nonio run` again"
                                                : evaluated.results.errors.front().message);
     return Answer::not_stored;
   }

@@ -233,7 +233,7 @@ std::string PluginHost::check_secrets() const {
   for (const fs::path& secret : request_.secrets) {
     const process::Handle file(::open(secret.c_str(), O_RDONLY | O_CLOEXEC));
     if (file)
-      return secret.string() + " lies where plugins have their libraries and could read it; " +
+      return secret.string() + " is in a folder that plugins can read; " +
              "expected the signing key and its password elsewhere";
   }
   return {};

@@ -41,8 +41,8 @@ Numbering read_numbering(TableReader& reader) {
   if (n.automatic && !reader.raw().contains("may_stand"))
     reader.error(
         "release",
-        "\"automatic\" needs the list of the findings that may stand, [[certificate.may_stand]] "
-        "with finding and reason; may_stand = [] if none may");
+        "\"automatic\" requires the list of accepted findings, [[certificate.may_stand]] "
+        "with finding and reason; may_stand = [] if none is accepted");
   if (n.automatic && n.two_persons)
     reader.error("two_persons", "true and release = \"automatic\" contradict each other");
   if (const auto sound = number_text(n.pattern, "2026", 1); !sound)

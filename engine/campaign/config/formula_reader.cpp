@@ -54,7 +54,7 @@ std::vector<Formula> read_formulas(TableReader& table, const Machine& machine) {
       reader.error("axis", "the machine has no axis \"" + formula.axis + "\"" +
                                storage::suggestion(formula.axis, axes));
     if (!formula.name.empty() && !names.insert(formula.name).second)
-      reader.error("name", "\"" + formula.name + "\" is there twice");
+      reader.error("name", "\"" + formula.name + "\" is given twice");
     if (reader.errors() == before) {
       const auto effect = formula_effect(formula, *axis);
       if (!effect) reader.error("expression", effect.error().message);

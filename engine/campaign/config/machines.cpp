@@ -239,7 +239,7 @@ Expected<const RecordFile*> record_of(const MachineRecords& records, const Machi
     if (found != nullptr)
       return fail(std::string(machines_folder) + "/" + found->asset + ".toml and " +
                   machines_folder + "/" + r.asset + ".toml both are of " + machine.maker +
-                  ", serial " + machine.serial + ": say asset in [machine]");
+                  ", serial " + machine.serial + ": state asset in [machine]");
     found = &r;
   }
   return found != nullptr ? found : any;

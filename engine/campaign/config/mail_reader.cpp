@@ -16,7 +16,7 @@ void check_mail(TableReader& reader, const Mail& m) {
   if (!m.sendmail.empty())
     for (const char* key : ways)
       if (reader.raw().contains(key) && m.smtp.empty())
-        reader.error(key, "stands beside sendmail; it belongs to smtp");
+        reader.error(key, "is not allowed with sendmail; it belongs to smtp");
   const int passwords = int{!m.password_file.empty()} + int{!m.password_env.empty()} +
                         int{!m.password_credential.empty()};
   if (passwords != (m.user.empty() ? 0 : 1))

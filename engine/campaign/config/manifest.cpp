@@ -134,7 +134,7 @@ std::vector<Square> read_squares(TableReader& top) {
     s.U = reader.number("U_urad", urad);
     const bool twice = std::any_of(squares.begin(), squares.end(),
                                    [&](const Square& other) { return other.name == s.name; });
-    if (twice) reader.error("id", "\"" + s.name + "\" is there twice");
+    if (twice) reader.error("id", "\"" + s.name + "\" is given twice");
     reader.finish();
     squares.push_back(std::move(s));
   }
@@ -170,7 +170,7 @@ std::optional<double> either(TableReader& reader, const char* linear, double lin
   const auto length = reader.number(linear, linear_unit),
              angle = reader.number(rotary, rotary_unit);
   if (length && angle)
-    reader.error(rotary, "stands beside " + std::string(linear) + "; expected one of them");
+    reader.error(rotary, "is not allowed with " + std::string(linear) + "; expected one of them");
   return length ? length : angle;
 }
 
@@ -328,7 +328,7 @@ Measurement read_measurement(TableReader& common, const std::vector<Method>* met
   check_members(reader, m);
   fill_circle(reader, m);
   if (m.at.contains(m.axis))
-    reader.error("at", "expected the axes that stood still, found " + m.axis + ", which moves");
+    reader.error("at", "expected the stationary axes, found " + m.axis + ", which moves");
   reader.finish();
   return m;
 }
@@ -389,7 +389,7 @@ void read_measurements(TableReader& top, Manifest& manifest, const std::vector<M
   for (TableReader& reader : list) {
     Measurement m = read_measurement(reader, methods);
     if (!m.id.empty() && !ids.insert(m.id).second)
-      reader.error("id", "\"" + m.id + "\" is there twice");
+      reader.error("id", "\"" + m.id + "\" is given twice");
     if (!m.axis.empty() && campaign.machine.axis(m.axis) == nullptr)
       add_axis(m.axis, any_named, manifest);
     if (const Axis* axis = campaign.machine.axis(m.axis);

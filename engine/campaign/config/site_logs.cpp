@@ -168,7 +168,7 @@ Checked<void> append(
   const SiteLock lock(site);
   if (!lock)
     return tl::unexpected(one(Error{"cannot be written now: the site " + site.string() +
-                                        " is not there, or somebody else writes in it",
+                                        " does not exist, or another process is writing to it",
                                     name}));
   const auto before = text_of_log(site, name);
   if (!before) return tl::unexpected(one(before.error()));
@@ -183,7 +183,7 @@ Checked<void> append(
     return tl::unexpected(one(Error{"the new entry would not be read as one", name}));
   if (const auto meanwhile = text_of_log(site, name); !meanwhile || *meanwhile != *before)
     return tl::unexpected(
-        one(Error{"somebody else has changed it meanwhile; nothing was written", name}));
+        one(Error{"another process has changed it in the meantime; nothing was written", name}));
   if (const auto written = storage::publish(site, {{name, after}}); !written)
     return tl::unexpected(one(written.error()));
   return {};
@@ -234,7 +234,7 @@ Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
     if (std::erase_if(known, [&](const Acknowledgement& a) { return takes_back(w, a); }) == 0)
       errors.push_back(
           Error{"[[withdrawn]] takes back no acknowledgement above it: none that "
-                "counts has this finding, machine, axis and quantity",
+                "active has this finding, machine, axis and quantity",
                 file, w.line});
   if (!errors.empty()) return tl::unexpected(std::move(errors));
   return known;

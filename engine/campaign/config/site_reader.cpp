@@ -85,7 +85,7 @@ std::vector<Alias> read_aliases(TableReader& top) {
   for (TableReader& reader : tables) {
     Alias alias{reader.text("name"), reader.text("asset"), reader.text("why")};
     if (!alias.name.empty() && !names.insert(alias.name).second)
-      reader.error("name", "\"" + alias.name + "\" is there twice");
+      reader.error("name", "\"" + alias.name + "\" is given twice");
     if (!alias.why.empty() && !says_something(alias.why))
       reader.error("why", "expected how this is known, found \"" + alias.why + "\"");
     reader.finish();
@@ -122,8 +122,8 @@ std::vector<DueRule> read_due(TableReader& top) {
     rule.months = reader.integer("months").value_or(0);
     if (!machines.insert(rule.machine).second)
       reader.error(rule.machine.empty() ? "months" : "machine",
-                   rule.machine.empty() ? "a rule for all machines is there twice"
-                                        : "\"" + rule.machine + "\" is there twice");
+                   rule.machine.empty() ? "a rule for all machines is given twice"
+                                        : "\"" + rule.machine + "\" is given twice");
     reader.finish();
     rules.push_back(std::move(rule));
   }
@@ -200,7 +200,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
     if (!site.database->register_schema.empty()) {
       const auto in_file = (*root)["certificate"]["register"].value_or(std::string());
       if (!in_file.empty())
-        reader->error("register", "[certificate] register says \"" + in_file +
+        reader->error("register", "[certificate] register states \"" + in_file +
                                       "\"; expected the register here or there");
       site.numbering.server = site.database;
       site.numbering.server->schema = site.database->register_schema;

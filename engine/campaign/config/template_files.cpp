@@ -30,7 +30,7 @@ Expected<std::map<std::string, fs::path>> template_paths(const fs::path& folder)
     const fs::path real = fs::canonical(it->path(), error);
     if (!error && std::find(above.begin(), above.end(), real) != above.end())
       return fail("the template folder " + it->path().string() +
-                  " is a link back to a folder that it lies in; expected files");
+                  " is a link to one of its parent folders; expected files");
     if (error) break;
     above.push_back(real);
   }

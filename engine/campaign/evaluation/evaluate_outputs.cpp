@@ -41,8 +41,8 @@ bool is_control_of_record(const Work& work, const std::string& controller) {
   const auto& machine = work.read.machine;
   if (!machine || machine->control.empty() || machine->control == controller) return true;
   if (work.read.manifest->run.outputs)
-    work.report(work.error_at("run.outputs", "asks for tables of " + controller + ", and " +
-                                                 machine->file + " says that the control is " +
+    work.report(work.error_at("run.outputs", "requests tables of " + controller + ", and " +
+                                                 machine->file + " states that the control is " +
                                                  machine->control));
   return false;
 }

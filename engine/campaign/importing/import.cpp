@@ -156,7 +156,7 @@ class Importer {
     campaign.id = id;
     if (!config::is_campaign_id(id))
       campaign.lacks.push_back("expected an id of a-z 0-9 . _ -, found \"" + id +
-                               "\"; say it in the rule: campaign = \"{date}-{machine}\"");
+                               "\"; state it in the rule: campaign = \"{date}-{machine}\"");
     std::set<std::string> names, ids;
     for (const Found& f : found) campaign.files.push_back(file_of(f, names, ids));
     if (config::is_campaign_id(id) && is_there(request_.out / id, campaign, found)) {
@@ -169,7 +169,7 @@ class Importer {
     std::error_code error;
     const fs::path folder = request_.out / id;
     if (config::is_campaign_id(id) && fs::exists(fs::symlink_status(folder, error)))
-      campaign.lacks.push_back(folder.string() + " is there; it is left as it is");
+      campaign.lacks.push_back(folder.string() + " exists and is not changed");
     const bool may = config::is_campaign_id(id) && !fs::exists(fs::symlink_status(folder, error));
     if (may && !request_.dry_run && (campaign.whole() || request_.partial)) {
       std::vector<Artifact> artifacts;
@@ -226,17 +226,17 @@ class Importer {
       take_axis(axis->second, file);
     else if (!request_.rule.axis.empty())
       file.axis = request_.rule.axis,
-      file.assumed.push_back("axis " + file.axis + ", as the rule says");
+      file.assumed.push_back("axis " + file.axis + ", as the rule states");
     else if (request_.rule.kind != "observations")
       file.lacks.push_back(
-          "axis: which axis of the machine was measured; no place {axis} says it, and it is not "
+          "axis: which axis of the machine was measured; no place {axis} states it, and it is not "
           "guessed");
     const auto own = f.places.find("id");
     file.measurement = own != f.places.end() ? own->second : file.axis;
     if (file.measurement.empty()) file.measurement = fs::path(f.file).stem().string();
     if (!ids.insert(file.measurement).second)
       file.lacks.push_back("id: another file is measurement \"" + file.measurement +
-                           "\" of this campaign; exclude one of them, or tell them apart by a "
+                           "\" of this campaign; exclude one of them, or separate them by a "
                            "place {id}");
     return file;
   }
@@ -249,7 +249,7 @@ class Importer {
       file.axis[0] = static_cast<char>(file.axis[0] - 32);
     if (file.axis != word)
       file.assumed.push_back("axis " + file.axis + " for \"" + word + "\" in its name" +
-                             (request_.rule.axes.empty() ? "" : ", as the rule says"));
+                             (request_.rule.axes.empty() ? "" : ", as the rule states"));
   }
 
   /// campaign.toml; what is still to be filled stands above it and in its place as a comment.
@@ -381,7 +381,7 @@ class Importer {
         reader = reader == nullptr ? &r : reader;
     }
     if (reader == nullptr)
-      return fail(name.empty() ? "no reader knows the format of this file: " +
+      return fail(name.empty() ? "no reader recognizes the format of this file: " +
                                      reading::what_is_wrong(bytes, found.file)
                                : plugins_.absence("reader", name));
     name = reader->info.name;

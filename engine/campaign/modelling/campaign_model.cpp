@@ -128,7 +128,7 @@ std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const auto first = std::find(effects.begin(), effects.end(), effects[i]);
     if (static_cast<std::size_t>(first - effects.begin()) != i)
-      out.push_back("\"" + effects[i] + "\" is there twice");
+      out.push_back("\"" + effects[i] + "\" is given twice");
     else if (std::string mistake = mistake_of(effects[i], read); !mistake.empty())
       out.push_back(std::move(mistake));
   }

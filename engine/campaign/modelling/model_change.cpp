@@ -132,7 +132,7 @@ Expected<void> leave_out(reading::ReadCampaign& read, const Exclusion& one) {
       if (o.source_line[i] == line) kept[i] = 0, any = true;
     if (!any)
       return fail("line " + std::to_string(line) + " of " + m->file +
-                  " holds no reading that counts");
+                  " contains no reading that is used");
   }
   keep_rows(o, kept);
   return {};

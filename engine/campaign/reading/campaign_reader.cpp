@@ -141,8 +141,8 @@ std::string copied(const ReadCampaign& out, const std::vector<model::Part>& part
       continue;
     const auto same = copy_of(part.table, axis, effect, out.effects);
     if (!same) return same.error().message;
-    if (*same == "zero") return "it says no more than the zero of a measurement";
-    if (!same->empty()) return "it says the same as " + *same + " on these readings";
+    if (*same == "zero") return "it states no more than the zero of a measurement";
+    if (!same->empty()) return "it states the same as " + *same + " on these readings";
   }
   return {};
 }

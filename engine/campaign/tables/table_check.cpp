@@ -183,7 +183,7 @@ Expected<const Controller*> control_of(const loader::Plugins& plugins, const std
   if (able.size() == 1) return able.front();
   return fail(files.front().name + ": " +
               (able.empty() ? "no control" : std::to_string(able.size()) + " controls") +
-              " could have written it; say --control, one of " + storage::listed(names));
+              " could have written it; state --control, one of " + storage::listed(names));
 }
 
 std::vector<TableDifference> differences(const Tables& present, const Tables& next) {
@@ -251,7 +251,7 @@ Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign& read,
   const Campaign& campaign = read.manifest->campaign;
   Underlay on{{}, options, {}};
   for (const auto& [axis, files] : read.tables_on) {
-    const std::string who = "what was on while axis " + axis + " was measured: ";
+    const std::string who = "the compensation that was active while axis " + axis + " was measured: ";
     auto tables = tables_in(controller, files, campaign, options);
     if (!tables) return fail(who + tables.error().message);
     if (!corrects(*tables, axis))
@@ -262,7 +262,7 @@ Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign& read,
       if (t.output != axis) continue;
       const auto stated = stated_backlash(options, axis, t.rotary);
       if (stated && t.backlash.value_or(0.0) != 0.0 && std::fabs(*stated - *t.backlash) > 5e-10)
-        return fail(who + "its files hold another backlash than backlash_on says");
+        return fail(who + "its files hold another backlash than backlash_on states");
       on.tables.push_back(t);
     }
   }

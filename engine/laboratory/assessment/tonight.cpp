@@ -61,7 +61,7 @@ Expected<Tonight> tonight_in(const std::filesystem::path& out) {
   const std::filesystem::path path = out / "summary.json";
   const auto text = storage::read_file(path);
   if (!text)
-    return fail("no night has ended in " + out.string() +
+    return fail("no run is complete in " + out.string() +
                 "; expected the output folder of `nonio run`: " + text.error().message);
   try {
     simdjson::dom::parser parser;

@@ -54,10 +54,10 @@ Expected<void> check(const Series& s) {
   }
   for (const Declared& d : s.declared)
     if (d.after + 1 >= s.points.size())
-      return fail("an event behind " + which(d.after) + ": expected a point after it");
+      return fail("an event after " + which(d.after) + ": expected a point after it");
   for (const std::size_t after : s.steps.value_or(std::vector<std::size_t>{}))
     if (after + 1 >= s.points.size())
-      return fail("a step behind " + which(after) + ": expected a point after it");
+      return fail("a step after " + which(after) + ": expected a point after it");
   if (!std::isfinite(s.spread) || s.spread < 0.0)
     return fail("expected a spread of slopes of 0 or more");
   if (!std::isfinite(s.excess) || s.excess < 1.0) return fail("expected an excess of 1 or more");

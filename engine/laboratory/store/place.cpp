@@ -151,7 +151,7 @@ Expected<void> take_turn(Database& database, const fs::path& out, StorePlace& pl
     return fail("schema " + place.server->schema +
                 " was written since by another copy of this output folder: give each a schema of "
                 "its own ([database] schema in site.toml), or leave one of them. If this folder is "
-                "the one that counts (a restored backup, for example), remove the schema (DROP "
+                "the valid one (a restored backup, for example), remove the schema (DROP "
                 "SCHEMA ... CASCADE): it is made again from the results that are there");
   place.turns.push_back(random_digits(16));
   if (place.turns.size() > most) place.turns.erase(place.turns.begin());

@@ -260,7 +260,7 @@ Expected<Grid> choose_grid(const std::vector<double>& position, const GridRule& 
   plan.origin = rule.anchor ? whole(*rule.anchor, rule.unit) : plan.from;
   if (plan.to <= plan.from)
     return fail("axis " + rule.axis + ": the table would begin at " + plan.text(plan.from) +
-                ", behind the last target " + plan.text(plan.to));
+                ", after the last target " + plan.text(plan.to));
   std::vector<std::int64_t> knots;
   for (double x : position) knots.push_back(whole(x, rule.unit));
   const auto step = rule.step != 0.0 ? wished_step(plan) : chosen_step(plan, knots);

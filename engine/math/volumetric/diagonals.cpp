@@ -40,7 +40,7 @@ Expected<void> check_line(const GridLine& line, std::size_t n, const std::string
     return fail(what + ": expected two stops or more, each with a place in x and in y");
   for (const auto* places : {&line.ix, &line.iy})
     for (const std::size_t i : *places)
-      if (i > n) return fail(what + ": a stop lies outside the grid");
+      if (i > n) return fail(what + ": a stop is outside the grid");
   return {};
 }
 

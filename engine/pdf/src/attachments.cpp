@@ -90,7 +90,7 @@ Expected<std::vector<Attachment>> attachments_of(const File& file) {
     if (!one) return fail(one.error());
     if (!out.empty() && out.back().name >= one->name)
       return fail("the attachment " + quoted(one->name) +
-                  " is there twice, or its name is not in its place");
+                  " is present twice, or its name is misplaced");
     out.push_back(std::move(*one));
   }
   return out;

@@ -19,7 +19,7 @@ class Comparison {
     if (a_.objects.size() != b_.objects.size())
       return fail("it has " + std::to_string(a_.objects.size() - 1) + " objects, expected " +
                   std::to_string(b_.objects.size() - 1));
-    if (a_.order != b_.order) return fail("its objects stand in another order");
+    if (a_.order != b_.order) return fail("its objects are in another order");
     if (!same_dictionary(a_.trailer, b_.trailer, {"ID"})) return fail("its trailer differs");
     for (std::size_t i = 1; i < a_.objects.size(); ++i)
       if (auto same = compare(i); !same) return same;

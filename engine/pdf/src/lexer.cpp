@@ -111,7 +111,7 @@ Expected<void> Lexer::check_keys(const Value& value) const {
   std::vector<std::string_view> keys(value.keys.begin(), value.keys.end());
   std::sort(keys.begin(), keys.end());
   const auto twice = std::adjacent_find(keys.begin(), keys.end());
-  if (twice != keys.end()) return refuse("the key /" + std::string(*twice) + " is there twice");
+  if (twice != keys.end()) return refuse("the key /" + std::string(*twice) + " is given twice");
   return {};
 }
 

@@ -98,7 +98,7 @@ class FileReader {
     const auto parsed = std::from_chars(b.data() + number, b.data() + number_end, file_.xref);
     if (parsed.ec != std::errc() || parsed.ptr != b.data() + number_end || file_.xref >= tail_ ||
         file_.xref < file_.body)
-      return refuse(number, "the place of the table lies outside the file");
+      return refuse(number, "the position of the table is outside the file");
     return {};
   }
 

@@ -49,7 +49,7 @@ Expected<PdfSignature> signature_at_end(std::string_view bytes) {
     return fail(
         "has no signature where Nonio writes one: it was changed, or saved again by another "
         "program, "
-        "which breaks the signature; ask for the file as it was issued");
+        "which breaks the signature; request the file as it was issued");
   std::size_t at = from + found + range.size();
   std::array<std::size_t, 3> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i, at += digits + 1) {

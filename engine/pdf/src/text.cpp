@@ -36,7 +36,7 @@ Expected<Time> time_in(std::string_view text) {
                     std::equal(text.begin(), text.end(), form.begin(), [](char c, char f) {
                       return f == '0' ? c >= '0' && c <= '9' : c == f;
                     });
-  if (!fits) return fail("does not say when it was signed as Nonio says it");
+  if (!fits) return fail("does not state when it was signed as Nonio states it");
   const auto number = [&](std::size_t at, std::size_t count) {
     int value = 0;
     for (const char c : text.substr(at, count)) value = value * 10 + (c - '0');
@@ -48,7 +48,7 @@ Expected<Time> time_in(std::string_view text) {
                                     chrono::day(static_cast<unsigned>(number(9, 2)))};
   const int hours = number(11, 2), minutes = number(13, 2), seconds = number(15, 2);
   if (!date.ok() || hours > 23 || minutes > 59 || seconds > 60)
-    return fail("says that it was signed at a time that does not exist");
+    return fail("states that it was signed at a time that does not exist");
   return chrono::sys_seconds(chrono::sys_days(date)).time_since_epoch().count() +
          hours * Time{3600} + minutes * Time{60} + seconds;
 }

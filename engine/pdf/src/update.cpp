@@ -274,7 +274,7 @@ Expected<Store> Updater::read_store(std::string_view bytes, std::size_t& at) con
       return fail("a stream longer than the file, or too many");
     streams.emplace_back(bytes.substr(in.at(), length));
     in.skip(length);
-    if (!in.take("\nendstream\nendobj\n")) return fail("a stream of another length than it says");
+    if (!in.take("\nendstream\nendobj\n")) return fail("a stream of another length than it states");
     at = in.at();
   }
   Store out;

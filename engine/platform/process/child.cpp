@@ -38,7 +38,7 @@ ChildEnd end_child(pid_t child) {
   pid_t gone = 0;
   while ((gone = ::waitpid(child, &status, WNOHANG)) == 0 && Clock::now() < patience)
     std::this_thread::sleep_for(std::chrono::microseconds(200));
-  return gone > 0 ? child_end(status) : ChildEnd{false, "hangs in the kernel"};
+  return gone > 0 ? child_end(status) : ChildEnd{false, "does not respond (waiting in the kernel)"};
 }
 
 ChildEnd wait_for_child(pid_t child, double seconds) {

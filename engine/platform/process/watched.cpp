@@ -200,7 +200,7 @@ std::string no_answer(double seconds) {
   std::string text = std::to_string(seconds);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.ends_with('.')) text.pop_back();
-  return "no answer within " + text + " s: the disk or share hangs";
+  return "no answer within " + text + " s: the disk or share does not respond";
 }
 
 void wait_for_parcels(const std::vector<Watched>& children) {

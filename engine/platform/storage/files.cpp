@@ -150,7 +150,7 @@ Expected<ReadFile> ReadFile::open(const fs::path& path) {
     ::usleep(100'000);
   }
   return fail("cannot read " + path.string() +
-              ": somebody writes into it; expected a file that stays as it is while it is read");
+              ": another process is writing to it; expected a file that does not change while it is read");
 }
 
 ReadFile::ReadFile(ReadFile&& other) noexcept

@@ -116,7 +116,7 @@ Expected<std::optional<std::uint64_t>> size_in(Database& database, const PackAdd
   const auto size = number(row[1]);
   if (!size || row[3] != "blob" || row[1] != row[2])
     return fail(
-        damaged(at.pack, at.name, "it says that it has " + row[1] + " bytes and has " + row[2]));
+        damaged(at.pack, at.name, "it states that it has " + row[1] + " bytes and has " + row[2]));
   return size;
 }
 

@@ -104,7 +104,7 @@ Expected<AxisReadings> readings_of(const Observations& o, const Axis& axis) {
   for (const auto& c : o.axes)
     if (c.axis == axis.name && !c.approach.empty()) column = &c;
   if (column == nullptr)
-    return fail("the readings do not say from where axis " + axis.name + " came");
+    return fail("the readings do not state from where axis " + axis.name + " came");
   const std::size_t n = o.size();
   AxisReadings r;
   r.moved.assign(n, 0);

@@ -124,7 +124,7 @@ Expected<void> check_only(const std::vector<CertificatePtr>& certificates,
     if (std::none_of(chain.begin(), chain.end(), same) ||
         std::any_of(behind, certificates.end(), same))
       return fail("the certificate of " + quoted(subject_of(certificates[i].get())) +
-                  " is there too, or twice, and leads nowhere");
+                  " is also present, or present twice, and leads to no trusted certificate");
   }
   return {};
 }

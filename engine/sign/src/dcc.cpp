@@ -121,7 +121,7 @@ class Reader {
       if (const auto symbol = unit(content_of(child(values, "unitXMLList"))); !symbol)
         return in(title_of(q), symbol.error());
       if (n == 0 || (length != 0 && n != length))
-        return in(title_of(q), {"a list of " + std::to_string(n) + " values beside one of " +
+        return in(title_of(q), {"a list of " + std::to_string(n) + " values next to one of " +
                                 std::to_string(length)});
       length = n;
     }

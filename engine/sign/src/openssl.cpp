@@ -17,7 +17,7 @@ std::string reason() {
   const unsigned long code = ERR_peek_last_error();
   const char* words = code == 0 ? nullptr : ERR_reason_error_string(code);
   ERR_clear_error();
-  return words == nullptr ? "for a reason that OpenSSL does not tell" : words;
+  return words == nullptr ? "for a reason that OpenSSL does not report" : words;
 }
 
 std::string_view bytes_of(const ASN1_STRING* text) {

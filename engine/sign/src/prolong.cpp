@@ -207,7 +207,7 @@ class Prolongation {
     } else {
       why = "no server may be asked (--no-fetch)";
     }
-    return fail("nothing says whether the certificate of " + quoted(subject_of(one)) +
+    return fail("nothing states whether the certificate of " + quoted(subject_of(one)) +
                 " was revoked: no list or answer that was given does, and " + why);
   }
 
@@ -225,7 +225,7 @@ class Prolongation {
       if (*good) keep(*statement);
       if (!*good)
         why +=
-            (why.empty() ? "" : "; ") + url + " says nothing about it that is of use at the time";
+            (why.empty() ? "" : "; ") + url + " is empty about it that is of use at the time";
       at_hand_.push_back(std::move(*statement));
       return *good;
     };

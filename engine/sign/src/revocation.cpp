@@ -56,7 +56,7 @@ Expected<void> check_list(const X509_CRL* list, X509* issuer, Time now) {
   const Time next = time_of(X509_CRL_get0_nextUpdate(list));
   if (made > now + clock_tolerance)
     return refuse_list(issuer, "is of " + text_of(made) + ", yet to come");
-  if (next == 0) return refuse_list(issuer, "does not say how long it is good for (nextUpdate)");
+  if (next == 0) return refuse_list(issuer, "does not state how long it is good for (nextUpdate)");
   if (next < now)
     return refuse_list(issuer, "was good until " + text_of(next) + ": expected a newer one");
   return {};
@@ -187,7 +187,7 @@ std::string why_not(const Said& said, X509* one, X509* issuer, Time at, Time see
   const std::string whose = " for " + quoted(subject_of(one));
   if (said.made > seen + clock_tolerance)
     return "is of " + text_of(said.made) + ", later than it was seen";
-  if (said.next == 0) return "does not say how long it is good for (nextUpdate)";
+  if (said.next == 0) return "does not state how long it is good for (nextUpdate)";
   if (said.next < seen && said.made < at)
     return "was good until " + text_of(said.next) + " only, which is too early" + whose;
   if (seen > time_of(X509_get0_notAfter(issuer)))

@@ -91,7 +91,7 @@ Expected<void> SignedData::read_content(std::string_view text, Content content) 
   const auto type = Der::take(text, Der::object);
   if (content == Content::detached) {
     if (!type || type->content != oid_data || !text.empty())
-      return malformed("expected a signature beside its content");
+      return malformed("expected a signature with its content");
     return {};
   }
   const auto wrapped = Der::only(text, Der::context(0));
@@ -225,7 +225,7 @@ Expected<void> SignedData::check_certificate_named() const {
   const auto hash = Der::take(rest, Der::octets);
   if (!hash || kind == nullptr) return fail("does not name its certificate in what is signed");
   if (hash->content != digest(kind, signer_der_, {}))
-    return fail("names another certificate than the one that is there");
+    return fail("names another certificate than the one it contains");
   return {};
 }
 

@@ -78,9 +78,9 @@ std::vector<CertificatePtr> Report::check_stamp(const char* id, std::string_view
                                                 Time existed) {
   if (token.empty()) {
     if (existed == 0)
-      skip(id, "no time stamp: the signer says " + said, false);
+      skip(id, "no time stamp: the signer states " + said, false);
     else
-      add(id, {}, "signed before " + text_of(existed) + ", says a time stamp of the document");
+      add(id, {}, "signed before " + text_of(existed) + ", states a time stamp of the document");
     if (existed != 0) out_.at = existed;
     return {};
   }
@@ -93,7 +93,7 @@ std::vector<CertificatePtr> Report::check_stamp(const char* id, std::string_view
     return {};
   }
   out_.at = stamp->time;
-  add(id, {}, "signed before " + text_of(stamp->time) + ", says " + quoted(stamp->by));
+  add(id, {}, "signed before " + text_of(stamp->time) + ", states " + quoted(stamp->by));
   return std::move(stamp->chain);
 }
 
@@ -194,7 +194,7 @@ class PdfCheck {
 
   void check_cms(const pdf::PdfSignature& place) {
     const auto der = der_in(place.contents);
-    report_.add("signature.padding", to_void(der), "nothing but zeros behind the signature");
+    report_.add("signature.padding", to_void(der), "only zeros after the signature");
     if (!der) return;
     auto data = SignedData::parse(*der, SignedData::Content::detached);
     if (data)

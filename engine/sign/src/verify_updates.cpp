@@ -69,7 +69,7 @@ Expected<std::string> der_in(std::string_view digits) {
   const auto der = Der::take(rest);
   if (!der) return fail("holds no signature");
   if (rest.find_first_not_of('\0') != std::string_view::npos)
-    return fail("holds something behind the signature");
+    return fail("contains data after the signature");
   return std::string(der->whole);
 }
 
@@ -131,7 +131,7 @@ Expected<void> check_needed(const Added& added, const Trusted& known,
       return fail(std::string("an update holds ") +
                   (s.answer ? "an answer (OCSP)" : "a revocation list") +
                   " that proves nothing for this file (of another authority, about other "
-                  "certificates, or not of use at the time), or is there twice");
+                  "certificates, or not valid at the time), or is present twice");
   return {};
 }
 

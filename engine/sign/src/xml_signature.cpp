@@ -193,11 +193,11 @@ struct Parts {
     const std::size_t begin = bytes.find(signature_begin, from);
     if (begin == std::string_view::npos || root_end == std::string_view::npos || begin > root_end ||
         !bytes.substr(begin, root_end - begin).ends_with(signature_end))
-      return fail("is not signed, or something stands behind its signature");
+      return fail("is not signed, or has data after its signature");
     Parts parts;
     parts.before = bytes.substr(0, begin);
     parts.behind = bytes.substr(root_end);
-    if (!parts.behind.starts_with("</")) return fail("has something behind its signature");
+    if (!parts.behind.starts_with("</")) return fail("has data after its signature");
     auto signature = read_xml_signature(bytes.substr(begin, root_end - begin));
     if (!signature) return fail(signature.error());
     parts.signature = std::move(*signature);
@@ -243,7 +243,7 @@ Expected<void> check_digests(const Parts& parts) {
   if (s.properties != sha256(s.signed_properties()))
     return fail("the properties of the signature were changed after it was signed");
   if (s.certificate != sha256(s.certificates.front()))
-    return fail("another certificate was signed with than the one that is there");
+    return fail("it was signed with another certificate than the one it contains");
   return {};
 }
 

@@ -371,7 +371,7 @@ std::vector<Option> options() {
       {"F_about",
        std::string("least-squares"),
        "",
-       "Centre of F: the least-squares one, or the commanded one if the bar's ball stood there.",
+       "Centre of F: the least-squares one, or the commanded one if the bar's ball was there.",
        {"least-squares", "commanded"}},
       {"calibrated_length", false, "",
        "Whether the readings are deviations from the commanded radius (a calibrated bar): "
@@ -391,7 +391,7 @@ std::vector<Option> options() {
 NONIO_PLUGIN(registry) {
   Analysis a;
   a.info = {"circle", "1.0.0",
-            "Circular tests (ISO 230-4): deviations of the path, and the causes behind them.",
+            "Circular tests (ISO 230-4): deviations of the path, and their causes.",
             options()};
   a.applies = applies;
   a.analyse = analyse;

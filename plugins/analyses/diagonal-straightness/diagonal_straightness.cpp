@@ -318,7 +318,7 @@ std::vector<Option> options() {
           {"direct_straightness",
            std::string("odd"),
            "",
-           "What counts of a straightness measured directly: its 'odd' part, or the 'whole' of it.",
+           "Which part of a directly measured straightness is used: the 'odd' part or the 'whole'.",
            {"odd", "whole"}},
           {"largest_gain",
            3.0,

@@ -82,7 +82,7 @@ NONIO_PLUGIN(registry) {
   Analysis a;
   a.info = {"iso230-2",
             "1.0.0",
-            "Accuracy and repeatability of positioning after ISO 230-2.",
+            "Accuracy and repeatability of positioning according to ISO 230-2.",
             {{"edition",
               std::int64_t{2014},
               "",

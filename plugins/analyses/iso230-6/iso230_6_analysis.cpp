@@ -259,7 +259,7 @@ NONIO_PLUGIN(registry) {
   Analysis a;
   a.info = {"iso230-6",
             "1.0.0",
-            "Positioning along body and face diagonals after ISO 230-6.",
+            "Positioning along body and face diagonals according to ISO 230-6.",
             {{"edition",
               std::int64_t{2002},
               "",

@@ -37,7 +37,7 @@ Expected<Rules> asked_rules(const Settings& options) {
     if (rule == nullptr)
       return refuse("rules: expected some of " + names_of_rules() + "; found \"" + name + "\"");
     if (std::find(out.begin(), out.end(), rule) != out.end())
-      return refuse("rules: \"" + name + "\" stands there twice");
+      return refuse("rules: \"" + name + "\" is given twice");
     out.push_back(rule);
   }
   if (out.empty()) return refuse("rules: expected at least one of " + names_of_rules());
@@ -184,7 +184,7 @@ NONIO_PLUGIN(registry) {
         "",
         "What NMTBA without offset takes off: the mean of all bidirectional means, that of "
         "the first target, or the middle between the largest and the smallest. The rule "
-        "does not say which.",
+        "does not state which.",
         {"mean-of-all", "first-target", "mid-range"}},
        incomplete_targets_option()},
       true};

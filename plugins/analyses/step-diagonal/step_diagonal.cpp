@@ -269,7 +269,7 @@ std::vector<Option> options() {
        std::string("off-diagonal"),
        "",
        "Where a set-up angle comes from: the mirror is square to a beam off the diagonal, or "
-       "the mirror alone stands askew.",
+       "only the mirror is tilted.",
        {"off-diagonal", "on-diagonal"}},
       {"lengths", std::vector<std::string>{}, "",
        "Ids of the axis measurements that give the lengths; none: those with the same words after "

@@ -133,7 +133,7 @@ std::vector<Option> options() {
           {"max_step_mm", 0.0, "mm", "Largest step of either axis; 0: any.", {}, 0.0, {}},
           {"max_points", std::int64_t{1500}, "", "Entries of the control's table.", {}, 5.0, {}},
           {"pitch_x_mm", std::vector<double>{}, "mm",
-           "Pitches of x, beside its screw_pitch_mm, of which no step is a whole multiple."},
+           "Pitches of x, in addition to its screw_pitch_mm, of which no step is a whole multiple."},
           {"pitch_y_mm", std::vector<double>{}, "mm", "The same of y."},
           {"density", false, "", "Only stops that are an ISO 230-2 sampling of both axes."},
           {"even",

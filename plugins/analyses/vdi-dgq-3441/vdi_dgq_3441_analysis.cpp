@@ -109,7 +109,7 @@ NONIO_PLUGIN(registry) {
   Analysis a;
   a.info = {"vdi-dgq-3441",
             "1.0.0",
-            "Positional accuracy after VDI/DGQ 3441.",
+            "Positional accuracy according to VDI/DGQ 3441.",
             {{"standard_deviation",
               std::string("direct"),
               "",

@@ -26,7 +26,7 @@ ControlTable declared() {
   t.facts = {
       {"sign", Confidence::inferred, "Inferred: the sign -e, from three generators of such files."},
       {"form", Confidence::inferred,
-       "Inferred: units PRIMARY and METRIC/1000, and the order of the words behind :START2D; "
+       "Inferred: units PRIMARY and METRIC/1000, and the order of the words after :START2D; "
        "compare with a .cal file of the machine."},
       {"directions", Confidence::documented, "One correction for both directions."}};
   return t;
@@ -228,7 +228,7 @@ Expected<OutputResult> write(const ControllerInput& in) {
     for (const CrossCurve& c : set.curves)
       if (c.reference != 0.0)
         return controllers::wrong_axes("axis " + c.input +
-                                           ": a plane counts from home, where its entries are 0: "
+                                           ": a plane starts at home, where its entries are 0: "
                                            "reference_mm must be 0, found " +
                                            controllers::decimal(c.reference * 1e3, 4) + " mm",
                                        c.input + ".reference_mm");

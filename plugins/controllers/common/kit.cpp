@@ -89,7 +89,7 @@ Expected<void> place_points(Sheet& s, const Writer& w) {
   }
   if (w.fixed_step > 0.0 && wished_step(s.job, s.input.options) != 0.0)
     return fail("axis " + s.job.axis + ": this control has its points every " +
-                with_unit(s.job, w.fixed_step, 4) + ", step_mm has no say");
+                with_unit(s.job, w.fixed_step, 4) + ", step_mm has no effect");
   const math::GridRule rule = rule_of(s.job, s.input, w, t, s.reference);
   const auto grid = math::choose_grid(wanted(s.job, w), rule);
   if (!grid) return tl::unexpected<Error>(grid.error());
@@ -170,7 +170,7 @@ std::string advice(const Sheet& s, const Writer::Coarser& c) {
     if (outside(s, static_cast<double>(k) / static_cast<double>(c.now)).largest == 0)
       return "set " + c.option + " = " + std::to_string(k) + " or a smaller " + smaller + c.or_else;
   return c.option + " = " + std::to_string(c.most) +
-         ", the largest, is not enough either: the axis must be mended or measured again" +
+         ", the largest, is not enough either: repair the axis or measure it again" +
          c.or_else;
 }
 
@@ -189,7 +189,7 @@ Expected<void> check_range(const Sheet& s, const Writer& w) {
           t.entry == Entry::absolute && t.largest > 0.0 && size > t.largest)
         return fail("axis " + job.axis + ": an entry would be " + short_text(size, 6) +
                     ", the control takes " + short_text(t.largest, 6) +
-                    ": the axis must be mended or measured again");
+                    ": repair the axis or measure it again");
   return {};
 }
 
@@ -204,7 +204,7 @@ Expected<void> set_reference(Sheet& s, OutputResult& result) {
   if (s.table.zero == ControlTable::Zero::first && told.value_or(0.0) != 0.0)
     return wrong_axes(
         "axis " + s.job.axis +
-            ": this control counts its table from the zero of the axis, where the entry "
+            ": the table of this control starts at the zero of the axis, where the entry "
             "is 0: reference_" +
             std::string(s.job.unit()) + " must be 0, found " + with_unit(s.job, *told, 4),
         s.job.axis + ".reference_" + std::string(s.job.unit()));
@@ -401,7 +401,7 @@ Expected<ControlTable> chosen(ControlTable t, const Settings& options) {
   if (!options.has("sign")) return t;
   const std::string sign = options.text("sign");
   if (sign.empty()) {
-    Error unknown{"the maker does not say which sign " + t.name +
+    Error unknown{"the maker does not state which sign " + t.name +
                   " has: find it out with a sign probe (nonio table probe --help), then set "
                   "sign = \"error\" or \"correction\""};
     unknown.key = "sign";

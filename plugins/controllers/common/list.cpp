@@ -34,7 +34,7 @@ Expected<void> whole_text(const Artifact& f, std::size_t points) {
       std::string_view(f.bytes).substr(at + std::string_view(points_said).size(), 20), " \r\n");
   const auto said = whole(words.empty() ? "" : words.front());
   if (!said || *said != static_cast<std::int64_t>(points))
-    return fail(f.name + ": " + std::to_string(points) + " points, its words say " +
+    return fail(f.name + ": " + std::to_string(points) + " points, its words state " +
                 std::string(words.empty() ? "nothing" : words.front()) + ": the file was cut");
   return {};
 }

@@ -104,7 +104,7 @@ ControlTable skew_declared(std::string name) {
   t.facts = {{"formula", ControlTable::Confidence::documented,
               "x' = x - y xy - z (xz - xy yz), y' = y - z yz, of the firmware's source."},
              {"corners", ControlTable::Confidence::documented,
-              "AC begins where both axes begin, AD lies along the first axis of the plane."}};
+              "AC begins where both axes begin, AD is along the first axis of the plane."}};
   return t;
 }
 

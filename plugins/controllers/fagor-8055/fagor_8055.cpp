@@ -35,7 +35,7 @@ Expected<std::vector<Artifact>> files(const controllers::Sheet& s) {
                                   [](std::int64_t v) { return v == 0; }))
     return fail("axis " + s.job.axis +
                 ": the error towards minus is zero everywhere, which this "
-                "table cannot say: set another reference_mm or directions = false");
+                "table cannot state: set another reference_mm or directions = false");
   return controllers::list_file(s, "fagor-8055", controllers::Columns::both);
 }
 

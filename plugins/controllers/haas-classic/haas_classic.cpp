@@ -16,7 +16,7 @@ ControlTable declared() {
   t.position_step = {inch / 2.0, 1.0};
   t.value_step = {1e-4 * inch, 1.0};
   t.rotary = false;
-  t.facts = {{"sign", Confidence::unsure, "Unsure: the sign; the manual does not say it."},
+  t.facts = {{"sign", Confidence::unsure, "Unsure: the sign; the manual does not state it."},
              {"absolute", Confidence::inferred,
               "Inferred: entries are absolute, because the control interpolates between them."},
              {"range", Confidence::unsure,
@@ -32,7 +32,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
 Expected<std::vector<Artifact>> files(const controllers::Sheet& s) {
   if (s.grid.last() > inch / 4.0)
     return fail("axis " + s.job.axis +
-                ": the table lies at and below machine zero, the targets do "
+                ": the table is at and below machine zero, the targets do "
                 "not: measure in machine coordinates");
   return controllers::list_file(s, "haas-classic");
 }

@@ -61,7 +61,7 @@ std::string section_of(const AxisJob& job) {
   const std::string axis = controllers::plain(job.axis);
   return "# the joint of " + axis +
          " is not stated: put these lines into its section; to have it\n" +
-         "# here say joint = ... under [options.linuxcnc.axes." + axis +
+         "# here state joint = ... under [options.linuxcnc.axes." + axis +
          "], or number in the machine's record\n";
 }
 
@@ -74,7 +74,7 @@ std::string ini_snippet(const Sheet& s, const std::string& comp) {
   return controllers::comments(s.warning, "# ") + controllers::comments(s.job.about, "# ") +
          controllers::comments(s.zero_and_size(), "# ") + "# " + lines_said(comp, s) +
          "\n"
-         "# BACKLASH has no effect beside this table: the reversal is in its two columns\n" +
+         "# BACKLASH has no effect with this table:  the reversal is in its two columns\n" +
          section_of(s.job) + "COMP_FILE = " + comp +
          "\nCOMP_FILE_TYPE = " + std::to_string(s.input.options.integer("type")) + "\n";
 }
@@ -98,9 +98,9 @@ std::string words(const Sheet& s, const std::string& comp) {
       job.held ? controllers::reversal_words(job, controllers::Columns::both)
       : job.curve.bidirectional()
           ? "mean reversal B = " + controllers::deviation_words(job, job.mean_reversal()) +
-                ": contained in the two columns; BACKLASH is ignored beside a table"
+                ": contained in the two columns; BACKLASH is ignored with a table"
           : "measured from one direction only: both columns have its deviation; "
-            "BACKLASH is ignored beside a table");
+            "BACKLASH is ignored with a table");
   lines.emplace_back(
       "do not put comments or blank lines into the file: the controller stops reading there "
       "without a message");
@@ -144,7 +144,7 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
         controllers::words_of(std::string_view(a.bytes).substr(at + key.size(), 20), " \r\n");
     const auto n = controllers::whole(said.empty() ? "" : said.front());
     if (n && *n != static_cast<std::int64_t>(taken))
-      return fail(f.name + ": " + std::to_string(taken) + " lines, " + a.name + " says " +
+      return fail(f.name + ": " + std::to_string(taken) + " lines, " + a.name + " states " +
                   std::to_string(*n) + ": the file was cut");
   }
   return {};
@@ -176,7 +176,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   std::vector<LoadedTable> tables;
   for (const Artifact& f : in.files) {
     controllers::RawTable raw{controllers::axis_of_file(*axes, f.name, "linuxcnc-"), {}, {}};
-    raw.backlash = 0.0;  // BACKLASH is ignored beside a table
+    raw.backlash = 0.0;  // BACKLASH is ignored with a table
     const double unit = t.value_unit.of(raw.axis.rotary);
     std::size_t taken = 0;
     for (const std::string_view line : controllers::lines_of(f.bytes)) {

@@ -100,7 +100,7 @@ Expected<void> only_numbered(const std::vector<Artifact>& files) {
         axis.starts_with("AX") ? controllers::whole(axis.substr(2)) : std::optional<std::int64_t>();
     if (number) return {};
     return fail("the backup calls an axis " + controllers::plain(axis) +
-                ": expected AX1, AX2 and so on, which says whose table it is; save it so");
+                ": expected AX1, AX2 and so on, which states whose table it is; save it so");
   };
   for (const Line& l : lines_in(files)) {
     const bool axis_last = l.name.rfind("AA_ENC_COMP", 0) == 0 || l.name == "MA_BACKLASH";

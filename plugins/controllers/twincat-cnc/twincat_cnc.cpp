@@ -30,11 +30,11 @@ ControlTable declared() {
   t.facts = {
       {"sign-ssfk", Confidence::documented, "delta = actual - setpoint."},
       {"head", Confidence::inferred,
-       "Inferred: the key kopf.achs_nr (another page of the maker says kopf.log_achs_nr), and "
+       "Inferred: the key kopf.achs_nr (another page of the maker states kopf.log_achs_nr), and "
        "equal ends of a modulo table."},
       {"cross", Confidence::unsure,
-       "Cross tables (kw.crosscomp): the maker does not say which sign they have, nor surely "
-       "whose list they belong to; they are written only where option cross_sign says it."}};
+       "Cross tables (kw.crosscomp): the maker does not state which sign they have, nor surely "
+       "whose list they belong to; they are written only where option cross_sign states it."}};
   return t;
 }
 
@@ -58,7 +58,7 @@ Expected<std::vector<std::string>> words_with_lose(const Sheet& s) {
   const std::int64_t lose = std::llround(s.backlash() / unit);
   if (std::abs(lose) > most_lose)
     return fail("axis " + s.job.axis + ": P-AXIS-00103 would be " + std::to_string(lose) +
-                ", the control takes -32768..32767: the axis must be mended");
+                ", the control accepts -32768..32767: the axis must be repaired");
   for (std::string& line : words)
     if (line.rfind(s.table.backlash + " = ", 0) == 0)
       line = s.table.backlash + " = " + std::to_string(lose) +

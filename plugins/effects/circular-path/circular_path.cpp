@@ -135,7 +135,7 @@ Expected<Effect::Columns> mismatch(const Observations& o, const Axis& place,
 NONIO_PLUGIN(registry) {
   const auto always = [](const Observations&, const Axis&) { return true; };
   registry.add(Effect{
-      .info = {"circle-centre", "1.0.0", "Where the instrument of a circle stood: in every model"},
+      .info = {"circle-centre", "1.0.0", "Position of the instrument of a circle: in every model"},
       .linear = {{"a", "shift along the first axis of the plane", Quantity::deviation},
                  {"b", "shift along the second", Quantity::deviation}},
       .shapes = {},

@@ -87,7 +87,7 @@ Expected<Effect::Columns> tilt(const Observations& o, const Axis& place,
 NONIO_PLUGIN(registry) {
   const auto always = [](const Observations&, const Axis&) { return true; };
   registry.add(Effect{
-      .info = {"line-slope", "1.0.0", "How a straightness line stood to its axis: in every model"},
+      .info = {"line-slope", "1.0.0", "Angle of a straightness line to its axis: in every model"},
       .linear = {{"a", "angle between line and axis", Quantity::small_angle}},
       .shapes = {},
       .applies = always,
@@ -96,7 +96,7 @@ NONIO_PLUGIN(registry) {
       .is_nuisance = true});
   registry.add(
       Effect{.info = {"mirror-tilt", "1.0.0",
-                      "How the mirror of a step diagonal stood to its beam: in every model"},
+                      "Angle of the mirror of a step diagonal to its beam: in every model"},
              .linear = {{"a", "tilt of the mirror, level", Quantity::small_angle},
                         {"b", "tilt of the mirror, upright", Quantity::small_angle}},
              .shapes = {},

@@ -164,7 +164,7 @@ Effect effect_of(const char* kind, const char* summary) {
     knots.insert(knots.begin(), 0.0);
     return knots;
   };
-  e.shapes = {{{"knots", "knots of the spline beside the straight line; 0: the line alone",
+  e.shapes = {{{"knots", "knots of the spline in addition to the straight line; 0: the line alone",
                 Quantity::count},
                grid,
                false}};

@@ -55,7 +55,7 @@ Expected<pages::Look> look_of(const Templates& templates, const std::string& nam
   for (const char* part : wanted)
     if (std::find(look->blocks.begin(), look->blocks.end(), part) == look->blocks.end())
       return fail(Error{"the key \"blocks\" lacks \"" + std::string(part) +
-                            "\", which no certificate can be without; it may stand elsewhere",
+                            "\", which every certificate must contain; it may be elsewhere",
                         file});
   for (const std::string& part : {look->logo, look->mark, look->profile})
     if (!part.empty() && !templates.files.contains(part))

@@ -201,7 +201,7 @@ class Requests {
                          : "targets: even";
     if (!a.rotary || !wanted.scatter) return {};
     wanted.among = math::cardinal_angles(wanted.first, wanted.last);
-    how += "; 0, 90, 180, 270 deg as ISO 230-2 asks";
+    how += "; 0, 90, 180, 270 deg as ISO 230-2 requires";
     return {};
   }
 

@@ -25,7 +25,7 @@ std::string format(const Program& p, const Settings& options) {
   if (machine)
     out +=
         "(G53: machine coordinates whatever offset is active; some controls move so)\n"
-        "(at rapid, whatever F says: rapid override down)\n";
+        "(at rapid, whatever F states: rapid override down)\n";
   out += "G21 G17 G90 G94 G40 G49 G80\nG61\n" + (machine ? "" : offset + "\n");
   out += "F" + programs::number(p.feed) + "\n";
   const std::string word = options.text("dwell_word", "P-s");

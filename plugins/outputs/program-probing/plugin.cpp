@@ -345,7 +345,7 @@ std::vector<Option> options() {
       {"runs", std::int64_t{1}, "", "Each angle so many times.", {}, 1.0, 100.0},
       {"radius_mm", 15.0, "mm", "Ball and stylus tip together.", {}, 0.5, 500.0},
       {"approach_mm", 5.0, "mm", "From where a touch begins to the surface.", {}, 0.1, 500.0},
-      {"beyond_mm", 3.0, "mm", "How far behind the surface a touch ends.", {}, 0.1, 500.0},
+      {"beyond_mm", 3.0, "mm", "How far below the surface a touch ends.", {}, 0.1, 500.0},
       {"feed_mm_per_min", 1000.0, "mm/min", "Between the touches.", {}, 1.0, 1e5},
       {"feed_deg_per_min", 720.0, "deg/min", "Of the rotary axis.", {}, 1.0, 1e6},
       {"probe_feed_mm_per_min", 100.0, "mm/min", "Of a touch.", {}, 1.0, 1e4}};

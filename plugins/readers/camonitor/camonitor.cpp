@@ -36,7 +36,7 @@ Expected<double> unit_of_option(const ReadInput& input, const char* option, bool
   return fail(of_option(option, std::string("expected ") +
                                     (rotary ? "deg, rad or mrad" : "mm, um or m") +
                                     " for this axis, found \"" + input.options.text(option) +
-                                    "\"; a log does not say its units"));
+                                    "\"; a log does not state its units"));
 }
 
 Expected<Wiring> wiring_of(const ReadInput& input, bool rotary) {
@@ -181,7 +181,7 @@ Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, O
     return fail(of_option("reference_gain",
                           "the reference runs against the targets (gain " +
                               short_text(line.slope, 6) +
-                              "); if the sensor stood the other way round, state a negative one"));
+                              "); if the sensor was mounted the other way round, state a negative one"));
   if (std::fabs(line.slope - 1.0) > 0.1)
     return fail(of_option("reference_gain",
                           "expected a reference that goes as far as the targets, "
@@ -263,7 +263,7 @@ Reader reader() {
        text_option("target_unit", "Unit of the target: mm, um, m; deg, rad, mrad."),
        text_option("reference_unit", "Unit of the reference: mm, um, m; deg, rad, mrad."),
        {"reference_gain", 1.0, "",
-        "Factor of the reference; negative where the sensor stood the other way round."}}};
+        "Factor of the reference; negative where the sensor was mounted the other way round."}}};
   r.recognises = recognises;
   r.reads = [](std::string_view kind) { return kind == "axis"; };
   r.read = read;

@@ -74,7 +74,7 @@ Expected<std::vector<std::size_t>> evaluated(const Table& table,
   if (most - least <= 360.0 + slack) return rows;
   if (!(over_travel > 0.0) || most - least > 360.0 + 2.0 * over_travel + 1.0)
     return fail(at_line(table.line[rows.front()], "angle_deg",
-                        "expected at most 360 deg in a run, or the angle before and behind it as "
+                        "expected at most 360 deg in a run, or the angle before and after it as "
                         "`over_travel_deg` in the manifest; found " +
                             fixed_text(most - least, 3) + " deg"));
   const double middle = 0.5 * (least + most);

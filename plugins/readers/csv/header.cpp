@@ -52,7 +52,7 @@ tl::unexpected<Error> fail_at(std::string_view column, std::string message) {
 tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number) {
   if (name.empty())
     return fail("column " + std::to_string(number) +
-                " of the header row has no name; is there a separator too many?");
+                " of the header row has no name; check for an extra separator");
   if (parse_number(name, true).kind == Field::Kind::taken)
     return fail("expected a header row with the names of the columns, found the number " +
                 shown(name));
@@ -104,7 +104,7 @@ tl::unexpected<Error> twice(const std::string& before, std::string_view name) {
   if (before == name)
     return fail_at(name, "column \"" + before + "\" occurs twice; expected it once");
   return fail_at(name, "columns \"" + before + "\" and \"" + std::string(name) +
-                           "\" say the same thing; expected only one of them");
+                           "\" state the same thing; expected only one of them");
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ Expected<Header> parse_header(std::string_view row, const Expectation& e) {
   header.separator = find_separator(row);
   std::vector<std::string_view> names;
   if (!split(row, header.separator, names))
-    return fail("header row: a quote is not closed, or something stands behind it");
+    return fail("header row: unterminated quoted field, or text after the closing quote");
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Known* column = find(names[i]);
     if (column == nullptr) return unknown_column(names[i], i + 1);
@@ -141,7 +141,7 @@ Expected<Header> parse_header(std::string_view row, const Expectation& e) {
       return twice(header.names[static_cast<std::size_t>(same - header.roles.begin())], names[i]);
     if (auto error = wrong_unit(*column, e)) return fail(std::move(*error));
     if (column->position && e.across())
-      return fail_at(names[i], "a position along the axis says nothing of its " +
+      return fail_at(names[i], "a position along the axis does not contain its " +
                                    std::string(e.angle ? "angle" : "straightness") +
                                    "; expected \"" + e.deviation() + "\"");
     header.roles.push_back(column->role);

@@ -185,7 +185,7 @@ Expected<Observations> read_general(const ReadInput& input) {
     } else if (table->column(axis.first + "_dir") != nullptr) {
       return in_file(Expected<Observations>(fail(at_line(
                          0, axis.first + "_dir",
-                         "expected the coordinate \"" + coordinate(axis) + "\" beside it"))),
+                         "expected the coordinate \"" + coordinate(axis) + "\" with it"))),
                      input);
     }
   if (obs.axes.empty())

@@ -91,7 +91,7 @@ class StepDiagonals {
         return fail(at_line(table_.line[row], "step",
                             who + "expected step " + std::to_string(expected - 1) + ", found " +
                                 std::to_string(step) +
-                                "; a step that was not read stands in the file without a value"));
+                                "; a step that was not read is in the file without a value"));
     return walk(key, pass, who, steps / 3);
   }
 

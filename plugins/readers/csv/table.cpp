@@ -87,7 +87,7 @@ class TableReader {
   std::optional<Error> take_header(std::string_view row) {
     separator_ = separator_of(row);
     if (!split(row, separator_, fields_))
-      return Error{"header row: a quote is not closed, or something stands behind it"};
+      return Error{"header row: unterminated quoted field, or text after the closing quote"};
     for (const std::string_view name : fields_) {
       const ColumnSpec* spec = find(columns_, name);
       if (spec == nullptr) return unknown(name);
@@ -114,7 +114,7 @@ class TableReader {
 
   Error unknown(std::string_view name) const {
     if (name.empty())
-      return Error{"a column of the header row has no name; is there a separator too many?"};
+      return Error{"a column of the header row has no name; check for an extra separator"};
     if (parse_number(name, true).kind == Field::Kind::taken)
       return Error{"expected a header row with the names of the columns, found the number " +
                    shown(name)};
@@ -134,7 +134,7 @@ class TableReader {
 
   std::optional<Error> take_row(std::string_view row) {
     if (!split(row, separator_, fields_))
-      return Error{"a quote is not closed on its line, or something stands behind it: " +
+      return Error{"unterminated quoted field, or text after the closing quote: " +
                    shown(row)};
     if (std::all_of(fields_.begin(), fields_.end(), [](auto f) { return f.empty(); })) {
       ++table_.empty_rows;
@@ -172,7 +172,7 @@ class TableReader {
           return std::nullopt;
         return at(
             i, "expected + or -" +
-                   std::string(spec.kind == Kind::motion ? ", or nothing where the axis stood still"
+                   std::string(spec.kind == Kind::motion ? ", or nothing where the axis was stationary"
                                                          : "") +
                    ", found " + shown(text));
       case Kind::number:

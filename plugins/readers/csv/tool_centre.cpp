@@ -59,7 +59,7 @@ class ToolCentreRows {
     if (turns_ && !find_axis())
       return fail(
           "expected places that go round with the angle where a gauge turns with the axis "
-          "(tx, ty, tz): x_mm, y_mm, z_mm are where the linear axes stand in machine "
+          "(tx, ty, tz): x_mm, y_mm, z_mm are the positions of the linear axes in machine "
           "coordinates");
     for (std::size_t row = 0; row < table_.size(); ++row)
       if (auto put = probe_ ? put_probe(row) : put_gauge(row); !put) return put;
@@ -87,7 +87,7 @@ class ToolCentreRows {
     const bool gauge = y == 1 && d == 0 && ((n == 3 && t == 0) || (n == 0 && t == 3));
     if (gauge || (d == 3 && y + n + t == 0)) return {};
     return fail(
-        "expected deviation_um with nx, ny, nz (a gauge that stands still) or with tx, ty, tz (a "
+        "expected deviation_um with nx, ny, nz (a stationary gauge) or with tx, ty, tz (a "
         "gauge that turns with the axis, as it points with the axis at 0), or dx_um, dy_um, dz_um "
         "(a probe: centre found less centre commanded)");
   }

@@ -46,7 +46,7 @@ Expected<Wish> wish_of(const ReadInput& input, const Axis& axis) {
   if (unit != "mm" && unit != "inch")
     return fail(of_option("unit",
                           "expected mm or inch, the unit of the program that probed; found "
-                          "none. A log does not say it"));
+                          "none. A log does not state it"));
   wish.unit = unit == "mm" ? 1e-3 : 0.0254;
   const std::size_t letter = rotary_letters.find(axis.name.front());
   if (letter == std::string_view::npos)
@@ -167,7 +167,7 @@ Expected<Centre> centre_of(const Group& group, const Wish& wish) {
   }
   for (std::size_t i = 0; i < group.size(); ++i)
     if (!(std::fabs(fit->residual[i]) <= wish.limit))
-      return fail(at_line(group[i].line, "a touch lies " + fixed_text(1e6 * fit->residual[i], 1) +
+      return fail(at_line(group[i].line, "a touch is " + fixed_text(1e6 * fit->residual[i], 1) +
                                              " um off its sphere; expected at most " +
                                              fixed_text(1e6 * wish.limit, 1) +
                                              " (option limit_um). Is one centre made of touches of "
@@ -299,14 +299,14 @@ Reader reader() {
        {"touches",
         std::int64_t{0},
         "",
-        "Touches of one centre; 0: all while the rotary axes stand still.",
+        "Touches of one centre; 0: all while the rotary axes are stationary.",
         {},
         0.0,
         1e6},
        {"same_angle_deg",
         0.001,
         "deg",
-        "How far a rotary axis may be off and still stand there.",
+        "Largest difference of a rotary axis from its position.",
         {},
         0.0,
         1.0},

@@ -49,7 +49,7 @@ Expected<std::vector<Role>> columns_of(const std::vector<std::string>& texts) {
   for (const auto& [name, role] : {roles[3], roles[5], roles[1]})
     if (std::find(columns.begin(), columns.end(), role) == columns.end())
       return fail(of_option("columns", std::string("expected one \"") + name +
-                                           "\", found none. A table does not say what its columns "
+                                           "\", found none. A table does not state what its columns "
                                            "are, and it is not guessed"));
   return columns;
 }
@@ -108,7 +108,7 @@ class TableReader {
                                       std::to_string(fields ? fields->size() : 0) + ": " +
                                       shown(line) +
                                       "; rows begin and end at first_line and "
-                                      "last_line, or as option tables says"));
+                                      "last_line, or as option tables states"));
     Row row;
     row.way = way;
     row.line = number;
@@ -182,7 +182,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
     if ((row.way == Way::forward || row.way == Way::reverse) && listed == 0)
       return fail(at_line(row.line,
                           "expected a first run \"forward\" whose targets only rise or only "
-                          "fall, found none; say + and - in place of forward and reverse"));
+                          "fall, found none; state + and - in place of forward and reverse"));
     const double target = row.target * map->target_unit;
     if (auto ok = runs.add({row.cycle, direction_of(row.way, listed), target,
                             map->deviation(row.value * map->value_unit, target), row.line});

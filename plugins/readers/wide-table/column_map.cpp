@@ -15,7 +15,7 @@ namespace {
 
 const char* const roles_help =
     "\"target\", \"ignore\", a run and how it went (\"1 +\", \"1 -\", or \"1 forward\", \"1 "
-    "reverse\": as the targets are listed; \"1\" where option tables says how it went), or of a "
+    "reverse\": as the targets are listed; \"1\" where option tables states how it went), or of a "
     "print \"mean +\", \"mean -\", \"2s +\", \"2s "
     "-\" (or forward, reverse), \"mean\", \"dead zone\"";
 
@@ -48,7 +48,7 @@ Expected<Column> column_of(const std::string& text) {
 Expected<std::vector<Column>> columns_of(const std::vector<std::string>& texts) {
   if (texts.empty())
     return fail(of_option("columns", std::string("expected what each column is: ") + roles_help +
-                                         "; found none. A table does not say it, and it is not "
+                                         "; found none. A table does not state it, and it is not "
                                          "guessed"));
   std::vector<Column> columns;
   std::set<std::tuple<Role, Way, std::uint32_t>> seen;

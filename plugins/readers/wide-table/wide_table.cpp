@@ -59,7 +59,7 @@ class TableReader {
                                       std::to_string(split ? split->size() : 0) + ": " +
                                       shown(line) +
                                       "; rows begin and end at first_line and "
-                                      "last_line, or as option tables says"));
+                                      "last_line, or as option tables states"));
     const auto& fields = *split;
     std::vector<double> values;
     for (std::size_t k = 0; k < fields.size(); ++k) {

@@ -331,8 +331,8 @@ class Packs(NightTest):
             refuses("expected a plain name", *named(name))
             refuses("does not name", named(name)[0])
         refuses("is not a plain file", "UPDATE sqlar SET mode = 41471 WHERE name = 'c0/results.json'")  # a symlink
-        refuses("it says that it has 9000000000000 bytes", "UPDATE sqlar SET sz = 9000000000000 WHERE name = 'c0/results.json'")
-        refuses("it says that it has -1 bytes", "UPDATE sqlar SET sz = -1 WHERE name = 'c0/results.json'")
+        refuses("it states that it has 9000000000000 bytes", "UPDATE sqlar SET sz = 9000000000000 WHERE name = 'c0/results.json'")
+        refuses("it states that it has -1 bytes", "UPDATE sqlar SET sz = -1 WHERE name = 'c0/results.json'")
         refuses("do not have their digest", "UPDATE sqlar SET data = zeroblob(sz) WHERE name = 'c0/results.json'")
         refuses("is damaged", "ALTER TABLE sqlar RENAME TO t", "CREATE VIEW sqlar AS SELECT * FROM t")
         refuses("is damaged", "DROP TABLE digest")

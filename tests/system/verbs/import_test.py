@@ -105,7 +105,7 @@ class Import(unittest.TestCase):
         self.file("FP12_X_20240302.rtl", rtl([1, 2, 3], axis="Y"))
         self.file("FP12_Y_20240302.rtl", rtl([1, 2, 4], axis="Y"))
         said = self.run_import(status=1)
-        self.assertIn("the file says axis Y, the manifest X", said["campaigns"][0]["files"][0]["lacks"][0])
+        self.assertIn("the file states axis Y, the manifest X", said["campaigns"][0]["files"][0]["lacks"][0])
 
     def test_what_is_there_is_not_touched(self):
         self.file("FP12_X_20240302.rtl", rtl([1, 2, 3]))
@@ -113,7 +113,7 @@ class Import(unittest.TestCase):
         manifest = self.site / "2024-03-02-fp12/campaign.toml"
         manifest.write_text("mine", encoding="utf-8")
         said = self.run_import("--partial", status=1)
-        self.assertIn("is there; it is left as it is", said["campaigns"][0]["lacks"][0])
+        self.assertIn("exists and is not changed", said["campaigns"][0]["lacks"][0])
         self.assertEqual(manifest.read_text(encoding="utf-8"), "mine")
 
     def test_a_second_time_there_is_nothing_to_do(self):
@@ -128,10 +128,10 @@ class Import(unittest.TestCase):
         self.assertEqual({p: p.read_bytes() for p in self.site.rglob("*") if p.is_file()}, before)
         # A file that came later, or another one of that name, is no repetition.
         self.file("FP12_Y_20240302.rtl", rtl([1, 2, 4]))
-        self.assertIn("is there; it is left as it is", self.run_import(status=1)["campaigns"][0]["lacks"][0])
+        self.assertIn("exists and is not changed", self.run_import(status=1)["campaigns"][0]["lacks"][0])
         (self.source / "FP12_Y_20240302.rtl").unlink()
         self.file("FP12_X_20240302.rtl", rtl([1, 2, 9]))
-        self.assertIn("is there; it is left as it is", self.run_import(status=1)["campaigns"][0]["lacks"][0])
+        self.assertIn("exists and is not changed", self.run_import(status=1)["campaigns"][0]["lacks"][0])
         self.assertEqual({p: p.read_bytes() for p in self.site.rglob("*") if p.is_file()}, before)
 
     def test_a_link_for_a_campaign_is_not_followed(self):
@@ -212,7 +212,7 @@ class Import(unittest.TestCase):
         self.assertEqual({f: v["axis"] for f, v in files.items()},
                          {"FP12_axis1_20240302.rtl": "X", "FP12_laengs_20240302.rtl": "Y"})
         self.assertEqual(files["FP12_axis1_20240302.rtl"]["assumed"],
-                         ['axis X for "axis1" in its name, as the rule says'])
+                         ['axis X for "axis1" in its name, as the rule states'])
         self.assertEqual([u["file"] for u in said["unmatched"]], ["FP12_x_20240302.rtl"])
         for wrong, words in (('[axes]\naxis1 = "x 1"\n', "expected an axis of capital letters and digits"),
                              ('axis = "X"\n[axes]\naxis1 = "X"\n', "expected the axis here or at {axis}")):
@@ -222,7 +222,7 @@ class Import(unittest.TestCase):
     def test_one_axis_of_all_files_as_the_rule_states(self):
         self.file("FP12_20240302.rtl", rtl([1, 2, 3]))
         said = self.run_import(rule=self.rule('pattern = "{machine}_{date}.rtl"\naxis = "X"\n'))
-        self.assertEqual(self.files_of(said)["FP12_20240302.rtl"]["assumed"], ["axis X, as the rule says"])
+        self.assertEqual(self.files_of(said)["FP12_20240302.rtl"]["assumed"], ["axis X, as the rule states"])
         self.assertTrue(said["campaigns"][0]["written"])
 
     def test_equal_readings_are_said_once(self):

@@ -285,7 +285,7 @@ TEST_F(Truth, HowTheTestWasMadeIsSaidAndWhatNobodySaidToo) {
   Case c = whole_case(plugins);
   const std::string before = page(c);
   for (const char* what : {"Not stated: feed, dwell, over-travel", "positions of the other axes",
-                           "whether the compensation in the control was on", "warm-up"})
+                           "whether the compensation in the control was active", "warm-up"})
     EXPECT_TRUE(has(before, what)) << what;
   Measurement& m = c.campaign.measurements[0];
   m.feed = 1.2 / 60.0, m.dwell = 3.0, m.over_travel = 2e-3, m.compensation = "on";

@@ -99,7 +99,7 @@ constexpr Key table_standing_keys[] = {
      .holds = text,
      .help = "Reason why tables may be written from these readings.",
      .required = true,
-     .missing = "expected why a table may be written although the finding is there"},
+     .missing = "expected why a table may be written despite the finding"},
 };
 
 constexpr Key tables_keys[] = {
@@ -149,7 +149,7 @@ constexpr Key campaign_file_keys[] = {
      .keys = measurement_keys},
     {.name = "model",
      .holds = table,
-     .help = "The error model of the machine as it stands.",
+     .help = "The present error model of the machine.",
      .keys = model_keys},
     {.name = "tables",
      .holds = table,

@@ -177,7 +177,7 @@ inline constexpr Key environment_keys[] = {
      .holds = flag,
      .help = "Whether the readings were corrected to the reference temperature 20 degC with "
              "expansion_um_per_m_K of their axis before they came into the file, for the "
-             "certificate. Default: as the file states; else the certificate says that it is not "
+             "certificate. Default: as the file states; else the certificate states that it is not "
              "stated."},
     {.name = "drift_minutes",
      .holds = number,

@@ -5,7 +5,7 @@ namespace nonio::config {
 namespace declared {
 
 constexpr Choice releases[] = {{"by-hand", "a person, with nonio certificate approve"},
-                               {"automatic", "the night, by the rules of may_stand"}};
+                               {"automatic", "the nightly run, for findings accepted in may_stand"}};
 constexpr Key standing_keys[] = {
     {.name = "finding",
      .holds = text,
@@ -19,7 +19,7 @@ constexpr Key standing_keys[] = {
      .help = "Reason why a certificate may be issued in spite of the finding; kept in the "
              "register.",
      .required = true,
-     .missing = "expected why a certificate may be issued although the finding is there"},
+     .missing = "expected why a certificate may be issued despite the finding"},
 };
 
 constexpr Key certificate_of_site[] = {
@@ -40,7 +40,7 @@ constexpr Key certificate_of_site[] = {
     {.name = "register_seconds",
      .holds = number,
      .help = "Waiting time for a register that another process has locked. Campaigns that "
-             "still need a number are evaluated again in the next night.",
+             "still need a number are evaluated again in the next run.",
      .unit = "s",
      .otherwise = "60",
      .wanted = "expected a number from 0 to 86400",
@@ -49,12 +49,12 @@ constexpr Key certificate_of_site[] = {
     {.name = "release",
      .holds = text,
      .help = "Release of certificates: by a person, or by the nightly run if every finding "
-             "with severity attention is listed in may_stand.",
+             "with severity warning is listed in may_stand.",
      .otherwise = "by-hand",
      .choices = releases},
     {.name = "may_stand",
      .holds = tables,
-     .help = "Findings with severity attention that do not prevent an automatic release, each "
+     .help = "Findings with severity warning that do not prevent an automatic release, each "
              "with the reason; [] for none.",
      .keys = standing_keys},
     {.name = "two_persons",
@@ -94,7 +94,7 @@ constexpr Key laboratory_keys[] = {
     {.name = "authoriser",
      .holds = text,
      .help = "Name of the person who authorises certificates; several are separated by ';'. "
-             "Nobody else can release one."},
+             "No other person can approve one."},
     {.name = "contact", .holds = text, .help = "Contact of the laboratory."},
     {.name = "cmc",
      .holds = table,
@@ -123,7 +123,7 @@ constexpr Key limits_keys[] = {
      .most = 1e9},
     {.name = "disk_seconds",
      .holds = number,
-     .help = "Time without a response after which a folder or file of the site counts as failed "
+     .help = "Time without a response after which a folder or file of the site is reported as failed "
              "during the survey.",
      .unit = "s",
      .otherwise = "60",
@@ -133,7 +133,7 @@ constexpr Key limits_keys[] = {
      .above = true},
     {.name = "vanished",
      .holds = whole,
-     .help = "Number of campaigns of the night before that may be missing; with more of them the "
+     .help = "Number of campaigns of the previous run that may be missing; with more of them the "
              "exit status is 1. Record campaigns removed on purpose with `nonio machine remove`.",
      .otherwise = "0"},
 };
@@ -188,7 +188,7 @@ constexpr Key due_keys[] = {
      .holds = text,
      .help = "The machine for which it holds, as `nonio machine list` calls it; without it for all "
              "that "
-             "no other says."},
+             "no other states."},
     {.name = "months",
      .holds = whole,
      .help = "From the last campaign to the next.",
@@ -265,7 +265,7 @@ constexpr Key signing_keys[] = {
     {.name = "time_stamp_missing",
      .holds = text,
      .help = "Behaviour if the time-stamp server does not answer: the campaign fails, or the "
-             "certificate is signed without time stamp, and the summary says so.",
+             "certificate is signed without time stamp, and the summary states this.",
      .otherwise = "fail",
      .choices = fail_or_sign},
     {.name = "time_stamp_seconds",
@@ -302,7 +302,7 @@ constexpr Key mail_keys[] = {
      .text = address_rule},
     {.name = "on",
      .holds = text,
-     .help = "From what on a night writes: a campaign is lost or failed; or a machine is out of "
+     .help = "Condition for a mail: a campaign is lost or failed; or a machine is out of "
              "tolerance; or any line requires action.",
      .otherwise = "decision",
      .choices = mail_reasons},
@@ -378,7 +378,7 @@ constexpr Key site_file_keys[] = {
      .keys = signing_keys},
     {.name = "mail",
      .holds = table,
-     .help = "Mail of the nightly run, only when something asks for it.",
+     .help = "Mail of the nightly run, sent only when action is required.",
      .keys = mail_keys},
     {.name = "certificate",
      .holds = table,

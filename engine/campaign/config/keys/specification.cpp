@@ -119,7 +119,7 @@ constexpr Key cycle_keys[] = {
              circle_cycle),
     of_kinds({.name = "set_up_urad",
               .holds = number,
-              .help = "Angle at which the straightedge or beam stood to the axis: a slope of the "
+              .help = "Angle between the straightedge or beam and the axis: a slope of the "
                       "readings."},
              straightness_cycle, "urad"),
     of_kinds({.name = "ball_mm",
@@ -130,7 +130,7 @@ constexpr Key cycle_keys[] = {
     of_kinds({.name = "carrier",
               .holds = text,
               .help = "Another rotary axis, which turned too: the table or head that carries this "
-                      "one, or the head beside this table."},
+                      "one, or the head in addition to this table."},
              centres_cycle),
     of_kinds({.name = "carrier_deg",
               .holds = numbers,
@@ -138,7 +138,7 @@ constexpr Key cycle_keys[] = {
              centres_cycle, "deg"),
     of_kinds({.name = "sensor",
               .holds = text,
-              .help = "A gauge that turns with the axis, a gauge that stands still, or a probe "
+              .help = "A gauge that turns with the axis, a stationary gauge, or a probe "
                       "that finds the whole centre.",
               .choices = sensors},
              rtcp_cycle),
@@ -214,7 +214,7 @@ constexpr Key simulated_square_keys[] = {
      .unit = "urad"},
     {.name = "set_up_urad",
      .holds = number,
-     .help = "How it stood to the first axis, positive from the first axis to the second.",
+     .help = "Its angle to the first axis, positive from the first axis to the second.",
      .unit = "urad"},
 };
 

@@ -94,7 +94,7 @@ Expected<Blocks> blocks_of(std::string_view bytes) {
                                               std::to_string(line.size())));
     if (trimmed(line).empty()) continue;
     if (ended)
-      return fail(at_line(lines.number(), "expected nothing behind EOF::, found " + shown(line)));
+      return fail(at_line(lines.number(), "expected nothing after EOF::, found " + shown(line)));
     if (line.find('\0') != line.npos)
       return fail(at_line(lines.number(), "expected text, found a NUL byte; is the file UTF-16?"));
     const std::string_view name = block_name(line);

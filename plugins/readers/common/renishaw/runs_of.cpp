@@ -176,7 +176,7 @@ Expected<void> add_user_text(const RunFile& file, const ReadInput& input, Observ
     const std::string own = control_axis(input.campaign.machine, input.measurement);
     if (is_other_axis(input.campaign.machine, input.measurement, value))
       return fail(at_line(file.user[i].number,
-                          "the file says axis " + value + ", the manifest " + own +
+                          "the file states axis " + value + ", the manifest " + own +
                               "; if the file is wrong: ignore_axis = true among the options"));
     // An axis that the manifest does not name is another one by its letter.
     if (is_other_letter(own, value))

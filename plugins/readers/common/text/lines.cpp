@@ -72,7 +72,7 @@ std::optional<Error> other_separator(std::optional<char> stated, char found) {
   if (!stated || *stated == found) return std::nullopt;
   const auto name = [](char c) { return c == '\t' ? "a tab" : shown(std::string_view(&c, 1)); };
   return Error{"expected " + name(*stated) +
-               " between the names of the columns, as \"sep=\" in line 1 says, found " +
+               " between the names of the columns, as \"sep=\" in line 1 states, found " +
                name(found)};
 }
 

@@ -230,7 +230,7 @@ TEST(SiteLogs, AMachineIsDueByOneRule) {
   ASSERT_FALSE(wrong);
   std::string all;
   for (const Error& e : wrong.error()) all += std::to_string(e.line) + ": " + e.message + "\n";
-  EXPECT_NE(all.find("a rule for all machines is there twice"), std::string::npos) << all;
+  EXPECT_NE(all.find("a rule for all machines is given twice"), std::string::npos) << all;
   EXPECT_NE(all.find("expected 1 to 240 months"), std::string::npos) << all;
   EXPECT_NE(all.find("is missing"), std::string::npos) << all;
 }
