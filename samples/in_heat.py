@@ -187,4 +187,32 @@ def warm_axis():
                                       model=["backlash:X", "scale:X", "warm-up:X"])}
 
 
-STORIES = {"42-heat": heat, "43-spindle": spindle_turns, "44-lengths": gauge, "48-warm-axis": warm_axis}
+def many_sensors():
+    """A spindle in steps for twelve hours: displacements of the mandrel, four temperatures and the speed."""
+    noise, rows = Noise(149), []
+    steps = (0, 3000, 6000, 0, 9000, 4500, 0, 7500)
+    bearing, housing, column, hall = Body(600.0), Body(4200.0), Body(7000.0), 0.0
+    for i in range(721):
+        minute = i
+        speed = steps[min(minute // 90, len(steps) - 1)]
+        hall = 0.9 * math.sin(2.0 * math.pi * (minute - 80.0) / 610.0) + 0.4 * math.sin(2.0 * math.pi * minute / 157.0)
+        if i:
+            bearing.to(60.0, 14.0 * (speed / 9000.0) ** 1.6), housing.to(60.0, 0.35 * bearing.x)
+            column.to(60.0, hall)
+        z = 2.4 * bearing.x + 3.1 * housing.x
+        y = 5.2 * column.x
+        values = (z, y, 22.0 + bearing.x, 21.5 + housing.x, 21.0 + column.x, 21.2 + hall)
+        wanted = (0.06, 0.06, 0.004, 0.004, 0.004, 0.004)
+        rows.append("%d,%d,%s" % (60 * minute, speed,
+                                  ",".join("%.3f" % (v + u * noise.normal()) for v, u in zip(values, wanted))))
+    story = ["Which thermometer is missing? The mandrel of a milling spindle was watched for twelve hours of changing speeds,",
+             "with four thermometers. Z follows the bearing and, later, its housing; Y follows the column."]
+    return {"spindle.csv": text("time_s,spindle_rpm,z_um,y_um,bearing_c,housing_c,column_c,hall_c", rows, MADE_UP),
+            "campaign.toml": manifest(story, "49-spindle-sensors", "Esempio Quarantanove S.r.l.", "Padova", "2026-06-22",
+                                      dict(MACHINE, serial="S-0149"), AXES,
+                                      [{"id": "steps", "kind": "thermal", "file": "spindle.csv"}], instrument=SENSORS,
+                                      analyses=["thermal"])}
+
+
+STORIES = {"42-heat": heat, "43-spindle": spindle_turns, "44-lengths": gauge, "48-warm-axis": warm_axis,
+           "49-spindle-sensors": many_sensors}

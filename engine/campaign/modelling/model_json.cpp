@@ -242,7 +242,8 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   json["aliases"] = c.aliases;
   if (!c.beside.empty()) json["beside"] = c.beside;
   json["says"] = words.candidate(c, part, rms_before);
-  storage::put(json, "minimum_detectable_rms", c.minimal_detectable, q);
+  if (c.minimal_detectable > 0.0)
+    storage::put(json, "minimum_detectable_rms", c.minimal_detectable, q);
   if (c.bias > 1.0) storage::put(json, "bias", c.bias, Quantity::ratio);
   return json;
 }
