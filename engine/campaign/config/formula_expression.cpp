@@ -147,7 +147,7 @@ Expected<Expression> Expression::parse(const Formula& formula, const Axis& axis)
     for (std::size_t k = 0; k < names.size(); ++k) own.parser.DefineVar(names[k], &own.slots[k]);
   } catch (const mu::ParserError&) {
     return fail(
-        "the name of a parameter is no name: expected letters, digits and _, not the name of a "
+        "the name of a parameter is not valid: expected letters, digits and _, not the name of a "
         "function");
   }
   try {
