@@ -178,11 +178,11 @@ void print_candidates(std::ostream& out, const modelling::Explained& e, bool all
   double best = 0.0;
   for (const model::Candidate* c : shown) best = std::max(best, c->score);
   out << "  " << padded(say("candidate"), 22) << padded(say("evidence"), 32)
-      << padded(say("rms-after"), 14) << padded(say("left-out"), 15) << "p\n";
+      << padded(say("rms-after"), 14) << padded(say("left-out"), 18) << "p\n";
   for (const model::Candidate* c : shown)
     out << "  " << padded(c->term.name() + " ", 22) << bar(c->score, best, 20) << " "
         << padded(fixed_text(c->score, 1), 11) << padded(with_unit(c->rms, q), 14)
-        << padded(c->cv_rms ? with_unit(*c->cv_rms, q) : "-", 15) << p_text(c->p) << "\n";
+        << padded(c->cv_rms ? with_unit(*c->cv_rms, q) : "-", 18) << p_text(c->p) << "\n";
   if (left > 0) out << "  " << say("show.more", {{"count", std::to_string(left)}}) << " (--all)\n";
 }
 
