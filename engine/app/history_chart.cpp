@@ -160,8 +160,8 @@ class SeriesChart {
         std::any_of(s_.changes.begin(), s_.changes.end(),
                     [](const HistoryChange& c) { return c.cause == "undeclared"; });
     if (s_.smallest_change && !changed)
-      out += "  no change without a known event; from " + number_of(*s_.smallest_change, s_.unit) +
-             " on one would have been seen\n";
+      out += "  no change without a known event; detection limit " +
+             number_of(*s_.smallest_change, s_.unit) + "\n";
     if (!s_.forecast) return out;
     const reports::HistoryForecast& f = *s_.forecast;
     if (f.answer == "cannot-say") return out + "  for " + f.date + " nothing can be said\n";

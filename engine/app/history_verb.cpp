@@ -41,8 +41,7 @@ int history(const HistoryWish& wish, const Common& common) {
   }
   if (const auto known = store::known_night(wish.out);
       !known || *known != std::optional(tonight->night))
-    complain(store::store_in(wish.out) + " does not contain run " +
-             std::to_string(tonight->night) +
+    complain(store::store_in(wish.out) + " does not contain run " + std::to_string(tonight->night) +
              " yet: what follows is older. The next `nonio run` enters it.");
   auto site = assessment::assess(wish.out, *tonight, [] {});
   if (!site) return complain(site.error().message);

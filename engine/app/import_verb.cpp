@@ -109,7 +109,8 @@ void print(const importing::ImportReport& report) {
   print("Excluded by the rule:", report.excluded);
   print("Not imported:", report.unmatched);
   if (!report.campaigns.empty())
-    std::cout << "Axes are taken from the file names and signs from the files: verify both on the machine "
+    std::cout << "Axes are taken from the file names and signs from the files: verify both on the "
+                 "machine "
                  "before a table is loaded.\n";
 }
 

@@ -235,24 +235,24 @@ Verb ack_verb(Common& common) {
   return {
       .name = "ack",
       .summary = "Acknowledge a finding of a machine until a given day",
-      .arguments =
-          joined({site_argument(wish->site),
-                  {"--finding", &a.finding, "Id of the finding, as printed in the summary of the run"},
-                  {"--machine", &a.machine, "As `nonio machine list` names it"},
-                  {"--axis", &a.axis, "The axis; default: all"},
-                  {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
-                  {"--until", &a.until, "Last day of the acknowledgement, YYYY-MM-DD"},
-                  {"--value", &wish->value,
-                   "Present value of the quantity, in its unit: the finding returns if the value "
-                   "changes by more than --U"},
-                  {"--U", &wish->U, "Expanded uncertainty (k = 2) of that value"},
-                  {"--by", &a.by, "Name of the author of the entry"},
-                  {"--why", &a.why, "Reason why it is accepted until then"},
-                  {"--date", &a.date, "Day of the entry, YYYY-MM-DD; default: today"},
-                  {"--withdraw", &wish->withdraw,
-                   "Withdraw the acknowledgement with exactly this --finding, --machine, --axis "
-                   "and --quantity"}},
-                 common_arguments(common)),
+      .arguments = joined(
+          {site_argument(wish->site),
+           {"--finding", &a.finding, "Id of the finding, as printed in the summary of the run"},
+           {"--machine", &a.machine, "As `nonio machine list` names it"},
+           {"--axis", &a.axis, "The axis; default: all"},
+           {"--quantity", &a.quantity, "The quantity, such as B_mean; default: all"},
+           {"--until", &a.until, "Last day of the acknowledgement, YYYY-MM-DD"},
+           {"--value", &wish->value,
+            "Present value of the quantity, in its unit: the finding returns if the value "
+            "changes by more than --U"},
+           {"--U", &wish->U, "Expanded uncertainty (k = 2) of that value"},
+           {"--by", &a.by, "Name of the author of the entry"},
+           {"--why", &a.why, "Reason why it is accepted until then"},
+           {"--date", &a.date, "Day of the entry, YYYY-MM-DD; default: today"},
+           {"--withdraw", &wish->withdraw,
+            "Withdraw the acknowledgement with exactly this --finding, --machine, --axis "
+            "and --quantity"}},
+          common_arguments(common)),
       .footer =
           "Without options: lists the active acknowledgements, of one machine or of all. "
           "Appends to SITE/acknowledged.toml; comments stay. It hides nothing: the finding stays "

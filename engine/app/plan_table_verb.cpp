@@ -258,7 +258,8 @@ Verb plan_table_verb(Common& common) {
       .footer =
           "Without travels: every primitive triple with a < b and c up to --hypotenuse, with b/a. "
           "With travels: the best plan of each triple, both ways round, and its cost in minutes. "
-          "With separate resolutions, q is in units of their greatest common divisor.\n\nExit status: "
+          "With separate resolutions, q is in units of their greatest common divisor.\n\nExit "
+          "status: "
           "0; 1 no plan fits (prints which limits to relax); 2 usage.",
       .examples = {"nonio plan table --x 20000 --y 12000 --max-step 500 --pdf plans.pdf"},
       .run = [wish, &common] { return plan_table(*wish, common); }};

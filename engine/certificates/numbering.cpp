@@ -239,9 +239,9 @@ Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
   if (says_something(stated) && !is_old && stated != issue.why)
     issue.why += (issue.why.empty() ? "" : "; ") + stated;
   if (issue.why.empty())
-    missing.push_back(std::string(amendment_key) + " (why " + before.number + " is replaced" +
-                      (is_old ? "; what it states was there for " + before.number + " already" : "") +
-                      ")");
+    missing.push_back(
+        std::string(amendment_key) + " (why " + before.number + " is replaced" +
+        (is_old ? "; what it states was there for " + before.number + " already" : "") + ")");
   return {};
 }
 

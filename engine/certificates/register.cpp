@@ -216,7 +216,8 @@ Expected<storage::Json> issued_as_noted(storage::Database& database, const std::
   const auto entry = Journal(database).last_of("issued", number);
   if (auto well = database.take_error(); !well) return fail(well.error());
   storage::Json says = entry ? storage::Json::parse(entry->says, nullptr, false) : storage::Json();
-  if (!says.is_object()) return fail("the register's journal does not state what " + number + " is");
+  if (!says.is_object())
+    return fail("the register's journal does not state what " + number + " is");
   return says;
 }
 

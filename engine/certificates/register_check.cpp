@@ -132,7 +132,7 @@ Expected<std::optional<sign::Check>> check_register(const sign::Verified& verifi
       return says(State::fails, "the register of this site never issued " + stated.number +
                                     ": was the site copied, or the register replaced?");
     check.essential = false;
-    return says(State::not_checked, stated.number + " is no number of this site's register");
+    return says(State::not_checked, stated.number + " is not a number of this site's register");
   }
   if (issued == rows.issued.end())
     return says(State::fails, "the register of this site has issued another certificate as " +

@@ -61,7 +61,8 @@ Expected<Restamped> restamp(const fs::path& file, const sign::Prolonging& with,
   if (!bytes) return fail(bytes.error());
   if (bytes->starts_with("<?xml"))
     return fail(
-        "is a separate DCC: long-term validation of XAdES (B-LT, B-LTA) is not supported; extend the "
+        "is a separate DCC: long-term validation of XAdES (B-LT, B-LTA) is not supported; extend "
+        "the "
         "PDF that carries the DCC");
   sign::Prolonging how = with;
   how.verifier.issued_by = issued_by(rows, *bytes);

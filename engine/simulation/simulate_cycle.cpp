@@ -216,7 +216,7 @@ class CycleReader {
     c_.pendulum = reader_.text("order") != "unidirectional";
     const std::string direction = reader_.text("direction");
     if (!direction.empty() && c_.pendulum)
-      reader_.error("direction", "is only allowed with order =  \"unidirectional\"");
+      reader_.error("direction", "is only allowed with order = \"unidirectional\"");
     c_.direction = direction == "-" ? -1.0 : 1.0;
   }
 

@@ -20,7 +20,7 @@ void store_refused(const RunOptions& options, const reading::Context& context,
     std::vector<Error> errors = c.errors();
     if (stays)
       errors.front().message +=
-          "; the results of run  " + std::to_string(record->night) + " stay as they are";
+          "; the results of run " + std::to_string(record->night) + " stay as they are";
     if (c.is_campaign && !stays && (before == nullptr || before->id != c.id)) {
       evaluation::Evaluated evaluated;
       evaluated.campaign.id = c.id;

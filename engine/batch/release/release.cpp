@@ -305,7 +305,8 @@ std::string why_stale(const certificates::WaitingDraft& draft) {
   const fs::path file = fs::path(draft.out) / draft.campaign / draft.file;
   const auto now = storage::sha256_of_file(file);
   if (now && *now == draft.sha256) return {};
-  return "the draft " + file.string() + (now ? " has changed since the last run" : " is not there") +
+  return "the draft " + file.string() +
+         (now ? " has changed since the last run" : " is not there") +
          ": run `nonio run` again (or name its output folder with --out, if that was moved)";
 }
 

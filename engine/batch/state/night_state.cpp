@@ -139,7 +139,8 @@ Expected<NightState> reopen_night(const RunOptions& options, const std::string& 
   if (!state) return fail(state.error());
   if (!*state || known_text(**state, "state") != "complete")
     return fail(
-        "--only evaluates one campaign of a complete run again; expected `nonio run SITE --out OUT` "
+        "--only evaluates one campaign of a complete run again; expected `nonio run SITE --out "
+        "OUT` "
         "before");
   const storage::Json& json = **state;
   if (auto own = check_site(json, site, options.out); !own) return fail(own.error());

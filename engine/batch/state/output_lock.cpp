@@ -194,7 +194,8 @@ Expected<std::string> unlock(const fs::path& out, const std::optional<std::strin
   const User user = user_in(**text);
   if (alive && user.job.empty())
     return fail(words_for(user) + ", which uses the output folder " + out.string() +
-                ", was not started by a batch job. If you are sure that it has ended, repeat without --alive");
+                ", was not started by a batch job. If you are sure that it has ended, repeat "
+                "without --alive");
   if (alive && is_line_of(*alive, user.job))
     return fail(words_for(user) + " is using the output folder " + out.string() +
                 ", and its job is alive; expected its end");

@@ -181,7 +181,8 @@ class Walker {
       return;
     }
     if (!S_ISDIR(info.st_mode)) return;
-    const std::string tail = " is a link and is not followed: a campaign must be stored in the site itself";
+    const std::string tail =
+        " is a link and is not followed: a campaign must be stored in the site itself";
     if (::stat((path_of(link) / config::manifest_name).c_str(), &info) == 0)
       remark("the campaign " + storage::path_text(link) + tail);
     else if (!in_campaign)

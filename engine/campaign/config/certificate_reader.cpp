@@ -39,10 +39,9 @@ Numbering read_numbering(TableReader& reader) {
     rule.finish();
   }
   if (n.automatic && !reader.raw().contains("may_stand"))
-    reader.error(
-        "release",
-        "\"automatic\" requires the list of accepted findings, [[certificate.may_stand]] "
-        "with finding and reason; may_stand = [] if none is accepted");
+    reader.error("release",
+                 "\"automatic\" requires the list of accepted findings, [[certificate.may_stand]] "
+                 "with finding and reason; may_stand = [] if none is accepted");
   if (n.automatic && n.two_persons)
     reader.error("two_persons", "true and release = \"automatic\" contradict each other");
   if (const auto sound = number_text(n.pattern, "2026", 1); !sound)

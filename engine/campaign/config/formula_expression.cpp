@@ -163,7 +163,7 @@ Expected<Expression> Expression::parse(const Formula& formula, const Axis& axis)
       if (!names[k].empty()) own.parser.DefineVar(names[k], &own.slots[k]);
   } catch (const mu::ParserError&) {
     return fail(
-        "the name of a parameter is no name: expected letters, digits and _, not the name of a "
+        "the name of a parameter is not valid: expected letters, digits and _, not the name of a "
         "function");
   }
   try {

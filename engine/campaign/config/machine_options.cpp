@@ -149,10 +149,11 @@ class Layers {
     if (known == table.end())
       table[key] = rounded_to_places(on, 9);
     else if (std::fabs(known->second - on) > 1e-9)
-      errors.push_back(at_axes("axis " + a.name + ", " + said(key, known->second) +
-                                   " contradicts the compensation that was active during the measurement, " +
-                                   in_digits(on),
-                               a.name, key));
+      errors.push_back(
+          at_axes("axis " + a.name + ", " + said(key, known->second) +
+                      " contradicts the compensation that was active during the measurement, " +
+                      in_digits(on),
+                  a.name, key));
   }
 
   const Info& output_;

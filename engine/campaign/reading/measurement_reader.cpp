@@ -50,10 +50,11 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
   if (of_columns != nullptr) return of_columns;
   const std::string refused = from.context.plugins->refusals();
   if (any)
-    return fail(Error{"no reader recognizes the format of this file: " + what_is_wrong(bytes, m.file) +
-                          "; or the format of an installed reader (`nonio plugin list`)" +
-                          (refused.empty() ? "" : "; of the plugins " + refused),
-                      m.file, first_content_line(bytes)});
+    return fail(
+        Error{"no reader recognizes the format of this file: " + what_is_wrong(bytes, m.file) +
+                  "; or the format of an installed reader (`nonio plugin list`)" +
+                  (refused.empty() ? "" : "; of the plugins " + refused),
+              m.file, first_content_line(bytes)});
   if (!refused.empty())
     return fail(key_error(
         from, out, "measurement." + m.id + ".kind",

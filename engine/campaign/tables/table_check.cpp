@@ -251,7 +251,8 @@ Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign& read,
   const Campaign& campaign = read.manifest->campaign;
   Underlay on{{}, options, {}};
   for (const auto& [axis, files] : read.tables_on) {
-    const std::string who = "the compensation that was active while axis " + axis + " was measured: ";
+    const std::string who =
+        "the compensation that was active while axis " + axis + " was measured: ";
     auto tables = tables_in(controller, files, campaign, options);
     if (!tables) return fail(who + tables.error().message);
     if (!corrects(*tables, axis))

@@ -87,7 +87,7 @@ Expected<Solution> solve(const Design& d, const VectorXd& weighted) {
   Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
   qr.setThreshold(rank_threshold);
   if (qr.rank() < unknowns)
-    return fail("not separable with these readings:  " + inseparable(a, d.names));
+    return fail("not separable with these readings: " + inseparable(a, d.names));
   Solution s;
   VectorXd scaled = math::solution(qr, weighted);
   scaled += math::solution(qr, math::residual(weighted, a, scaled));  // one step of refinement

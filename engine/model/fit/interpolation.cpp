@@ -204,7 +204,9 @@ Expected<MatrixXd> wrong_by_interpolation(const Observations& o, const std::vect
     std::vector<Gap> gaps;
     for (const TemperatureCourse& course : temperature_courses(o, *r))
       if (!add_gaps(course, *r, gaps))
-        return fail("too few temperatures are known for the uncertainty of those interpolated between them");
+        return fail(
+            "too few temperatures are known for the uncertainty of those interpolated between "
+            "them");
     const auto wrong = columns_of_gaps(filled, *said, gaps);
     if (!wrong) return fail(wrong.error());
     out.conservativeResize(Eigen::NoChange, out.cols() + wrong->cols());

@@ -512,7 +512,7 @@ Expected<std::vector<std::vector<double>>> Workbench::best_shapes() const {
     if (next.blocks.size() == all.blocks.size()) {
       std::string names;
       for (const Instance& i : instances_) names += (names.empty() ? "" : ", ") + i.term.name();
-      return fail("not separable with these readings:  " + names);
+      return fail("not separable with these readings: " + names);
     }
     all = next;
   }

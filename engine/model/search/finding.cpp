@@ -130,8 +130,8 @@ class Finder {
         if (next.blocks.size() == start.blocks.size()) {
           const std::string& why = f_.bench->instances()[open[k]].error;
           return fail(!why.empty() ? why
-                                   : "the readings cannot tell " + f_.terms[open[k]].name() +
-                                         " from the rest of the model");
+                                   : "not separable with these readings: " +
+                                         f_.terms[open[k]].name() + " from the rest of the model");
         }
         if (at == open.size() || next.squares < best.squares) best = std::move(next), at = k;
       }

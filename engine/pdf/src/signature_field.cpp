@@ -16,7 +16,7 @@ Expected<const Value*> find_signature(const File& file) {
   const Value* field = file.resolve(&fields->items.front());
   const Value* type = file.find(field, "FT");
   if (type == nullptr || !type->is_name("Sig") || field->find("Kids") != nullptr)
-    return fail("has a form field that is no signature");
+    return fail("has a form field that is not a signature");
   const Value* value = file.find(field, "V");
   if (value == nullptr || !value->is(Value::Kind::dictionary)) return fail("is not signed");
   std::size_t dictionaries = 0;

@@ -149,8 +149,9 @@ Expected<ReadFile> ReadFile::open(const fs::path& path) {
     if (same_state(before, after) && *size + 1 == room) return read;
     ::usleep(100'000);
   }
-  return fail("cannot read " + path.string() +
-              ": another process is writing to it; expected a file that does not change while it is read");
+  return fail(
+      "cannot read " + path.string() +
+      ": another process is writing to it; expected a file that does not change while it is read");
 }
 
 ReadFile::ReadFile(ReadFile&& other) noexcept

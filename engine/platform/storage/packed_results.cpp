@@ -89,8 +89,7 @@ Expected<Catalogue> Catalogue::read(const fs::path& out) {
   if (!text) return fail(text.error());
   auto made = parse(*text);
   if (!made)
-    return fail(path.string() + ", the index of the packs, is damaged: " +
-                made.error().message +
+    return fail(path.string() + ", the index of the packs, is damaged: " + made.error().message +
                 "; bring it back from a copy of the output folder, or remove it to do those "
                 "campaigns anew, without what was known of them before");
   return made;

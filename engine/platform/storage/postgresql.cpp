@@ -269,7 +269,8 @@ Expected<std::string> server_password(const std::filesystem::path& file) {
     std::array<char, 8> mode{};
     std::snprintf(mode.data(), mode.size(), "%04o", info.st_mode & 07777U);
     return fail("other users can get at the database's password " + file.string() + " (mode " +
-                mode.data() + "); expected a file that only the user of the run can read: chmod 600 " +
+                mode.data() +
+                "); expected a file that only the user of the run can read: chmod 600 " +
                 file.string());
   }
   auto text = read_small_file(file);

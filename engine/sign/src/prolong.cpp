@@ -224,8 +224,7 @@ class Prolongation {
       if (!good) return fail(url + ": " + good.error().message);
       if (*good) keep(*statement);
       if (!*good)
-        why +=
-            (why.empty() ? "" : "; ") + url + " is empty about it that is of use at the time";
+        why += (why.empty() ? "" : "; ") + url + " is empty about it that is of use at the time";
       at_hand_.push_back(std::move(*statement));
       return *good;
     };

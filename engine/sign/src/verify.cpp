@@ -155,8 +155,8 @@ class PdfCheck {
     out_.issued = signed_.size();
     const auto place = pdf::signature_at_end(signed_);
     report_.add("signature.range", to_void(place),
-                ends_.size() == 1 ? "covers the whole file but for itself"
-                                  : "covers the file as it was signed but for itself");
+                ends_.size() == 1 ? "covers the entire file except itself"
+                                  : "covers the entire file as it was signed except itself");
     if (place) check_cms(*place);
     if (out_.holds()) return read(*place);
     for (const char* id : {"file.structure", "signature.one", "attachments"})

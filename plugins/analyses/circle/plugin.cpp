@@ -362,28 +362,27 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 }
 
 std::vector<Option> options() {
-  return {
-      {"centre",
-       std::string("minimum-zone"),
-       "",
-       "Centre of the two circles of G, G(b) and H.",
-       {"minimum-zone", "least-squares"}},
-      {"F_about",
-       std::string("least-squares"),
-       "",
-       "Centre of F: the least-squares one, or the commanded one if the bar's ball was there.",
-       {"least-squares", "commanded"}},
-      {"calibrated_length", false, "",
-       "Whether the readings are deviations from the commanded radius (a calibrated bar): "
-       "needed for D and F."},
-      {"leave_out_deg",
-       2.0,
-       "deg",
-       "Readings left out of the fit on both sides of each reversal; more where spikes last "
-       "longer.",
-       {},
-       0.0,
-       most_left_out}};
+  return {{"centre",
+           std::string("minimum-zone"),
+           "",
+           "Centre of the two circles of G, G(b) and H.",
+           {"minimum-zone", "least-squares"}},
+          {"F_about",
+           std::string("least-squares"),
+           "",
+           "Centre of F: the least-squares one, or the commanded one if the bar's ball was there.",
+           {"least-squares", "commanded"}},
+          {"calibrated_length", false, "",
+           "Whether the readings are deviations from the commanded radius (a calibrated bar): "
+           "needed for D and F."},
+          {"leave_out_deg",
+           2.0,
+           "deg",
+           "Readings left out of the fit on both sides of each reversal; more where spikes last "
+           "longer.",
+           {},
+           0.0,
+           most_left_out}};
 }
 
 }  // namespace
@@ -391,8 +390,7 @@ std::vector<Option> options() {
 NONIO_PLUGIN(registry) {
   Analysis a;
   a.info = {"circle", "1.0.0",
-            "Circular tests (ISO 230-4): deviations of the path, and their causes.",
-            options()};
+            "Circular tests (ISO 230-4): deviations of the path, and their causes.", options()};
   a.applies = applies;
   a.analyse = analyse;
   a.states_followed = true;

@@ -126,23 +126,24 @@ Expected<Evaluation> analyse(const CampaignInput& in) {
 }
 
 std::vector<Option> options() {
-  return {{"x", std::string("X"), "", "The axis of leg a."},
-          {"y", std::string("Y"), "", "The axis of leg b."},
-          {"over_travel_mm", 0.0, "mm", "Kept free at each end of both axes.", {}, 0.0, {}},
-          {"resolution_mm", 1.0, "mm", "Steps are whole multiples of it.", {}, 1e-6, {}},
-          {"max_step_mm", 0.0, "mm", "Largest step of either axis; 0: any.", {}, 0.0, {}},
-          {"max_points", std::int64_t{1500}, "", "Entries of the control's table.", {}, 5.0, {}},
-          {"pitch_x_mm", std::vector<double>{}, "mm",
-           "Pitches of x, in addition to its screw_pitch_mm, of which no step is a whole multiple."},
-          {"pitch_y_mm", std::vector<double>{}, "mm", "The same of y."},
-          {"density", false, "", "Only stops that are an ISO 230-2 sampling of both axes."},
-          {"even",
-           std::string("any"),
-           "",
-           "An even number of steps, for a diagonal to half of y.",
-           {"any", "prefer", "require"}},
-          {"hypotenuse", std::int64_t{5000}, "", "Largest c of the triples.", {}, 5.0, 1e6},
-          {"count", std::int64_t{5}, "", "Plans to give.", {}, 1.0, 1000.0}};
+  return {
+      {"x", std::string("X"), "", "The axis of leg a."},
+      {"y", std::string("Y"), "", "The axis of leg b."},
+      {"over_travel_mm", 0.0, "mm", "Kept free at each end of both axes.", {}, 0.0, {}},
+      {"resolution_mm", 1.0, "mm", "Steps are whole multiples of it.", {}, 1e-6, {}},
+      {"max_step_mm", 0.0, "mm", "Largest step of either axis; 0: any.", {}, 0.0, {}},
+      {"max_points", std::int64_t{1500}, "", "Entries of the control's table.", {}, 5.0, {}},
+      {"pitch_x_mm", std::vector<double>{}, "mm",
+       "Pitches of x, in addition to its screw_pitch_mm, of which no step is a whole multiple."},
+      {"pitch_y_mm", std::vector<double>{}, "mm", "The same of y."},
+      {"density", false, "", "Only stops that are an ISO 230-2 sampling of both axes."},
+      {"even",
+       std::string("any"),
+       "",
+       "An even number of steps, for a diagonal to half of y.",
+       {"any", "prefer", "require"}},
+      {"hypotenuse", std::int64_t{5000}, "", "Largest c of the triples.", {}, 5.0, 1e6},
+      {"count", std::int64_t{5}, "", "Plans to give.", {}, 1.0, 1000.0}};
 }
 
 }  // namespace

@@ -317,7 +317,7 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
                                {},
                                {{"axis", axis}},
                                {},
-                               "State the side of each line: side =  \"master\" or \"slave\" "
+                               "State the side of each line: side = \"master\" or \"slave\" "
                                "in [[measurement]], and slave in [machine.axes." +
                                    axis + "]."});
   for (AxisJob& job : series_jobs(input)) all.push_back(std::move(job));

@@ -313,7 +313,8 @@ bool oversized(const CrossJob& job, const ControllerInput& in, OutputResult& res
            {{"axis", curve.output}, {"input", curve.input}, {"key", key}},
            job.measurement,
            "The machine's maker allows no more (" + std::string(key) +
-               "): repair or adjust the axis first; a table can only compensate the residual error."});
+               "): repair or adjust the axis first; a table can only compensate the residual "
+               "error."});
     };
     hold("largest_um", Quantity::deviation, size.largest, size.largest_at);
     hold("slope_um_per_m", Quantity::deviation_per_length, size.slope, size.slope_from);

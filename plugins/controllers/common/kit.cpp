@@ -170,8 +170,7 @@ std::string advice(const Sheet& s, const Writer::Coarser& c) {
     if (outside(s, static_cast<double>(k) / static_cast<double>(c.now)).largest == 0)
       return "set " + c.option + " = " + std::to_string(k) + " or a smaller " + smaller + c.or_else;
   return c.option + " = " + std::to_string(c.most) +
-         ", the largest, is not enough either: repair the axis or measure it again" +
-         c.or_else;
+         ", the largest, is not enough either: repair the axis or measure it again" + c.or_else;
 }
 
 Expected<void> check_range(const Sheet& s, const Writer& w) {

@@ -78,7 +78,8 @@ void refuse(const AxisJob& job, const char* id, double found, double at, const L
        limit.key.empty()
            ? "The readings do not explain such a table: look at them, and at the axis, first."
            : "The machine's maker allows no more (" + limit.key +
-                 "): repair or adjust the axis first; a table can only compensate the residual error."});
+                 "): repair or adjust the axis first; a table can only compensate the residual "
+                 "error."});
 }
 
 }  // namespace

@@ -142,7 +142,8 @@ std::string words(const Sheet& s, const Crosses& crosses, const Layout& layout,
     lines.push_back("backLash = " + signed_decimal(s.backlash() * job.per_si(), 4));
   }
   lines.emplace_back(
-      "The CONFIG.CMA of this output names the tables of the measured axes only: loaded in place of the "
+      "The CONFIG.CMA of this output names the tables of the measured axes only: loaded in place "
+      "of the "
       "control's own it takes the tables of all other axes away; let it into a backup with nonio "
       "table insert");
   lines.emplace_back("MP730 or the configuration must allow non-linear compensation for this axis");

@@ -73,7 +73,8 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
   if (fresh == in.table.end()) return fail("no new table of axis " + in.axis);
   const auto cma = std::find_if(in.backup.begin(), in.backup.end(), is_assignment);
   if (cma == in.backup.end())
-    return fail("expected CONFIG.CMA among the files of the backup: it states which table is whose");
+    return fail(
+        "expected CONFIG.CMA among the files of the backup: it states which table is whose");
   const auto cell = cell_of(cma->bytes, controllers::plain(in.axis));
   if (!cell) return fail(cell.error());
   const std::string name = cell->text.empty() ? name_of(*fresh) : cell->text;

@@ -74,7 +74,7 @@ std::string ini_snippet(const Sheet& s, const std::string& comp) {
   return controllers::comments(s.warning, "# ") + controllers::comments(s.job.about, "# ") +
          controllers::comments(s.zero_and_size(), "# ") + "# " + lines_said(comp, s) +
          "\n"
-         "# BACKLASH has no effect with this table:  the reversal is in its two columns\n" +
+         "# BACKLASH has no effect with this table: the reversal is in its two columns\n" +
          section_of(s.job) + "COMP_FILE = " + comp +
          "\nCOMP_FILE_TYPE = " + std::to_string(s.input.options.integer("type")) + "\n";
 }

@@ -58,7 +58,7 @@ Expected<std::vector<std::string>> words_with_lose(const Sheet& s) {
   const std::int64_t lose = std::llround(s.backlash() / unit);
   if (std::abs(lose) > most_lose)
     return fail("axis " + s.job.axis + ": P-AXIS-00103 would be " + std::to_string(lose) +
-                ", the control accepts -32768..32767: the axis must be repaired");
+                ", the control accepts -32768..32767: repair the axis");
   for (std::string& line : words)
     if (line.rfind(s.table.backlash + " = ", 0) == 0)
       line = s.table.backlash + " = " + std::to_string(lose) +

@@ -160,7 +160,7 @@ std::string linuxcnc(const TiltingTable& t, const std::string& campaign, const C
   out += "# Documented by its source: C passes through x-rot-point, y-rot-point with ";
   out += t.tilt->axis + " at 0;\n# " + t.tilt->axis + " through " + (a ? "y" : "x") +
          "-rot-point + " + (a ? "y" : "x") + "-offset and z-rot-point + z-offset.\n";
-  out += "# Only the sum of z-rot-point and z-offset is used:  z-offset is set to 0.\n";
+  out += "# Only the sum of z-rot-point and z-offset is used: z-offset is set to 0.\n";
   out += t.c->of_chain ? "# INFERRED: machine coordinates without tool length. C is that with " +
                              t.tilt->axis + " at 0, from one fit.\n"
                        : "# INFERRED: that C was measured with " + t.tilt->axis +

@@ -178,10 +178,10 @@ Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, O
     }
   const Straight line = straight_through(x, y);
   if (!(line.slope > 0.0))
-    return fail(of_option("reference_gain",
-                          "the reference runs against the targets (gain " +
-                              short_text(line.slope, 6) +
-                              "); if the sensor was mounted the other way round, state a negative one"));
+    return fail(
+        of_option("reference_gain",
+                  "the reference runs against the targets (gain " + short_text(line.slope, 6) +
+                      "); if the sensor was mounted the other way round, state a negative one"));
   if (std::fabs(line.slope - 1.0) > 0.1)
     return fail(of_option("reference_gain",
                           "expected a reference that goes as far as the targets, "

@@ -203,8 +203,7 @@ void Rows::store(const Row& row) {
 bool Rows::add(std::string_view line, std::uint64_t line_number) {
   line_ = line_number;
   if (!split(line, header_.separator, fields_))
-    return refuse(
-        {"unterminated quoted field, or text after the closing quote: " + shown(line)});
+    return refuse({"unterminated quoted field, or text after the closing quote: " + shown(line)});
   // Spreadsheets leave rows of separators behind; nothing is in them that could be misread.
   if (fields_[0].empty() &&
       std::all_of(fields_.begin(), fields_.end(), [](auto field) { return field.empty(); })) {

@@ -183,9 +183,9 @@ Expected<Observations> read_general(const ReadInput& input) {
       obs.axes.push_back({axis.first, axis.second, {}, {}});
       sources.emplace_back(position, table->column(axis.first + "_dir"));
     } else if (table->column(axis.first + "_dir") != nullptr) {
-      return in_file(Expected<Observations>(fail(at_line(
-                         0, axis.first + "_dir",
-                         "expected the coordinate \"" + coordinate(axis) + "\" with it"))),
+      return in_file(Expected<Observations>(fail(
+                         at_line(0, axis.first + "_dir",
+                                 "expected the coordinate \"" + coordinate(axis) + "\" with it"))),
                      input);
     }
   if (obs.axes.empty())

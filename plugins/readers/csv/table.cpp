@@ -134,8 +134,7 @@ class TableReader {
 
   std::optional<Error> take_row(std::string_view row) {
     if (!split(row, separator_, fields_))
-      return Error{"unterminated quoted field, or text after the closing quote: " +
-                   shown(row)};
+      return Error{"unterminated quoted field, or text after the closing quote: " + shown(row)};
     if (std::all_of(fields_.begin(), fields_.end(), [](auto f) { return f.empty(); })) {
       ++table_.empty_rows;
       return std::nullopt;
@@ -170,11 +169,11 @@ class TableReader {
         numbers_[i]->push_back(text == "+" ? 1.0 : text == "-" ? -1.0 : 0.0);
         if (text == "+" || text == "-" || (spec.kind == Kind::motion && text.empty()))
           return std::nullopt;
-        return at(
-            i, "expected + or -" +
-                   std::string(spec.kind == Kind::motion ? ", or nothing where the axis was stationary"
-                                                         : "") +
-                   ", found " + shown(text));
+        return at(i, "expected + or -" +
+                         std::string(spec.kind == Kind::motion
+                                         ? ", or nothing where the axis was stationary"
+                                         : "") +
+                         ", found " + shown(text));
       case Kind::number:
       case Kind::place:
         break;

@@ -48,9 +48,10 @@ Expected<std::vector<Role>> columns_of(const std::vector<std::string>& texts) {
   }
   for (const auto& [name, role] : {roles[3], roles[5], roles[1]})
     if (std::find(columns.begin(), columns.end(), role) == columns.end())
-      return fail(of_option("columns", std::string("expected one \"") + name +
-                                           "\", found none. A table does not state what its columns "
-                                           "are, and it is not guessed"));
+      return fail(
+          of_option("columns", std::string("expected one \"") + name +
+                                   "\", found none. A table does not state what its columns "
+                                   "are, and it is not guessed"));
   return columns;
 }
 

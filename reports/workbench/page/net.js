@@ -12,7 +12,7 @@ const net = (() => {
   const token = () => sessionStorage.getItem("nonio-token") || "";
 
   /// What the program says of a fit, and what people bring about: in the words of the page.
-  const known = [[/^not separable with these readings:  (?<which>.+)$/, "apart"], [/^the readings cannot show (?<which>.+)$/, "not_shown"],
+  const known = [[/^not separable with these readings: (?<which>.+)$/, "apart"], [/^the readings cannot show (?<which>.+)$/, "not_shown"],
     [/^(?<n>\d+) readings cannot determine (?<unknowns>\d+) unknowns$/, "few"], [/^no reading of part (?<part>.+) is left$/, "none_left"],
     [/^no answer within (?<seconds>\d+) s/, "slow"], [/^a plugin brought the process down in which it ran/, "crashed"],
     [/^the process that calculates has ended/, "restarted"], [/^campaign\.toml has this model already/, "saved_already"]];

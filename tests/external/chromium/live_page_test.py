@@ -439,7 +439,7 @@ class Page(live_browser.CampaignPage):
             self.wait(lambda: self.js("window.told"))
             self.assertIn(again, self.js("window.told"))
             self.assertNotIn("English", self.js("window.told"))
-            self.assertIn(apart, self.js("net.program('not separable with these readings:  scale:X a, warm-up:X g')"))
+            self.assertIn(apart, self.js("net.program('not separable with these readings: scale:X a, warm-up:X g')"))
             self.assertIn("13", self.js("net.program('5 readings cannot determine 13 unknowns')"))
             self.assertIn("no such sentence", self.js("net.program('no such sentence')"))
 

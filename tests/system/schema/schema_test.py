@@ -228,6 +228,10 @@ class Schema(unittest.TestCase):
             self.assertEqual(named - declared, set(), f"{file}.toml has none of these")
             self.assertEqual(declared - named, set(), f"the document of {file}.toml does not name these")
 
+    def test_the_tables_of_keys_are_generated(self):
+        done = subprocess.run([PROJECT / "scripts" / "generate-docs", "--check", NONIO], capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
     def test_what_is_told_of_every_key(self):
         """A sentence or two; options are told of by their plugins."""
         for s in SCHEMAS.values():

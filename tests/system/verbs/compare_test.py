@@ -67,7 +67,7 @@ class Compare(VerbTest):
         self.assertAlmostEqual(predicted["rms_um"], statistics.pstdev(left), delta=1e-4)
         self.assertAlmostEqual(predicted["rms_before_um"], statistics.pstdev([d for _, _, d in rows]), delta=1e-4)
         shown = self.nonio("model", "compare", self.folder).stdout
-        self.assertRegex(shown, r"after a table +RMS [\d.]+ um -> [\d.]+ um, predicted, if it takes away scale:X, backlash:X\n +X: E [\d.]+ um -> ")
+        self.assertRegex(shown, r"compensated +RMS [\d.]+ um -> [\d.]+ um, predicted, if a table compensates scale:X, backlash:X\n +X: E [\d.]+ um -> ")
 
     def test_after_a_table_the_error_of_diagonals_falls(self):
         """Every line has its own zero, before and after: a complete model for a table leaves what its fit leaves."""
@@ -89,7 +89,7 @@ class Compare(VerbTest):
     def test_without_anything_for_a_table_it_says_nothing_of_one(self):
         self.campaign(manifest(["zero-drift:X"]), x=readings())
         self.assertNotIn("after_table", self.part())
-        self.assertNotIn("after a table", self.nonio("model", "compare", self.folder).stdout)
+        self.assertNotIn("compensated", self.nonio("model", "compare", self.folder).stdout)
 
     def test_a_campaign_without_parts_says_why(self):
         for verb in ("compare", "explain"):

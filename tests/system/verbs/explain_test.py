@@ -164,7 +164,7 @@ class Explain(VerbTest):
             self.assertEqual(["backlash:X"], [x["effect"] for x in p["evidence"]])
             self.assertEqual(e["candidates"][0]["score"], p["evidence"][0]["score"])
             self.assertLess(abs(p["evidence"][0]["then"] / p["evidence"][0]["score"] / more - 1), 0.15)
-        self.assertIn("backlash:X", self.nonio("model", "explain", self.folder, "--what-if").stdout.split("one run more")[1])
+        self.assertIn("backlash:X", self.nonio("model", "explain", self.folder, "--what-if").stdout.split("one more run")[1])
 
     def test_the_same_seed_gives_the_same_bytes(self):
         self.campaign(manifest([]), x=readings(backlash=-3))

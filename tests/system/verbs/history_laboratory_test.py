@@ -131,7 +131,7 @@ class Laboratory(unittest.TestCase):
         self.assertIn("* crash: Drove into the pallet", said)
         self.assertIn("slope", said)
         said = nonio("machine", "history", self.out, "LAB-01", "--axis", "X", "--quantity", "B_mean").stdout
-        self.assertRegex(said, r"no change without a known event; from 0\.\d+ on one would have been seen")
+        self.assertRegex(said, r"no change without a known event; detection limit 0\.\d+")
         self.assertIn('nearest: "LAB-01"', nonio("machine", "history", self.out, "LAB-O1", expect=2).stderr)
         self.assertIn("nonio run", nonio("machine", "history", self.site, expect=2).stderr)
         one = json.loads(nonio("machine", "history", self.out, "LAB-02", "--json").stdout)

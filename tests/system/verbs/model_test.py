@@ -13,7 +13,7 @@ class Model(VerbTest):
         shown = self.nonio("model", "add", self.folder, "backlash:X").stdout
         after = before.replace('# pitch, 3 Nov\n', '# pitch, 3 Nov\n  "backlash:X",\n')
         self.assertEqual(self.text(), after)
-        for words in ("before", "after", "RMS", "left-out runs", "noise floor", "backlash:X", "u =", "####"):
+        for words in ("before", "after", "RMS", "cross-validation", "noise floor", "backlash:X", "u =", "####"):
             self.assertIn(words, shown)
         bars = [line.count("#") for line in shown.splitlines() if line.startswith(("  before ", "  after ")) and "#" in line]
         self.assertEqual(len(bars), 2)

@@ -111,7 +111,7 @@ TEST_F(PdfReport, WhatIsForTheLaboratoryStandsInItsPartAlone) {
   const std::size_t part = all.find("For the laboratory");
   ASSERT_NE(part, std::string::npos);
   const std::string customer = all.substr(0, part), laboratory = all.substr(part);
-  EXPECT_TRUE(has(customer, "Nothing in the results needs attention.")) << customer;
+  EXPECT_TRUE(has(customer, "No finding requires action.")) << customer;
   for (const char* what : {"fanuc", "no table", "contradict each other", "Check the set-up"}) {
     EXPECT_FALSE(has(customer, what)) << what;
     if (what != std::string("Check the set-up")) {
@@ -177,7 +177,7 @@ TEST_F(PdfReport, NothingNeedsAttentionOnlyWhereSomethingWasJudged) {
   even.reversal = 0;
   even.s_plus = even.s_minus = 0.5;
   const Case quiet = usual(even);
-  const std::string green = "Nothing needs attention.";
+  const std::string green = "No action required.";
   // No tolerance: nothing was judged.
   EXPECT_FALSE(has(text(quiet), green));
   EXPECT_TRUE(has(text(quiet), "conformity was not assessed"));

@@ -4,8 +4,9 @@
 namespace nonio::config {
 namespace declared {
 
-constexpr Choice releases[] = {{"by-hand", "a person, with nonio certificate approve"},
-                               {"automatic", "the nightly run, for findings accepted in may_stand"}};
+constexpr Choice releases[] = {
+    {"by-hand", "a person, with nonio certificate approve"},
+    {"automatic", "the nightly run, for findings accepted in may_stand"}};
 constexpr Key standing_keys[] = {
     {.name = "finding",
      .holds = text,
@@ -123,8 +124,9 @@ constexpr Key limits_keys[] = {
      .most = 1e9},
     {.name = "disk_seconds",
      .holds = number,
-     .help = "Time without a response after which a folder or file of the site is reported as failed "
-             "during the survey.",
+     .help =
+         "Time without a response after which a folder or file of the site is reported as failed "
+         "during the survey.",
      .unit = "s",
      .otherwise = "60",
      .wanted = "expected a number above 0 and at most 1000000",
@@ -186,9 +188,8 @@ constexpr Key database_keys[] = {
 constexpr Key due_keys[] = {
     {.name = "machine",
      .holds = text,
-     .help = "The machine for which it holds, as `nonio machine list` calls it; without it for all "
-             "that "
-             "no other states."},
+     .help = "The machine, as `nonio machine list` names it; without it, all machines that no "
+             "other entry names."},
     {.name = "months",
      .holds = whole,
      .help = "From the last campaign to the next.",
