@@ -23,7 +23,7 @@ constexpr const char* inventory_schema = "nonio-site/1";
 constexpr std::array entered = {config::site_name, config::events_name, config::acknowledged_name,
                                 config::forgotten_name};
 constexpr std::array part_folders = {config::machines_folder, config::templates_folder,
-                                    config::causes_folder};
+                                     config::causes_folder};
 
 std::string folder_of(const std::string& path) { return path.substr(0, path.find('/')); }
 

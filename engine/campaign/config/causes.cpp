@@ -71,8 +71,8 @@ bool is_causes_file(std::string_view name) {
   const std::size_t under = name.starts_with(site_causes) ? site_causes.size()
                             : name.starts_with("causes/") ? std::string_view("causes/").size()
                                                           : 0;
-  return under > 0 && name.ends_with(".toml") &&
-         name.find('/', under) == std::string_view::npos && name.substr(under) != manifest_name;
+  return under > 0 && name.ends_with(".toml") && name.find('/', under) == std::string_view::npos &&
+         name.substr(under) != manifest_name;
 }
 
 Checked<std::vector<Cause>> causes_in(const Templates& templates) {

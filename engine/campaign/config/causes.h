@@ -20,7 +20,7 @@ struct Cause {
   Formula formula;  ///< without an axis: of every axis of its kind
   bool rotary = false;
   std::string title, is, size, looks, alike, cure;
-  std::string prior;  ///< common, rare, very-rare
+  std::string prior;   ///< common, rare, very-rare
   bool timed = false;  ///< readings without times do not show it
   bool compensable = false;
   std::string file;  ///< of the formula's line

@@ -214,11 +214,11 @@ struct Wants {
 
 Expected<Effect::Columns> columns(const Formula& formula, const Observations& o, const Axis& axis,
                                   const std::vector<double>& shape) {
-  auto expression = Expression::parse(formula, axis);
+  auto expression = Expression::parse(formula, axis, true);
   if (!expression) return fail("formula " + formula.name + ": " + expression.error().message);
   const auto r = readings_of(o, axis);
   if (!r) return fail(r.error());
-  std::vector<double> slots = expression->slots();
+  std::vector<double>& slots = expression->in_place();
   std::vector<std::size_t> linear;
   std::size_t shapes = 0;
   for (std::size_t k = 0; k < formula.parameters.size(); ++k) {
@@ -237,26 +237,25 @@ Expected<Effect::Columns> columns(const Formula& formula, const Observations& o,
   Effect::Columns out(linear.size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!r->moved[i]) continue;
-    const std::array<double, Expression::variables> row{
-        r->p[i],
-        r->theta[i],
-        r->d[i],
-        r->t[i],
-        r->K[i],
-        o.run.empty() ? 1.0 : o.run[i],
-        r->length,
-        r->duration,
-        last_run,
-        axis.screw_pitch.value_or(0.0),
-        static_cast<double>(axis.teeth.value_or(0)),
-        air ? o.air[i] - *air : 0.0,
-        pressure ? o.pressure[i] - *pressure : 0.0,
-        humidity ? o.humidity[i] - *humidity : 0.0};
+    const std::array<double, Expression::variables> row{r->p[i],
+                                                        r->theta[i],
+                                                        r->d[i],
+                                                        r->t[i],
+                                                        r->K[i],
+                                                        o.run.empty() ? 1.0 : o.run[i],
+                                                        r->length,
+                                                        r->duration,
+                                                        last_run,
+                                                        axis.screw_pitch.value_or(0.0),
+                                                        static_cast<double>(axis.teeth.value_or(0)),
+                                                        air ? o.air[i] - *air : 0.0,
+                                                        pressure ? o.pressure[i] - *pressure : 0.0,
+                                                        humidity ? o.humidity[i] - *humidity : 0.0};
     std::copy(row.begin(), row.end(), slots.begin());
     for (std::size_t k = 0; k < linear.size(); ++k) {
       const double one = amount(formula.parameters[linear[k]]);
       slots[Expression::parameter_slot(linear[k])] = one;
-      const double value = expression->value(slots) / one;
+      const double value = expression->value() / one;
       slots[Expression::parameter_slot(linear[k])] = 0.0;
       if (!std::isfinite(value)) {
         Error e{"formula " + formula.name + " has no finite value for this reading"};
@@ -290,7 +289,8 @@ Expected<Effect> formula_effect(const Formula& formula, const Axis& axis, bool t
       e.linear.push_back(parameter);
     else
       e.shapes.push_back(
-          {parameter, [p, values](const Observations&, const Axis&) { return search(p, values); }, true});
+          {parameter, [p, values](const Observations&, const Axis&) { return search(p, values); },
+           true});
   }
   if (e.linear.empty()) return wrong("expected a linear parameter, one without start and range");
   if (e.linear.size() > most_linear || e.shapes.size() > most_shapes)

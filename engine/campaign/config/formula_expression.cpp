@@ -133,7 +133,7 @@ Expression::Expression(Expression&&) noexcept = default;
 Expression& Expression::operator=(Expression&&) noexcept = default;
 Expression::~Expression() = default;
 
-Expected<Expression> Expression::parse(const Formula& formula, const Axis& axis) {
+Expected<Expression> Expression::parse(const Formula& formula, const Axis& axis, bool known) {
   if (const std::string why = forbidden(formula.expression); !why.empty()) return fail(why);
   Expression made;
   Parser& own = *made.parser_;
@@ -160,7 +160,8 @@ Expected<Expression> Expression::parse(const Formula& formula, const Axis& axis)
   }
   try {
     for (std::size_t k = 0; k < names.size(); ++k)
-      if (!names[k].empty()) own.parser.DefineVar(names[k], &own.slots[k]);
+      if (!names[k].empty() && (!known || formula.expression.find(names[k]) != std::string::npos))
+        own.parser.DefineVar(names[k], &own.slots[k]);
   } catch (const mu::ParserError&) {
     return fail(
         "the name of a parameter is not valid: expected letters, digits and _, not the name of a "
@@ -191,6 +192,12 @@ std::vector<double> Expression::in_finer_units(std::vector<double> slots, std::s
 
 double Expression::value(const std::vector<double>& slots) {
   std::copy(slots.begin(), slots.end(), parser_->slots.begin());
+  return value();
+}
+
+std::vector<double>& Expression::in_place() { return parser_->slots; }
+
+double Expression::value() {
   try {
     return parser_->parser.Eval();
   } catch (const mu::ParserError&) {

@@ -36,8 +36,9 @@ class Expression {
     variables
   };
 
-  /// Fails where the expression cannot be understood, with its position.
-  static Expected<Expression> parse(const Formula& formula, const Axis& axis);
+  /// Fails where the expression cannot be understood, with its position. `known`: it was understood
+  /// before, so that only the names in it are declared.
+  static Expected<Expression> parse(const Formula& formula, const Axis& axis, bool known = false);
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
   ~Expression();
@@ -50,6 +51,9 @@ class Expression {
   std::vector<double> in_finer_units(std::vector<double> slots, std::size_t k, int bits) const;
   /// NaN or infinite where the expression has no value there.
   double value(const std::vector<double>& slots);
+  /// The same of the slots in place.
+  std::vector<double>& in_place();
+  double value();
   bool uses(const std::string& name) const;
 
  private:

@@ -275,13 +275,26 @@ void leave_out_weaker_groups(model::Explanation& e) {
   });
 }
 
+// docs/dev/constants.md, M37.
+constexpr double least_better = 12.0;
+
 /// Common effects first: where those of the catalogue leave an error unexplained, its causes are
-/// searched together with those of the library. What then is certain by the same rules is the
-/// answer. Whether there is an error at all is settled before, and so is the rate of false alarms.
+/// searched together with those of the library, and where it takes several effects
+/// or a curve. What then is certain by the same rules is the
+/// answer, if it holds one cause of the library: a set of several is a
+/// description of what none of them is. Whether there is an error at all is settled before, and so is the rate of false alarms.
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;
-  if (out.verdict.kind != Kind::unknown || part.library.empty()) return;
+  // Several effects that come together may be the shadow of one cause, and so may a curve.
+  const auto is_curve = [&](const model::Term& t) {
+    return t.effect->curve &&
+           std::find(out.together.begin(), out.together.end(), t.name()) != out.together.end();
+  };
+  const bool explained = out.verdict.kind == Kind::missing &&
+                         (out.together.size() > 1 ||
+                          std::any_of(part.catalogue.begin(), part.catalogue.end(), is_curve));
+  if ((out.verdict.kind != Kind::unknown && !explained) || part.library.empty()) return;
   std::vector<model::Term> all = part.catalogue;
   all.insert(all.end(), part.library.begin(), part.library.end());
   auto more = model::explain(part.part, part.terms, all, seed, known);
@@ -290,7 +303,10 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
     return std::find(more->together.begin(), more->together.end(), t.name()) !=
            more->together.end();
   };
-  if (std::none_of(part.library.begin(), part.library.end(), found)) return;
+  if (std::count_if(part.library.begin(), part.library.end(), found) != 1) return;
+  if (explained &&
+      !(more->readings == out.readings && more->criterion < out.criterion - least_better))
+    return;
   more->verdict.false_alarms = out.verdict.false_alarms;
   more->verdict.trials = out.verdict.trials;
   out = std::move(*more);

@@ -182,20 +182,23 @@ void add_library(const Context& context, ReadCampaign& out) {
   }
   for (config::Cause& cause : *causes) {
     const std::string& name = cause.formula.name;
-    const auto own = std::find_if(campaign_in(out).formulas.begin(), campaign_in(out).formulas.end(),
-                                  [&](const Formula& f) { return f.name == name; });
+    const auto own =
+        std::find_if(campaign_in(out).formulas.begin(), campaign_in(out).formulas.end(),
+                     [&](const Formula& f) { return f.name == name; });
     if (own != campaign_in(out).formulas.end()) {
-      report_in(out, Error{"model.formula \"" + name + "\": the library has a cause of this name (" +
-                               cause.file + ":" + std::to_string(cause.formula.line) +
-                               "); give one of them another name",
-                           config::manifest_name, own->line});
+      report_in(out,
+                Error{"model.formula \"" + name + "\": the library has a cause of this name (" +
+                          cause.file + ":" + std::to_string(cause.formula.line) +
+                          "); give one of them another name",
+                      config::manifest_name, own->line});
       continue;
     }
     if (std::any_of(out.effects.begin(), out.effects.end(),
                     [&](const Effect& e) { return e.info.name == name; })) {
-      report_in(out, Error{"cause \"" + name +
-                               "\": a plugin has an effect of this name; give the cause another name",
-                           cause.file, cause.formula.line});
+      report_in(out,
+                Error{"cause \"" + name +
+                          "\": a plugin has an effect of this name; give the cause another name",
+                      cause.file, cause.formula.line});
       continue;
     }
     auto effect = cause.effect(true);

@@ -40,7 +40,7 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   const auto folders = config::with_site_templates(template_folders, site);
   if (!folders) return fail(folders.error());
   std::vector<std::string> below;
-  if (what == TemplatesFor::terminal) 
+  if (what == TemplatesFor::terminal)
     below = {"words/en/", "words/" + context.site.language + "/", "causes/"};
   auto templates = config::read_templates(*folders, context.templates_sha256, nullptr, {}, below);
   if (!templates) return fail(templates.error());

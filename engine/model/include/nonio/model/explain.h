@@ -113,6 +113,9 @@ struct Explanation {
   std::vector<Candidate> candidates;  ///< best first
   std::vector<std::string> together;  ///< what the best explanation adds to the model
   double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
+  /// Of the best explanation, and the readings that count in it: by it two searches of the same
+  /// readings are compared, the smaller is the better.
+  double criterion = 0.0, readings = 0.0;
   /// Of these what is free of doubt, whatever the rest is; most evidence first.
   std::vector<std::string> certain;
   /// Pairs of effects of `together` that cancel each other: neither is shown by that.
