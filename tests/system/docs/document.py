@@ -60,9 +60,7 @@ def parts_of(text):
             if pending:
                 faults.append(misplaced(pending))
             pending = (note[1] or note[3], note[2] or note[4], number)
-        elif GENERATED.match(line):
-            continue
-        elif line.lstrip().startswith("<!--"):
+        elif line.lstrip().startswith("<!--") and not GENERATED.match(line):
             faults.append((number, f"{line.strip()}: {WANTED_NOTE}"))
         elif line.strip():
             if pending:
