@@ -114,7 +114,7 @@ class Durable(NightTest):
                 if done.returncode == 0:
                     self.assertIn(json.dumps(self.results("a")["analyses"]), wanted)
                 else:
-                    self.assertIn("somebody writes into it", done.stderr)
+                    self.assertIn("another process is writing to it", done.stderr)
         finally:
             ended.set()
             writer.join()

@@ -89,7 +89,7 @@ class HistoryServerTest(NightTest):
             self.assertNotEqual(asked.returncode, 0)
             self.assertIn("schema " + self.schema, asked.stderr)
             self.assertNotEqual(subprocess.run([NONIO, "status", "--actions", self.out], capture_output=True).returncode, 0)
-            self.assertIn("pages of the morning were not made", (self.out / "summary.txt").read_text())
+            self.assertIn("pages of the worklist were not made", (self.out / "summary.txt").read_text())
         finally:
             server("start")
         self.run_nonio("--date", "2026-03-03", expect=0)

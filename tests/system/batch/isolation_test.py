@@ -153,7 +153,7 @@ class Isolation(NightTest):
         (folder / "x.csv").write_text("what no reader knows\n")
         self.run_nonio("--plugin-path", str(PLUGINS / "wrong_abi"), expect=1)
         message = self.results("a")["errors"][0]["message"]
-        self.assertIn("no reader knows the format of this file", message)
+        self.assertIn("no reader recognizes the format of this file", message)
         self.assertIn('was built for "nonio-sdk 0; another compiler"', message)
 
     def test_duplicate_name_names_both_files(self):

@@ -78,7 +78,7 @@ class LockTest(NightTest):
         alive.write_text("70.0\n7.1\n77.0\n")
         ask = ("unlock", str(self.out), "--alive", str(alive))
         self.left(job="")
-        self.assertIn("is of no job", self.night(*ask).stderr)
+        self.assertIn("was not started by a batch job", self.night(*ask).stderr)
         self.left(job="7.1")
         done = self.night(*ask)
         self.assertEqual(done.returncode, 2)
@@ -87,7 +87,7 @@ class LockTest(NightTest):
         done = self.night(*ask)
         self.assertEqual((done.returncode, self.user.exists()), (0, False), done.stderr)
         self.assertIn("it was used by process 17 on host elsewhere (job 7.0)", done.stderr)
-        self.assertIn("nobody uses", self.night(*ask).stderr)
+        self.assertIn("the output folder is not in use", self.night(*ask).stderr)
 
     def test_a_night_that_runs_is_named_and_not_unlocked_and_leaves_nothing(self):
         for i in range(8):

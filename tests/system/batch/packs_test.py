@@ -237,7 +237,7 @@ class Packs(NightTest):
         self.nonio("export", "c0", "--out", self.parts, "--to", to)  # what is there is not written again
         (to / "c0" / "results.json").write_text("mine")
         refused = self.nonio("export", "c0", "--out", self.parts, "--to", to, expect=1).stderr
-        self.assertIn("c0/results.json is there and has other bytes; nothing was written", refused)
+        self.assertIn("c0/results.json exists with different content; nothing was written", refused)
         self.assertEqual((to / "c0" / "results.json").read_text(), "mine")
         listed = [json.loads(line) for line in self.nonio("export", "--list", "--out", self.parts, "--json").stdout.splitlines()]
         self.assertEqual([entry["id"] for entry in listed], self.folders(self.out))
@@ -346,7 +346,7 @@ class Packs(NightTest):
         target = self.root / "target"
         target.write_text("mine")
         (to / "c0" / "results.json").symlink_to(target)
-        self.assertIn("has other bytes", self.nonio("export", "c0", "--out", self.parts, "--to", to, expect=1).stderr)
+        self.assertIn("different content", self.nonio("export", "c0", "--out", self.parts, "--to", to, expect=1).stderr)
         self.assertEqual(target.read_text(), "mine")
 
 

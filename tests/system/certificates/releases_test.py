@@ -203,7 +203,7 @@ class Releases(NumberedTest):
         (self.site / "c1" / "x.csv").write_text(readings("c1"))
         draft = self.draft().read_bytes()
         self.draft().write_bytes(draft + b"x")
-        self.assertIn("is not what the night left", self.release_verb("--by", "B", expect=2).stderr)
+        self.assertIn("has changed since the last run", self.release_verb("--by", "B", expect=2).stderr)
         self.draft().write_bytes(draft)
         moved = self.root / "moved"
         self.out.rename(moved)

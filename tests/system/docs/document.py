@@ -8,6 +8,8 @@ DATA = ("cmake", "cpp", "csv", "json", "text", "toml")
 FENCE = re.compile(r"^( *)(?:```|~~~)(\S*)$")
 # Who reads the page does not see these.
 NOTE = re.compile(r"^ *<!-- (?:(not run): (\S.*)|(file): (\S+)|(here): (\S+) is (\S+)) -->$")
+# Around what scripts/generate-docs writes.
+GENERATED = re.compile(r"^<!-- (?:[Gg]enerated\b.*|end) -->$")
 WANTED_NOTE = "expected <!-- not run: REASON -->, <!-- file: PATH --> or <!-- here: PATH is SOURCE -->"
 COMMAND = re.compile(
     r"^\s*(?:\$ .*"
@@ -58,7 +60,7 @@ def parts_of(text):
             if pending:
                 faults.append(misplaced(pending))
             pending = (note[1] or note[3], note[2] or note[4], number)
-        elif line.lstrip().startswith("<!--"):
+        elif line.lstrip().startswith("<!--") and not GENERATED.match(line):
             faults.append((number, f"{line.strip()}: {WANTED_NOTE}"))
         elif line.strip():
             if pending:

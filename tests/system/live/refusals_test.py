@@ -228,7 +228,7 @@ class Tokens(unittest.TestCase):
                 self.assertEqual((two.token, two.port), (first, port))
             file.chmod(0o644)
             done = nonio("serve", "--token-file", file, SAMPLES / "02-constant-reversal", expect=2)
-            self.assertIn("nobody else can read", done.stderr)
+            self.assertIn("no other user can read", done.stderr)
             file.write_text("short\n")
             file.chmod(0o600)
             self.assertIn("32 hexadecimal", nonio("serve", "--token-file", file, SAMPLES / "02-constant-reversal", expect=2).stderr)

@@ -205,7 +205,7 @@ class OpenValues(VerbTest):
         self.nonio("run", site, "--out", out, "--quiet", "--date", "2026-02-02")
         later = self.nonio("status", "--actions", out, "--since", "2026-01-01", expect=None).stdout
         self.assertIn("None of the", later)
-        self.assertNotIn("Nothing needs a decision", later)
+        self.assertNotIn("No action required", later)
 
 
 if __name__ == "__main__":

@@ -484,7 +484,7 @@ class Programs(VerbTest):
                 (["program", "--axis", "X=0:nan", "--control", "gcode", *out], "FROM below TO"),
                 (["program", "--axis", "X=0:1,5", "--control", "gcode", *out], "FROM below TO"),
                 (["program", "--axis", "X", "--control", "gcode", *out], "FROM below TO"),
-                (base + ["--axis", "X=0:5"], "is there twice"),
+                (base + ["--axis", "X=0:5"], "is given twice"),
                 (["program", "--axis", "X=0:100", "--control", "gcodes", *out], "control \"gcodes\" (nearest: \"gcode\")"),
                 (["program", "--axis", "X=0:100", *out], "want a control"),
                 (base + ["--set", "dwell_s"], "NAME=VALUE"),

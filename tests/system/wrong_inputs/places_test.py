@@ -48,7 +48,7 @@ class Places(unittest.TestCase):
         return {c["name"]: c for c in json.loads(done.stdout)["controllers"]}
 
     def test_a_sign_that_nobody_knows(self):
-        """The maker does not say which sign: asked for as a control, in [run], beside another option."""
+        """The maker does not state which sign: asked for as a control, in [run], beside another option."""
         unknown = ("fagor-8055", "haas-classic", "twincat-volumetric")
         for name in unknown:
             self.campaign(f"control-{name}", lambda t, n=name: t.replace('serial = "1"', f'serial = "1"\ncontrol = "{n}"', 1))
@@ -61,7 +61,7 @@ class Places(unittest.TestCase):
             for how, key in (("control", "control ="), ("run", "outputs ="), ("option", "sign ="), ("table", "[options.")):
                 with self.subTest(output=name, asked=how):
                     errors = self.results[f"{how}-{name}"]["errors"]
-                    error = next(e for e in errors if "does not say which sign" in e["message"])
+                    error = next(e for e in errors if "does not state which sign" in e["message"])
                     self.assertIn(key, self.blamed(f"{how}-{name}", error))
 
     def test_every_output_that_cannot_write(self):
@@ -90,7 +90,7 @@ class Places(unittest.TestCase):
         self.campaign("asked", lambda t: t)
         self.night()
         error = self.results["asked"]["errors"][0]
-        self.assertIn("does not say which sign", error["message"])
+        self.assertIn("does not state which sign", error["message"])
         self.assertEqual((error["file"], error["line"]), ("site.toml", 3))
 
 

@@ -98,7 +98,7 @@ TEST_F(NightPlanTest, AListThatWasChangedIsRefused) {
   std::ofstream(list("shard-0002.jsonl"), std::ios::app) << "\n";
   const auto part = read_shard_list(out_, plan_, 2);
   ASSERT_FALSE(part);
-  EXPECT_NE(part.error().message.find("plan the night again"), std::string::npos)
+  EXPECT_NE(part.error().message.find("plan the run again"), std::string::npos)
       << part.error().message;
 }
 

@@ -150,7 +150,7 @@ TEST(Fanuc, AdvisesNoMagnificationThatTheOptionRefuses) {
     ASSERT_FALSE(r);
     const std::string& said = r.error().message;
     if (slope > 7e-3) {
-      EXPECT_TRUE(contains(said, "mended or measured again")) << said;
+      EXPECT_TRUE(contains(said, "repair the axis or measure it again")) << said;
       EXPECT_FALSE(contains(said, "set magnification")) << said;
       EXPECT_FALSE(Bench(m).write(fanuc_plugin(), {{"magnification", std::int64_t{100}}}));
       continue;

@@ -197,7 +197,7 @@ TEST_F(LongTerm, ARevokedKeyIsNotProlonged) {
 TEST_F(LongTerm, NothingIsWrittenWhereNobodySaysWhetherAKeyWasRevoked) {
   const auto done = prolong(issued(), now + 2 * day, "", time);
   ASSERT_FALSE(done);
-  EXPECT_NE(done.error().message.find("nothing says whether"), std::string::npos);
+  EXPECT_NE(done.error().message.find("nothing states whether"), std::string::npos);
   const Holder other = authority("Other Root");
   ListWish wish;
   EXPECT_FALSE(prolong(issued(), now + 2 * day, revocation_list(other, nullptr, wish), time));

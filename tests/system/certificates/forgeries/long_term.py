@@ -283,7 +283,7 @@ def check_refusals(root, pdf, xml, authority, whom):
         assert name.read_bytes() == data and sorted(f.name for f in folder.iterdir() if f.name.startswith(".")) == []
     lists = folder / "lists.pem"
     lists.write_bytes(authority.list("root"))
-    refused("nothing says whether", pdf, *whom, "--no-fetch", *stamped)
+    refused("nothing states whether", pdf, *whom, "--no-fetch", *stamped)
     keys = authority.keys
     refused("names no address", Pdf(pdf).write(keys.key("plain"), keys.pem("plain")), *whom, *stamped)
     refused("no time-stamp server", pdf, *whom, "--revoked", lists, wanted=2)

@@ -168,7 +168,7 @@ TEST(Formula, WhatCannotBeUnderstoodIsNamed) {
   EXPECT_SAYS(complaint(formula(std::string(500, '('), {a})), "400 characters");
   EXPECT_SAYS(complaint(formula("a*mm", {{"mm", Quantity::length}})), "name is taken");
   EXPECT_SAYS(complaint(formula("sin*a", {a, {"sin", Quantity::number}})), "formula mine");
-  EXPECT_SAYS(complaint(formula("a*p", {a, {"2b", Quantity::number}})), "no name");
+  EXPECT_SAYS(complaint(formula("a*p", {a, {"2b", Quantity::number}})), "not valid");
 }
 
 TEST(Formula, WhatIsNotLinearNeedsARange) {

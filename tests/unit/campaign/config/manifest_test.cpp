@@ -169,7 +169,7 @@ TEST(Manifest, WhereTheOtherAxesStoodStill) {
   const auto moves = parse("{ X = 300, Y = 1 }");
   ASSERT_FALSE(moves);
   EXPECT_EQ(moves.error().front().line, 25U);
-  EXPECT_NE(moves.error().front().message.find("stood still, found Y, which moves"),
+  EXPECT_NE(moves.error().front().message.find("stationary axes, found Y, which moves"),
             std::string::npos);
   EXPECT_NE(complaint("file = ", "at = { X = \"far\" }\nfile = ").find("expected a number"),
             std::string::npos);
@@ -214,7 +214,7 @@ TEST(Manifest, ALineOnASquareIsOnceInEachOfItsPositions) {
   for (const auto& [squares, lines, words] :
        {std::tuple<std::string, std::string, std::string>{
             "", line("A", on), "square: expected the id of a [[square]], found \"Q\""},
-        {Q + Q, line("A", on), "id: \"Q\" is there twice"},
+        {Q + Q, line("A", on), "id: \"Q\" is given twice"},
         {Q, line("A", on) + line("B", on), "square: expected one line of Y towards C"},
         {Q, line("A", turned), "square_turned: expected the key square as well"},
         {Q, line("A", "") + line("B", on + "reversal_of = \"A\"\n"),

@@ -210,7 +210,7 @@ TEST(SiteLogs, AnAliasLeadsToAMachineAndNoFurther) {
   std::string all;
   for (const Error& e : wrong.error()) all += std::to_string(e.line) + ": " + e.message + "\n";
   EXPECT_NE(all.find("\"b\" is itself the name of an alias"), std::string::npos) << all;
-  EXPECT_NE(all.find("\"b\" is there twice"), std::string::npos) << all;
+  EXPECT_NE(all.find("\"b\" is given twice"), std::string::npos) << all;
   EXPECT_NE(all.find("expected how this is known"), std::string::npos) << all;
 }
 
