@@ -268,10 +268,9 @@ constexpr double least_better = 12.0;
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;
-  // A curve, or a searched shape that needs a second effect, may be the shadow of one cause.
+  // A shape that was searched may be the shadow of another cause.
   const auto imitates = [&](const model::Term& t) {
-    return t.name() == out.verdict.effect && !t.effect->shapes.empty() &&
-           (t.effect->curve || out.together.size() > 1);
+    return t.name() == out.verdict.effect && !t.effect->shapes.empty();
   };
   const bool explained = out.verdict.kind == Kind::missing &&
                          std::any_of(part.catalogue.begin(), part.catalogue.end(), imitates);
