@@ -47,7 +47,7 @@ constexpr std::array<Name, 9> units{{{"m", 1.0, distance},
                                      {"deg", 1.0 / deg_per_rad, no_dimension},
                                      {"arcsec", 1.0 / arcsec_per_rad, no_dimension}}};
 
-constexpr std::size_t most_characters = 600;
+constexpr std::size_t most_characters = 400;
 
 /// What the parser would take and no formula needs: assignments, texts, several results.
 std::string forbidden(const std::string& text) {

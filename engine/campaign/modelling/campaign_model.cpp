@@ -205,6 +205,7 @@ void fill_catalogue(PartModel& part, const reading::ReadCampaign& read) {
       part.catalogue.push_back(std::move(term));
     } else if (part.part.kind == model::Part::Kind::axis && !term.grouping) {
       term.price = cause->price();
+      term.library = true;
       part.library.push_back(std::move(term));
     }
   }
@@ -279,21 +280,19 @@ void leave_out_weaker_groups(model::Explanation& e) {
 constexpr double least_better = 12.0;
 
 /// Common effects first: where those of the catalogue leave an error unexplained, its causes are
-/// searched together with those of the library, and where it takes several effects
-/// or a curve. What then is certain by the same rules is the
+/// searched together with those of the library, and where a shape that was searched
+/// may imitate one. What then is certain by the same rules is the
 /// answer, if it holds one cause of the library: a set of several is a
 /// description of what none of them is. Whether there is an error at all is settled before, and so is the rate of false alarms.
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;
-  // Several effects that come together may be the shadow of one cause, and so may a curve.
-  const auto is_curve = [&](const model::Term& t) {
-    return t.effect->curve &&
-           std::find(out.together.begin(), out.together.end(), t.name()) != out.together.end();
+  // A shape that was searched may be the shadow of another cause.
+  const auto imitates = [&](const model::Term& t) {
+    return t.name() == out.verdict.effect && !t.effect->shapes.empty();
   };
   const bool explained = out.verdict.kind == Kind::missing &&
-                         (out.together.size() > 1 ||
-                          std::any_of(part.catalogue.begin(), part.catalogue.end(), is_curve));
+                         std::any_of(part.catalogue.begin(), part.catalogue.end(), imitates);
   if ((out.verdict.kind != Kind::unknown && !explained) || part.library.empty()) return;
   std::vector<model::Term> all = part.catalogue;
   all.insert(all.end(), part.library.begin(), part.library.end());

@@ -121,6 +121,10 @@ class CandidateOf {
       c.within = c.score;
     }
     c.score = c.within > 0.0 && c.alone > 0.0 ? c.alone : c.within;
+    if (c.term.library && !member && !(c.within > 0.0)) {
+      c.visible = false;
+      return c;
+    }
     c.term.shape = f_.bench->blocks()[block].shape;
     const Sizes sizes(f_, e, member);
     c.minimal_detectable = sizes.smallest();
@@ -216,7 +220,10 @@ class CandidateOf {
 std::vector<Candidate> candidates_of(const Finding& finding, const Ground& ground) {
   const CandidateOf candidate(finding, ground);
   std::vector<Candidate> out;
-  for (std::size_t e = finding.in_model; e < finding.terms.size(); ++e) out.push_back(candidate(e));
+  for (std::size_t e = finding.in_model; e < finding.terms.size(); ++e) {
+    Candidate c = candidate(e);
+    if (c.visible || !c.term.library) out.push_back(std::move(c));
+  }
   std::stable_sort(out.begin(), out.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   return out;

@@ -13,7 +13,7 @@ namespace nonio::config {
 
 namespace {
 
-const char* const one = R"(format = 1
+const char* const one = R"toml(format = 1
 [[cause]]
 name = "crane"
 title = "The crane"
@@ -24,7 +24,7 @@ is = "It tilts the foundation."
 size = "5 um."
 cure = "Park it elsewhere."
 prior = "rare"
-)";
+)toml";
 
 Templates with(const std::string& name, const std::string& text) {
   Templates t;
@@ -81,9 +81,8 @@ TEST(Causes, ANameInTwoPlacesNamesBoth) {
 
 TEST(Causes, WhatIsWrongInASitesFileIsToldWithItsLine) {
   const std::string name = "causes/site/shop.toml";
-  EXPECT_NE(message(with(name, changed("size =", "sise ="))).find("causes/shop.toml:9"),
-            std::string::npos)
-      << message(with(name, changed("size =", "sise =")));
+  const std::string key = message(with(name, changed("prior =", "sise = 1\nprior =")));
+  EXPECT_NE(key.find("causes/shop.toml:11"), std::string::npos) << key;
   const std::string unit = message(with(name, changed("z*max(0, t/duration - f)", "z*t*f")));
   EXPECT_NE(unit.find("causes/shop.toml:6"), std::string::npos) << unit;
   EXPECT_NE(unit.find("time"), std::string::npos) << unit;

@@ -38,6 +38,7 @@ struct Term {
   bool differences = false;
   /// 2 ln of the odds against it before there are readings: rare causes need more evidence.
   double price = 0.0;
+  bool library = false;  ///< one of very many: a candidate only where there is evidence for it
 
   /// The effect without groups: "backlash:X".
   std::string of_all() const { return effect->info.name + ":" + axis.name; }
