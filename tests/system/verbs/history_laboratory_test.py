@@ -119,7 +119,7 @@ class Laboratory(unittest.TestCase):
         text = known.read_text()
         known.unlink()
         self.addCleanup(known.write_text, text)
-        self.assertIn("does not know night", nonio("machine", "history", self.out).stderr)
+        self.assertIn("does not contain run", nonio("machine", "history", self.out).stderr)
 
     def test_on_a_terminal(self):
         table = nonio("machine", "history", self.out).stdout.splitlines()

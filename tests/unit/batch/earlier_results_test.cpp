@@ -46,7 +46,8 @@ TEST(Vanished, ResultsOfAFolderThatIsGoneAreNamed) {
   ASSERT_EQ(gone.size(), 1U);
   EXPECT_EQ(gone[0].id, "c");
   EXPECT_EQ(gone[0].night, 7U);
-  EXPECT_NE(gone[0].why.find("its folder 2026/c no longer exists"), std::string::npos) << gone[0].why;
+  EXPECT_NE(gone[0].why.find("its folder 2026/c no longer exists"), std::string::npos)
+      << gone[0].why;
 }
 
 TEST(Vanished, AnotherIdInTheSameFolderIsSaid) {
