@@ -83,6 +83,8 @@ const std::vector<std::string> kinds_in_space = {
     "line-slope",    "mirror-tilt",       "centre",      "direction", "radial-run-out",
     "axial-run-out", "linear-squareness", "linear-scale"};
 
+const std::vector<std::string> kinds_of_channels = {"heat",        "heat-difference",  "heat-slow",
+                                                    "heat-source", "heat-source-slow", "settling"};
 const std::vector<std::string> kinds_of_circles = {"circle-centre", "servo-mismatch"};
 const std::vector<std::string> descriptions = {"free-position", "free-reversal", "free-time",
                                                "free-growth"};
@@ -239,6 +241,7 @@ TEST(Effects, EveryOneHasACardInEveryLanguage) {
     auto all = kinds;
     all.insert(all.end(), kinds_in_space.begin(), kinds_in_space.end());
     all.insert(all.end(), kinds_of_circles.begin(), kinds_of_circles.end());
+    all.insert(all.end(), kinds_of_channels.begin(), kinds_of_channels.end());
     all.insert(all.end(), descriptions.begin(), descriptions.end());
     for (const auto& kind : all) {
       for (const char* part : {"title", "is", "size", "looks", "alike", "cure"})

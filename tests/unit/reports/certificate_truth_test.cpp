@@ -294,7 +294,7 @@ TEST_F(Truth, HowTheTestWasMadeIsSaidAndWhatNobodySaidToo) {
   c.campaign.environment.sensors = "bed, ball nut";
   const std::string text = page(c);
   for (const char* what : {"Feed 1200 mm/min.", "Dwell 3 s.", "Over-travel 2 mm.",
-                           "Other axes at Y 500 mm.", "Offset to the tool Z -120 mm.",
+                           "Other axes at Y 500 mm.", "Tool reference offset Z -120 mm.",
                            "Offset to the workpiece X 40 mm.", "Compensation in the control: on.",
                            "Warm-up: 30 min at half feed.", "Temperature sensors: bed, ball nut."})
     EXPECT_TRUE(has(text, what)) << what;
