@@ -16,7 +16,7 @@ constexpr std::size_t most_steps = 12;  // for each part
 struct ExplainOptions {
   std::string folder;
   bool automatic = false;
-  bool what_if = false, all = false;
+  bool what_if = false, all = false, library = false;
   std::uint64_t seed = 1;
 };
 
@@ -77,7 +77,8 @@ class Explain {
       const auto known = std::find_if(before.begin(), before.end(), [&](const auto& one) {
         return one.part.part.name == part.part.name && one.part.names() == part.names();
       });
-      auto explanation = known == before.end() ? modelling::explain_part(part, options_.seed)
+      auto explanation = known == before.end() ? modelling::explain_part(part, options_.seed,
+                                                                         nullptr, options_.library)
                                                : Expected<model::Explanation>(known->explanation);
       if (explanation) {
         all_.push_back({std::move(part), std::move(*explanation)});
@@ -141,6 +142,10 @@ Verb explain_verb(Common& common) {
       .arguments = joined(
           campaign_arguments(options->folder, common),
           {{"--all", &options->all, "Every candidate, and why an effect could not be tested"},
+           {"--library", &options->library,
+            "Also tries the causes of the library where no effect explains: it names more causes, "
+            "and "
+            "more wrong ones"},
            {"--what-if", &options->what_if,
             "Also predicts what one more run, in each order of directions, would do to the "
             "uncertainties and to the evidence"},

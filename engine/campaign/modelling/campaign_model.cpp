@@ -287,6 +287,8 @@ constexpr double least_better = 12.0;
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;
+  // Where nothing was repeated, many of so many shapes describe what is left.
+  if (!out.comparison.floor) return;
   // A shape that was searched may be the shadow of another cause.
   const auto imitates = [&](const model::Term& t) {
     return t.name() == out.verdict.effect && !t.effect->shapes.empty();
@@ -314,11 +316,11 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
 }  // namespace
 
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
-                                          const model::Groundwork* known) {
+                                          const model::Groundwork* known, bool with_library) {
   if (!part.unfit.empty()) return fail(part.unfit);
   return process::guarded(kind_of(part.part) + " " + part.part.name, [&] {
     auto out = model::explain(part.part, part.terms, part.catalogue, seed, known);
-    if (out) look_up_library(part, seed, known, *out);
+    if (out && with_library) look_up_library(part, seed, known, *out);
     if (out) leave_out_weaker_groups(*out);
     // None vanishes in silence.
     if (out)

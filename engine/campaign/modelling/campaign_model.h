@@ -23,7 +23,7 @@ struct PartModel {
   std::string unfit;  ///< why these readings cannot show the model; "" if they can
   std::vector<model::Candidate> left_out{};  ///< effects that do not apply, and why
   RowsPlace interpolated{};                  ///< readings whose temperature is interpolated
-  /// Causes of the library: searched where the catalogue does not explain.
+  /// Causes of the library, where they are asked for: searched if the catalogue does not explain.
   std::vector<model::Term> library{};
 
   Quantity deviation() const { return deviation_of(part.table.angular); }
@@ -93,7 +93,9 @@ std::vector<std::string> below_uncertainty(const model::Fit& fit);
 Expected<model::Comparison> compare_part(const PartModel& part,
                                          const model::Groundwork* known = nullptr,
                                          const model::Fitted& fitted = {});
+/// `with_library`: causes of the library are tried where no effect explains.
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
-                                          const model::Groundwork* known = nullptr);
+                                          const model::Groundwork* known = nullptr,
+                                          bool with_library = false);
 
 }  // namespace nonio::modelling

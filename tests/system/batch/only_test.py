@@ -127,9 +127,9 @@ class OnlyTest(NightTest):
         (self.out / ".nonio/night.json").write_text(json.dumps({**state, "state": "running"}))
         done = self.run_nonio("--only", "b", expect=None)
         self.assertEqual(done.returncode, 2)
-        self.assertIn("complete night", done.stderr)
+        self.assertIn("complete run", done.stderr)
         shutil.rmtree(self.out)
-        self.assertIn("complete night", self.run_nonio("--only", "b", expect=None).stderr)
+        self.assertIn("complete run", self.run_nonio("--only", "b", expect=None).stderr)
 
 
 if __name__ == "__main__":

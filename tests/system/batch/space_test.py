@@ -110,7 +110,7 @@ class Space(NightTest):
         ecx = self.evaluation("good", "diagonal-straightness", "D1 00")["series"]["ECX"]
         self.assertAlmostEqual(ecx["value"][30], 0.3 * 4.84813681, 6)  # urad
         self.expect_error("um", "yaw.csv", 1, "wrong unit", "deviation_arcsec")
-        self.expect_error("position", "yaw.csv", 1, "says nothing of its angle")
+        self.expect_error("position", "yaw.csv", 1, "does not contain its angle")
         self.assertEqual(self.results("about")["errors"][0]["file"], "campaign.toml")
         self.assertIn("about", self.results("about")["errors"][0]["message"])
 

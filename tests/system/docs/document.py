@@ -9,7 +9,7 @@ FENCE = re.compile(r"^( *)(?:```|~~~)(\S*)$")
 # Who reads the page does not see these.
 NOTE = re.compile(r"^ *<!-- (?:(not run): (\S.*)|(file): (\S+)|(here): (\S+) is (\S+)) -->$")
 # Around what scripts/generate-docs writes.
-GENERATED = re.compile(r"^<!-- (?:[Gg]enerated\b.*|end) -->$")
+GENERATED = re.compile(r"^<!-- (?:[Gg]enerated\b.*|causes: .*|end(?: of causes)?) -->$")
 WANTED_NOTE = "expected <!-- not run: REASON -->, <!-- file: PATH --> or <!-- here: PATH is SOURCE -->"
 COMMAND = re.compile(
     r"^\s*(?:\$ .*"

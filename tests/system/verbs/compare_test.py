@@ -93,9 +93,9 @@ class Compare(VerbTest):
 
     def test_a_campaign_without_parts_says_why(self):
         for verb in ("compare", "explain"):
-            told = self.json_of(verb, SITE / "42-heat", expect=1)
+            told = self.json_of(verb, SITE / "43-spindle", expect=1)
             self.assertEqual(told["parts"], [])
-            self.assertRegex(told["errors"][0]["message"], "^effects explain runs of an axis.*: thermal$")
+            self.assertRegex(told["errors"][0]["message"], "^effects explain runs of an axis.*: spindle$")
 
     def test_what_is_left_is_told_once_each_beside_those_before_it(self):
         self.campaign(manifest([]), x=readings(runs=4, drift=6, wave=3, backlash=-4))
