@@ -79,7 +79,8 @@ std::vector<std::pair<std::string, Observations>> odd_tables(const Observations&
   std::vector<std::uint32_t> same(9, static_cast<std::uint32_t>(o.size() / 2)), plus;
   all.emplace_back("one target", rearranged(o, same));
   for (std::uint32_t i = 0; i < o.size(); ++i)
-    if (o.axes.front().approach.empty() || o.axes.front().approach[i] > 0) plus.push_back(i);
+    if (o.axes.empty() || o.axes.front().approach.empty() || o.axes.front().approach[i] > 0)
+      plus.push_back(i);
   all.emplace_back("one direction", rearranged(o, plus));
   Observations bare = o;
   for_each_measured_column([](auto& column) { column.clear(); }, bare);

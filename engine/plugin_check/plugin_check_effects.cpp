@@ -386,6 +386,8 @@ bool describes(const model::Explanation& x, const std::string& name) {
 /// In the first sample of an axis, or of space, that determines it.
 Verdict effect_explained(const Effect& e, const Bench& bench) {
   if (e.is_nuisance) return skipped("it is in every model and never a candidate");
+  if (e.of_channels)
+    return skipped("how often it is named depends on how often its channel changed");
   const auto all = shown(e, bench);
   if (all.empty()) return skipped(unseen);
   storage::Random random = bench.random(4);

@@ -63,7 +63,10 @@ std::vector<std::string> of_time(const Observations& o) {
                                                    : std::vector<std::string>{};
 }
 
-bool applies(const Observations& o, const Axis&) { return o.time.size() == o.size(); }
+bool applies(const Observations& o, const Axis&) {
+  return o.time.size() == o.size() &&
+         std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
+}
 
 Effect::Shape lag(const char* name, const char* help) {
   return {.parameter = {name, help, Quantity::time},
