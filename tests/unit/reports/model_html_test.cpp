@@ -103,10 +103,11 @@ TEST_F(ModelHtml, CommandsInASentenceAreCode) {
 
 TEST_F(ModelHtml, CandidatesCardsSizesAndWhatToMeasureStandOnIt) {
   const std::string text = page(with_candidates(made_model()));
-  for (const char* what : {"scale:X <b>significant</b>", "0.150 \u00b5m", "<summary>scale:X</summary>",
-                           ("No sign of: warm-up:X (would be detected from 1.10 \u00b5m), "
-                            "temperature:X (0.250 \u00b5m)."),
-                           "<li>Record the material temperature"})
+  for (const char* what :
+       {"scale:X <b>significant</b>", "0.150 \u00b5m", "<summary>scale:X</summary>",
+        ("No sign of: warm-up:X (would be detected from 1.10 \u00b5m), "
+         "temperature:X (0.250 \u00b5m)."),
+        "<li>Record the material temperature"})
     EXPECT_TRUE(has(text, what)) << what;
   EXPECT_TRUE(has(page(made_model()), "There is no evidence for any further effect."));
   EXPECT_TRUE(has(page(with_candidates(made_model()), "it"), "Nessun segno di: warm-up:X"));
