@@ -174,7 +174,23 @@ void add_own_effects(ReadCampaign& out) {
   }
 }
 
+/// The model names an effect that neither a plugin nor the campaign has.
+bool names_a_cause(const ReadCampaign& out) {
+  const auto known = [&](const std::string& name) {
+    return std::any_of(out.effects.begin(), out.effects.end(),
+                       [&](const Effect& e) { return e.info.name == name; });
+  };
+  const auto& model = out.manifest->campaign.model;
+  return std::any_of(model.begin(), model.end(), [&](const std::string& effect) {
+    return !known(effect.substr(0, effect.find(':')));
+  });
+}
+
+/// Reading the library costs more than the rest of a campaign: a run of a site, which writes documents,
+/// reads it only for a model that names one of its causes.
 void add_library(const Context& context, ReadCampaign& out) {
+  const bool for_documents = !context.templates.files.empty();
+  if (for_documents && !names_a_cause(out)) return;
   auto causes = config::causes_in(context.templates);
   if (!causes) {
     for (Error& e : causes.error()) report_in(out, std::move(e));
