@@ -84,7 +84,7 @@ struct Found {
   const Verb* verb = nullptr;
   std::string path;              ///< "nonio plan"
   std::string typed;             ///< the same with a former name, if that was typed
-  Words rest{};                  ///< the words behind the command
+  Words rest{};                  ///< the words after the command
   std::string wrong{};           ///< what is wrong with the word where a command is expected
   const Alias* alias = nullptr;  ///< the former name that was typed
 };

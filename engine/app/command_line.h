@@ -106,7 +106,7 @@ struct Program {
   std::vector<Verb> verbs{};
   std::vector<Alias> aliases{};
   std::string aliases_until{};  ///< the version that removes them
-  /// What somebody may type, and the command that does it.
+  /// A word that a user may type, and the command for it.
   std::vector<std::pair<std::string, std::string>> synonyms{};
 };
 

@@ -24,7 +24,7 @@ void print_change(std::ostream& out, const modelling::Change& change,
 /// The effects with their values, and what they leave.
 void print_model(std::ostream& out, const modelling::Compared& compared,
                  const modelling::ModelWords& words);
-/// What one run more would do to the uncertainties of the model and to the evidence.
+/// What one more run would do to the uncertainties of the model and to the evidence.
 void print_foresight(std::ostream& out, const modelling::Explained& e,
                      const config::TerminalWords& say);
 /// Readings that were excluded, or a period that was set, in one line.

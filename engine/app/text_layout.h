@@ -7,11 +7,11 @@ namespace nonio::app {
 
 /// Columns that UTF-8 text takes on a terminal: its characters, not its bytes.
 std::size_t columns_of(const std::string& text);
-/// The text with spaces behind it, or before it, up to `width` columns.
+/// The text followed by spaces, or after them, up to `width` columns.
 std::string padded(const std::string& text, std::size_t width);
 std::string padded_left(const std::string& text, std::size_t width);
 
-/// Columns of the terminal behind a file descriptor, at least 60 and at most 100; 100 where it is
+/// Columns of the terminal of a file descriptor, at least 60 and at most 100; 100 where it is
 /// not a terminal.
 std::size_t line_width(int descriptor);
 /// The same for sentences, which have no limit where it is not a terminal: other programs find each

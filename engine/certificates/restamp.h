@@ -11,7 +11,7 @@
 
 namespace nonio::certificates {
 
-/// What `nonio certificate extend` is told; what is empty is that of the site.
+/// Arguments of `nonio certificate extend`; an empty one is that of the site.
 struct RestampOptions {
   VerifyOptions whom;
   std::string time_stamp;  ///< address of the server

@@ -10,7 +10,7 @@
 
 namespace nonio::certificates {
 
-/// What `nonio certificate verify` is told; paths may be empty.
+/// Arguments of `nonio certificate verify`; paths may be empty.
 struct VerifyOptions {
   std::filesystem::path site;  ///< whose [signing] says whom to trust and expect
   std::filesystem::path signer_roots, time_stamp_roots;

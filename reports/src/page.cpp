@@ -80,7 +80,7 @@ class PageWriter {
     return nullptr;
   }
 
-  /// From `at` to behind the end of section `section`; unless `written`, nothing is put.
+  /// From `at` to the end of section `section`; unless `written`, nothing is put.
   Expected<void> part(std::size_t& at, bool written, std::string_view section) {
     const std::string_view text = open_.back().text;
     const std::size_t begin = at;

@@ -11,7 +11,7 @@
 
 namespace nonio::batch {
 
-/// What `nonio certificate approve` is told.
+/// Arguments of `nonio certificate approve`.
 struct ReleaseRequest {
   std::filesystem::path campaign;              ///< its folder
   std::string by;                              ///< a person's name, as it is printed

@@ -38,7 +38,7 @@ Cause read_cause(TableReader& reader) {
   return c;
 }
 
-/// How a file is called in messages: as it lies in the site.
+/// The name of a file in messages: its path in the site.
 std::string place_of(std::string_view name) {
   return name.starts_with(site_causes)
              ? std::string(causes_folder) + "/" + std::string(name.substr(site_causes.size()))

@@ -29,7 +29,7 @@ Expected<SiteFiles> read_site_files(
 /// The same from files that were read.
 Checked<SiteFile> site_in(const SiteFiles& files, std::string& digest);
 
-/// `folders` and, behind them, the site's own templates and causes if it has some.
+/// `folders`, then the site's own templates and causes if it has some.
 Expected<std::vector<std::filesystem::path>> with_site_templates(
     std::vector<std::filesystem::path> folders, const std::filesystem::path& site);
 

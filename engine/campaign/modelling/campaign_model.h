@@ -27,7 +27,7 @@ struct PartModel {
   std::vector<model::Term> library{};
 
   Quantity deviation() const { return deviation_of(part.table.angular); }
-  /// Of what readings are told apart by along their line: a position, an angle or a time.
+  /// Of the coordinate along the line of a reading: a position, an angle or a time.
   Quantity position() const {
     if (part.kind == model::Part::Kind::course) return Quantity::time;
     return position_of(part.kind != model::Part::Kind::space && part.axes.front().rotary);

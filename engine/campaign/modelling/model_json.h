@@ -49,7 +49,7 @@ std::vector<std::string> next_effects(const std::vector<Explained>& all);
 std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
                          const ModelWords& words, const std::vector<std::string>& warnings,
                          const std::vector<Error>& errors);
-/// What one run more would do: `what_if` of nonio-explain/1.
+/// What one more run would do: `what_if` of nonio-explain/1.
 std::string foresight_json(const std::vector<model::Foresight>& all);
 std::string explain_json(const std::vector<Explained>& all, const Campaign& campaign,
                          const ModelWords& words, std::uint64_t seed,

@@ -98,7 +98,7 @@ Finding false_alarms_finding(const model::Verdict& v) {
 
 std::vector<Finding> no_sign_findings(const model::Explanation& e, const PartModel& part) {
   std::vector<Finding> out;
-  // Of displacements over time nobody has worked out from which size on an effect is found.
+  // The detection limit of displacements over time is not known.
   if (part.part.kind == model::Part::Kind::course) return out;
   for (const model::Candidate& c : e.candidates) {
     if (!is_ranked(c) || c.score > 0.0) continue;

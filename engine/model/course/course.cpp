@@ -60,7 +60,7 @@ std::optional<Place> place_of(Where where, const std::vector<double>& residual,
   place.p = math::f_upper(F, dof, rest);
   place.share = std::max(0.0, (between - dof * (squares - between) / rest) / squares);
   place.rms = std::sqrt(place.share * squares / static_cast<double>(residual.size()));
-  place.at = static_cast<double>(largest_class);  // the caller knows what it stands for
+  place.at = static_cast<double>(largest_class);  // the number of the class
   return place;
 }
 

@@ -99,7 +99,7 @@ Eigen::RowVectorXd left_out(const CoursePool& pool, const CourseSides& sides,
     sum += sides.squares[static_cast<std::size_t>(b)];
     if (p == 0) continue;
     const Eigen::LLT<MatrixXd> llt(normal);
-    constexpr double least = 1e-4;  // of a column of unit length, beside the others
+    constexpr double least = 1e-4;  // of a column of unit length, given the others
     if (llt.info() != Eigen::Success || !(llt.matrixLLT().diagonal().minCoeff() > least))
       return Eigen::RowVectorXd::Constant(sum.size(), std::numeric_limits<double>::infinity());
     const MatrixXd x = math::solutions(llt, right);

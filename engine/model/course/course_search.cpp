@@ -96,8 +96,8 @@ class CourseSearch {
                        [&](std::size_t e) { return entries_[e].term == term; });
   }
 
-  /// The best entry of each term beside `set`: {entry, level}.
-  std::map<std::size_t, std::pair<std::size_t, double>> best_beside(const Set& set) const {
+  /// The best entry of each term in addition to `set`: {entry, level}.
+  std::map<std::size_t, std::pair<std::size_t, double>> best_with(const Set& set) const {
     std::map<std::size_t, std::pair<std::size_t, double>> out;
     for (std::size_t e = 0; e < entries_.size(); ++e) {
       if (has_term(set, entries_[e].term)) continue;
@@ -162,9 +162,9 @@ class CourseSearch {
     return best[chosen].first;
   }
 
-  /// What one term more would seem to improve beside `set` if the remainder had nothing to do with
+  /// What one more term would seem to improve in addition to `set` if the remainder had nothing to do with
   /// any of them.
-  InCopies chance_beside(const Set& set) const {
+  InCopies chance_with(const Set& set) const {
     const std::vector<Index> columns = columns_of(set);
     const MatrixXd rest = pool_.remainder(columns, data_.displacements());
     const Index q = rest.cols();
@@ -263,26 +263,26 @@ class CourseExplanation {
   }
 
   Explanation made() {
-    const InCopies by_chance = search_.chance_beside({});
+    const InCopies by_chance = search_.chance_with({});
     set_ = search_.best();
-    const auto singles = search_.best_beside({});
+    const auto singles = search_.best_with({});
     judge_members();
     const double alone = search_.level_of({}), all = search_.level_of(set_);
     // Evidence in units of independent bins: 2 ln of a likelihood ratio.
     weight_ = static_cast<double>(out_.comparison.fit.redundancy) /
               repetition(out_.comparison.fit.noise.measured);
     weight_ = std::max(weight_, 1.0) * 2.0;
-    const InCopies further = set_.empty() ? by_chance : search_.chance_beside(set_);
+    const InCopies further = set_.empty() ? by_chance : search_.chance_with(set_);
     for (Member& member : members_) {
       const auto single = singles.find(search_.entry(member.entry).term);
       if (single != singles.end()) member.alone = alone - single->second.second;
       add_member(member, all);
     }
-    const auto beside = set_.empty() ? singles : search_.best_beside(set_);
+    const auto grown = set_.empty() ? singles : search_.best_with(set_);
     for (const auto& [term, one] : singles) {
       if (search_.has_term(set_, term)) continue;
-      const auto more = beside.find(term);
-      const double gain = more == beside.end() ? 0.0 : all - more->second.second;
+      const auto more = grown.find(term);
+      const double gain = more == grown.end() ? 0.0 : all - more->second.second;
       add(one.first, gain, further.p(gain));
     }
     std::stable_sort(out_.candidates.begin(), out_.candidates.end(),
@@ -305,7 +305,7 @@ class CourseExplanation {
     for (const std::size_t e : set_) {
       const Set others = CourseSearch::without(set_, e);
       const double loss = search_.level_of(others) - all;
-      members_.push_back({e, loss, search_.chance_beside(others).p(loss)});
+      members_.push_back({e, loss, search_.chance_with(others).p(loss)});
     }
     if (std::none_of(members_.begin(), members_.end(),
                      [](const Member& m) { return m.p < named_p; })) {
@@ -320,7 +320,7 @@ class CourseExplanation {
     add(e, std::max(member.loss, member.alone), member.p);
     Candidate& c = out_.candidates.back();
     // What takes its place as well, cannot be separated from it.
-    for (const auto& [term, one] : search_.best_beside(others))
+    for (const auto& [term, one] : search_.best_with(others))
       if (term != search_.entry(e).term && !search_.has_term(set_, term) &&
           one.second < all + std::log(same_rms))
         c.aliases.push_back(search_.term_of(one.first).name());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one run more would do to uncertainties and evidence: docs/model.md, "One run more".
+// What one more run would do to uncertainties and evidence: docs/dev/model-search.md, "One more run".
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -11,7 +11,7 @@ namespace nonio::model {
 
 namespace {
 
-/// Whether a place is told by differences within passes, of which many are known.
+/// Whether a place is determined by differences within passes, of which many are known.
 bool within_passes(const Where& where) {
   const auto has = [&](Factor f) { return where.has(f); };
   return (has(Factor::position) || has(Factor::screw_phase) || has(Factor::angle)) &&

@@ -24,7 +24,7 @@ class PassZeros {
   /// What the best explanation leaves of each reading, less what its repeats have in common: with
   /// all that a pass shares.
   std::vector<double> noise() const;
-  /// Where they scatter: the places of such a residual. One that is told by differences between
+  /// Where they scatter: the places of such a residual. One that is determined by differences between
   /// passes is known as badly as these.
   std::vector<Place> places(const std::vector<double>& residual,
                             const std::optional<NoiseFloor>& floor, double least) const;

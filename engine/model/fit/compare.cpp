@@ -69,7 +69,7 @@ std::vector<double> cross_validated(const Observations& o, const std::vector<Ter
     normal += share;
     right += right_share;
   }
-  // Of columns of unit length: where the other runs hardly tell a direction (a curve over the few
+  // Of columns of unit length: where the other runs hardly determine a direction (a curve over the few
   // targets of partial runs), what they predict is their noise, hundreds of times as large.
   constexpr double predicts = 1e-5;
   std::vector<double> out(o.size(), std::numeric_limits<double>::quiet_NaN());

@@ -88,7 +88,7 @@ Expected<std::vector<Sensor>> sensors_of(const Table& table) {
   return out;
 }
 
-/// A column of displacements: of a sensor of the nest, or of one whose direction nobody knows.
+/// A column of displacements: of a sensor of the nest, or of one whose direction is not known.
 struct Displacement {
   std::string column, name;
   Sense sense{};
@@ -144,7 +144,7 @@ Expected<Turning> turning_of(const Table& table) {
   return out;
 }
 
-/// What lies outside the period of a measurement is only known of its channels.
+/// Outside the period of a measurement only the channels are used.
 bool in_period(const Measurement& m, double time) {
   const std::vector<double> period = m.settings.numbers("period");
   return period.size() != 2 || (time >= period[0] && time < period[1]);

@@ -74,7 +74,7 @@ void check_spatial(const nonio::Observations& obs, std::string_view bytes, bool 
     must(obs.line.empty() || obs.line[i] < obs.lines.size(), "a line that is there");
     const auto& sense = obs.sense_of(i);
     const double size = std::hypot(sense[0], sense[1], sense[2]);
-    // Of a displacement over time nobody may know the direction.
+    // The direction of a displacement over time may be unknown.
     must(std::fabs(size - (directed ? 1.0 : 0.0)) < 1e-9 || (!obs.channels.empty() && size == 0.0),
          "a unit vector");
   }

@@ -57,8 +57,8 @@ struct Plan {
   std::string of{};          ///< in space: the axes, or what is measured ("EYX")
 };
 
-/// What one run more would do to what is known if the noise stays as it is and the best explanation
-/// is true (docs/model.md, "One run more").
+/// What one more run would do to what is known if the noise stays as it is and the best explanation
+/// is true (docs/dev/model-search.md, "One more run").
 struct Foresight {
   struct Factor {  ///< by which the standard uncertainty of a parameter of the model is multiplied
     std::string effect, parameter;
@@ -136,7 +136,7 @@ Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed = 1,
                               const Groundwork* known = nullptr);
 
-/// One run more of an axis, in each direction order. Empty for other parts, and where nothing can
+/// One more run of an axis, in each direction order. Empty for other parts, and where nothing can
 /// be said: no uncertainty, effects whose columns depend on all readings, too many readings.
 std::vector<Foresight> foresee(const Part& part, const Explanation& e);
 
