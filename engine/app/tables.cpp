@@ -150,10 +150,11 @@ std::string largest_text(const modelling::Compared& compared, const Campaign& ca
   const auto at = modelling::place_of(part, campaign, compared.comparison.largest_row);
   const std::string direction = at.direction > 0 ? "+" : "-";
   std::string text =
-      say("largest.at", {{"value", with_unit(compared.comparison.largest, part.deviation())},
-                         {"position", evidence_text({"", at.target, at.position}) + " " +
-                                          std::string(unit_of(at.position).symbol)},
-                         {"run", std::to_string(at.run)}}) +
+      say(at.run == 0 ? "largest.in-time" : "largest.at",
+          {{"value", with_unit(compared.comparison.largest, part.deviation())},
+           {"position", evidence_text({"", at.target, at.position}) + " " +
+                            std::string(unit_of(at.position).symbol)},
+           {"run", std::to_string(at.run)}}) +
       (at.direction == 0 ? "" : ", " + say("largest.direction", {{"direction", direction}})) +
       ", " + at.file;
   return at.line == 0 ? text : text + ":" + std::to_string(at.line);

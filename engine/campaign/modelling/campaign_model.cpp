@@ -85,6 +85,7 @@ std::vector<std::string> PartModel::names() const {
 
 bool PartModel::shows(const std::string& effect) const {
   if (part.kind == model::Part::Kind::axis && split(effect).second == part.name) return true;
+  if (!model::is_for(part, effect)) return false;
   // Of a course "heat:t4/x1" is its heat:t4 where it is among the terms.
   const std::string name =
       part.kind == model::Part::Kind::course ? effect.substr(0, effect.find('/')) : effect;

@@ -452,6 +452,7 @@ std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartMode
   const model::Noise& noise = fit.noise;
   const Quantity q = part.deviation();
   std::vector<std::string> out;
+  if (part.part.kind == model::Part::Kind::course) return out;  // always so, and in u
   if (noise.neighbours > 0.0 && noise.p < told_below)
     out.push_back(says("noise.neighbours",
                        {{"r", std::round(100.0 * noise.measured) / 100.0, Quantity::number},

@@ -209,7 +209,6 @@ class CourseSearch {
 
   Term term_of(std::size_t e) const { return catalogue_[entries_[e].term]; }
   const Entry& entry(std::size_t e) const { return entries_[e]; }
-  std::size_t size() const { return entries_.size(); }
   /// Of this displacement alone, m.
   double left_out_with(const Set& set) const {
     return std::sqrt(left_out(pool_, *sides_, columns_of(set))(0));

@@ -159,11 +159,6 @@ bool concerns(const Part& part, const Axis& axis) {
   return false;
 }
 
-/// "x1" of "x1+x2"
-bool lists(const std::string& names, const std::string& name) {
-  return ("+" + names + "+").find("+" + name + "+") != std::string::npos;
-}
-
 /// Groups of the measurements of an axis by what the manifest states of each; null where it does not
 /// state it of all, or the same of all.
 std::shared_ptr<const Grouping> grouping_by(
@@ -228,10 +223,9 @@ std::optional<Term> term_of(const Part& part, const Effect& effect, const std::s
   if (effect.of_channels != (part.kind == Part::Kind::course)) return std::nullopt;
   if (effect.instances) {
     std::string of = written;
-    if (const std::size_t only = written.find('/');
-        part.kind == Part::Kind::course && only != std::string::npos) {
-      if (!lists(written.substr(only + 1), part.displacement)) return std::nullopt;
-      of.resize(only);
+    if (part.kind == Part::Kind::course) {
+      if (!is_for(part, written)) return std::nullopt;
+      of.resize(std::min(of.find('/'), of.size()));
     }
     const auto places = effect.instances(part.table);
     if (std::find(places.begin(), places.end(), of) == places.end()) return std::nullopt;
@@ -265,6 +259,13 @@ std::vector<Part> parts_of(const Campaign& campaign, const std::vector<Observati
   put_time_constants(campaign, read, parts);
   for (Part& part : parts) part.groupings = groupings_of(part, campaign);
   return parts;
+}
+
+bool is_for(const Part& part, const std::string& effect) {
+  const std::size_t only = effect.find('/');
+  if (part.kind != Part::Kind::course || only == std::string::npos) return true;
+  const std::string names = "+" + effect.substr(only + 1) + "+";
+  return names.find("+" + part.displacement + "+") != std::string::npos;
 }
 
 std::string written_for(const Part& part, const std::string& effect) {

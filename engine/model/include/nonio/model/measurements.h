@@ -95,6 +95,8 @@ std::vector<std::string> names_of(const Part& part, const Effect& effect);
 /// An effect of the model as it is written for this part: of a course that is one of several
 /// displacements "heat:t4/x1" or "heat:t4/x1+x2" ("only of these"), else its name.
 std::string written_for(const Part& part, const std::string& effect);
+/// Whether an effect as it is written is for this part, as far as it lists displacements.
+bool is_for(const Part& part, const std::string& effect);
 
 /// The effects that a model names, then those that are always there, then its descriptions; an
 /// unknown kind, axis or grouping is an error. Effects of axes that other parts hold are left out,
