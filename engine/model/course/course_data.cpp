@@ -25,6 +25,7 @@ CourseData::CourseData(const Part& part) : part_(part) {
   const std::size_t n = part.table.size();
   const std::size_t bins = n < 3 ? n : smooth(std::min<std::size_t>(n, most_bins) - 1) + 1;
   for (std::size_t b = 0; b <= bins; ++b) first_.push_back(b * n / std::max<std::size_t>(bins, 1));
+  time_ = means(part.table.time);
   displacements_.resize(size(), static_cast<Index>(1 + part.companions.size()));
   displacements_.col(0) = means(part.table.deviation);
   for (std::size_t k = 0; k < part.companions.size(); ++k)
@@ -50,16 +51,6 @@ MatrixXd CourseData::means(const Effect::Columns& columns) const {
   return out;
 }
 
-MatrixXd CourseData::without_zeros(MatrixXd columns) const {
-  for (Index b = 0; b < blocks; ++b) {
-    const Index from = begin_of(b), rows = begin_of(b + 1) - from;
-    if (rows == 0) continue;
-    for (Index k = 0; k < columns.cols(); ++k)
-      columns.col(k).segment(from, rows).array() -= columns.col(k).segment(from, rows).mean();
-  }
-  return columns;
-}
-
 double successive(const VectorXd& residual) {
   const Index n = residual.size();
   if (n < 3) return 0.0;
@@ -72,6 +63,12 @@ double repetition(double correlation) {
   constexpr double largest = 0.999;
   const double r = std::clamp(correlation, 0.0, largest);
   return (1.0 + r) / (1.0 - r);
+}
+
+std::vector<Quantity> quantities_of(const Term& term) {
+  std::vector<Quantity> out;
+  for (const Effect::Parameter& p : term.effect->linear) out.push_back(p.quantity);
+  return out;
 }
 
 std::vector<CourseColumns> columns_on_grid(const CourseData& data, const Term& term) {

@@ -10,11 +10,10 @@
 namespace nonio::model {
 
 /// Rows of a course, averaged to at most `most_bins` of equal length (one more than a product of 2, 3
-/// and 5, for the Fourier transform of their changes), in blocks that follow each
-/// other in time. Each block has a zero of its own: what wanders slowly stays out of the gains.
+/// and 5, for the Fourier transform of their changes), and blocks that follow each other in time.
 class CourseData {
  public:
-  static constexpr Index blocks = course_blocks, most_bins = 1501;
+  static constexpr Index blocks = course_blocks, most_bins = 751;
 
   explicit CourseData(const Part& part);
 
@@ -24,8 +23,9 @@ class CourseData {
   MatrixXd means(const Effect::Columns& columns) const;
   /// The first bin of block b; of b = count its end.
   Index begin_of(Index b, Index count = blocks) const { return b * size() / count; }
-  /// Takes the mean of each block away.
-  MatrixXd without_zeros(MatrixXd columns) const;
+  /// Mean time of the readings of a bin, s.
+  double time(Index b) const { return time_(b); }
+  double duration() const { return size() > 1 ? time_(size() - 1) - time_(0) : 0.0; }
   /// Of this displacement, then of those that move with it: m.
   const MatrixXd& displacements() const { return displacements_; }
   const Part& part() const { return part_; }
@@ -34,6 +34,7 @@ class CourseData {
   const Part& part_;
   std::vector<std::size_t> first_;  ///< row of each bin, and the end
   MatrixXd displacements_;
+  VectorXd time_;
 };
 
 /// How much fewer independent readings there are than readings: (1 + r)/(1 - r) with r the
@@ -41,6 +42,9 @@ class CourseData {
 double repetition(double correlation);
 /// Correlation of successive entries.
 double successive(const VectorXd& residual);
+
+/// What the coefficients of a term are.
+std::vector<Quantity> quantities_of(const Term& term);
 
 /// A shape of a term and its columns in the bins.
 struct CourseColumns {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Least squares with a zero for each block of time, on means of bins. Shapes are those that predict
-// blocks which are left out best, on their grids and then between the grid's values.
+// Generalised least squares on means of bins, with noise that is correlated in time. Shapes are those
+// with most evidence, on their grids and then between the grid's values.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,7 +18,7 @@ namespace {
 class CourseFit {
  public:
   CourseFit(const Part& part, std::vector<Term> terms)
-      : data_(part), terms_(std::move(terms)), y_(data_.without_zeros(data_.displacements())) {}
+      : data_(part), terms_(std::move(terms)), noise_(noise_of_fit(data_)) {}
 
   Expected<Fit> made() {
     for (Term& term : terms_) {
@@ -29,46 +29,60 @@ class CourseFit {
       chosen_.push_back(grid.front());
       term.shape = grid.front().shape;
       grids_.push_back(std::move(grid));
+      of_.push_back(quantities_of(term));
     }
     search();
+    const double scatter = most_likely_scatter(data_, noise_, all_columns(), all_quantities());
+    if (scatter != noise_.scatter) {
+      noise_.scatter = scatter;
+      search();
+    }
     refine();
     return fitted();
   }
 
  private:
-  MatrixXd all_but(std::size_t left_out) const {
+  /// Bins x columns of all terms.
+  MatrixXd all_columns() const {
     MatrixXd out(data_.size(), 0);
-    for (std::size_t k = 0; k < terms_.size(); ++k) {
-      if (k == left_out) continue;
-      const MatrixXd& more = chosen_[k].columns;
-      out.conservativeResize(Eigen::NoChange, out.cols() + more.cols());
-      out.rightCols(more.cols()) = more;
+    for (const CourseColumns& one : chosen_) {
+      out.conservativeResize(Eigen::NoChange, out.cols() + one.columns.cols());
+      out.rightCols(one.columns.cols()) = one.columns;
     }
     return out;
   }
 
-  /// The level of left-out blocks with these shapes, each given by its place in the pool.
-  double level_with(const std::vector<std::size_t>& at) const {
+  /// Of the coefficient of each column.
+  std::vector<Quantity> all_quantities() const {
+    std::vector<Quantity> out;
+    for (std::size_t k = 0; k < terms_.size(); ++k)
+      for (Index c = 0; c < chosen_[k].columns.cols(); ++c)
+        out.push_back(of_[k][std::min(static_cast<std::size_t>(c), of_[k].size() - 1)]);
+    return out;
+  }
+
+  /// - ln of the evidence with these shapes, each given by its place on its grid.
+  double cost_with(const std::vector<std::size_t>& at) const {
     std::vector<Index> columns;
     for (std::size_t k = 0; k < at.size(); ++k)
       columns.insert(columns.end(), places_[k][at[k]].begin(), places_[k][at[k]].end());
     std::sort(columns.begin(), columns.end());
     if (std::adjacent_find(columns.begin(), columns.end()) != columns.end())
       return std::numeric_limits<double>::infinity();
-    return level(left_out(*pool_, *sides_, columns));
+    return pool_->cost(columns, *sides_).mean();
   }
 
-  /// The shapes with which blocks that are left out are predicted best: one term after the other, from
-  /// several beginnings.
+  /// The shapes with most evidence: one term after the other, from several beginnings.
   void search() {
-    pool_.emplace(data_);
+    pool_.emplace(data_, noise_);
+    places_.clear();
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       places_.emplace_back();
       for (const CourseColumns& one : grids_[k])
-        places_.back().push_back(pool_->add(one.columns, terms_[k].effect->linear));
+        places_.back().push_back(pool_->add(one.columns, of_[k]));
     }
     pool_->finish();
-    sides_.emplace(*pool_, y_);
+    sides_.emplace(*pool_, data_.displacements());
     std::vector<std::size_t> best;
     double least = std::numeric_limits<double>::infinity();
     for (const double share : {0.0, 0.5, 1.0}) {
@@ -76,26 +90,26 @@ class CourseFit {
       for (std::size_t k = 0; k < terms_.size(); ++k)  // neighbours begin apart
         at.push_back(static_cast<std::size_t>((k % 2 == 0 ? share : 1.0 - share) *
                                               static_cast<double>(grids_[k].size() - 1)));
-      const double l = descend(at);
-      if (best.empty() || l < least) least = l, best = at;
+      const double cost = descend(at);
+      if (best.empty() || cost < least) least = cost, best = at;
     }
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       chosen_[k] = grids_[k][best[k]];
-      chosen_[k].columns = data_.without_zeros(std::move(chosen_[k].columns));
       terms_[k].shape = chosen_[k].shape;
     }
   }
 
   double descend(std::vector<std::size_t>& at) const {
     constexpr int most_rounds = 8;
-    double least = level_with(at);
+    double least = cost_with(at);
     for (int round = 0; round < most_rounds; ++round) {
       bool changed = false;
       for (std::size_t k = 0; k < at.size(); ++k)
         for (std::size_t g = 0; g < grids_[k].size(); ++g) {
           std::vector<std::size_t> other = at;
           other[k] = g;
-          if (const double l = level_with(other); l < least) least = l, at = other, changed = true;
+          if (const double cost = cost_with(other); cost < least)
+            least = cost, at = other, changed = true;
         }
       if (!changed) break;
     }
@@ -103,21 +117,20 @@ class CourseFit {
   }
 
   /// The same with columns that are in no pool.
-  double level_of_chosen(std::size_t k, const MatrixXd& instead) const {
-    CoursePool pool(data_);
+  double cost_of_chosen(std::size_t k, const MatrixXd& instead) const {
+    CoursePool pool(data_, noise_);
     std::vector<Index> columns;
     for (std::size_t t = 0; t < terms_.size(); ++t)
-      for (const Index at :
-           pool.add(t == k ? instead : chosen_[t].columns, terms_[t].effect->linear))
+      for (const Index at : pool.add(t == k ? instead : chosen_[t].columns, of_[t]))
         columns.push_back(at);
     pool.finish();
-    return level(left_out(pool, CourseSides(pool, y_), columns));
+    return pool.cost(columns, CourseSides(pool, data_.displacements())).mean();
   }
 
   MatrixXd columns_at(const Term& term, const std::vector<double>& shape) const {
     const auto columns = term.effect->columns(data_.part().table, term.axis, shape);
     if (!columns || columns->empty()) return chosen_[0].columns * 0.0;
-    return data_.without_zeros(data_.means(*columns));
+    return data_.means(*columns);
   }
 
   /// Between the neighbours of a continuous shape on its grid.
@@ -145,11 +158,11 @@ class CourseFit {
       at[s] = value;
       return at;
     };
-    const auto f = [&](double v) { return level_of_chosen(k, columns_at(terms_[k], with(v))); };
+    const auto f = [&](double v) { return cost_of_chosen(k, columns_at(terms_[k], with(v))); };
     constexpr int steps = 12;
     const auto bracket = math::golden_section(f, low, high, steps);
     const double best = 0.5 * (bracket.low + bracket.high);
-    if (f(best) < level_of_chosen(k, chosen_[k].columns)) {
+    if (f(best) < cost_of_chosen(k, chosen_[k].columns)) {
       terms_[k].shape = with(best);
       chosen_[k] = {terms_[k].shape, columns_at(terms_[k], terms_[k].shape)};
     }
@@ -159,16 +172,17 @@ class CourseFit {
     const Part& part = data_.part();
     const std::size_t n = part.table.size();
     Fit out;
-    MatrixXd a = all_but(terms_.size());
-    const VectorXd y = y_.col(0);
-    VectorXd x = VectorXd::Zero(a.cols());
+    const MatrixXd a = all_columns();
+    CoursePool pool(data_, noise_);
+    const std::vector<Index> places = pool.add(a, all_quantities());
+    pool.finish();
     if (a.cols() > 0) {
-      const VectorXd length = a.colwise().norm().cwiseMax(1e-300).transpose();
-      Eigen::ColPivHouseholderQR<MatrixXd> qr(of_unit_length(a));
+      Eigen::ColPivHouseholderQR<MatrixXd> qr(of_unit_length(pool.whitening().of(a)));
       qr.setThreshold(1e-7);
       if (qr.rank() < a.cols()) return fail(cannot_separate(qr));
-      x = math::solution(qr, y).cwiseQuotient(length);
     }
+    const VectorXd x =
+        pool.coefficients(places, CourseSides(pool, data_.displacements().leftCols(1))).col(0);
     out.residual = part.table.deviation;
     Index at = 0;
     for (std::size_t k = 0; k < terms_.size(); ++k) {
@@ -188,7 +202,7 @@ class CourseFit {
     out.zero = {zero};
     out.weight.assign(n, 1.0);
     out.rms = std::sqrt(squares / static_cast<double>(n));
-    uncertainties(a, x, y, out);
+    uncertainties(a, x, out);
     out.terms = terms_;
     out.lost.assign(terms_.size(), 0);
     return out;
@@ -206,14 +220,10 @@ class CourseFit {
     return "these readings cannot separate the effects of the model";
   }
 
-  /// Of coefficients and searched shapes, of the linearised problem; the residuals repeat each other
-  /// as far as successive ones are alike.
-  void uncertainties(const MatrixXd& a, const VectorXd& x, const VectorXd& y, Fit& out) const {
-    struct Unknown {
-      std::size_t term, shape;
-    };
-    std::vector<Unknown> shapes;
+  /// Of coefficients and searched shapes, of the linearised problem.
+  void uncertainties(const MatrixXd& a, const VectorXd& x, Fit& out) const {
     MatrixXd j = a;
+    std::vector<Quantity> of = all_quantities();
     Index at = 0;
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       const Index own = chosen_[k].columns.cols();
@@ -223,33 +233,25 @@ class CourseFit {
         const double step = std::max(1e-3 * now, 1e-3);
         std::vector<double> near = terms_[k].shape;
         near[s] = now + step;
-        j.conservativeResize(Eigen::NoChange, j.cols() + 1);
-        j.col(j.cols() - 1) =
-            (columns_at(terms_[k], near) - chosen_[k].columns) * x.segment(at, own) / step;
-        shapes.push_back({k, s});
+        const MatrixXd change = columns_at(terms_[k], near) - chosen_[k].columns;
+        j = math::with_column(j, math::times(change, x.segment(at, own)) / step);
+        of.push_back(Quantity::time);
       }
       at += own;
     }
-    const VectorXd rest = a.cols() > 0 ? VectorXd(y - a * x) : y;
-    const double r = successive(rest);
-    const double unknowns = static_cast<double>(j.cols() + CourseData::blocks);
+    VectorXd rest = data_.displacements().col(0);
+    if (a.cols() > 0) rest -= math::times(a, x);
+    rest.array() -= rest.mean();
+    const auto unknowns = static_cast<double>(j.cols() + 1);
     const auto bins = static_cast<double>(data_.size());
     out.redundancy = bins > unknowns ? static_cast<std::size_t>(bins - unknowns) : 0;
     out.s = std::sqrt(rest.squaredNorm() / std::max(bins - unknowns, 1.0));
-    out.noise.measured = r;
-    out.noise.neighbours = r;
+    out.noise.measured = out.noise.neighbours = successive(rest);
     out.noise.p = 0.0;
-    const double s2 = out.s * out.s * repetition(r);
-    VectorXd length = j.colwise().norm().cwiseMax(1e-300).transpose();
-    const MatrixXd unit = of_unit_length(j);
-    MatrixXd covariance = MatrixXd::Zero(j.cols(), j.cols());
-    if (j.cols() > 0) {
-      const Eigen::LDLT<MatrixXd> normal(math::transposed_product(unit, unit));
-      covariance = math::inverse(normal);
-    }
+    const MatrixXd covariance = uncertainty_of(data_, j, of).covariance;
     const auto u = [&](Index k) {
       const double v = covariance(k, k);
-      return v > 0.0 ? std::sqrt(s2 * v) / length(k) : std::numeric_limits<double>::quiet_NaN();
+      return v > 0.0 ? std::sqrt(v) : std::numeric_limits<double>::quiet_NaN();
     };
     at = 0;
     Index of_shapes = a.cols();
@@ -281,10 +283,11 @@ class CourseFit {
 
   CourseData data_;
   std::vector<Term> terms_;
-  MatrixXd y_;
+  CourseNoise noise_;
+  std::vector<std::vector<Quantity>> of_;  ///< what the coefficients of each term are
   std::vector<char> searched_;
   std::vector<std::vector<CourseColumns>> grids_;
-  std::vector<CourseColumns> chosen_;  ///< columns without zeros
+  std::vector<CourseColumns> chosen_;
   std::optional<CoursePool> pool_;
   std::vector<std::vector<std::vector<Index>>> places_;  ///< in the pool: of each term and shape
   std::optional<CourseSides> sides_;
@@ -299,31 +302,15 @@ Expected<Fit> fit_course(const Part& part, const std::vector<Term>& terms) {
 
 double left_out_rms(const Part& part, const std::vector<Term>& terms) {
   const CourseData data(part);
-  MatrixXd a(data.size(), 0);
+  CoursePool pool(data, noise_of_fit(data));
+  std::vector<Index> places;
   for (const Term& term : terms) {
     const auto columns = term.effect->columns(part.table, term.axis, term.shape);
     if (!columns) continue;
-    const MatrixXd more = data.means(*columns);
-    a.conservativeResize(Eigen::NoChange, a.cols() + more.cols());
-    a.rightCols(more.cols()) = more;
+    for (const Index at : pool.add(data.means(*columns), quantities_of(term))) places.push_back(at);
   }
-  a = of_unit_length(data.without_zeros(std::move(a)));
-  const VectorXd y = data.without_zeros(data.displacements()).col(0);
-  const MatrixXd normal = math::transposed_product(a, a);
-  const VectorXd right = math::transposed_times(a, y);
-  double squares = 0.0;
-  for (Index b = 0; b < CourseData::blocks; ++b) {
-    const Index from = data.begin_of(b), rows = data.begin_of(b + 1) - from;
-    const MatrixXd own = a.middleRows(from, rows);
-    const VectorXd here = y.segment(from, rows);
-    VectorXd rest = here;
-    if (a.cols() > 0) {
-      const Eigen::LDLT<MatrixXd> ldlt(MatrixXd(normal - math::transposed_product(own, own)));
-      rest -= own * math::solution(ldlt, right - math::transposed_times(own, here));
-    }
-    squares += rest.squaredNorm();
-  }
-  return std::sqrt(squares / static_cast<double>(data.size()));
+  pool.finish();
+  return pool.left_out(places, CourseSides(pool, data.displacements().leftCols(1)), 0);
 }
 
 }  // namespace nonio::model

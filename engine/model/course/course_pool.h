@@ -1,66 +1,95 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <utility>
 #include <vector>
 
-#include "course_data.h"
+#include "course_noise.h"
 
-/// Many columns over time, of which sets are judged by blocks that are left out.
+/// Many columns over time, of which sets are judged by their evidence.
 namespace nonio::model {
 
-/// Columns, each once and of unit length without the zeros of blocks, and their products in each
-/// block.
+struct CourseSides;
+
+/// Columns, each once, and their products under a noise that is correlated in time. Coefficients have
+/// a normal prior as wide as a body allows: half of 50 um/K, or three times what the displacement
+/// does.
 class CoursePool {
  public:
-  explicit CoursePool(const CourseData& data) : data_(data) {}
+  /// Scatter that is looked for (`CourseNoise`).
+  static constexpr std::array scatters{0.0, 1.0, 30.0, 1000.0};
 
-  /// Where the columns are. `of`: what their coefficients are.
-  std::vector<Index> add(const MatrixXd& columns, const std::vector<Effect::Parameter>& of);
+  CoursePool(const CourseData& data, const CourseNoise& noise);
+
+  /// Where the columns are; bins x k. `of`: what their coefficients are; the last one counts for all
+  /// further columns.
+  std::vector<Index> add(const MatrixXd& columns, const std::vector<Quantity>& of);
   /// Before anything else is asked.
   void finish();
 
-  MatrixXd block(const MatrixXd& of, Index b) const {
-    const Index from = data_.begin_of(b);
-    return of.middleRows(from, data_.begin_of(b + 1) - from);
-  }
-  /// What these columns leave of displacements, of which the fit has a zero for each block and the
-  /// remainder has none.
+  /// - ln of the evidence of these columns for each side. The zero, the coefficients and the variance
+  /// of the noise are integrated out.
+  Eigen::RowVectorXd cost(const std::vector<Index>& columns, const CourseSides& sides) const;
+  /// Coefficients of the columns as they were added: columns x sides.
+  MatrixXd coefficients(const std::vector<Index>& columns, const CourseSides& sides) const;
+  /// Of the noise that the columns leave of the first side, m^2.
+  double variance(const std::vector<Index>& columns, const CourseSides& sides) const;
+  /// Of the coefficients of the columns as they were added, for noise of unit variance; `variance`:
+  /// that of the noise, for the prior.
+  MatrixXd covariance(const std::vector<Index>& columns, double variance) const;
+  /// What these columns leave of displacements, bins x displacements.
   MatrixXd remainder(const std::vector<Index>& columns, const MatrixXd& displacements) const;
-  /// Largest coefficient of a column that a body can have.
-  double most(Index k) const { return most_[static_cast<std::size_t>(k)]; }
-  const MatrixXd& all() const { return all_; }
-  const MatrixXd& whole() const { return whole_; }
-  const MatrixXd& of_block(Index b) const { return of_block_[static_cast<std::size_t>(b)]; }
+  /// RMS of blocks of one side that are left out, each less its own mean, m.
+  double left_out(const std::vector<Index>& columns, const CourseSides& sides, Index side) const;
+
+  static constexpr std::size_t most_columns = 6;
+
+  /// What is added to `columns` one by one, whatever adds most evidence.
+  struct Greedy {
+    std::vector<Index> added;
+    double gain = 0.0;      ///< of evidence, at best, less the penalty for each of them
+    double variance = 0.0;  ///< of the noise after the last one
+  };
+  /// For sides [from, from + count), which have the same columns.
+  Greedy greedy(const std::vector<Index>& columns, const CourseSides& sides, Index from,
+                Index count) const;
+  /// Variance of the noise / variance of a coefficient in units of its prior, m^2.
+  double ridge() const { return ridge_; }
+  /// ln of the number of columns: what one of them must add.
+  double penalty() const;
+
   const CourseData& data() const { return data_; }
+  const CourseWhitening& whitening() const { return whitening_; }
+  const MatrixXd& white() const { return white_; }
+  const MatrixXd& raw() const { return raw_; }
 
  private:
-  Index add_one(const VectorXd& centred, const VectorXd& raw, double most);
+  Index add_one(const VectorXd& column, double prior);
+  Eigen::LLT<MatrixXd> normal(const std::vector<Index>& columns) const;
+  double bins() const { return static_cast<double>(data_.size() - 1); }
 
   const CourseData& data_;
-  std::vector<VectorXd> columns_, raw_;
-  std::vector<double> most_;
+  CourseWhitening whitening_;
+  std::vector<VectorXd> columns_;  ///< times their priors
+  std::vector<double> prior_;
   std::map<std::pair<double, double>, std::vector<Index>> places_;
-  MatrixXd all_, whole_;
-  std::vector<MatrixXd> of_block_;
+  MatrixXd raw_, white_, products_;
+  std::vector<MatrixXd> of_block_;  ///< the same products in each block
+  std::vector<MatrixXd> centred_;  ///< products in each block of the columns less their means there
+  double sd_ = 0.0;                ///< of the displacements, m
+  double ridge_ = 0.0;             ///< variance of the noise / variance of a coefficient, m^2
 };
 
-/// Products of the pool with displacements (without zeros): the same for many displacements at once.
+/// Products of a pool with displacements: the same for many displacements at once.
 struct CourseSides {
-  std::vector<MatrixXd> of_block;  ///< pool x displacements
-  MatrixXd whole;
-  std::vector<Eigen::RowVectorXd> squares;  ///< in each block
+  MatrixXd products;                                ///< pool x displacements
+  Eigen::RowVectorXd squares;                       ///< of each displacement, m^2
+  std::vector<MatrixXd> of_block, centred;          ///< as of the pool
+  std::vector<Eigen::RowVectorXd> centred_squares;  ///< of each block, m^2
 
   CourseSides(const CoursePool& pool, const MatrixXd& displacements);
 };
-
-/// Mean squares of what is left out, of each displacement, m^2; infinite where the columns cannot be
-/// separated or a coefficient is larger than a body can have.
-Eigen::RowVectorXd left_out(const CoursePool& pool, const CourseSides& sides,
-                            const std::vector<Index>& columns);
-
-/// Half the mean logarithm over displacements that are judged together: ln of an RMS.
-double level(const Eigen::RowVectorXd& squares);
 
 }  // namespace nonio::model

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which effects a course is missing: sets of at most six, grown and kept three at a time, judged by
-// blocks in time that are left out. What such a search finds in noise of the same kind is found by
-// the same search in copies of the remainder whose phases are random (Theiler et al. 1992).
+// Which effects a course is missing: sets of at most six, judged by their evidence under noise that is
+// correlated in time. What such a search finds where there is no cause is found by the same search in
+// copies of the remainder whose phases are random (Theiler et al. 1992).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,8 +23,7 @@ using Set = std::vector<std::size_t>;  // of entries, ascending
 
 // docs/dev/constants.md, M40.
 constexpr std::size_t most_terms = 6, kept_sets = 12, copies = 100;
-constexpr double worth_a_term = 0.9;  // of the RMS of what is left out
-constexpr double same_rms = 1.05;     // RMS of two explanations that cannot be separated
+constexpr double same_rms = 1.05;  // noise of two explanations that cannot be separated
 constexpr double named_p = 0.01;
 constexpr double of_floor = 1.5;  // what noise explains
 constexpr std::size_t most_instances = 64;
@@ -33,18 +32,43 @@ constexpr std::size_t most_instances = 64;
 struct Entry {
   std::size_t term;
   std::vector<double> shape;
+  MatrixXd made;               ///< its columns in the bins
   std::vector<Index> columns;  ///< of the pool
 };
 
-/// What a search finds in copies of a remainder: improvements, in logarithms of the RMS. Largest of
-/// many: a Gumbel distribution.
+/// What columns show: evidence that they add, and by how much ln(RMS) of what is left out falls with
+/// them.
+struct Shown {
+  double evidence, fall;
+};
+
+/// What a search finds in copies of a remainder. Largest of many: a Gumbel distribution.
 struct InCopies {
   double at = 0.0, width = 0.0;
   std::vector<double> found;
 
-  double p(double improvement) const {
+  explicit InCopies(std::vector<double> falls) : found(std::move(falls)) {
+    const auto n = static_cast<double>(found.size());
+    double mean = 0.0, squares = 0.0;
+    for (const double x : found) mean += x / n;
+    for (const double x : found) squares += (x - mean) * (x - mean);
+    constexpr double euler = 0.5772156649015329;
+    width = std::sqrt(squares / (n - 1.0) * 6.0) / std::numbers::pi;
+    at = mean - euler * width;
+  }
+
+  double p(double fall) const {
     if (!(width > 0.0)) return 1.0;
-    return -std::expm1(-std::exp(-(improvement - at) / width));
+    return -std::expm1(-std::exp(-(fall - at) / width));
+  }
+};
+
+/// p of what is shown, by either of the two (Bonferroni).
+struct SearchInCopies {
+  InCopies evidence, fall;
+
+  double p(const Shown& shown) const {
+    return std::min(1.0, 2.0 * std::min(evidence.p(shown.evidence), fall.p(shown.fall)));
   }
 };
 
@@ -52,28 +76,29 @@ class CourseSearch {
  public:
   CourseSearch(const Part& part, const Fit& model, const std::vector<Term>& catalogue,
                std::uint64_t seed)
-      : data_(part), pool_(data_), catalogue_(catalogue), seed_(seed) {
-    for (const Term& term : model.terms) {
-      auto columns = term.effect->columns(part.table, term.axis, term.shape);
-      if (!columns) continue;
-      for (const Index at : pool_.add(data_.means(*columns), term.effect->linear))
-        base_.push_back(at);
-    }
+      : data_(part), model_(model.terms), catalogue_(catalogue), seed_(seed) {
     std::map<std::string, std::size_t> instances;
     for (const Term& term : catalogue) ++instances[term.effect->info.name];
     for (std::size_t t = 0; t < catalogue.size(); ++t) {
       const Term& term = catalogue[t];
-      if (std::any_of(model.terms.begin(), model.terms.end(),
+      if (std::any_of(model_.begin(), model_.end(),
                       [&](const Term& m) { return m.name() == term.name(); }) ||
           instances[term.effect->info.name] > most_instances)
         continue;
       for (CourseColumns& one : columns_on_grid(data_, term))
-        entries_.push_back({t, std::move(one.shape), pool_.add(one.columns, term.effect->linear)});
+        entries_.push_back({t, std::move(one.shape), std::move(one.columns), {}});
     }
-    pool_.finish();
-    displacements_ = data_.without_zeros(data_.displacements());
-    sides_.emplace(pool_, displacements_);
+    CourseNoise noise = noise_of_fit(data_);
+    fill(noise);
+    set_ = best();
+    if (const double scatter = likely_scatter(noise); scatter != noise.scatter) {
+      noise.scatter = scatter;
+      fill(noise);
+      set_ = best();
+    }
   }
+
+  const Set& found() const { return set_; }
 
   std::vector<Index> columns_of(const Set& set) const {
     std::vector<Index> out = base_;
@@ -88,7 +113,7 @@ class CourseSearch {
   double level_of(const Set& set) const {
     const auto columns = columns_of(set);
     if (!columns.empty() && columns.back() < 0) return std::numeric_limits<double>::infinity();
-    return level(left_out(pool_, *sides_, columns));
+    return pool_->cost(columns, *sides_).mean();
   }
 
   bool has_term(const Set& set, std::size_t term) const {
@@ -122,11 +147,11 @@ class CourseSearch {
       }
   }
 
-  /// The smallest set that no larger one betters by a tenth for each term more.
+  /// The set with most evidence, less the penalty for each of its effects.
   Set best() const {
     std::vector<Set> beam{{}};
     std::vector<std::pair<Set, double>> best{{{}, level_of({})}};
-    for (std::size_t size = 1; size <= most_terms; ++size) {
+    for (std::size_t size = 1; size + model_.size() <= most_terms; ++size) {
       std::map<Set, double> grown;
       for (const Set& set : beam)
         for (std::size_t e = 0; e < entries_.size(); ++e)
@@ -149,51 +174,53 @@ class CourseSearch {
       for (auto it = all.begin(); it != last; ++it) beam.push_back(it->first);
       best.push_back(all.front());
     }
+    const auto least = [&](std::size_t k) {
+      return best[k].second + static_cast<double>(k) * pool_->penalty();
+    };
     std::size_t chosen = 0;
-    for (bool better = true; better;) {
-      better = false;
-      for (std::size_t k = chosen + 1; k < best.size() && !better; ++k)
-        if (best[k].second <
-            best[chosen].second + std::log(worth_a_term) * static_cast<double>(k - chosen)) {
-          chosen = k;
-          better = true;
-        }
-    }
+    for (std::size_t k = 1; k < best.size(); ++k)
+      if (least(k) < least(chosen)) chosen = k;
     return best[chosen].first;
   }
 
   /// What one more term would seem to improve in addition to `set` if the remainder had nothing to do with
   /// any of them.
-  InCopies chance_with(const Set& set) const {
+  SearchInCopies chance_with(const Set& set) const {
     const std::vector<Index> columns = columns_of(set);
-    const MatrixXd rest = pool_.remainder(columns, data_.displacements());
-    const Index q = rest.cols();
-    MatrixXd made(data_.size(), q * static_cast<Index>(copies));
-    SplitMix64 random(seed_);
-    for (std::size_t c = 0; c < copies; ++c)
-      made.middleCols(q * static_cast<Index>(c), q) = data_.without_zeros(copy_of(rest, random));
-    const CourseSides sides(pool_, made);
-    const Eigen::RowVectorXd before = left_out(pool_, sides, columns);
-    InCopies out;
-    out.found.assign(copies, 0.0);
+    const CourseSides sides = sides_of_copies(columns);
+    const Eigen::RowVectorXd before = pool_->cost(columns, sides);
+    std::vector<double> gained(copies, 0.0);
+    std::vector<std::vector<Index>> best(copies, columns);
     for (std::size_t e = 0; e < entries_.size(); ++e) {
       if (has_term(set, entries_[e].term)) continue;
       const auto more = columns_of(with(set, e));
       if (more.back() < 0) continue;
-      const Eigen::RowVectorXd after = left_out(pool_, sides, more);
-      for (std::size_t c = 0; c < copies; ++c) {
-        const auto at = q * static_cast<Index>(c);
-        const double improvement = level(before.segment(at, q)) - level(after.segment(at, q));
-        if (std::isfinite(improvement)) out.found[c] = std::max(out.found[c], improvement);
-      }
+      const Eigen::RowVectorXd gain = before - pool_->cost(more, sides);
+      for (std::size_t c = 0; c < copies; ++c)
+        if (const double mean = gain.segment(first_of(c), together()).mean(); mean > gained[c])
+          gained[c] = mean, best[c] = more;
     }
-    double mean = 0.0, squares = 0.0;
-    for (const double x : out.found) mean += x / static_cast<double>(copies);
-    for (const double x : out.found) squares += (x - mean) * (x - mean);
-    constexpr double euler = 0.5772156649015329;
-    out.width = std::sqrt(squares / static_cast<double>(copies - 1) * 6.0) / std::numbers::pi;
-    out.at = mean - euler * out.width;
-    return out;
+    std::vector<double> fell;
+    for (std::size_t c = 0; c < copies; ++c)
+      fell.push_back(left_out(columns, sides, first_of(c)) - left_out(best[c], sides, first_of(c)));
+    return {InCopies(std::move(gained)), InCopies(std::move(fell))};
+  }
+
+  /// ln(RMS) of blocks that are left out, in the mean over displacements that are searched together.
+  double left_out(const Set& set) const { return left_out(columns_of(set), *sides_, 0); }
+
+  /// p of the search as a whole: what columns that are added one by one show in the readings, and
+  /// where there is no cause.
+  double p_of_search() const {
+    const CourseSides sides = sides_of_copies(base_);
+    std::vector<double> gained, fell;
+    for (std::size_t c = 0; c < copies; ++c) {
+      const Shown shown = shown_one_by_one(sides, first_of(c));
+      gained.push_back(shown.evidence);
+      fell.push_back(shown.fall);
+    }
+    return SearchInCopies{InCopies(std::move(gained)), InCopies(std::move(fell))}.p(
+        shown_one_by_one(*sides_, 0));
   }
 
   static Set with(const Set& set, std::size_t e) {
@@ -211,10 +238,78 @@ class CourseSearch {
   const Entry& entry(std::size_t e) const { return entries_[e]; }
   /// Of this displacement alone, m.
   double left_out_with(const Set& set) const {
-    return std::sqrt(left_out(pool_, *sides_, columns_of(set))(0));
+    return pool_->left_out(columns_of(set), *sides_, 0);
   }
+  double penalty() const { return pool_->penalty(); }
+  /// Differences of evidence below this do not separate two explanations.
+  double same() const { return static_cast<double>(data_.size()) * std::log(same_rms); }
 
  private:
+  double left_out(const std::vector<Index>& columns, const CourseSides& sides, Index from) const {
+    double sum = 0.0;
+    for (Index j = 0; j < together(); ++j)
+      sum += std::log(pool_->left_out(columns, sides, from + j));
+    return sum / static_cast<double>(together());
+  }
+
+  /// At best, with 1, 2, ... columns.
+  Shown shown_one_by_one(const CourseSides& sides, Index from) const {
+    const auto greedy = pool_->greedy(base_, sides, from, together());
+    std::vector<Index> columns = base_;
+    const double before = left_out(columns, sides, from);
+    Shown out{greedy.gain, 0.0};
+    for (const Index added : greedy.added) {
+      columns.push_back(added);
+      out.fall = std::max(out.fall, before - left_out(columns, sides, from));
+    }
+    return out;
+  }
+
+  Index together() const { return data_.displacements().cols(); }
+  Index first_of(std::size_t copy) const { return static_cast<Index>(copy) * together(); }
+
+  void fill(const CourseNoise& noise) {
+    pool_.emplace(data_, noise);
+    base_.clear();
+    for (const Term& term : model_) {
+      const auto columns = term.effect->columns(data_.part().table, term.axis, term.shape);
+      if (!columns) continue;
+      for (const Index at : pool_->add(data_.means(*columns), quantities_of(term)))
+        base_.push_back(at);
+    }
+    for (Entry& entry : entries_)
+      entry.columns = pool_->add(entry.made, quantities_of(catalogue_[entry.term]));
+    pool_->finish();
+    sides_.emplace(*pool_, data_.displacements());
+  }
+
+  /// With the columns of the set that was found.
+  double likely_scatter(CourseNoise noise) const {
+    MatrixXd columns(data_.size(), 0);
+    std::vector<Quantity> of;
+    const auto add = [&](const MatrixXd& more, const Term& term) {
+      const std::vector<Quantity> quantities = quantities_of(term);
+      for (Index k = 0; k < more.cols(); ++k) {
+        columns = math::with_column(columns, VectorXd(more.col(k)));
+        of.push_back(quantities[std::min(static_cast<std::size_t>(k), quantities.size() - 1)]);
+      }
+    };
+    for (const Term& term : model_)
+      if (const auto made = term.effect->columns(data_.part().table, term.axis, term.shape); made)
+        add(data_.means(*made), term);
+    for (const std::size_t e : set_) add(entries_[e].made, catalogue_[entries_[e].term]);
+    return most_likely_scatter(data_, noise, columns, of);
+  }
+
+  CourseSides sides_of_copies(const std::vector<Index>& columns) const {
+    const MatrixXd rest = pool_->remainder(columns, data_.displacements());
+    MatrixXd made(data_.size(), together() * static_cast<Index>(copies));
+    SplitMix64 random(seed_);
+    for (std::size_t c = 0; c < copies; ++c)
+      made.middleCols(first_of(c), together()) = copy_of(rest, random);
+    return {*pool_, made};
+  }
+
   /// The same spectrum of changes and the same coherence of displacements, other phases.
   MatrixXd copy_of(const MatrixXd& rest, SplitMix64& random) const {
     const Index n = rest.rows() - 1;
@@ -243,13 +338,14 @@ class CourseSearch {
   }
 
   CourseData data_;
-  CoursePool pool_;
+  std::vector<Term> model_;
   const std::vector<Term>& catalogue_;
+  std::optional<CoursePool> pool_;
   std::uint64_t seed_;
   std::vector<Index> base_;
   std::vector<Entry> entries_;
-  MatrixXd displacements_;
   std::optional<CourseSides> sides_;
+  Set set_;
 };
 
 /// Candidates and verdict from the best set.
@@ -262,19 +358,21 @@ class CourseExplanation {
   }
 
   Explanation made() {
-    const InCopies by_chance = search_.chance_with({});
-    set_ = search_.best();
+    set_ = search_.found();
     const auto singles = search_.best_with({});
-    judge_members();
+    if (search_.p_of_search() < named_p) {
+      judge_members();
+    } else {
+      set_.clear();
+    }
     const double alone = search_.level_of({}), all = search_.level_of(set_);
-    // Evidence in units of independent bins: 2 ln of a likelihood ratio.
-    weight_ = static_cast<double>(out_.comparison.fit.redundancy) /
-              repetition(out_.comparison.fit.noise.measured);
-    weight_ = std::max(weight_, 1.0) * 2.0;
-    const InCopies further = set_.empty() ? by_chance : search_.chance_with(set_);
+    const SearchInCopies further = search_.chance_with(set_);
     for (Member& member : members_) {
       const auto single = singles.find(search_.entry(member.entry).term);
-      if (single != singles.end()) member.alone = alone - single->second.second;
+      if (single != singles.end()) {
+        member.alone = alone - single->second.second;
+        member.predicts = search_.left_out({}) - search_.left_out({single->second.first});
+      }
       add_member(member, all);
     }
     const auto grown = set_.empty() ? singles : search_.best_with(set_);
@@ -282,11 +380,15 @@ class CourseExplanation {
       if (search_.has_term(set_, term)) continue;
       const auto more = grown.find(term);
       const double gain = more == grown.end() ? 0.0 : all - more->second.second;
-      add(one.first, gain, further.p(gain));
+      const double improved =
+          more == grown.end() ? 0.0
+                              : search_.left_out(set_) -
+                                    search_.left_out(CourseSearch::with(set_, more->second.first));
+      add(one.first, gain, further.p({gain, improved}));
     }
     std::stable_sort(out_.candidates.begin(), out_.candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-    judge(by_chance);
+    judge();
     return std::move(out_);
   }
 
@@ -295,21 +397,17 @@ class CourseExplanation {
   struct Member {
     std::size_t entry;
     double loss, p;
-    double alone = 0.0;  ///< what it improves by itself
+    double alone = 0.0;     ///< evidence that it adds by itself
+    double predicts = 0.0;  ///< by how much ln(RMS) of what is left out falls with it alone
   };
 
-  /// A set in which noise could replace every single effect shows nothing.
   void judge_members() {
     const double all = search_.level_of(set_);
     for (const std::size_t e : set_) {
       const Set others = CourseSearch::without(set_, e);
       const double loss = search_.level_of(others) - all;
-      members_.push_back({e, loss, search_.chance_with(others).p(loss)});
-    }
-    if (std::none_of(members_.begin(), members_.end(),
-                     [](const Member& m) { return m.p < named_p; })) {
-      set_.clear();
-      members_.clear();
+      const double fall = search_.left_out(others) - search_.left_out(set_);
+      members_.push_back({e, loss, search_.chance_with(others).p({loss, fall})});
     }
   }
 
@@ -321,9 +419,10 @@ class CourseExplanation {
     // What takes its place as well, cannot be separated from it.
     for (const auto& [term, one] : search_.best_with(others))
       if (term != search_.entry(e).term && !search_.has_term(set_, term) &&
-          one.second < all + std::log(same_rms))
+          one.second < all + search_.same())
         c.aliases.push_back(search_.term_of(one.first).name());
-    if (member.p < named_p) certain_.emplace_back(member.alone, c.term.name());
+    best_ = std::max(best_, {member.predicts, c.term.name()});
+    if (member.p < named_p) certain_.emplace_back(member.predicts, c.term.name());
   }
 
   void add(std::size_t e, double gain, double p) {
@@ -331,7 +430,7 @@ class CourseExplanation {
     c.term = search_.term_of(e);
     c.cv_rms = search_.left_out_with({e});
     c.p = p;
-    c.score = weight_ * gain;
+    c.score = 2.0 * (gain - search_.penalty());
     std::vector<Term> terms = model_;
     terms.push_back(c.term);
     terms.back().shape = search_.entry(e).shape;
@@ -346,11 +445,10 @@ class CourseExplanation {
       c.visible = false;
       c.why = "aliased";
     }
-    if (c.visible && !(gain > -std::log(worth_a_term)) && !member) c.score = std::min(c.score, 0.0);
     out_.candidates.push_back(std::move(c));
   }
 
-  void judge(const InCopies& by_chance) {
+  void judge() {
     std::sort(certain_.begin(), certain_.end(), std::greater<>());
     for (const auto& [loss, name] : certain_) out_.certain.push_back(name);
     std::vector<Term> terms = model_;
@@ -362,14 +460,11 @@ class CourseExplanation {
     out_.fails = out_.comparison.seats;
     Verdict& v = out_.verdict;
     v.trials = copies;
-    std::size_t alarms = 0;
-    for (const double x : by_chance.found)
-      if (by_chance.p(x) < named_p && x > -std::log(worth_a_term)) ++alarms;
-    v.false_alarms = static_cast<double>(alarms) / static_cast<double>(copies);
+    v.false_alarms = named_p;
     if (!set_.empty()) {
       if (const auto fit = fit_course(part_, terms)) out_.best_rms = out_.certain_rms = fit->rms;
       v.kind = Verdict::Kind::missing;
-      v.effect = out_.certain.front();
+      v.effect = certain_.empty() ? best_.second : out_.certain.front();
       return;
     }
     const auto& floor = out_.comparison.floor;
@@ -382,8 +477,8 @@ class CourseExplanation {
   CourseSearch search_;
   Set set_;
   std::vector<Member> members_;
-  double weight_ = 1.0;
   std::vector<std::pair<double, std::string>> certain_;
+  std::pair<double, std::string> best_{-std::numeric_limits<double>::infinity(), ""};
   Explanation out_;
 };
 

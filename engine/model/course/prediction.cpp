@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "course.h"
-#include "course_data.h"
+#include "course_noise.h"
 #include "nonio/sdk/channels.h"
 
 namespace nonio::model {
@@ -29,75 +29,6 @@ Expected<MatrixXd> columns_in(const Part& part, const std::vector<Term>& terms) 
 
 void centre(MatrixXd& columns) {
   for (Index k = 0; k < columns.cols(); ++k) columns.col(k).array() -= columns.col(k).mean();
-}
-
-/// Squares of what is left out, against how far the columns there lie from those of the rest.
-struct LeftOut {
-  std::vector<double> squares, far;
-};
-
-/// x' N^-1 x of each row.
-VectorXd distance(const MatrixXd& x, const Eigen::LLT<MatrixXd>& normal) {
-  return math::whitened(normal, MatrixXd(x.transpose())).colwise().squaredNorm().transpose();
-}
-
-LeftOut leave_out(const CourseData& data, const MatrixXd& columns) {
-  LeftOut out;
-  const VectorXd y = data.displacements().col(0);
-  for (const Index count : {Index{2}, Index{3}}) {
-    for (Index b = 0; b < count; ++b) {
-      const Index from = data.begin_of(b, count), rows = data.begin_of(b + 1, count) - from;
-      MatrixXd here = columns.middleRows(from, rows), rest(columns.rows() - rows, columns.cols());
-      rest << columns.topRows(from), columns.bottomRows(columns.rows() - from - rows);
-      VectorXd right(rest.rows());
-      right << y.head(from), y.tail(y.size() - from - rows);
-      centre(here);
-      centre(rest);
-      right.array() -= right.mean();
-      VectorXd error = y.segment(from, rows);
-      error.array() -= error.mean();
-      VectorXd far = VectorXd::Zero(rows);
-      if (columns.cols() > 0) {
-        const Eigen::LLT<MatrixXd> normal(math::transposed_product(rest, rest));
-        if (normal.info() != Eigen::Success) continue;
-        error -= here * math::solution(normal, math::transposed_times(rest, right));
-        far = distance(here, normal);
-      }
-      for (Index i = 0; i < rows; ++i) {
-        out.squares.push_back(error(i) * error(i));
-        out.far.push_back(far(i));
-      }
-    }
-  }
-  return out;
-}
-
-/// Variance of a prediction: a + b far, most likely for what was left out (normal errors).
-struct Variance {
-  double a = 0.0, b = 0.0;
-};
-
-Variance variance_of(const LeftOut& l) {
-  const auto n = static_cast<double>(l.squares.size());
-  double mean = 0.0, far = 0.0;
-  for (std::size_t i = 0; i < l.squares.size(); ++i) mean += l.squares[i] / n, far += l.far[i] / n;
-  Variance best{mean, 0.0};
-  if (!(mean > 0.0) || !(far > 0.0)) return best;
-  const auto cost = [&](const Variance& v) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < l.squares.size(); ++i) {
-      const double s2 = v.a + v.b * l.far[i];
-      sum += std::log(s2) + l.squares[i] / s2;
-    }
-    return sum;
-  };
-  double least = cost(best);
-  for (int i = -12; i <= 0; ++i)
-    for (int k = -12; k <= 4; ++k) {
-      const Variance v{mean * std::exp2(0.5 * i), mean / far * std::exp2(0.5 * k)};
-      if (const double c = cost(v); c < least) least = c, best = v;
-    }
-  return best;
 }
 
 /// From when on windows of a twentieth of the time are larger than 2 u in the mean.
@@ -144,7 +75,10 @@ Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, c
   MatrixXd means(data.size(), known->cols());
   for (Index k = 0; k < known->cols(); ++k)
     means.col(k) = data.means(std::vector<double>(known->col(k).begin(), known->col(k).end()));
-  const Variance variance = variance_of(leave_out(data, means));
+  std::vector<Quantity> of;
+  for (const Parameter& p : fit->parameters)
+    if (!p.shape) of.push_back(p.quantity);
+  const CourseUncertainty unknown = uncertainty_of(data, means, of);
   Prediction out;
   VectorXd x(known->cols());
   Index at = 0;
@@ -163,16 +97,12 @@ Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, c
     error.array() -= fit->zero.front();
     from.rowwise() -= means.colwise().mean();
   }
-  centre(means);
-  VectorXd far = VectorXd::Zero(error.size());
-  if (means.cols() > 0) {
-    const Eigen::LLT<MatrixXd> normal(math::transposed_product(means, means));
-    if (normal.info() == Eigen::Success) far = distance(from, normal);
-  }
+  const double variance = unknown.s * unknown.s + (zero_kept ? unknown.zero * unknown.zero : 0.0);
+  const MatrixXd spread = math::product(from, unknown.covariance);
   std::size_t inside = 0;
   for (Index i = 0; i < error.size(); ++i) {
     out.error.push_back(error(i));
-    out.u.push_back(std::sqrt(variance.a + variance.b * far(i)));
+    out.u.push_back(std::sqrt(variance + spread.row(i).dot(from.row(i))));
     if (std::fabs(error(i)) <= 2.0 * out.u.back()) ++inside;
   }
   out.rms = std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));

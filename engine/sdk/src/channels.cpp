@@ -64,7 +64,7 @@ std::vector<double> time_constants_for(const std::vector<double>& time) {
   const double duration = t.back() - t.front();
   const double interval = duration / static_cast<double>(t.size() - 1);
   std::vector<double> out;
-  for (double tau = duration / 6.0; tau >= 4.0 * interval && out.size() + 1 < most;
+  for (double tau = duration / 12.0; tau >= 4.0 * interval && out.size() + 1 < most;
        tau *= std::sqrt(0.5))
     out.push_back(tau);
   out.push_back(0.0);

@@ -10,6 +10,7 @@
 //     settling:time        z exp(-t/tau)                    z: m
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "nonio/sdk/channels.h"
 #include "nonio/sdk/plugin.h"
@@ -25,8 +26,12 @@ using Columns = Effect::Columns;
 constexpr double least_range = 0.05;
 
 bool varies(const Channel& c, double least) {
-  const auto [low, high] = std::minmax_element(c.value.begin(), c.value.end());
-  return low != c.value.end() && *high - *low > least;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  return std::any_of(c.value.begin(), c.value.end(), [&](double v) {
+    low = std::min(low, v);
+    high = std::max(high, v);
+    return high - low > least;
+  });
 }
 
 bool is_source(const Channel& c) { return !c.is_temperature(); }

@@ -50,7 +50,7 @@ TEST(TimeConstants, LieBetweenTheSamplingAndTheDuration) {
   ASSERT_GE(all.size(), 3U);
   EXPECT_EQ(all.front(), 0.0);
   EXPECT_GE(all[1], 4.0 * 30.0);
-  EXPECT_NEAR(all.back(), 30.0 * 999 / 6.0, 1e-9);
+  EXPECT_NEAR(all.back(), 30.0 * 999 / 12.0, 1e-9);
   EXPECT_TRUE(time_constants_for({0.0, 1.0, 2.0}).empty());
 }
 

@@ -15,7 +15,7 @@ namespace nonio {
 std::vector<double> lagged(const Observations::Channel& channel, double tau,
                            const std::vector<double>& time);
 
-/// Time constants that readings at these times can show: 0, then by factors of the root of 2 to a sixth
+/// Time constants that readings at these times can show: 0, then by factors of the root of 2 to a twelfth
 /// of the duration, not below four sampling intervals, s; at most 18. Empty for fewer than 12 different times.
 std::vector<double> time_constants_for(const std::vector<double>& time);
 

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "course_noise.h"
+
+#include <cmath>
+#include <limits>
+
+#include "course_pool.h"
+
+namespace nonio::model {
+
+CourseNoise noise_of_fit(const CourseData& data) {
+  constexpr double part_of_test = 24.0;  // half of the longest lag; docs/dev/constants.md, M40
+  return {data.duration() / part_of_test};
+}
+
+CourseWhitening::CourseWhitening(const CourseData& data, const CourseNoise& noise) {
+  const Index n = data.size();
+  double variance = 1.0;
+  for (Index i = 0; i < n; ++i) {
+    const double of_bin = variance + noise.scatter;
+    scale_.push_back(1.0 / std::sqrt(of_bin));
+    gain_.push_back(variance / of_bin);
+    half_log_determinant_ += 0.5 * std::log(of_bin);
+    const double step = i + 1 < n ? data.time(i + 1) - data.time(i) : 0.0;
+    follows_.push_back(noise.correlation_time > 0.0 ? std::exp(-step / noise.correlation_time)
+                                                    : 0.0);
+    const double keeps = follows_.back() * follows_.back();
+    variance = keeps * variance * (1.0 - gain_.back()) + 1.0 - keeps;
+  }
+  MatrixXd one = MatrixXd::Ones(n, 1);
+  filter(one);
+  const double length = one.norm();
+  zero_ = one.col(0) / std::max(length, 1e-300);
+  variance_of_zero_ = 1.0 / std::max(length * length, 1e-300);
+  half_log_determinant_ += std::log(std::max(length, 1e-300));
+}
+
+void CourseWhitening::filter(MatrixXd& columns) const {
+  for (Index k = 0; k < columns.cols(); ++k) {
+    double expected = 0.0;
+    for (Index i = 0; i < columns.rows(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const double surprise = columns(i, k) - expected;
+      expected = follows_[at] * (expected + gain_[at] * surprise);
+      columns(i, k) = surprise * scale_[at];
+    }
+  }
+}
+
+MatrixXd CourseWhitening::of(MatrixXd columns) const {
+  filter(columns);
+  for (Index k = 0; k < columns.cols(); ++k) columns.col(k) -= zero_ * zero_.dot(columns.col(k));
+  return columns;
+}
+
+double most_likely_scatter(const CourseData& data, const CourseNoise& noise,
+                           const MatrixXd& columns, const std::vector<Quantity>& of) {
+  double best = 0.0, least = std::numeric_limits<double>::infinity();
+  for (const double scatter : CoursePool::scatters) {
+    CoursePool pool(data, {noise.correlation_time, scatter});
+    const std::vector<Index> at = pool.add(columns, of);
+    pool.finish();
+    const double cost = pool.cost(at, CourseSides(pool, data.displacements())).mean() +
+                        pool.whitening().half_log_determinant();
+    if (cost < least) least = cost, best = scatter;
+  }
+  return best;
+}
+
+CourseUncertainty uncertainty_of(const CourseData& data, const MatrixXd& columns,
+                                 const std::vector<Quantity>& of) {
+  CourseUncertainty out;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double part_of_test : {96.0, 24.0, 6.0, 1.5})
+    for (const double scatter : CoursePool::scatters) {
+      CoursePool pool(data, {data.duration() / part_of_test, scatter});
+      const std::vector<Index> at = pool.add(columns, of);
+      pool.finish();
+      const CourseSides sides(pool, data.displacements().leftCols(1));
+      const double cost = pool.cost(at, sides)(0) + pool.whitening().half_log_determinant();
+      if (out.s > 0.0 && !(cost < least)) continue;
+      least = cost;
+      const double variance = pool.variance(at, sides);
+      out.covariance = variance * pool.covariance(at, variance);
+      out.s = std::sqrt(variance * (1.0 + scatter));
+      out.zero = std::sqrt(variance * pool.whitening().variance_of_zero());
+    }
+  return out;
+}
+
+}  // namespace nonio::model
