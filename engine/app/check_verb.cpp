@@ -60,6 +60,13 @@ class Check {
     ++count_;
   }
 
+  void warn(const std::string& message) {
+    if (common_.json)
+      warnings_.push_back(message);
+    else
+      std::cout << message << "\n";
+  }
+
   template <class Result>
   void expect(const Result& result) {
     if (!result)
@@ -90,6 +97,8 @@ class Check {
     const evaluation::Evaluated evaluated =
         evaluation::evaluate(folder, id, place_->context, [](const std::string&) {});
     for (const Error& e : evaluated.results.errors) found(e, folder.string());
+    for (const Remark& note : evaluated.results.notes)
+      if (note.id == reading::former_key_note) warn(folder.string() + "/" + note.english);
     invalid_ += count_ > before ? 1 : 0;
   }
 
@@ -98,7 +107,8 @@ class Check {
       print_json(Json{{"schema", "nonio-check/1"},
                       {"campaigns", campaigns_},
                       {"invalid", invalid_},
-                      {"errors", errors_}});
+                      {"errors", errors_},
+                      {"warnings", warnings_}});
     else if (!common_.quiet)
       std::cout << campaigns_ << (campaigns_ == 1 ? " campaign" : " campaigns") << " checked: "
                 << (count_ == 0 ? "no error"
@@ -110,7 +120,7 @@ class Check {
   const Common& common_;
   std::unique_ptr<reading::Workplace> place_{};
   std::map<std::string, fs::path> folders_{};  ///< by the id of the campaign
-  Json errors_ = Json::array();
+  Json errors_ = Json::array(), warnings_ = Json::array();
   std::size_t campaigns_ = 0, invalid_ = 0, count_ = 0;
 };
 

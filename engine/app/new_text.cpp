@@ -64,7 +64,7 @@ std::string certificate_text() {
          "# [certificate]\n" +
          offered("certificate", "conditions", "\"No cutting for four hours before the test.\"") +
          offered("certificate", "customer_data", "[\"machine.serial\"]") +
-         offered("certificate", "nothing_else_by", "\"B. Sample\"");
+         offered("certificate", "no_other_deviations_by", "\"B. Sample\"");
 }
 
 /// The field's text, marked where readings are examples.
@@ -89,8 +89,9 @@ std::string axis_text(const NewAxis& a) {
               : "# travel = [0, " + std::string(axis.rotary ? "360" : "1000") + "]";
   text += "  # " + unit + "; targets outside get a finding\n";
   text +=
-      "# table_on = \"none\"  # table active in the control while measured: its file, or \"none\"\n"
-      "# backlash_on_" +
+      "# active_table = \"none\"  # table active in the control while measured: its file, or "
+      "\"none\"\n"
+      "# active_backlash_" +
       unit + " = \"none\"  # backlash value active then; without both no table is written\n";
   if (axis.rotary)
     return text +

@@ -188,8 +188,23 @@ Expected<void> survey_site(const RunOptions& options, const reading::Context& co
   return {};
 }
 
+/// Keys with former names: of many the messages name the first.
+void report_former_keys(const Night& night, const RunEvents& events) {
+  constexpr std::size_t most = 20;
+  std::size_t count = 0;
+  for (const CampaignState& c : night.campaigns)
+    for (const Error& w : c.warnings())
+      if (++count <= most)
+        events.note(storage::path_text(c.folder.view()) + "/" + w.file + ":" +
+                    std::to_string(w.line) + ": " + w.message);
+  if (count > most)
+    events.note("and " + std::to_string(count - most) +
+                " more keys with former names: `nonio check` lists them");
+}
+
 void tell_plan(const Night& night, const RunEvents& events) {
   tell_vanished(night, events);
+  report_former_keys(night, events);
   events.planned(night.campaigns.size(),
                  static_cast<std::size_t>(
                      std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));

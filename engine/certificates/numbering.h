@@ -11,7 +11,7 @@
 namespace nonio::certificates {
 
 /// Whether a rule of the site lets this finding stand.
-const config::StandingRule* rule_for(const config::Numbering& numbering,
+const config::AcceptedRule* rule_for(const config::Numbering& numbering,
                                      const evaluation::KnownFinding& finding);
 
 /// A draft, and the one who releases it.

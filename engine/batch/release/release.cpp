@@ -60,7 +60,7 @@ std::string mistake_in(const ReleaseRequest& request) {
   if (const std::string mistake = certificates::mistake_in_name(request.by); !mistake.empty())
     return "--by: " + mistake;
   for (const auto& [finding, reason] : request.reasons)
-    if (!says_something(reason) || !is_one_line(reason))
+    if (!has_content(reason) || !is_one_line(reason))
       return "the reason for " + finding +
              " is empty or has a control character; expected one line of text";
   return {};

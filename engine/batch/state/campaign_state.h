@@ -33,6 +33,9 @@ class CampaignState {
 
   const std::vector<Error>& errors() const { return seldom().errors; }
   void set_errors(std::vector<Error> errors);
+  /// Of the manifest: keys with former names. Not kept for the next run.
+  const std::vector<Error>& warnings() const { return seldom().warnings; }
+  void set_warnings(std::vector<Error> warnings);
   /// Begin of the SHA-256 of files that another campaign has too, and where that one stands in the list of campaigns.
   const std::vector<Twin>& twins() const { return seldom().twins; }
   void add_twin(Twin twin) { change().twins.push_back(twin); }
@@ -46,7 +49,7 @@ class CampaignState {
  private:
   /// What few campaigns have.
   struct Seldom {
-    std::vector<Error> errors;
+    std::vector<Error> errors, warnings;
     std::vector<Twin> twins;
     std::vector<TwinBefore> twins_before;
   };

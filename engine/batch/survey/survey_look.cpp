@@ -75,6 +75,7 @@ std::string ChangeDetector::read_whole(CampaignState& state, const std::string& 
   signs_.reads = true;
   signs_.beat();
   if (!parsed) return {};
+  state.set_warnings(parsed->warnings);
   std::set<std::string> files;
   std::vector<std::uint64_t> readings;
   for (const Measurement& m : parsed->campaign.measurements) {

@@ -111,7 +111,7 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   auto site = config::site_in(*files, context.site_sha256);
   if (!site) return fail(all_of(site.error()));
   context.site = std::move(*site);
-  place->notes = context.site.notes;
+  for (const Error& warning : context.site.warnings) place->notes.push_back(all_of({warning}));
   auto machines = config::read_machines(options.site);
   if (!machines) return fail(all_of({machines.error()}));
   place->parts.complete(*machines);

@@ -358,7 +358,7 @@ class CourseExplanation {
       out_.together.push_back(search_.term_of(e).name());
       terms.push_back(search_.term_of(e));
     }
-    out_.best_rms = out_.certain_rms = out_.comparison.fit.rms;
+    out_.best_rms = out_.significant_rms = out_.comparison.fit.rms;
     out_.fails = out_.comparison.seats;
     Verdict& v = out_.verdict;
     v.trials = copies;
@@ -367,7 +367,8 @@ class CourseExplanation {
       if (by_chance.p(x) < named_p && x > -std::log(worth_a_term)) ++alarms;
     v.false_alarms = static_cast<double>(alarms) / static_cast<double>(copies);
     if (!set_.empty()) {
-      if (const auto fit = fit_course(part_, terms)) out_.best_rms = out_.certain_rms = fit->rms;
+      if (const auto fit = fit_course(part_, terms))
+        out_.best_rms = out_.significant_rms = fit->rms;
       v.kind = Verdict::Kind::missing;
       v.effect = out_.certain.front();
       return;

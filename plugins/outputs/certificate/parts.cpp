@@ -292,10 +292,11 @@ void add_departures(const Source& source, Blocks& blocks) {
     paragraph(blocks,
               source.words.get("method_heading.deviations", {{"deviations", texts.deviations}}),
               "certificate.deviations");
-  if (!texts.nothing_else_by.empty())
-    paragraph(blocks,
-              source.words.get("method_heading.nothing_else", {{"person", texts.nothing_else_by}}),
-              "certificate.nothing_else_by");
+  if (!texts.no_other_deviations_by.empty())
+    paragraph(
+        blocks,
+        source.words.get("method_heading.nothing_else", {{"person", texts.no_other_deviations_by}}),
+        "certificate.no_other_deviations_by");
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ class New(VerbTest):
         texts = [path.read_text() for path in (lab / "first-campaign" / "campaign.toml", lab / "site.toml")]
         for key in ("feed_mm_per_min", "dwell_s", "over_travel_mm", "tool_offset", "workpiece_offset", "compensation",
                     "sphere_um", "probe_um", "issuer", "valid_until", "measures", "warm_up", "sensors", "conditions",
-                    "nothing_else_by", "release", "two_persons"):
+                    "no_other_deviations_by", "release", "two_persons"):
             with self.subTest(key):
                 line, = (row for text in texts for row in text.splitlines() if row.startswith(f"# {key} = "))
                 self.assertRegex(line, r"  # .{15}")

@@ -212,7 +212,7 @@ class Stopped(unittest.TestCase):
             manifest = cls.site / f"{finding}-stands" / "campaign.toml"
             doubts = cls.doubts(f"{finding}-stands")
             manifest.write_text(manifest.read_text() + "".join(
-                f'[[tables.may_stand]]\nfinding = "{d}"\nreason = "{REASON}"\n' for d in sorted(doubts)))
+                f'[[tables.accept]]\nfinding = "{d}"\nreason = "{REASON}"\n' for d in sorted(doubts)))
         cls.night()
 
     @classmethod
