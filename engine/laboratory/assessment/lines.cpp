@@ -7,6 +7,7 @@
 
 #include "campaign/config/manifest.h"
 #include "laboratory/assessment/lines_of_machine.h"
+#include "nonio/reports/quantity_words.h"
 
 namespace nonio::assessment {
 
@@ -231,6 +232,7 @@ bool comes_before(const MorningLine& a, const MorningLine& b) {
 
 std::string kind_of(const std::string& quantity) {
   const auto is = [&](const char* begin) { return quantity.starts_with(begin); };
+  if (reports::is_log_of_scatter(quantity)) return "scatter";
   if (is("B_mean") || is("backlash")) return "reversal";
   for (const char* of_circle :
        {"B_circle", "bow:", "lateral", "radius:", "scale_mismatch", "servo_mismatch"})
@@ -239,7 +241,6 @@ std::string kind_of(const std::string& quantity) {
   if (is("curve") || is("pitch-curve")) return "curve";
   if (is("turn")) return "turn";
   if (is("cyclic")) return "cyclic";
-  if (is("ln_s")) return "scatter";
   if (is("squareness")) return "squareness";
   if (is("straightness")) return "straightness";
   if (is("centre") || is("direction") || is("chain_")) return "centre";

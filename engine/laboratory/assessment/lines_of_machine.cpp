@@ -10,6 +10,7 @@
 #include "laboratory/assessment/lines.h"
 #include "laboratory/assessment/open_values.h"
 #include "laboratory/statistics/forecast.h"
+#include "nonio/reports/quantity_words.h"
 
 namespace nonio::assessment {
 
@@ -116,8 +117,15 @@ class OfMachine {
   void describe(MorningLine& l, const AxisChange& cause) const {
     const AxisChange::Seen& first = cause.seen.front();
     const Quantity q = first.series->unit;
-    l.finding.evidence.push_back({"size", first.change->size, q});
-    l.finding.evidence.push_back({"U", 2.0 * first.change->u, q});
+    const double size = first.change->size, U = 2.0 * first.change->u;
+    if (reports::is_log_of_scatter(first.series->quantity)) {
+      l.finding.evidence.push_back({"factor", std::exp(size), Quantity::ratio});
+      l.finding.evidence.push_back({"low", std::exp(size - U), Quantity::ratio});
+      l.finding.evidence.push_back({"high", std::exp(size + U), Quantity::ratio});
+    } else {
+      l.finding.evidence.push_back({"size", size, q});
+      l.finding.evidence.push_back({"U", U, q});
+    }
     l.finding.evidence.push_back({"p", first.change->p, Quantity::probability});
     put_text(l, "after", cause.after);
     put_text(l, "before", cause.before);

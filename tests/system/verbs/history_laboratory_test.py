@@ -123,15 +123,15 @@ class Laboratory(unittest.TestCase):
 
     def test_on_a_terminal(self):
         table = nonio("machine", "history", self.out).stdout.splitlines()
-        self.assertEqual(table[0].split()[0], "machine")
+        self.assertEqual(table[0].split()[0], "Machine")
         self.assertEqual(len(table), 1 + len(self.history["machines"]))
         said = nonio("machine", "history", self.out, "LAB-02", "--axis", "X", "--quantity", "B_mean").stdout
         self.assertRegex(said, r"2025-07-14 .*\n +~ -4\.\d+ ± 0\.\d+ um, p < 0\.0001: changed; no event is known\n +2026-01-24")
         said = nonio("machine", "history", self.out, "LAB-03", "--axis", "Z", "--quantity", "B_mean").stdout
         self.assertIn("* crash: Drove into the pallet", said)
-        self.assertIn("slope", said)
+        self.assertIn("Slope: ", said)
         said = nonio("machine", "history", self.out, "LAB-01", "--axis", "X", "--quantity", "B_mean").stdout
-        self.assertRegex(said, r"no change without a known event; detection limit 0\.\d+")
+        self.assertRegex(said, r"No change without a known event. Detection limit: 0\.\d+ um")
         self.assertIn('nearest: "LAB-01"', nonio("machine", "history", self.out, "LAB-O1", expect=2).stderr)
         self.assertIn("nonio run", nonio("machine", "history", self.site, expect=2).stderr)
         one = json.loads(nonio("machine", "history", self.out, "LAB-02", "--json").stdout)

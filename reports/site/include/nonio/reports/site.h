@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nonio/reports/history_value.h"
+#include "nonio/reports/quantity_words.h"
 #include "nonio/sdk/history.h"
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
