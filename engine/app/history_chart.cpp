@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "campaign/config/keys.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/units.h"
 #include "printable.h"
@@ -82,11 +83,10 @@ class Numbers {
 /// A scatter is followed without a unit; it has that of the deviations of its axis.
 std::string unit_of_series(const reports::MachineHistory& machine, const HistorySeries& s) {
   if (!reports::is_log_of_scatter(s.quantity)) return std::string(unit_of(s.unit).symbol);
-  const bool is_rotary =
-      std::any_of(machine.series.begin(), machine.series.end(), [&](const HistorySeries& other) {
-        return other.axis == s.axis && (other.unit == Quantity::angular_deviation ||
-                                        other.unit == Quantity::deviation_per_angle);
-      });
+  bool is_rotary = config::rotary_by_name(s.axis);
+  for (const HistorySeries& other : machine.series)
+    if (other.axis == s.axis && other.quantity == "B_mean")
+      is_rotary = other.unit == Quantity::angular_deviation;
   return std::string(unit_of(is_rotary ? Quantity::angular_deviation : Quantity::deviation).symbol);
 }
 

@@ -110,6 +110,7 @@ Morning morning_of(Night& night, const RunOptions& options, const RunEvents& eve
   auto made = make_morning(options, context, tonight_of(night, options.out, context.templates));
   if (made) {
     night.asking = made->asking;
+    night.actions = made->actions;
     return std::move(*made);
   }
   if (process::is_stop_requested()) return {};
@@ -388,6 +389,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   if (!place) return refuse(place.error().message);
   const reading::Context& context = (*place)->context;
   night.notes = (*place)->notes;
+  if (events.words) events.words(config::TerminalWords(context.templates, context.site.language));
 
   std::optional<OutputLock> lock;
   if (options.dry_run) {

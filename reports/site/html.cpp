@@ -95,10 +95,7 @@ std::string factor_text(const Page& page, double difference, double u) {
 }
 
 std::string line_text(const Page& page, const MorningLine& l, const char* part) {
-  MorningLine line = l;
-  for (auto& [name, text] : line.finding.texts)
-    if (name == "event") text = event_text(page.words, text);
-  return reports::line_text(page.templates, page.words.language(), line, part);
+  return reports::line_text(page.templates, page.words.language(), l, part);
 }
 
 std::string also_text(const Page& page, const MorningLine& l) {
@@ -184,8 +181,11 @@ std::string titles(const Templates& templates, std::string_view language, const 
 std::string line_text(const Templates& templates, std::string_view language, const MorningLine& l,
                       std::string_view part) {
   Finding finding = l.finding;
-  for (auto& [name, text] : finding.texts)
+  for (auto& [name, text] : finding.texts) {
     if (name == "withheld") text = titles(templates, language, text, l.axis);
+    if (name == "event")
+      text = event_text(Wording(templates, std::string(language), {"site"}), text);
+  }
   if (!l.campaigns.empty()) {
     std::string names;
     for (std::size_t i = 0; i < std::min(l.campaigns.size(), most_named); ++i)

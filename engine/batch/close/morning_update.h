@@ -16,7 +16,8 @@ struct Morning {
   std::string json;  ///< the same lines as a list, of summary.json
   std::uint64_t asking = 0;  ///< lines that are new and no mere notes
   bool judged = true;        ///< some campaign states a limit
-  std::string mail;          ///< the lines that are grave enough for one; empty: none is
+  std::string actions;  ///< like `json`, in the language of the site: lines that require action
+  std::string mail;     ///< the lines that are grave enough for one; empty: none is
 };
 
 /// What the night knows and the history does not.

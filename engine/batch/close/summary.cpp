@@ -28,21 +28,12 @@ std::string where(const Error& e) {
 /// Why a campaign was done, in the language of `words`: a fixed text, or a name and what became of
 /// it.
 std::string one_reason(const std::string& text, const config::TerminalWords& words) {
+  if (std::string whole = words.of("reason", text); whole != text) return whole;
   for (const char* what : {" changed", " is missing from the output", " was changed in the output"})
     if (text.ends_with(what))
       return words(std::string("reason.*") + what,
                    {{"what", text.substr(0, text.size() - std::string_view(what).size())}});
-  return words.of("reason", text);
-}
-
-std::string reason_in(const std::string& text, const config::TerminalWords& words) {
-  std::string out;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t to = std::min(text.find("; ", from), text.size());
-    out += (from == 0 ? "" : "; ") + one_reason(text.substr(from, to - from), words);
-    from = to + 2;
-  }
-  return out;
+  return text;
 }
 
 constexpr std::size_t most_shown = 6;  // of a list, in summary.txt
@@ -346,6 +337,16 @@ std::size_t Night::lost_parts() const {
   return static_cast<std::size_t>(
       std::count_if(vanished.begin(), vanished.end(),
                     [](const Vanished& v) { return !config::is_campaign_id(v.id); }));
+}
+
+std::string reason_in(const std::string& text, const config::TerminalWords& words) {
+  std::string out;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find("; ", from), text.size());
+    out += (from == 0 ? "" : "; ") + one_reason(text.substr(from, to - from), words);
+    from = to + 2;
+  }
+  return out;
 }
 
 std::string first_error(const CampaignState& c, const config::TerminalWords& words) {

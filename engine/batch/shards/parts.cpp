@@ -156,6 +156,8 @@ Expected<void> do_part(const RunOptions& options, const RunEvents& events, const
   if (to_do > 0) {  // else no plugin is loaded
     const auto place = set_up(options);
     if (!place) return fail(place.error());
+    const reading::Context& read = (*place)->context;
+    if (events.words) events.words(config::TerminalWords(read.templates, read.site.language));
     if (const auto same = check_made_with(plan, (*place)->context); !same) return same;
     NightState state;
     state.number = plan.night.number;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "batch/state/campaign_state.h"
+#include "campaign/config/terminal_words.h"
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/evaluation/record.h"
 #include "campaign/evaluation/status.h"
@@ -57,6 +58,8 @@ struct RunEvents {
   std::function<void()> tick;  ///< several times a second, to redraw
   /// What is done from now on: survey, campaigns, history, pages.
   std::function<void(const char* name)> stage{};
+  /// Before everything else, once site.toml and the templates are read.
+  std::function<void(const config::TerminalWords&)> words{};
 };
 
 struct Night {
@@ -77,7 +80,8 @@ struct Night {
     return failed() > 0 || lost_parts() > 0 || vanished.size() > may_vanish ||
            !history_error.empty() || !morning_error.empty();
   }
-  std::size_t may_vanish = 0;             ///< so many campaigns may vanish, by site.toml
+  std::size_t may_vanish = 0;  ///< so many campaigns may vanish, by site.toml
+  std::string actions{};       ///< JSON: lines that require action, in the language of the site
   std::optional<std::uint64_t> asking{};  ///< lines of the morning that ask for a decision
   std::string morning_error{};            ///< why the pages were not made, or the mail not sent
   std::string history_error{};            ///< why OUT/history.sqlite does not know this night

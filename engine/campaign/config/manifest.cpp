@@ -407,12 +407,12 @@ void read_tables(TableReader& top, Manifest& manifest) {
   auto reader = top.table("tables");
   if (!reader) return;
   for (TableReader& one : reader->tables("accept")) {
-    AcceptedFinding standing{one.text("finding"), one.text("reason"), one.line_of("finding")};
-    if (!standing.reason.empty() && !has_content(standing.reason))
+    AcceptedFinding accepted{one.text("finding"), one.text("reason"), one.line_of("finding")};
+    if (!accepted.reason.empty() && !has_content(accepted.reason))
       one.error("reason", "expected why a table may be written all the same, found \"" +
-                              standing.reason + "\"");
+                              accepted.reason + "\"");
     one.finish();
-    manifest.accepted.push_back(std::move(standing));
+    manifest.accepted.push_back(std::move(accepted));
   }
   reader->finish();
 }

@@ -154,22 +154,24 @@ std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Anal
     if (a.plugin != reading::plausibility_name) continue;
     for (Finding& f : a.evaluation.findings) {
       known.insert(f.id);
-      const auto standing =
+      const auto entry =
           std::find_if(accepted.begin(), accepted.end(),
                        [&](const config::AcceptedFinding& one) { return one.finding == f.id; });
-      if (standing != accepted.end())
-        f.texts.emplace_back(reading::stands_because, standing->reason);
-      else if (f.attention)
+      if (entry != accepted.end()) {
+        f.texts.emplace_back(reading::accepted_because, entry->reason);
+        f.texts.emplace_back(reading::formerly_accepted_because, entry->reason);
+      } else if (f.attention) {
         open.insert(f.id);
+      }
     }
   }
   std::string found;
   for (const std::string& id : known) found += (found.empty() ? "" : ", ") + id;
-  for (const config::AcceptedFinding& standing : accepted)
-    if (!known.contains(standing.finding))
-      work.report(Error{"tables.accept: the readings have no finding " + standing.finding +
+  for (const config::AcceptedFinding& entry : accepted)
+    if (!known.contains(entry.finding))
+      work.report(Error{"tables.accept: the readings have no finding " + entry.finding +
                             "; they have " + (known.empty() ? "none" : found),
-                        config::manifest_name, standing.line});
+                        config::manifest_name, entry.line});
   return {open.begin(), open.end()};
 }
 

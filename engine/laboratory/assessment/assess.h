@@ -65,6 +65,7 @@ std::string history_json(const reports::SiteHistory& site, const Tonight& tonigh
 
 /// The lines as a list: of summary.json, and what `nonio status --actions --json` prints. Numbers in the
 /// printed unit, u standard, sentences in English.
-std::string lines_json(const reports::SiteHistory& site, const Templates& templates);
+std::string lines_json(const reports::SiteHistory& site, const Templates& templates,
+                       const std::string& language = "en");
 
 }  // namespace nonio::assessment

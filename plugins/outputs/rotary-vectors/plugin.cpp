@@ -168,7 +168,7 @@ std::string doubts_of(const Results& results) {
     for (const Finding& f : a.evaluation.findings)
       if (f.id.starts_with("plausibility.") &&
           std::none_of(f.texts.begin(), f.texts.end(),
-                       [](const auto& text) { return text.first == "stands"; }))
+                       [](const auto& text) { return text.first == "accepted"; }))
         ids.insert(f.id);
   std::string list;
   for (const std::string& id : ids) list += (list.empty() ? "" : ", ") + id;

@@ -271,7 +271,7 @@ class Stopped(unittest.TestCase):
                 self.assertEqual(content["errors"], [])
                 self.assertIn("plausibility." + finding, self.doubts(name))
                 self.assertNotIn("table.withheld", json.dumps(content))
-                stands = [f["evidence"].get("stands") for a in content["analyses"] for f in a["findings"]
+                stands = [f["evidence"].get("accepted") for a in content["analyses"] for f in a["findings"]
                           if f["id"] == "plausibility." + finding]
                 self.assertEqual(set(stands), {REASON})
 
