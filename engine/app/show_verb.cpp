@@ -186,6 +186,7 @@ class Page {
         if (!text.empty()) out_ << "  " << say_.of("campaign", name) << " " << text << "\n";
     if (!results.contains("certificate")) return;
     const Json& issued = results.at("certificate");
+    if (issued.value("number", "").empty()) return;  // a draft
     const std::string replaced = issued.value("replaces", "");
     out_ << "  " << say_("campaign.certificate") << " "
          << say_("certificate-of",
