@@ -29,7 +29,7 @@ bool is_foreign(const std::string& input) {
   return input.starts_with(reading::shared_name("")) || input.starts_with(config::machine_prefix);
 }
 
-/// What a certificate is made from: the campaign's own files, and what of site.toml has a say in
+/// What a certificate is made from: the campaign's own files, and the parts of site.toml that affect
 /// the results.
 reading::Inputs data_of(const evaluation::Evaluated& evaluated, const reading::Context& context) {
   reading::Inputs data = evaluated.inputs;
@@ -83,7 +83,7 @@ Expected<Files> current_files(const evaluation::Evaluated& evaluated,
   return files;
 }
 
-/// In the order of `now`; then what is gone.
+/// In the order of `now`; then the removed ones.
 std::vector<FileChange> changes_of(const Files& then, const Files& now) {
   std::vector<FileChange> all;
   for (const auto& [name, bytes] : now) {
@@ -156,7 +156,7 @@ Expected<Register> Numbers::open() const {
 
 namespace {
 
-/// Whether an open finding asks for somebody to look at it whom the rules cannot stand for.
+/// Whether an open finding requires the decision of a person, which the rules cannot replace.
 bool any_unruled(const std::vector<evaluation::KnownFinding>& findings,
                  const config::Numbering& numbering) {
   return std::any_of(findings.begin(), findings.end(), [&](const evaluation::KnownFinding& f) {

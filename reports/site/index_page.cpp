@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// index.html: what a person decides this morning.
+// index.html: the worklist.
 #include <algorithm>
 #include <map>
 #include <set>

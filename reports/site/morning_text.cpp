@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The morning as text: one line, one decision.
+// The worklist as text: one line per action.
 #include <algorithm>
 #include <map>
 

@@ -58,7 +58,7 @@ class New(VerbTest):
             for line in path.read_text().splitlines():
                 bare = line.removeprefix("# ")
                 is_key = line.startswith("# ") and (bare.startswith("[") or " = " in bare.split("#")[0])
-                if is_key and not any(bare.startswith(w) for w in ("[signing]", "pkcs12", "password_file", "exclude", "teeth",
+                if is_key and not any(bare.startswith(w) for w in ("[signing]", "pkcs12", "password_file", "trust", "exclude", "teeth",
                                                                    "tolerance_arcsec")):
                     line = bare
                 lines.append(line)
