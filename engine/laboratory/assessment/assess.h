@@ -47,7 +47,7 @@ class Assessment {
   bool has_page(std::size_t machine, const std::string& templates) const;
   /// It was written just now.
   void note_page(std::size_t machine, const std::string& templates);
-  /// For the next night.
+  /// For the next run.
   void keep();
   reports::SiteHistory take_site() &&;
   /// With all series of all machines.

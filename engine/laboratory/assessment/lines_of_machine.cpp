@@ -75,7 +75,7 @@ class OfMachine {
 
   // ---- what changed
 
-  /// The changes of each axis that nobody has mended since.
+  /// The changes of each axis that were not repaired since.
   void causes_by_axis() {
     for (const HistorySeries& s : d_.series) {
       std::string mended;
@@ -92,8 +92,8 @@ class OfMachine {
                          [](const auto& a, const auto& b) { return a.size() > b.size(); });
   }
 
-  /// Somebody has said that this axis was repaired or compensated after that campaign. What is
-  /// planned has mended nothing yet.
+  /// An event states that this axis was repaired or compensated after that campaign. A plan
+  /// has repaired nothing yet.
   bool is_repaired(const std::string& axis, const std::string& after) const {
     return std::any_of(m_.events.begin(), m_.events.end(), [&](const config::Event& e) {
       return (e.kind == "repair" || e.kind == "compensation") && e.date > after &&
@@ -174,7 +174,7 @@ class OfMachine {
     return r.axis.empty() ? r.source : r.axis;
   }
 
-  /// Of each axis one line with all that does not conform or cannot be decided.
+  /// Of each axis one line with all that does not conform or is indeterminate.
   void judged() {
     std::map<std::string, std::vector<Judged>> out, open, good, anew;
     std::map<std::string, std::vector<reports::OpenValue>> missing;
@@ -212,7 +212,7 @@ class OfMachine {
       if (!out.contains(axis) && !good.contains(axis)) add_fixed("morning.judged-anew", all);
   }
 
-  /// What is open beside the values of the line.
+  /// What is open in addition to the values of the line.
   void also(MorningLine& l, std::vector<Judged> open,
             const std::vector<reports::OpenValue>& missing) const {
     worst_first(open);
@@ -408,7 +408,7 @@ class OfMachine {
     add(std::move(l));
   }
 
-  /// Nobody has measured yet what is dated after the night.
+  /// A campaign that is dated after the run is not measured yet.
   void later() {
     for (const store::StoredMachine::Later& c : m_.stored.later) {
       MorningLine l = line(Kind::undecided, "morning.later", c.campaign);
