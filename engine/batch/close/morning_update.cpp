@@ -92,7 +92,7 @@ void add_curves(reports::SiteHistory& site, const fs::path& out,
   }
 }
 
-/// What the night writes to those whom `[mail]` names; empty if nothing asks for it. Leaves `site` as it
+/// The mail of the run to the addresses in `[mail]`; empty if no line requires it. Leaves `site` as it
 /// was.
 Expected<std::string> mail_text(reports::SiteHistory& site, const reading::Context& context,
                                 const std::string& language) {
@@ -133,7 +133,7 @@ Expected<Texts> texts_of(reports::SiteHistory site, const reading::Context& cont
                site.judged ? "1" : "", *mail, actions};
 }
 
-/// All machines anew, with the error curves that stand in each campaign's results.json.
+/// All machines anew, with the error curves of each campaign's results.json.
 Expected<Texts> small_morning(const fs::path& out, const reading::Context& context,
                               const assessment::Tonight& tonight,
                               const std::function<void()>& alive) {

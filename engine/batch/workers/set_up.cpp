@@ -28,7 +28,7 @@ std::string all_of(const std::vector<Error>& errors) {
   return text;
 }
 
-/// What the morning's reader should know of the key.
+/// What the reader of the summary should know of the key.
 void note_key(SetUp& place, bool is_stamped) {
   constexpr sign::Time month = sign::Time{30} * 86400;
   std::vector<std::string>& notes = place.notes;
