@@ -27,8 +27,8 @@ travel = [0.0, 400.0]
 screw_pitch_mm = 10.0
 expansion_um_per_m_K = 11.5
 tolerance_um = { "iso-1988:A" = 8.0, "nmtba:+-accuracy" = 4.0, "upr:UPR" = 1.2 }
-table_on = "none"
-backlash_on_mm = "none"
+active_table = "none"
+active_backlash_mm = "none"
 
 [instrument]
 maker = "Sample Optics"

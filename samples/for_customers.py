@@ -55,8 +55,8 @@ travel = [0.0, 800.0]
 screw_pitch_mm = 10.0
 expansion_um_per_m_K = 11.5
 tolerance_um = { A = 12.0, B = 3.0 }
-table_on = "none"
-backlash_on_mm = "none"
+active_table = "none"
+active_backlash_mm = "none"
 
 [instrument]
 maker = "Sample Optics"

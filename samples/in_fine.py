@@ -30,11 +30,11 @@ def dense_run():
 
 
 SHORT = """
-[[tables.may_stand]]
+[[tables.accept]]
 finding = "plausibility.span-against-travel"
 reason = "Single steps: a short stretch is meant."
 
-[[tables.may_stand]]
+[[tables.accept]]
 finding = "plausibility.span-against-pitch"
 reason = "Single steps: a piece of one turn is meant."
 """

@@ -151,7 +151,7 @@ def manifest(story, ident, customer, place, date, machine, axes, measurements, i
     out += ['%s = "%s"' % item for item in (campaign or {}).items()] + ["", "[machine]"]
     out += ['%s = "%s"' % item for item in machine.items()]
     for name, keys in axes.items():
-        active = {} if not none_active else {"table_on": '"none"', "backlash_on_%s" % ("deg" if "rotary" in keys["kind"] else "mm"): '"none"'}
+        active = {} if not none_active else {"active_table": '"none"', "active_backlash_%s" % ("deg" if "rotary" in keys["kind"] else "mm"): '"none"'}
         out += ["", "[machine.axes.%s]" % name] + ["%s = %s" % item for item in {**keys, **active}.items()]
     out += ["", "[instrument]"] + ["%s = %s" % item for item in (instrument or INTERFEROMETER).items()]
     if environment:

@@ -11,6 +11,7 @@
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/reading/campaign_reader.h"
 #include "results_folder.h"
+#include "site_words.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -27,7 +28,7 @@ struct CheckWish {
 /// The errors of a site or of one campaign as they are found.
 class Check {
  public:
-  explicit Check(const Common& common) : common_(common) {}
+  explicit Check(const Common& common) : common_(common), words_(common) {}
 
   int run(const fs::path& folder) {
     if (what_holds(folder) == Holds::campaign) {
@@ -60,6 +61,13 @@ class Check {
     ++count_;
   }
 
+  void warn(const std::string& message) {
+    if (common_.json)
+      warnings_.push_back(message);
+    else
+      std::cout << message << "\n";
+  }
+
   template <class Result>
   void expect(const Result& result) {
     if (!result)
@@ -80,6 +88,8 @@ class Check {
                                            common_.template_folders(), NONIO_VERSION);
       if (!place) return found(place.error(), "");
       place_ = std::move(*place);
+      const reading::Context& context = place_->context;
+      words_.take(config::TerminalWords(context.templates, context.site.language));
       for (const std::string& note : place_->notes) complain(note);
     }
     const std::string id = id_of_campaign(folder);
@@ -90,6 +100,8 @@ class Check {
     const evaluation::Evaluated evaluated =
         evaluation::evaluate(folder, id, place_->context, [](const std::string&) {});
     for (const Error& e : evaluated.results.errors) found(e, folder.string());
+    for (const Remark& note : evaluated.results.notes)
+      if (note.id == reading::former_key_note) warn(folder.string() + "/" + note.english);
     invalid_ += count_ > before ? 1 : 0;
   }
 
@@ -98,19 +110,21 @@ class Check {
       print_json(Json{{"schema", "nonio-check/1"},
                       {"campaigns", campaigns_},
                       {"invalid", invalid_},
-                      {"errors", errors_}});
+                      {"errors", errors_},
+                      {"warnings", warnings_}});
     else if (!common_.quiet)
-      std::cout << campaigns_ << (campaigns_ == 1 ? " campaign" : " campaigns") << " checked: "
-                << (count_ == 0 ? "no error"
-                                : std::to_string(count_) + (count_ == 1 ? " error" : " errors"))
+      std::cout << words_.get().counted("check.campaigns", campaigns_) << ": "
+                << (count_ == 0 ? words_.get()("check.none")
+                                : words_.get().counted("check.errors", count_))
                 << "\n";
     return count_ == 0 ? exit_done : exit_failed;
   }
 
   const Common& common_;
+  SiteWords words_;
   std::unique_ptr<reading::Workplace> place_{};
   std::map<std::string, fs::path> folders_{};  ///< by the id of the campaign
-  Json errors_ = Json::array();
+  Json errors_ = Json::array(), warnings_ = Json::array();
   std::size_t campaigns_ = 0, invalid_ = 0, count_ = 0;
 };
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -9,6 +11,7 @@
 #include "laboratory/store/place.h"
 #include "laboratory/store/query.h"
 #include "laboratory/store/store.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -46,18 +49,22 @@ int history(const HistoryWish& wish, const Common& common) {
   auto site = assessment::assess(wish.out, *tonight, [] {});
   if (!site) return complain(site.error().message);
   keep(wish, machine, *site);
+  std::string digest;
+  const auto templates = config::read_templates(common.template_folders(), digest);
+  if (!templates) return complain(templates.error().message);
   if (common.json) {
-    std::string digest;
-    const auto templates = config::read_templates(common.template_folders(), digest);
-    if (!templates) return complain(templates.error().message);
     std::cout << assessment::history_json(*site, *tonight, *templates);
     return exit_done;
   }
+  const std::string language =
+      templates->tables.contains("words/" + tonight->language + "/site") ? tonight->language : "en";
+  const reports::Wording words(*templates, language, {"site", "terminal"});
+  const HistoryWords with{words, line_width(STDOUT_FILENO)};
   if (machine.empty()) {
-    std::cout << machines_table(*site);
+    std::cout << machines_table(*site, with);
     return exit_done;
   }
-  for (const reports::MachineHistory& m : site->machines) std::cout << machine_chart(m);
+  for (const reports::MachineHistory& m : site->machines) std::cout << machine_chart(m, with);
   return exit_done;
 }
 
@@ -81,12 +88,14 @@ Verb history_verb(Common& common) {
            {"--quantity", &wish->quantity, "scale, B_mean, ln_s, A, R, ... as in results.json"}},
           common_arguments(common)),
       .footer =
-          "One line per campaign: o = as found, x = as left, + = check, . = not comparable, with U "
+          "One line per campaign, in the language of the site: o = as found, x = as left, + = "
+          "check, . = not comparable, with U "
           "(k = 2) as in its report and, in brackets, the U of the comparison (scatter of the "
           "readings only, without the contributions that all campaigns with one instrument share). "
           "! = tolerance limit, * = event, ~ = change, with U and adjusted p-value. Smaller "
           "changes cannot be detected; the detection limit is given below each chart. A, E and R "
-          "are shown without a fitted line.\n\n--json writes schema "
+          "are shown without a fitted line. The scatter (ln_s) is shown as the standard deviation "
+          "of a reading with its interval (k = 2), its changes as factors.\n\n--json writes schema "
           "nonio-history/1 (docs/history.md).",
       .examples = {"nonio machine history out S-0042 --axis X --quantity B_mean"},
       .run = [wish, &common] { return history(*wish, common); }};

@@ -110,6 +110,7 @@ std::vector<std::pair<std::string, std::string>> synonyms() {
           {"summary", "status"},
           {"worklist", "status"},
           {"todo", "status"},
+          {"migrate", "upgrade"},
           {"man", "help --man"}};
 }
 
@@ -145,7 +146,8 @@ std::vector<Verb> table_of_commands(Common& common, const Program& program) {
                                 {controls_verb(common), diff_verb(common), predict_verb(common),
                                  insert_verb(common), probe_verb(common)}))});
   add("Program", {apart(plugin_verb(common)), help_verb(program)});
-  add("", {version_verb(common), completion_verb(program), apart(schema_verb(common))});
+  add("", {version_verb(common), completion_verb(program), apart(schema_verb(common)),
+           upgrade_verb(common)});
   return all;
 }
 
@@ -170,7 +172,8 @@ int main(int argc, char** argv) try {
           "Nonio evaluates machine-tool calibration campaigns: results according to the standards, "
           "findings, reports, certificates and compensation tables.",
       .footer =
-          "Also: nonio version, nonio completion SHELL, nonio schema FILE. `nonio help COMMAND` "
+          "Also: nonio version, nonio completion SHELL, nonio schema FILE, nonio upgrade SITE. "
+          "`nonio help COMMAND` "
           "describes a command.\n\n"
           "Exit status: 0 done; 1 done, but some campaign or check failed; 2 usage or "
           "configuration error; 130 interrupted.",

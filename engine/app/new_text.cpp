@@ -64,7 +64,7 @@ std::string certificate_text() {
          "# [certificate]\n" +
          offered("certificate", "conditions", "\"No cutting for four hours before the test.\"") +
          offered("certificate", "customer_data", "[\"machine.serial\"]") +
-         offered("certificate", "nothing_else_by", "\"B. Sample\"");
+         offered("certificate", "no_other_deviations_by", "\"B. Sample\"");
 }
 
 /// The field's text, marked where readings are examples.
@@ -89,8 +89,9 @@ std::string axis_text(const NewAxis& a) {
               : "# travel = [0, " + std::string(axis.rotary ? "360" : "1000") + "]";
   text += "  # " + unit + "; targets outside get a finding\n";
   text +=
-      "# table_on = \"none\"  # table active in the control while measured: its file, or \"none\"\n"
-      "# backlash_on_" +
+      "# active_table = \"none\"  # table active in the control while measured: its file, or "
+      "\"none\"\n"
+      "# active_backlash_" +
       unit + " = \"none\"  # backlash value active then; without both no table is written\n";
   if (axis.rotary)
     return text +
@@ -158,6 +159,35 @@ bool NewCampaign::example() const {
   return std::any_of(axes.begin(), axes.end(), [](const NewAxis& a) { return a.example(); });
 }
 
+bool set_offered(std::string& text, const std::string& key, const std::string& value) {
+  const std::size_t dot = key.rfind('.');
+  if (dot == std::string::npos) return false;
+  const std::string wanted = key.substr(0, dot), name = key.substr(dot + 1) + " = ";
+  std::string out, table;
+  std::size_t header = 0;  // of the table, in `out`
+  bool found = false;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    std::string line = text.substr(at, end - at);
+    at = end;
+    const std::string plain = line.starts_with("# ") ? line.substr(2) : line;
+    if (plain.starts_with('[')) {
+      header = out.size();
+      const std::size_t begin = plain.find_first_not_of('[');
+      table = plain.substr(begin, plain.find(']') - begin);
+    } else if (table == wanted && plain.starts_with(name)) {
+      const std::size_t comment = plain.find(" # ", name.size());
+      line = name + (plain[name.size()] == '"' ? quoted(value) : value) +
+             (comment == std::string::npos ? "\n" : " " + plain.substr(comment));
+      if (out.compare(header, 2, "# ") == 0) out.erase(header, 2);
+      found = true;
+    }
+    out += line;
+  }
+  if (found) text = std::move(out);
+  return found;
+}
+
 std::string site_text(const NewSite& site) {
   std::string text =
       "# Settings for every campaign of this site. A campaign is a folder below with a\n"
@@ -194,7 +224,8 @@ std::string site_text(const NewSite& site) {
          "\n# The key that signs certificates: docs/howto-sign.md\n"
          "# [signing]\n"
          "# pkcs12 = \"key.p12\"\n"
-         "# password_file = \"/etc/nonio/password\"\n";
+         "# password_file = \"/etc/nonio/password\"\n"
+         "# trust = \"root.pem\"  # root of signers and time servers\n";
 }
 
 std::string machine_text(const NewMachine& m) {
@@ -245,6 +276,7 @@ std::string campaign_text(const NewCampaign& c) {
   text += "# One campaign. All keys: docs/manifest.md.\nformat = 1\n\n[campaign]\n";
   text += text_line("id", c.id, "", "unique in the site: a-z 0-9 . _ -");
   text += text_line("customer", marked(c.customer, example), "Officine Esempio S.r.l.");
+  text += text_line("customer_address", "", "Via degli Esempi 1, 10100 Torino");
   text += text_line("site", "", "Torino", "location of the machine");
   text += text_line("operator", c.operator_name, "A. Sample");
   text += "date = " + c.date + "\n\n[machine]\n";

@@ -37,6 +37,11 @@ std::string machine_text(const NewMachine& machine);
 std::string site_text(const NewSite& site);
 std::string campaign_text(const NewCampaign& campaign);
 
+/// Writes a value in place of the example that a text offers for a key as a comment:
+/// "instrument.serial". A key with a quoted example gets a quoted value. False if the text offers
+/// no such key.
+bool set_offered(std::string& text, const std::string& key, const std::string& value);
+
 /// CSV of readings that nobody took, and that say so: 5 runs, both directions, over the travel. Each
 /// campaign and axis has its own, for equal readings of two campaigns are a finding.
 std::string example_readings(const Axis& axis, const std::string& campaign);

@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <ctime>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "axis_argument.h"
+#include "campaign/config/site_files.h"
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/reading/campaign_reader.h"
 #include "new_text.h"
+#include "nonio/sdk/format.h"
 #include "platform/storage/files.h"
 #include "platform/storage/nearest.h"
 #include "platform/storage/scratch_folder.h"
@@ -27,7 +30,7 @@ namespace {
 struct NewWish {
   std::string what, folder, id, customer, operator_name, date, maker, machine, serial, asset,
       control, instrument, laboratory, address, country;
-  std::vector<std::string> axes, files;
+  std::vector<std::string> axes, files, settings;
   bool empty = false, defaults = false;
 };
 
@@ -159,6 +162,95 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   return {};
 }
 
+/// A key of a new file that is prompted for, or given with --set.
+struct Setting {
+  const char *key, *question;
+};
+
+/// What a certificate requires of a site, and of a campaign whose site issues certificates. The
+/// contributions to the uncertainty are not among them: they are judged by a person, in the file.
+constexpr Setting for_certificates = {"laboratory.authoriser",
+                                      "Person who approves certificates (empty: none are issued)"};
+constexpr Setting signing_settings[] = {
+    {"signing.pkcs12", "Key that signs certificates, a PKCS#12 file (empty: none)"},
+    {"signing.password_file", "File with the password of the key"},
+    {"signing.trust", "PEM file with the root of the signer's certificate"}};
+constexpr Setting campaign_settings[] = {{"campaign.customer_address", "Customer, address"},
+                                         {"campaign.site", "Location of the machine"}};
+constexpr Setting instrument_settings[] = {
+    {"instrument.maker", "Instrument, maker"},
+    {"instrument.serial", "Instrument, serial number"},
+    {"instrument.calibrated", "Instrument, day of its calibration"},
+    {"instrument.certificate", "Instrument, number of its calibration certificate"},
+    {"instrument.U_fixed_um", "Instrument, U (k = 2): fixed part in um"},
+    {"instrument.U_per_m_um", "Instrument, U (k = 2): part per metre in um"}};
+
+using Values = std::map<std::string, std::string>;
+
+Expected<void> ask_for(const Setting& one, const std::string& otherwise, Values& values,
+                       Questions& ask) {
+  if (auto done = ask.text(one.question, values[one.key], otherwise); !done) return done;
+  return one_line(one.key, values[one.key]);
+}
+
+/// Into the text that offers these keys.
+Expected<void> set_all(const Values& values, std::string& text) {
+  for (const auto& [key, value] : values)
+    if (!value.empty() && !set_offered(text, key, value))
+      return fail("--set: the new file offers no key " + key +
+                  "; expected one of its keys with the table, such as instrument.serial");
+  return {};
+}
+
+/// The last campaign of a site by its date: its values are defaults of the prompts.
+std::optional<Campaign> last_campaign(const fs::path& site) {
+  std::optional<Campaign> last;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(site, error)) {
+    const auto text = storage::read_small_file(entry.path() / config::manifest_name);
+    if (!text) continue;
+    auto read = config::parse_without_methods(*text, config::manifest_name);
+    if (read && (!last || read->campaign.date > last->date)) last = std::move(read->campaign);
+  }
+  return last;
+}
+
+std::string um_text(const std::optional<double>& m) {
+  std::string text;
+  if (m) append_shortest(text, printed(*m, Quantity::deviation));
+  return text;
+}
+
+/// Of the instrument of the last campaign, if it is the same model.
+Values known_instrument(const std::optional<Campaign>& last, const std::string& model) {
+  if (!last || last->instrument.model.empty() || last->instrument.model != model) return {};
+  const Instrument& i = last->instrument;
+  return {{"instrument.maker", i.maker},
+          {"instrument.serial", i.serial},
+          {"instrument.calibrated", i.calibrated},
+          {"instrument.certificate", i.certificate},
+          {"instrument.U_fixed_um", um_text(i.U_fixed)},
+          {"instrument.U_per_m_um", um_text(i.U_per_length)}};
+}
+
+/// Asked only where the site issues certificates.
+Expected<void> ask_for_certificate(const NewCampaign& c, const fs::path& site, Values& values,
+                                   Questions& ask) {
+  std::string digest;
+  const auto settings = config::read_site(site, digest);
+  if (!settings || settings->laboratory.authoriser.empty()) return {};
+  for (const Setting& one : campaign_settings)
+    if (auto done = ask_for(one, "", values, ask); !done) return done;
+  if (c.instrument.empty()) return {};
+  const Values known = known_instrument(last_campaign(site), c.instrument);
+  for (const Setting& one : instrument_settings) {
+    const auto before = known.find(one.key);
+    if (auto done = ask_for(one, before == known.end() ? "" : before->second, values, ask); !done)
+      return done;
+  }
+  return {};
+}
+
 /// From the folder's name, if the command line does not say it.
 Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questions& ask) {
   std::string id = wish.id, near = valid_id(folder.filename().string());
@@ -245,11 +337,11 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
   return c;
 }
 
-std::vector<Artifact> files_of(const NewCampaign& c) {
+std::vector<Artifact> files_of(const NewCampaign& c, std::string manifest) {
   std::vector<Artifact> files;
   for (const NewAxis& a : c.axes)
     files.push_back({a.file, a.example() ? example_readings(a.axis, c.id) : a.bytes});
-  files.push_back({config::manifest_name, campaign_text(c)});  // last: it shows the rest
+  files.push_back({config::manifest_name, std::move(manifest)});  // last: it shows the rest
   return files;
 }
 
@@ -313,10 +405,34 @@ Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
   const auto campaign = settled(wish, folder, ask);
   if (!campaign) return fail(campaign.error());
   example = campaign->example();
-  NewFiles out{folder, files_of(*campaign)};
+  auto values = settings_of(wish.settings);
+  if (!values) return fail(values.error());
+  if (site)
+    if (auto done = ask_for_certificate(*campaign, *site, *values, ask); !done)
+      return fail(done.error());
+  std::string text = campaign_text(*campaign);
+  if (auto done = set_all(*values, text); !done) return fail(done.error());
+  NewFiles out{folder, files_of(*campaign, std::move(text))};
   if (const auto wrong = mistakes(out.files, campaign->id, site, common); !wrong.empty())
     return fail(text_of(wrong.front()) + "; nothing was written");
   return out;
+}
+
+/// Who approves certificates and what signs them. With a key, campaigns get a certificate.
+Expected<void> settle_certificates(const fs::path& folder, Values& values, Questions& ask) {
+  if (auto done = ask_for(for_certificates, "", values, ask); !done) return done;
+  if (values[for_certificates.key].empty()) return {};
+  for (const Setting& one : signing_settings) {
+    if (auto done = ask_for(one, "", values, ask); !done) return done;
+    std::string& file = values[one.key];
+    if (file.empty()) return {};
+    // As typed it is relative to where the command runs, in the file to the site.
+    const fs::path path = fs::absolute(file).lexically_normal(),
+                   below = path.lexically_relative(folder);
+    file = below.empty() || below.string().starts_with("..") ? path.string() : below.string();
+  }
+  values.emplace("run.outputs", "[\"pdf-report\", \"csv\", \"certificate\"]");
+  return {};
 }
 
 int new_site(const NewWish& wish, const fs::path& folder, const Common& common) {
@@ -329,12 +445,22 @@ int new_site(const NewWish& wish, const fs::path& folder, const Common& common) 
       return complain(done.error().message, ask.status());
     if (auto done = one_line(question, *to); !done) return complain(done.error().message);
   }
-  std::vector<NewFiles> all{{folder, {{config::site_name, site_text(site)}}}};
+  auto values = settings_of(wish.settings);
+  if (!values) return complain(values.error().message);
+  std::string text = site_text(site);
+  if (auto done = settle_certificates(folder, *values, ask); !done)
+    return complain(done.error().message, ask.status());
+  if (auto done = set_all(*values, text); !done) return complain(done.error().message);
+  if (const auto read = config::parse_site(text, config::site_name); !read)
+    return complain(text_of(read.error().front()) + "; nothing was written");
+  std::vector<NewFiles> all{{folder, {{config::site_name, text}}}};
   if (wish.empty) return write_new(all, wish, "site", false, common);
   Questions silent(false);
   bool example = false;
+  NewWish first = wish;
+  first.settings.clear();
   const auto campaign =
-      campaign_files(wish, folder / "first-campaign", {}, silent, example, common);
+      campaign_files(first, folder / "first-campaign", {}, silent, example, common);
   if (!campaign) return complain(campaign.error().message);
   all.push_back(*campaign);
   return write_new(all, wish, "site", example, common);
@@ -421,12 +547,18 @@ Verb new_verb(Common& common) {
            {"--laboratory", &wish->laboratory, "For a site: name of the laboratory"},
            {"--address", &wish->address, "For a site: its address"},
            {"--country", &wish->country, "For a site: country, two letters"},
+           settings_argument(wish->settings,
+                             "KEY=VALUE: a key of the new file with its table, such as "
+                             "instrument.serial=L-001; may be given several times"),
            {"--empty", &wish->empty, "A site without a first campaign"},
            {"--defaults", &wish->defaults, "Do not prompt for missing options"}},
           common_arguments(common)),
       .footer =
           "On a terminal the command prompts for missing options, with the default in brackets; an "
-          "empty line accepts it, and ^D or ^C ends without writing anything. Example readings are "
+          "empty line accepts it, and ^D or ^C ends without writing anything. If the site names a "
+          "person "
+          "who approves certificates, it also prompts for what a certificate requires, with the "
+          "instrument of the last campaign as the default. Example readings are "
           "marked: every report prints EXAMPLE, NOT MEASURED next to the customer and the machine. "
           "Existing files are never overwritten.",
       .examples = {"nonio new site lab",

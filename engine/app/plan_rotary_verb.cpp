@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -9,6 +11,7 @@
 #include "axis_argument.h"
 #include "campaign/planning/plan_rotary.h"
 #include "nonio/sdk/format.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -26,19 +29,15 @@ using planning::RotaryRow;
 
 constexpr double um_of_m = 1e6;
 
-std::string cell(const std::string& text, std::size_t width) {
-  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
-}
-
-void print_rotary_row(const RotaryRow& row) {
+std::vector<std::string> cells_of(const RotaryRow& row) {
   const math::RotaryPlanU& u = row.u;
-  std::cout << cell(std::to_string(row.plan.balls), 6)
-            << cell(evidence_text({"", row.plan.radius, Quantity::length}), 10);
+  std::vector<std::string> cells{std::to_string(row.plan.balls),
+                                 evidence_text({"", row.plan.radius, Quantity::length})};
   for (const double m : {2.0 * u.across, 2.0 * u.along, u.centre_rms, u.centre_mean})
-    std::cout << cell(fixed_text(um_of_m * m, 2), 10);
+    cells.push_back(fixed_text(um_of_m * m, 2));
   for (const double rad : {2.0 * u.tilt, u.direction_rms, u.direction_mean})
-    std::cout << cell(fixed_text(um_of_m * rad, 1), 10);
-  std::cout << "\n";
+    cells.push_back(fixed_text(um_of_m * rad, 1));
+  return cells;
 }
 
 nlohmann::ordered_json json_of(const RotaryRow& row) {
@@ -69,26 +68,30 @@ void print_rotary_json(const RotaryWish& wish, const std::vector<RotaryRow>& row
 
 void print_plans_of(const RotaryWish& wish, const std::vector<RotaryRow>& rows, double two_points,
                     const Fewest& fewest) {
-  std::cout << "Axis " << wish.axis
-            << ", every coordinate of a ball with u = " << fixed_text(wish.probe_u, 2)
-            << " um, balls evenly over " << fixed_text(wish.arc, 1) << " deg; " << wish.trials
-            << " simulated measurements, seed " << wish.seed << "\n\n";
-  std::cout << cell("balls", 6);
-  for (const char* head :
-       {"R mm", "U across", "U along", "rms 3D", "mean 3D", "U tilt", "rms dir", "mean dir"})
-    std::cout << cell(head, 10);
-  std::cout << "\n";
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    print_rotary_row(rows[i]);
-    if (i == 0) std::cout << "\n";
-  }
-  std::cout << "\nThe first row is your plan. Point of the axis in um (across it: the worse "
-               "coordinate), direction in urad;\nU with k = 2. Two places half a turn apart: U "
-               "across "
-            << fixed_text(two_points, 2)
-            << " um, no direction, and run-out stays hidden.\nNot in these figures: squareness "
-               "and scales of the linear axes (three balls move the centre\nby R/2 times the "
-               "squareness and show nothing of it), drift, the form of the ball.\n";
+  const std::size_t width = line_width(STDOUT_FILENO);
+  std::cout << wrapped("Axis " + wish.axis + ", every coordinate of a ball with u = " +
+                           fixed_text(wish.probe_u, 2) + " um, balls evenly over " +
+                           fixed_text(wish.arc, 1) + " deg; " + std::to_string(wish.trials) +
+                           " simulated measurements, seed " + std::to_string(wish.seed),
+                       0, width)
+            << "\n";
+  std::vector<std::vector<std::string>> cells{{"balls", "R mm", "U across", "U along", "rms 3D",
+                                               "mean 3D", "U tilt", "rms dir", "mean dir"}};
+  for (const RotaryRow& row : rows) cells.push_back(cells_of(row));
+  const std::vector<std::string> lines = table_rows(cells, width);
+  for (std::size_t i = 0; i < lines.size(); ++i) std::cout << lines[i] << (i == 1 ? "\n" : "");
+  std::cout << "\n"
+            << wrapped(
+                   "The first row is your plan. Point of the axis in um (across it: the worse "
+                   "coordinate), direction in urad; U with k = 2. Two places half a turn apart: "
+                   "U across " +
+                       fixed_text(two_points, 2) + " um, no direction, and run-out is not visible.",
+                   0, width)
+            << wrapped(
+                   "These figures do not contain: squareness and scales of the linear axes "
+                   "(three balls move the centre by R/2 times the squareness and show nothing "
+                   "of it), drift, the form of the ball.",
+                   0, width);
   if (fewest && *fewest)
     std::cout << "Fewest balls for the wanted U at this radius: " << **fewest << "\n";
 }

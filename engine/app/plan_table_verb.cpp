@@ -2,6 +2,8 @@
 //
 // The look-up table of right triples by the ratio of their legs, and for a machine's travels the
 // plan of each triple that fits, by what it costs.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -15,6 +17,7 @@
 #include "nonio/sdk/format.h"
 #include "plan_sheet.h"
 #include "platform/storage/files.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -42,40 +45,42 @@ struct TableRow {
   double ratio() const { return static_cast<double>(triple.b) / static_cast<double>(triple.a); }
 };
 
-std::string right(const std::string& text, std::size_t width) {
-  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
-}
-
 math::MeasuringCost cost_of(const TableWish& w) { return {w.runs, w.feed / 60e3, w.dwell}; }
 
 double minutes_of(const math::TriplePlan& p, const TableWish& w) {
   return math::measuring_time(p, cost_of(w)) / 60.0;
 }
 
+std::vector<std::string> cells_of(const TableRow& row, bool fits) {
+  std::vector<std::string> cells{std::to_string(row.triple.a), std::to_string(row.triple.b),
+                                 std::to_string(row.triple.c), fixed_text(row.ratio(), 3)};
+  if (!fits) return cells;
+  const math::TriplePlan& p = row.plan;
+  const auto mm = [](double m) { return evidence_text({"", m, Quantity::length}); };
+  for (std::string text : {std::to_string(p.q), std::to_string(p.n), mm(p.step_x), mm(p.step_y),
+                           mm(p.step_d), fixed_text(100.0 * p.cover_x, 2),
+                           fixed_text(100.0 * p.cover_y, 2), fixed_text(row.minutes, 1)})
+    cells.push_back(row.fits() ? std::move(text) : "");
+  return cells;
+}
+
 void print_table_rows(const std::vector<TableRow>& rows, const TableWish& wish) {
-  std::cout << right("a", 6) << right("b", 6) << right("c", 6) << right("b/a", 9);
+  const std::size_t width = line_width(STDOUT_FILENO);
+  std::vector<std::vector<std::string>> cells{{"a", "b", "c", "b/a"}};
   if (wish.fits())
-    for (const char* head :
-         {"q", "n", "step X", "step Y", "step D", "cover X%", "cover Y%", "minutes"})
-      std::cout << right(head, 10);
-  std::cout << "\n";
-  for (const TableRow& row : rows) {
-    std::cout << right(std::to_string(row.triple.a), 6) << right(std::to_string(row.triple.b), 6)
-              << right(std::to_string(row.triple.c), 6) << right(fixed_text(row.ratio(), 3), 9);
-    if (row.fits()) {
-      const math::TriplePlan& p = row.plan;
-      const auto mm = [](double m) { return evidence_text({"", m, Quantity::length}); };
-      for (const std::string& text : {std::to_string(p.q), std::to_string(p.n), mm(p.step_x),
-                                      mm(p.step_y), mm(p.step_d), fixed_text(100.0 * p.cover_x, 2),
-                                      fixed_text(100.0 * p.cover_y, 2), fixed_text(row.minutes, 1)})
-        std::cout << right(text, 10);
-    }
-    std::cout << "\n";
-  }
+    for (const char* head : {"q", "n", "step X", "step Y", "step D", "X %", "Y %", "minutes"})
+      cells.front().emplace_back(head);
+  for (const TableRow& row : rows) cells.push_back(cells_of(row, wish.fits()));
+  for (const std::string& row : table_rows(cells, width)) std::cout << row;
   if (wish.fits())
-    std::cout << "\nminutes: X, Y and both diagonals, " << wish.runs << " runs there and back, at "
-              << fixed_text(wish.feed, 0) << " mm/min, " << fixed_text(wish.dwell, 1)
-              << " s at each of the n + 1 stops.\n";
+    std::cout << "\n"
+              << wrapped(
+                     "X %, Y %: part of the travel that is covered. minutes: X, Y and both "
+                     "diagonals, " +
+                         std::to_string(wish.runs) + " runs there and back, at " +
+                         fixed_text(wish.feed, 0) + " mm/min, " + fixed_text(wish.dwell, 1) +
+                         " s at each of the n + 1 stops.",
+                     0, width);
 }
 
 Expected<std::vector<TableRow>> rows_that_fit(const TableWish& wish, math::TripleRequest& w) {

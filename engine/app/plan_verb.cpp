@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -78,37 +80,54 @@ Expected<void> settle(Plan& plan) {
 
 std::string mm_text(double m) { return evidence_text({"", m, Quantity::length}); }
 
-void print_plan(std::size_t number, const math::TriplePlan& p, const math::TriplePlan& best) {
-  std::cout << padded_left(std::to_string(number), 3) << "  "
-            << padded_left(
-                   std::to_string(p.a) + "-" + std::to_string(p.b) + "-" + std::to_string(p.c), 15);
-  for (const std::string& cell :
-       {std::to_string(p.q), std::to_string(p.n), mm_text(p.step_x), mm_text(p.step_y),
-        mm_text(p.step_d), mm_text(p.length_x), mm_text(p.length_y), mm_text(p.length_d),
-        fixed_text(100.0 * p.cover_x, 2), fixed_text(100.0 * p.cover_y, 2),
-        fixed_text(p.gain_EYX(), 2), fixed_text(p.gain_EXY(), 2)})
-    std::cout << padded_left(cell, 10);
-  std::cout << "\n       why: " << planning::why_listed(p)
-            << "\n       gives up: " << planning::gives_up(p, best) << "\n";
-  if (const std::string warning = planning::aspect_warning(p); !warning.empty())
-    std::cout << "       warning: " << warning << "\n";
+std::vector<std::string> cells_of(std::size_t number, const math::TriplePlan& p) {
+  return {std::to_string(number),
+          std::to_string(p.a) + "-" + std::to_string(p.b) + "-" + std::to_string(p.c),
+          std::to_string(p.q),
+          std::to_string(p.n),
+          mm_text(p.step_x),
+          mm_text(p.step_y),
+          mm_text(p.step_d),
+          mm_text(p.length_x),
+          mm_text(p.length_y),
+          mm_text(p.length_d),
+          fixed_text(100.0 * p.cover_x, 2),
+          fixed_text(100.0 * p.cover_y, 2),
+          fixed_text(p.gain_EYX(), 2),
+          fixed_text(p.gain_EXY(), 2)};
 }
 
 void print_plans(const Plan& plan, const math::TriplePlans& found) {
+  constexpr std::size_t indent = 7;
+  const std::size_t width = line_width(STDOUT_FILENO);
   const math::TripleRequest& w = plan.wish;
-  std::cout << "X " << mm_text(w.x) << " mm, Y " << mm_text(w.y) << " mm, over-travel "
-            << mm_text(w.over_travel) << " mm at each end; steps are multiples of "
-            << mm_text(w.resolution) << " mm" << (w.largest_step > 0.0 ? ", at most " : "")
-            << (w.largest_step > 0.0 ? mm_text(w.largest_step) + " mm" : "") << "\n\n"
-            << padded_left("a-b-c", 20);
-  for (const char* head : {"q", "n", "step X", "step Y", "step D", "X mm", "Y mm", "D mm",
-                           "cover X%", "cover Y%", "gain EYX", "gain EXY"})
-    std::cout << padded_left(head, 10);
-  std::cout << "\n";
+  std::cout << wrapped(
+                   "X " + mm_text(w.x) + " mm, Y " + mm_text(w.y) + " mm, over-travel " +
+                       mm_text(w.over_travel) + " mm at each end; steps are multiples of " +
+                       mm_text(w.resolution) + " mm" +
+                       (w.largest_step > 0.0 ? ", at most " + mm_text(w.largest_step) + " mm" : ""),
+                   0, width)
+            << "\n";
+  std::vector<std::vector<std::string>> cells{{"", "a-b-c", "q", "n", "step X", "step Y", "step D",
+                                               "X mm", "Y mm", "D mm", "X %", "Y %", "EYX", "EXY"}};
   for (std::size_t i = 0; i < found.plans.size(); ++i)
-    print_plan(i + 1, found.plans[i], found.plans.front());
-  std::cout << "\nn + 1 stops on each line. gain: scatter of a straightness, for a scatter of 1 of "
-               "one reading\nof the diagonals.\n";
+    cells.push_back(cells_of(i + 1, found.plans[i]));
+  const std::vector<std::string> rows = table_rows(cells, width);
+  std::cout << rows.front();
+  for (std::size_t i = 0; i < found.plans.size(); ++i) {
+    const math::TriplePlan& p = found.plans[i];
+    std::cout << rows[i + 1] << wrapped("why: " + planning::why_listed(p), indent, width, 2)
+              << wrapped("gives up: " + planning::gives_up(p, found.plans.front()), indent, width,
+                         2);
+    if (const std::string warning = planning::aspect_warning(p); !warning.empty())
+      std::cout << wrapped("warning: " + warning, indent, width, 2);
+  }
+  std::cout << "\n"
+            << wrapped(
+                   "n + 1 stops on each line. X %, Y %: part of the travel that is covered. EYX, "
+                   "EXY: gain, the scatter of a straightness for a scatter of 1 of one reading of "
+                   "the diagonals.",
+                   0, width);
 }
 
 int write_programs(const Common& common, const Programs& p, const Machine& machine,

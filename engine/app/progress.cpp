@@ -35,8 +35,16 @@ std::string message_of(const batch::CampaignState& c) {
 
 }  // namespace
 
-Progress::Progress(bool quiet, bool json)
-    : quiet_(quiet), json_(json), bar_(!quiet && !json && ::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(const Common& common, bool quiet, bool json)
+    : words_(common),
+      quiet_(quiet),
+      json_(json),
+      bar_(!quiet && !json && ::isatty(STDERR_FILENO) == 1) {}
+
+std::string Progress::failed_word() const {
+  constexpr std::size_t column = 9;
+  return coloured(padded(words()("status.failed"), column), Colour::red, STDERR_FILENO);
+}
 
 batch::RunEvents Progress::events() {
   return {[this](const std::string& m) { note(m); },
@@ -47,7 +55,8 @@ batch::RunEvents Progress::events() {
           },
           [this](const char* name) {
             if (json_) print_event({{"event", "stage"}, {"name", name}});
-          }};
+          },
+          [this](const config::TerminalWords& words) { words_.take(words); }};
 }
 
 void Progress::note(const std::string& message) {
@@ -63,8 +72,8 @@ void Progress::planned(std::size_t campaigns, std::size_t to_do) {
   if (json_)
     print_event({{"event", "planned"}, {"campaigns", campaigns}, {"to_do", to_do}});
   else if (!quiet_)
-    std::cerr << campaigns << (campaigns == 1 ? " campaign, " : " campaigns, ") << to_do
-              << " to do\n";
+    std::cerr << words().counted("run.planned", campaigns, {{"todo", std::to_string(to_do)}})
+              << "\n";
 }
 
 void Progress::finished(const batch::CampaignState& c) {
@@ -79,8 +88,7 @@ void Progress::finished(const batch::CampaignState& c) {
   }
   if (failed) {
     clear();
-    std::cerr << status_word(to_text(c.status), STDERR_FILENO) << " " << c.id << ": "
-              << message_of(c) << "\n";
+    std::cerr << failed_word() << " " << c.id << ": " << message_of(c) << "\n";
   }
   if (bar_) draw();
 }
@@ -93,15 +101,15 @@ void Progress::draw() {
   const double elapsed = std::chrono::duration<double>(now - began_).count();
   const double rate = elapsed > 0.0 ? static_cast<double>(done_) / elapsed : 0.0;
   std::string text = " " + std::to_string(done_) + "/" + std::to_string(to_do_) + "  " +
-                     std::to_string(failed_) + " failed";
+                     words()("run.failed", {{"count", std::to_string(failed_)}});
   if (done_ > 0 && rate > 0.0) {
     std::string r = std::to_string(rate);
     r.erase(r.find('.') + 2);
-    text += "  " + r + "/s  " + duration(static_cast<double>(to_do_ - done_) / rate) + " left";
+    text += "  " + r + "/s  " +
+            words()("run.left", {{"time", duration(static_cast<double>(to_do_ - done_) / rate)}});
   }
-  const std::size_t width = line_width(STDERR_FILENO);
-  const std::size_t cells =
-      width > text.size() + 4 ? std::min<std::size_t>(width - text.size() - 4, 40) : 0;
+  const std::size_t width = line_width(STDERR_FILENO), used = columns_of(text) + 4;
+  const std::size_t cells = width > used ? std::min<std::size_t>(width - used, 40) : 0;
   const std::size_t full = to_do_ == 0 ? cells : cells * done_ / to_do_;
   std::cerr << "\r\033[K[" << std::string(full, '#') << std::string(cells - full, '.') << "]"
             << text << std::flush;
@@ -115,8 +123,8 @@ void Progress::still_failed(const batch::Night& night) {
   for (const batch::CampaignState& c : night.campaigns)
     if (c.status == evaluation::Status::failed &&
         c.action == batch::CampaignState::Action::unchanged)
-      std::cerr << status_word(to_text(c.status), STDERR_FILENO) << " " << c.id
-                << " (unchanged): " << message_of(c) << "\n";
+      std::cerr << failed_word() << " " << c.id << " (" << words()("run.unchanged")
+                << "): " << message_of(c) << "\n";
 }
 
 void Progress::end() {

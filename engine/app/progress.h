@@ -6,15 +6,18 @@
 #include <string>
 
 #include "batch/run.h"
+#include "site_words.h"
 
 namespace nonio::app {
 
 /// How a run shows what it does: a bar on stderr where that is a terminal, else a plain line for
-/// each campaign; with --json one event a line on stdout; with --quiet only failures.
+/// each campaign that failed; with --json one event per line on stdout; with --quiet only failures.
 class Progress {
  public:
-  Progress(bool quiet, bool json);
+  Progress(const Common& common, bool quiet, bool json);
   batch::RunEvents events();
+  /// English until the run has read site.toml.
+  const config::TerminalWords& words() const { return words_.get(); }
   /// Ends the bar's line.
   void end();
   /// Names the campaigns that failed and were not done again.
@@ -26,8 +29,10 @@ class Progress {
   void finished(const batch::CampaignState& campaign);
   void draw();
   void clear();
+  std::string failed_word() const;
 
   using Clock = std::chrono::steady_clock;
+  SiteWords words_;
   bool quiet_, json_, bar_;
   std::size_t to_do_ = 0, done_ = 0, failed_ = 0;
   Clock::time_point began_ = Clock::now(), drawn_{};

@@ -151,7 +151,7 @@ int release(const ReleaseVerbWish& wish, const Common& common) {
   base.own_plugins = Common::own_plugins();
   base.template_folders = common.template_folders();
   base.version = NONIO_VERSION;
-  Progress progress(true, false);
+  Progress progress(common, true, false);
   return tell(batch::release(wanted, base, progress.events()), wish, common);
 }
 

@@ -20,20 +20,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// One line per campaign that requires action, as far as they fit a screen: from summary.json, which
-/// the run has just written.
-void print_actions(const fs::path& out) {
+/// One line per campaign that requires action, as far as they fit a screen.
+void print_actions(const std::string& actions, const config::TerminalWords& words) {
   constexpr std::size_t most_campaigns = 20;
-  const auto text = storage::read_file(out / "summary.json");
-  const Json summary = text ? Json::parse(*text, nullptr, false) : Json();
-  if (!summary.is_object() || !summary.contains("lines")) return;
+  const Json lines = Json::parse(actions, nullptr, false);
+  if (!lines.is_array()) return;
   struct Campaign {
     std::string id, says;
     std::vector<std::string> of{};  ///< axes and quantities
     std::size_t more = 0;           ///< actions with other texts
   };
   std::vector<Campaign> campaigns;
-  for (const Json& line : summary["lines"]) {
+  for (const Json& line : lines) {
     const std::string kind = line.value("kind", ""), id = line.value("campaign", "");
     if (line.value("state", "") != "new" || id.empty() || kind == "failed" || kind == "information")
       continue;  // what failed has been printed already
@@ -49,17 +47,21 @@ void print_actions(const fs::path& out) {
   for (std::size_t i = 0; i < std::min(campaigns.size(), most_campaigns); ++i) {
     const Campaign& c = campaigns[i];
     std::cout << wrapped(
-        "action required  " + c.id + (c.of.empty() ? "" : " (" + storage::listed(c.of) + ")") +
-            ": " + c.says + (c.more == 0 ? "" : " And " + std::to_string(c.more) + " more."),
+        words("status.attention") + "  " + c.id +
+            (c.of.empty() ? "" : " (" + storage::listed(c.of) + ")") + ": " + c.says +
+            (c.more == 0 ? "" : " " + words("run.more", {{"count", std::to_string(c.more)}})),
         0, sentence_width(STDOUT_FILENO), 4);
   }
   if (campaigns.size() > most_campaigns)
-    std::cout << "and " << campaigns.size() - most_campaigns << " more campaigns\n";
+    std::cout << words("run.more_campaigns",
+                       {{"count", std::to_string(campaigns.size() - most_campaigns)}})
+              << "\n";
 }
 
 }  // namespace
 
-void print_summary(const batch::Night& night, const fs::path& out, bool json) {
+void print_summary(const batch::Night& night, const fs::path& out,
+                   const config::TerminalWords& words, bool json) {
   std::size_t done = 0, unchanged = 0, attention = 0, failed = 0;
   for (const batch::CampaignState& c : night.campaigns) {
     if (c.status == evaluation::Status::failed)
@@ -79,10 +81,16 @@ void print_summary(const batch::Night& night, const fs::path& out, bool json) {
     print_json(end, -1);
     return;
   }
-  if (night.asking && *night.asking > 0) print_actions(out);
-  std::cout << done << " done, " << unchanged << " unchanged, " << failed << " failed; "
-            << (night.vanished.empty() ? "" : std::to_string(night.vanished.size()) + " vanished; ")
-            << (night.asking ? "actions required: " + std::to_string(*night.asking) + "; " : "")
+  if (night.asking && *night.asking > 0) print_actions(night.actions, words);
+  const auto count = [](std::size_t n) { return std::to_string(n); };
+  std::cout << words("counts", {{"done", count(done)},
+                                {"unchanged", count(unchanged)},
+                                {"failed", count(failed)}})
+            << "; "
+            << (night.vanished.empty()
+                    ? ""
+                    : words("vanished", {{"count", count(night.vanished.size())}}) + "; ")
+            << (night.asking ? words("run.actions", {{"count", count(*night.asking)}}) + "; " : "")
             << (out / "summary.txt").string() << "\n";
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "batch/run.h"
+#include "campaign/config/terminal_words.h"
 #include "common.h"
 
 /// What the verbs share that do a night or a part of it.
@@ -15,8 +16,9 @@ void prepare_run(batch::RunOptions& options, const std::string& site, const std:
                  const Common& common);
 /// The exit status of a night or a part of it that did not get to its end; none if it did.
 std::optional<int> exit_of_unfinished(const batch::Night& night);
-/// The night's counts and where its summary is.
-void print_summary(const batch::Night& night, const std::filesystem::path& out, bool json);
+/// The counts of a run, what requires action, and the path of its summary.
+void print_summary(const batch::Night& night, const std::filesystem::path& out,
+                   const config::TerminalWords& words, bool json);
 
 Argument jobs_argument(batch::RunOptions& options);
 Argument root_argument(batch::RunOptions& options);

@@ -69,7 +69,7 @@ int plan_night(NightWish& wish, const Common& common) {
     return complain("--date: expected a day as YYYY-MM-DD, found \"" + options.date + "\"");
   options.step = batch::RunOptions::Step::plan;
   prepare_run(options, wish.site, wish.out, common);
-  Progress progress(common.quiet, common.json);
+  Progress progress(common, common.quiet, common.json);
   const batch::Night night = batch::run_site(options, progress.events());
   progress.end();
   if (const auto exit = exit_of_unfinished(night)) return *exit;
@@ -104,12 +104,13 @@ int merge_night(NightWish& wish, const Common& common) {
                     ", for which the run was planned, is not on this host; expected "
                     "--site FOLDER");
   prepare_run(options, site, wish.out, common);
-  Progress progress(common.quiet, common.json);
+  Progress progress(common, common.quiet, common.json);
   const batch::Night night = batch::run_site(options, progress.events());
   progress.end();
   if (const auto exit = exit_of_unfinished(night)) return *exit;
   if (!common.json) progress.still_failed(night);
-  if (!common.quiet || common.json) print_summary(night, options.out, common.json);
+  if (!common.quiet || common.json)
+    print_summary(night, options.out, progress.words(), common.json);
   return night.any_failed() ? exit_failed : exit_done;
 }
 

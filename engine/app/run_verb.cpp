@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "batch/close/summary.h"
 #include "batch/shards/parts.h"
 #include "platform/storage/files.h"
 #include "progress.h"
@@ -29,7 +30,7 @@ const char* to_text(batch::CampaignState::Action action) {
   return "unchanged";
 }
 
-void print_night_plan(const batch::Night& night, bool json) {
+void print_night_plan(const batch::Night& night, const config::TerminalWords& words, bool json) {
   for (const batch::CampaignState& c : night.campaigns) {
     const bool collides =
         c.action == batch::CampaignState::Action::todo && c.status == evaluation::Status::failed;
@@ -41,8 +42,8 @@ void print_night_plan(const batch::Night& night, bool json) {
                       {"reason", reason}},
                  -1);
     else
-      std::cout << (collides ? "refused" : to_text(c.action)) << "  " << c.id << ": " << reason
-                << "\n";
+      std::cout << words(std::string("plan.") + (collides ? "refused" : to_text(c.action))) << "  "
+                << c.id << ": " << batch::reason_in(reason, words) << "\n";
   }
 }
 
@@ -76,7 +77,7 @@ std::string take_shard(RunWish& wish) {
 
 /// One shard of a planned night.
 int run_part(const batch::RunOptions& options, const Common& common) {
-  Progress progress(common.quiet, common.json);
+  Progress progress(common, common.quiet, common.json);
   const batch::Night night = batch::run_shard(options, progress.events());
   progress.end();
   if (const auto exit = exit_of_unfinished(night)) return *exit;
@@ -92,11 +93,13 @@ int run_part(const batch::RunOptions& options, const Common& common) {
                      .dump()
               << "\n";
   else if (!common.quiet)
-    std::cout << "shard " << options.shard << " of " << options.shards << ": " << done << " done, "
-              << failed << " failed"
+    std::cout << progress.words()("run.shard", {{"number", std::to_string(options.shard)},
+                                                {"count", std::to_string(options.shards)},
+                                                {"done", std::to_string(done)},
+                                                {"failed", std::to_string(failed)}})
               << (left == 0 ? ""
-                            : ", " + std::to_string(left) +
-                                  " left to the merge (they need the register or the key)")
+                            : ", " + progress.words()("run.left_to_merge",
+                                                      {{"count", std::to_string(left)}}))
               << "\n";
   return failed > 0 ? exit_failed : exit_done;
 }
@@ -119,16 +122,16 @@ int run_night(RunWish& wish, const Common& common) {
     return run_part(options, common);
   }
   prepare_run(options, wish.site, wish.out, common);
-  Progress progress(common.quiet, common.json);
+  Progress progress(common, common.quiet, common.json);
   const batch::Night night = batch::run_site(options, progress.events());
   progress.end();
   if (const auto exit = exit_of_unfinished(night)) return *exit;
   // What a night before has already said is said again: a failed campaign is never silent.
   if (!common.json && !options.dry_run) progress.still_failed(night);
   if (options.dry_run)
-    print_night_plan(night, common.json);
+    print_night_plan(night, progress.words(), common.json);
   else if (!common.quiet || common.json)
-    print_summary(night, options.out, common.json);
+    print_summary(night, options.out, progress.words(), common.json);
   return night.any_failed() ? exit_failed : exit_done;
 }
 

@@ -186,6 +186,7 @@ class Page {
         if (!text.empty()) out_ << "  " << say_.of("campaign", name) << " " << text << "\n";
     if (!results.contains("certificate")) return;
     const Json& issued = results.at("certificate");
+    if (issued.value("number", "").empty()) return;  // a draft
     const std::string replaced = issued.value("replaces", "");
     out_ << "  " << say_("campaign.certificate") << " "
          << say_("certificate-of",
@@ -199,10 +200,27 @@ class Page {
     out_ << "\n" << paint(say_("error"), Colour::red) << "\n" << wrapped(text_of(error), 2, width_);
   }
 
+  /// "0 to 1000 mm": the targets of an axis or of a diagonal; empty for other measurements.
+  std::string range(const Json& a) const {
+    const Json points = a.value("points", Json::array());
+    const std::string unit = a.value("point_units", Json::object()).value("target", "");
+    double least = INFINITY, most = -INFINITY;
+    for (const Json& p : points) {
+      if (!(p.contains("mean+") || p.contains("mean-")) || !p.contains("target")) continue;
+      least = std::min(least, p.at("target").get<double>());
+      most = std::max(most, p.at("target").get<double>());
+    }
+    if (unit.empty() || !(least < most)) return {};
+    const auto text = [&](double x) {
+      return local(evidence_text({"", x * 1e-3, Quantity::length}));
+    };
+    return say_("measurement.range", {{"from", text(least)}, {"to", text(most)}, {"unit", unit}});
+  }
+
   void analysis(const Json& a, std::string& last) {
     const std::string measurement = a.value("measurement", "");
     if (!measurement.empty() && measurement != last)
-      heading(say_("measurement", {{"id", measurement}}));
+      heading(joined_text({say_("measurement", {{"id", measurement}}), range(a)}, ", "));
     last = measurement;
     const Json& results = a.at("values");
     if (measurement.empty() && (all_ || !results.empty())) out_ << "\n";

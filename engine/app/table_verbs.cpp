@@ -27,7 +27,7 @@ using Json = TableJson;
 struct TableWish {
   std::string table, other, folder, control, out;
   std::vector<std::string> settings, axes, backlash_was;
-  bool was_on = false;
+  bool active = false;
 };
 
 Json forecast_json(const tables::TableForecast& f) {
@@ -208,7 +208,7 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
       return fail(w.table + " does not state what was in " + present.control->table.backlash +
                   " of axis " + t.output +
                   " while it was measured: give its file too, or --active-backlash VALUE|none, or "
-                  "backlash_on_" +
+                  "active_backlash_" +
                   (t.rotary ? "deg" : "mm") + " in [machine.axes." + t.output +
                   "] of campaign.toml, or the record of the machine");
   }
@@ -221,14 +221,14 @@ Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settin
 }
 
 /// --active-table and the campaign state the same thing: they must not state two.
-Expected<void> was_on_unless_stated(const TableWish& w, const Loaded& present, const Campaign& c) {
+Expected<void> active_unless_stated(const TableWish& w, const Loaded& present, const Campaign& c) {
   for (const LoadedTable& t : present.tables) {
     const Axis* axis = c.machine.axis(t.output);
-    if (axis == nullptr || !axis->table_on || t.input != std::vector{t.output}) continue;
+    if (axis == nullptr || !axis->active_table || t.input != std::vector{t.output}) continue;
     return fail("--active-table states that " + w.table +
-                " was active, but the campaign states table_on = \"" +
-                (axis->table_on->empty() ? "none" : *axis->table_on) + "\" of axis " + t.output +
-                ": correct one of them");
+                " was active, but the campaign states active_table = \"" +
+                (axis->active_table->empty() ? "none" : *axis->active_table) + "\" of axis " +
+                t.output + ": correct one of them");
   }
   return {};
 }
@@ -236,9 +236,9 @@ Expected<void> was_on_unless_stated(const TableWish& w, const Loaded& present, c
 int apply(const TableWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
-  if (!w.out.empty() && !w.was_on)
+  if (!w.out.empty() && !w.active)
     return complain("--out writes the renewed table: it needs --active-table");
-  if (!w.backlash_was.empty() && !w.was_on)
+  if (!w.backlash_was.empty() && !w.active)
     return complain("--active-backlash describes an active table: it requires --active-table");
   const auto opened = open_campaign(w.folder, common);
   if (!opened) return opened.error();
@@ -250,13 +250,13 @@ int apply(const TableWish& w, const Common& common) {
   if (!table) return complain(text_of(table.error()));
   Settings settled = *options(table->control->info);
   Applied a;
-  if (!w.was_on) {
-    const auto on = tables::what_was_on(open.read, *table->control, settled);
+  if (!w.active) {
+    const auto on = tables::active_compensation(open.read, *table->control, settled);
     if (!on) return complain(text_of(on.error()));
     a.forecast = tables::forecast(open.read, table->tables, settled, *on);
     return tell(a, table->control->info.name, open, common);
   }
-  if (auto agreed = was_on_unless_stated(w, *table, open.campaign()); !agreed)
+  if (auto agreed = active_unless_stated(w, *table, open.campaign()); !agreed)
     return complain(agreed.error().message);
   if (auto stated = settle_backlash(w, *table, settled); !stated)
     return complain(stated.error().message);
@@ -329,7 +329,7 @@ Verb predict_verb(Common& common) {
                      "The table: FILE, or FILE,FILE,... with the file of its backlash value"}))},
           campaign_arguments(w->folder, common), table_arguments(*w),
           {{.name = "--active-table",
-            .target = &w->was_on,
+            .target = &w->active,
             .help = "TABLE was active during the measurement: it is removed from the readings, so "
                     "that the "
                     "new table is complete",

@@ -73,4 +73,27 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t wid
   return out;
 }
 
+std::vector<std::string> table_rows(const std::vector<std::vector<std::string>>& rows,
+                                    std::size_t width) {
+  std::vector<std::size_t> widths(rows.empty() ? 0 : rows.front().size());
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < widths.size(); ++i)
+      widths[i] = std::max(widths[i], columns_of(row[i]) + (i == 0 ? 0 : 2));
+  std::vector<std::string> out;
+  for (const auto& row : rows) {
+    std::string text;
+    std::size_t used = 0;
+    for (std::size_t i = 0; i < widths.size(); ++i) {
+      if (used > 0 && used + widths[i] > width) {
+        text += "\n" + std::string(widths.front(), ' ');
+        used = widths.front();
+      }
+      text += padded_left(row[i], widths[i]);
+      used += widths[i];
+    }
+    out.push_back(text + "\n");
+  }
+  return out;
+}
+
 }  // namespace nonio::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace nonio::app {
 
@@ -23,5 +24,11 @@ std::size_t sentence_width(int descriptor);
 /// a space is kept as it is. Ends with a line feed.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t width,
                     std::size_t hanging = 0);
+
+/// One text per row of a table, with a line feed: columns as wide as their content, ranged right, two
+/// blanks apart. Where that is wider than `width`, the last columns go on further lines below their
+/// row, behind the width of the first column. All rows have as many cells as the first.
+std::vector<std::string> table_rows(const std::vector<std::vector<std::string>>& rows,
+                                    std::size_t width);
 
 }  // namespace nonio::app

@@ -41,6 +41,7 @@ Verb plan_table_verb(Common& common);
 Verb plugin_verb(Common& common);
 Verb plugin_list_verb(Common& common);
 Verb schema_verb(Common& common);
+Verb upgrade_verb(Common& common);
 Verb version_verb(Common& common);
 /// What they print is made from the whole table; the program outlives the command.
 Verb help_verb(const Program& program);

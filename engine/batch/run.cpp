@@ -52,7 +52,7 @@ std::string unfit_output(const fs::path& site, const fs::path& out) {
   return {};
 }
 
-/// The first look at the site: the name by which the night's record knows it.
+/// The first look at the site: its name in the record of the run.
 Expected<std::string> look_at_site(const RunOptions& options) {
   const fs::path& site = options.site;
   return read_apart<std::string>("the site " + site.string(), config::Limits{}.disk_seconds,
@@ -69,12 +69,12 @@ Expected<std::string> look_at_site(const RunOptions& options) {
 }
 
 /// What is new, in the order of the numbers, and what waits. An error if the register cannot be
-/// read: a summary without what was issued would pass for one of a night that issued nothing.
+/// read: a summary without what was issued would pass for one of a run that issued nothing.
 Expected<void> note_certificates(Night& night, const RunOptions& options,
                                  const reading::Context& context, NightState& state) {
   auto known = known_of(options, context, Look::again);
   if (!known) return fail(known.error());
-  if (!*known) {  // the next night lists it
+  if (!*known) {  // the next run lists it
     night.notes.push_back("the register of certificates is locked: what was issued is not listed");
     return {};
   }
@@ -94,7 +94,7 @@ Expected<void> note_certificates(Night& night, const RunOptions& options,
 
 bool is_campaign(const Vanished& v) { return config::is_campaign_id(v.id); }
 
-/// Campaigns that somebody has said to be gone are none that vanished.
+/// Campaigns that were removed on purpose do not count as vanished.
 void leave_out_forgotten(Night& night, const Expected<store::Told>& told) {
   if (!told) return;
   std::erase_if(night.vanished, [&](const Vanished& v) {
@@ -104,12 +104,13 @@ void leave_out_forgotten(Night& night, const Expected<store::Told>& told) {
   });
 }
 
-/// Pages that cannot be made are no reason to lose a night: they are made again from the results.
+/// If pages cannot be made, the run does not fail: they are made again from the results.
 Morning morning_of(Night& night, const RunOptions& options, const RunEvents& events,
                    const reading::Context& context) {
   auto made = make_morning(options, context, tonight_of(night, options.out, context.templates));
   if (made) {
     night.asking = made->asking;
+    night.actions = made->actions;
     return std::move(*made);
   }
   if (process::is_stop_requested()) return {};
@@ -148,7 +149,7 @@ Expected<void> close_night(Night& night, const RunOptions& options, const RunEve
   return end_night(options.out, state, {state.of(), night.campaigns.size(), night.failed()});
 }
 
-/// All of them stand in the summary; of very many the messages name the first.
+/// The summary lists all of them; of very many the messages name the first.
 void tell_vanished(const Night& night, const RunEvents& events) {
   constexpr std::size_t most = 100;
   for (std::size_t i = 0; i < std::min(most, night.vanished.size()); ++i) {
@@ -188,8 +189,23 @@ Expected<void> survey_site(const RunOptions& options, const reading::Context& co
   return {};
 }
 
+/// Keys with former names: of many the messages name the first.
+void report_former_keys(const Night& night, const RunEvents& events) {
+  constexpr std::size_t most = 20;
+  std::size_t count = 0;
+  for (const CampaignState& c : night.campaigns)
+    for (const Error& w : c.warnings())
+      if (++count <= most)
+        events.note(storage::path_text(c.folder.view()) + "/" + w.file + ":" +
+                    std::to_string(w.line) + ": " + w.message);
+  if (count > most)
+    events.note("and " + std::to_string(count - most) +
+                " more keys with former names: `nonio check` lists them");
+}
+
 void tell_plan(const Night& night, const RunEvents& events) {
   tell_vanished(night, events);
+  report_former_keys(night, events);
   events.planned(night.campaigns.size(),
                  static_cast<std::size_t>(
                      std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
@@ -198,11 +214,11 @@ void tell_plan(const Night& night, const RunEvents& events) {
 /// What was found out before the first campaign is done.
 struct Plan {
   Expected<store::Told> told;
-  std::string only;                              ///< the campaign of a night that is reopened
-  std::optional<std::uint64_t> history_known{};  ///< by the store, when this night was planned
+  std::string only;                              ///< the campaign of a run that is reopened
+  std::optional<std::uint64_t> history_known{};  ///< by the store, when this run was planned
 };
 
-/// Surveyed and told. An error: the night ends here; empty if somebody wants to stop.
+/// Surveyed and reported. An error: the run ends here; empty if a stop is requested.
 Expected<Plan> plan_night(const RunOptions& options, const RunEvents& events, const SetUp& place,
                           const NightState& state, const std::optional<Known>& known,
                           Night& night) {
@@ -230,7 +246,7 @@ void tell_stage(const RunEvents& events, const char* name) {
   if (events.stage) events.stage(name);
 }
 
-/// A night that was planned, as its shards have left it.
+/// A run that was planned, as its shards have left it.
 Expected<Plan> planned_night_of(const RunOptions& options, const RunEvents& events,
                                 const SetUp& place, const NightPlan& planned,
                                 const std::optional<Known>& known, Night& night) {
@@ -248,7 +264,7 @@ Expected<Plan> planned_night_of(const RunOptions& options, const RunEvents& even
 }
 
 /// Every campaign that is to do, and what the history and the reports know of it. An error: the
-/// night ends here; empty if somebody wants to stop.
+/// run ends here; empty if a stop is requested.
 Expected<void> do_planned(const RunOptions& options, const RunEvents& events, SetUp& place,
                           const Plan& plan, bool register_known, NightState& state, Night& night) {
   const reading::Context& context = place.context;
@@ -297,7 +313,7 @@ Expected<void> make_ready(const RunOptions& options, const reading::Context& con
   return ready;
 }
 
-/// The night itself, in an output folder that nobody else uses.
+/// The run itself, in an output folder that no other process uses.
 void do_night(const RunOptions& options, const RunEvents& events, const std::string& site_text,
               SetUp& place, const std::optional<Known>& known, Night& night) {
   const reading::Context& context = place.context;
@@ -373,6 +389,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   if (!place) return refuse(place.error().message);
   const reading::Context& context = (*place)->context;
   night.notes = (*place)->notes;
+  if (events.words) events.words(config::TerminalWords(context.templates, context.site.language));
 
   std::optional<OutputLock> lock;
   if (options.dry_run) {
@@ -393,7 +410,7 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
         "campaigns that need a number wait for it");
   for (const std::string& note : night.notes) events.note(note);
   if (!(*place)->unstamped.empty()) night.notes.push_back((*place)->unstamped);
-  // What takes the memory goes first, then there is enough to tell of it.
+  // What takes the memory is released first, so that enough is left to report it.
   auto reserve = std::make_unique<std::array<char, 1 << 18>>();
   try {
     do_night(options, events, *site_text, **place, *known, night);

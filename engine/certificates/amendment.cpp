@@ -90,7 +90,7 @@ void compare_keys(const Keys& before, const Keys& after, FileChange& out) {
 }
 
 /// What is the same at the begin and at the end is left out. In between, line by line where there
-/// are as many as there were, else all that is gone and all that is new.
+/// are as many as there were, else all that was removed and all that is new.
 void compare_lines(const std::vector<std::string>& a, const std::vector<std::string>& b,
                    FileChange& out) {
   ChangeList list(out);

@@ -34,7 +34,7 @@ Expected<void> withdraw(const fs::path& site, const config::Numbering& numbering
   const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
   if (!by.empty())
     if (const std::string mistake = mistake_in_name(by); !mistake.empty()) return fail(mistake);
-  if (!says_something(why)) return fail("the reason is empty; expected why it is withdrawn");
+  if (!has_content(why)) return fail("the reason is empty; expected why it is withdrawn");
   if (std::any_of(why.begin(), why.end(), control))
     return fail("the reason has a control character; expected one line of text");
   const auto entries = Register::entries(site, numbering);

@@ -22,7 +22,7 @@ inline constexpr const char* no_key =
     "an output is to be signed, and site.toml does not contain a key; expected [signing]";
 
 /// Signs the artifacts that outputs want signed: XML documents first, then PDFs, into which go the
-/// manifest, the readings, what of site.toml has a say in them, results.json and the signed XML
+/// manifest, the readings, the parts of site.toml that affect them, results.json and the signed XML
 /// documents. What is to be issued under a number is then in `Evaluated::certificate`, and is taken
 /// from the register in the end; what is issued already is not signed again. Of a draft only its
 /// pages are kept, unsigned; what else would be signed waits with it. Of a failed campaign nothing
@@ -36,7 +36,7 @@ Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, CampaignFiles& f
 std::string draft_name(const std::string& pdf);
 
 /// Who signs what `sign_artifacts` has put together: the process with the key; or, when a
-/// certificate is verified, somebody who holds it against what is there.
+/// certificate is verified, a caller that compares it with the present file.
 struct SignWith {
   std::function<Expected<sign::Signed>(const Artifact&)> sign;
   /// What is attached as results.json, from what was made of it now; none: that.
@@ -45,7 +45,7 @@ struct SignWith {
 Expected<void> sign_artifacts(evaluation::Evaluated& evaluated, CampaignFiles& files,
                               const reading::Context& context, const SignWith& how, sign::Time now);
 
-/// Takes away what is to be signed and is not, and all of a certificate that is not issued.
+/// Removes files that should be signed and are not, and all files of a certificate that is not issued.
 void remove_unsigned(evaluation::Evaluated& evaluated);
 
 /// Adds a finding to what one of its outputs found.

@@ -65,7 +65,7 @@ struct Stated {
   std::vector<std::pair<std::string, std::string>> shared;  ///< files, each with another campaign
 };
 
-/// Which files another campaign had too, which only the night could know, as the findings say.
+/// Which files another campaign had too, which only the run could know, according to the findings.
 void put_shared(const storage::Json& analyses, Stated& stated) {
   const auto text = [](const storage::Json& of, const char* key) {
     return of.is_object() && of.contains(key) && of[key].is_string() ? of[key].get<std::string>()

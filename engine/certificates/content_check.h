@@ -14,7 +14,7 @@ namespace nonio::certificates {
 /// attached belongs there; `content.templates`, whether its words are those that results.json names;
 /// `content.words`, whether these are the installed ones;
 /// `content.printed`, whether the readings give this very file, object by object, when it is put
-/// together again as the night did.
+/// together again as the run did.
 std::vector<sign::Check> check_content(const sign::Verified& verified, std::string_view pdf,
                                        const reading::Context& context);
 

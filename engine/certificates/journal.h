@@ -28,7 +28,7 @@ class Journal {
 
   explicit Journal(storage::Database& database) : database_(database) {}
 
-  /// In a transaction, with what it tells of. Every entry says under which account it was written.
+  /// In the transaction of the change that it records. Every entry states the account that wrote it.
   Entry add(const char* what, const std::string& number, storage::Json says);
   std::vector<Entry> all();
   std::optional<Entry> last();

@@ -29,7 +29,7 @@ bool is_foreign(const std::string& input) {
   return input.starts_with(reading::shared_name("")) || input.starts_with(config::machine_prefix);
 }
 
-/// What a certificate is made from: the campaign's own files, and what of site.toml has a say in
+/// What a certificate is made from: the campaign's own files, and the parts of site.toml that affect
 /// the results.
 reading::Inputs data_of(const evaluation::Evaluated& evaluated, const reading::Context& context) {
   reading::Inputs data = evaluated.inputs;
@@ -83,7 +83,7 @@ Expected<Files> current_files(const evaluation::Evaluated& evaluated,
   return files;
 }
 
-/// In the order of `now`; then what is gone.
+/// In the order of `now`; then the removed ones.
 std::vector<FileChange> changes_of(const Files& then, const Files& now) {
   std::vector<FileChange> all;
   for (const auto& [name, bytes] : now) {
@@ -131,11 +131,11 @@ void put_reasons(const Releasing& releasing, Issue& issue) {
 
 }  // namespace
 
-const config::StandingRule* rule_for(const config::Numbering& numbering,
+const config::AcceptedRule* rule_for(const config::Numbering& numbering,
                                      const evaluation::KnownFinding& finding) {
   if (finding.id.starts_with(reading::plausibility_prefix))
     return nullptr;  // a person says why, each time
-  for (const config::StandingRule& rule : numbering.may_stand) {
+  for (const config::AcceptedRule& rule : numbering.accepted) {
     const bool all_of_a_kind = rule.finding.ends_with(".*");
     if (all_of_a_kind ? finding.id.starts_with(rule.finding.substr(0, rule.finding.size() - 1))
                       : finding.id == rule.finding)
@@ -156,7 +156,7 @@ Expected<Register> Numbers::open() const {
 
 namespace {
 
-/// Whether an open finding asks for somebody to look at it whom the rules cannot stand for.
+/// Whether an open finding requires the decision of a person, which the rules cannot replace.
 bool any_unruled(const std::vector<evaluation::KnownFinding>& findings,
                  const config::Numbering& numbering) {
   return std::any_of(findings.begin(), findings.end(), [&](const evaluation::KnownFinding& f) {
@@ -233,10 +233,10 @@ Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
   issue.changes = changes_of(then, *now);
   const std::string& stated = evaluated.campaign.certificate.amendment;
   const std::string* manifest = find_file(then, config::manifest_name);
-  const bool is_old = says_something(stated) && manifest != nullptr &&
-                      flat_toml(*manifest)[amendment_key] == stated;
+  const bool is_old =
+      has_content(stated) && manifest != nullptr && flat_toml(*manifest)[amendment_key] == stated;
   issue.why = before.state == "withdrawn" ? before.reason : "";
-  if (says_something(stated) && !is_old && stated != issue.why)
+  if (has_content(stated) && !is_old && stated != issue.why)
     issue.why += (issue.why.empty() ? "" : "; ") + stated;
   if (issue.why.empty())
     missing.push_back(
@@ -334,7 +334,7 @@ std::string Numbers::released_json(const std::vector<evaluation::KnownFinding>& 
   storage::Json open = storage::Json::object(), rules = storage::Json::object();
   for (const evaluation::KnownFinding& f : findings) {
     open[finding_key(f)] = f.attention ? "attention" : "info";
-    const config::StandingRule* rule = rule_for(context_.site.numbering, f);
+    const config::AcceptedRule* rule = rule_for(context_.site.numbering, f);
     if (f.attention && rule != nullptr) rules[finding_key(f)] = rule->reason;
   }
   json["findings"] = std::move(open);

@@ -10,18 +10,18 @@
 
 namespace nonio::certificates {
 
-/// Whether a rule of the site lets this finding stand.
-const config::StandingRule* rule_for(const config::Numbering& numbering,
+/// Whether a rule of the site accepts this finding.
+const config::AcceptedRule* rule_for(const config::Numbering& numbering,
                                      const evaluation::KnownFinding& finding);
 
 /// A draft, and the one who releases it.
 struct Releasing {
   WaitingDraft draft;
   Approval by;
-  reading::Twins twins{};  ///< what the night knew of other campaigns
+  reading::Twins twins{};  ///< what the run knew of other campaigns
 };
 
-/// What a night, or the release of one campaign, does with the site's register. Every call opens it
+/// What a run, or the release of one campaign, does with the site's register. Every call opens it
 /// by itself: no process inherits it from another.
 class Numbers {
  public:
@@ -30,7 +30,7 @@ class Numbers {
     std::string today;  ///< YYYY-MM-DD
     bool can_sign;      ///< there is a key, or there are neither drafts nor numbers
   };
-  /// `releasing` is null in a night.
+  /// `releasing` is null in a run.
   Numbers(Where where, const reading::Context& context, const Releasing* releasing)
       : where_(std::move(where)), context_(context), releasing_(releasing) {}
 
@@ -38,7 +38,7 @@ class Numbers {
   /// nothing is, a draft or a number; else neither. `as_draft`: no number, whatever the rules say.
   evaluation::AssignedNumber assign(const evaluation::Evaluated& evaluated, CampaignFiles& files,
                                     std::vector<std::string> missing, bool as_draft) const;
-  /// Whether a finding that no rule lets stand came after a number was drawn by the rules.
+  /// Whether a finding that no rule accepts came after a number was drawn by the rules.
   bool held_up(const evaluation::Evaluated& evaluated) const;
   /// After signing: enters what is issued into the register, and gives the campaign what the
   /// register holds. Of what was issued before it is said if its numbers are others now. A draft is

@@ -112,7 +112,7 @@ std::string mistake_at(Code c, bool after_letter) {
 std::string mistake_in_name(const std::string& name) {
   constexpr std::size_t longest = 100;
   const std::string wanted = "expected the name of a person, one line of up to 100 bytes";
-  if (!says_something(name) || name.size() > longest) return wanted;
+  if (!has_content(name) || name.size() > longest) return wanted;
   Alphabet of_word = Alphabet::none;
   bool after_letter = false;
   for (std::string_view rest = name; !rest.empty();) {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What is other in `now` than it was, in the order of `now`; then what is gone.
+/// What differs in `now`, in the order of `now`; then what was removed.
 std::vector<FileChange> differences(const reading::Inputs& before, const reading::Inputs& now) {
   std::vector<FileChange> names;
   const auto add = [&](const std::string& input) {
@@ -283,7 +283,7 @@ Expected<evaluation::Certificate> Register::load(std::int64_t id) {
     issue.changes = differences(inputs_of(integer(row[6])), inputs_of(id));
     if (auto noted = note_replaced(integer(row[6]), issue); !noted) return fail(noted.error());
   }
-  // What it prints beside that stands in the results that are attached to it.
+  // Everything else that it prints is contained in the results that are attached to it.
   const storage::Json results = storage::Json::parse(row[5], nullptr, false);
   if (results.is_object() && results.contains("certificate"))
     if (Issue printed = evaluation::certificate_of(results["certificate"]).issue;

@@ -25,7 +25,7 @@ struct RegisterEntry {
   std::string replaces, replaced_by;
   std::string reason;       ///< why it was withdrawn; why it is not issued yet
   std::uint64_t order = 0;  ///< in which numbers were issued, from 1; 0: not issued
-  /// Who released it and who withdrew it, as they said. Empty: the rules; nobody said.
+  /// Who released it and who withdrew it, as they stated. Empty: the rules; not stated.
   std::string released_by{}, withdrawn_by{};
   /// Under which accounts of the operating system, "user@host"; empty before version 2026-12.
   std::string released_account{}, withdrawn_account{};
@@ -38,14 +38,14 @@ struct RegisterEntry {
 struct Approval {
   std::string by, role;                        ///< role: author, authoriser
   std::string at{};                            ///< UTC
-  std::map<std::string, std::string> reasons;  ///< why a finding may stand, by `finding_key`
+  std::map<std::string, std::string> reasons;  ///< why a finding is accepted, by `finding_key`
   std::string account{};  ///< of the operating system; empty before version 2026-12
 };
 
-/// What a night has made for a campaign and nobody has released yet.
+/// What a run has made for a campaign and no person has released yet.
 struct WaitingDraft {
   std::string campaign, folder;  ///< the folder relative to the site
-  std::string out;               ///< the output folder of the night
+  std::string out;               ///< the output folder of the run
   std::string file, sha256;      ///< the PDF in OUT/campaign
   std::string replaces;          ///< the number that it would replace; may be empty
   reading::Inputs made_from;     ///< its data, and plugins, templates, version
@@ -115,13 +115,13 @@ class Register {
                                          const std::string& today);
   /// Issues what was drawn and signed. Gives what holds from now on: if somebody else was faster
   /// with the same data, what he has issued; where both are persons' approvals, an error that names
-  /// the first one. The campaign's draft is gone with it.
+  /// the first one. The campaign's draft is removed with it.
   Expected<evaluation::Certificate> issue(const evaluation::Certificate& certificate,
                                           const std::string& campaign, const reading::Inputs& data,
                                           const Approved* approved = nullptr);
   /// Why the number that was drawn for a campaign is not issued; nothing if there is none.
   Expected<void> note_failure(const std::string& campaign, const std::string& why);
-  /// From now on it is not in force: the next night makes a draft for the campaign anew. `by` may
+  /// From now on it is not in force: the next run makes a draft for the campaign anew. `by` may
   /// be empty.
   Expected<void> withdraw(const std::string& number, const std::string& why,
                           const std::string& by = {});

@@ -173,7 +173,7 @@ Expected<void> Register::check_journal(bool numbers) {
 }
 
 Expected<Audit> Register::audit() {
-  // Nobody writes meanwhile.
+  // The lock excludes writers meanwhile.
   storage::Database::Transaction transaction(*database_);
   Audit audit = Auditor(*database_).run();
   if (auto same = check_seen_state(*database_, *place_); !same)

@@ -21,7 +21,7 @@ using State = sign::Check::State;
 
 struct StatedNumber {
   std::string number, register_id;
-  bool by_register = true;  ///< no: it may be a number of somebody else's
+  bool by_register = true;  ///< no: the number may come from elsewhere
 };
 
 /// Of a DCC: its identifier, which need not come from a register. What output `certificate` makes

@@ -27,7 +27,7 @@ Expected<void> note_state(storage::Database& database, const RegisterPlace& plac
 
 Expected<RegisterPlace> register_place(const std::filesystem::path& site,
                                        const config::Numbering& numbering);
-/// Whether anything was entered there yet; looking makes nothing. An error if it is gone.
+/// Whether anything was entered there yet; looking makes nothing. An error if it no longer exists.
 Expected<bool> has_register(const RegisterPlace& place, double patience);
 /// Made with `create`. Refused: a server that may lose what it has confirmed, since it would give
 /// numbers again; the register of another site; a new one where the site has one of the other kind.

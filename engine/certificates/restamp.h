@@ -29,7 +29,7 @@ struct Restamped {
 };
 
 /// Writes the file with its revocation data and a time stamp into `out`, or over itself where that
-/// is empty: whole or not at all. Not into a night's output, which the next night would write again
+/// is empty: whole or not at all. Not into the output of a run, which the next run would write again
 /// as it was issued. What the register has issued is accepted with the signer of that time.
 Expected<Restamped> restamp(const std::filesystem::path& file, const sign::Prolonging& how,
                             const RegisterRows& rows, const std::filesystem::path& out);

@@ -151,7 +151,7 @@ Expected<void> Signer::fork_process() {
 void Signer::serve() const noexcept {
   process::init_child();
   process::keep_silent();
-  ::prctl(PR_SET_DUMPABLE, 0);  // nobody may look into its memory
+  ::prctl(PR_SET_DUMPABLE, 0);  // no process may read its memory
   ::close(to_);
   constexpr int most_deaths = 5;
   const auto key = process::guarded("the signing key", [&]() -> Expected<sign::Key> {

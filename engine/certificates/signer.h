@@ -13,7 +13,7 @@
 
 namespace nonio::certificates {
 
-/// The one process that holds the key of a night. Workers send it finished bytes and get them back
+/// The only process of a run that has the key. Workers send it finished bytes and get them back
 /// signed. It is made before plugins are loaded, so that nothing of theirs is in it, and opens the
 /// key once; if that does not succeed, it says why to everyone who asks.
 class Signer {
@@ -41,7 +41,7 @@ class Signer {
   const std::filesystem::path site_;
   pid_t pid_ = -1;
   const double disk_seconds_;
-  std::string given_up_{};  ///< why nobody signs any more
+  std::string given_up_{};  ///< why signing has ended
   int deaths_ = 0;
   int to_ = -1, from_ = -1;  ///< the two ends of the channel on which requests come
 };

@@ -46,7 +46,7 @@ sign::Verified refused(std::string_view check, const std::string& why) {
   return v;
 }
 
-/// Why nobody needs to look for a signature in these bytes; nothing if it is to be checked.
+/// Why these bytes need no search for a signature; nothing if it is to be checked.
 std::optional<std::string> why_no_certificate(std::string_view bytes) {
   const auto has = [&](std::string_view text) { return bytes.find(text) != bytes.npos; };
   if (bytes.starts_with("%PDF-")) {
@@ -137,7 +137,7 @@ Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier&
     if (auto added = add_register_state(v, *bytes, rows); !added) return fail(added.error());
     return v;
   }
-  // What nobody signed is not given to plugins.
+  // Unsigned bytes are not given to plugins.
   if (!v.holds()) {
     for (const char* check : {"content.values", "content.printed"})
       v.checks.push_back({check, State::not_checked,

@@ -42,7 +42,7 @@ struct Running {
   std::string received{};
   std::shared_ptr<SharedColumn> residual{};
   bool fills = false;     ///< `residual`
-  bool is_begun = false;  ///< what is there first was told
+  bool is_begun = false;  ///< the first state was reported
   Clock::time_point begun = Clock::now();
   int told = 0;  ///< seconds that were reported
 };
@@ -101,7 +101,7 @@ std::string answer_of(Bench& bench, const Job& job, std::span<double> residual, 
 
 bool is_slow(const Job& job) { return job.kind == "explain" || job.kind == "without"; }
 
-/// Somebody waits for a picture while the others calculate.
+/// A person waits for a picture while the others calculate.
 int niceness(const Job& job, const Bench& bench) {
   constexpr std::size_t takes_seconds = 100000;  // readings
   if (is_slow(job)) return 10;
@@ -160,7 +160,7 @@ class Loop {
     if (!process::write_text(channel_.get(), parcel.bytes())) gone_ = true;
   }
 
-  /// What is slow begins when the picture that somebody waits for is there, or takes long itself.
+  /// Slow work begins when the picture that a person waits for is ready, or takes long itself.
   bool is_awaited(const Running& one) const {
     constexpr auto long_time = std::chrono::seconds(1);
     return one.job.kind == "fit" && !one.is_begun && niceness(one.job, bench_) == 0 &&
@@ -220,7 +220,7 @@ class Loop {
     one.residual = std::move(residual), one.fills = fills;
   }
 
-  /// What this process does itself, since all requests want it: while nobody waits for anything.
+  /// What this process does itself, since all requests need it: while no request waits.
   bool has_work() const {
     return without_groundwork(bench_) != nullptr &&
            std::all_of(running_.begin(), running_.end(),

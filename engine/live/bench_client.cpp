@@ -83,7 +83,7 @@ bool BenchClient::connect() {
     return false;
   }
   const std::lock_guard lock(mutex_);
-  if (over_) return false;  // nobody would shut this one down
+  if (over_) return false;  // no one would shut this one down
   channel_ = std::move(*channel);
   for (const auto& [job, text] : unsent_) send("do", job, text);
   unsent_.clear();
@@ -125,7 +125,7 @@ void BenchClient::listen() {
       hear();
       const std::lock_guard lock(mutex_);
       channel_ = process::Handle();
-      // One that ends as soon as it has begun is started again only when somebody asks.
+      // One that ends as soon as it has begun is started again only on a request.
       if (Clock::now() - begun > soon) again_ = true;
       if (over_) return;
       is_begun_again = again_;

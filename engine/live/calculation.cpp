@@ -288,7 +288,7 @@ Json column(const std::vector<double>& values, const std::vector<std::size_t>& r
   return list;
 }
 
-/// What each candidate would take away, beside the model, on these readings.
+/// What each candidate would remove from the residuals, in addition to the model, on these readings.
 Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
   constexpr std::size_t most = 40;
   const std::vector<std::size_t> rows = kept_of(part).rows;

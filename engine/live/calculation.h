@@ -20,7 +20,7 @@ namespace nonio::live {
 struct BenchWish {
   std::filesystem::path folder;  ///< of the campaign
   std::vector<std::filesystem::path> plugin_folders, template_folders;
-  std::filesystem::path own_plugins;  ///< beside the program: tested with it
+  std::filesystem::path own_plugins;  ///< of the program's own folder: tested with it
   std::string version;
 };
 

@@ -134,7 +134,7 @@ void Desk::read_again() {
   forget_parts();
 }
 
-/// Excluded readings with their reasons, by measurement, beside what a fit depends on.
+/// Excluded readings with their reasons, by measurement, in addition to what a fit depends on.
 Json Desk::save_request(const std::string& kind) const {
   std::map<std::string, std::pair<Json, std::string>> of;
   for (const Excluded& e : session_.trial().excluded) {

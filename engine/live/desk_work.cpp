@@ -255,7 +255,7 @@ std::string Desk::replaced_by(const Json& request) {
   return out;
 }
 
-/// What waits for an answer that nobody wants any more gets none.
+/// A request whose answer is no longer wanted gets none.
 void Desk::cancel_waiting(const std::string& replaces) {
   const auto older = replaces.empty() ? replaceable_.end() : replaceable_.find(replaces);
   if (older == replaceable_.end()) return;

@@ -13,7 +13,7 @@ Expected<std::string> save(Bench& bench, const storage::Json& request);
 /// on the disk.
 Expected<std::string> difference(Bench& bench, const storage::Json& request);
 
-/// The file that a night would write, of the model that is tried: "page" for one part by
+/// The file that a run would write, of the model that is tried: "page" for one part by
 /// model-html, "report" by pdf-report. The bytes themselves.
 Expected<std::string> document(Bench& bench, const storage::Json& request);
 

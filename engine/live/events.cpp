@@ -7,7 +7,7 @@ namespace nonio::live {
 
 namespace {
 
-/// Puts the newest behind all others; what it replaces is gone.
+/// Puts the newest after all others; what it replaces is removed.
 void replace_in(std::deque<Event>& events, const Event& event) {
   std::erase_if(events,
                 [&](const Event& e) { return e.type == event.type && e.about == event.about; });

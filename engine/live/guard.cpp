@@ -219,7 +219,7 @@ int head_status(std::string_view bytes) {
   for (std::size_t lines = 0; !bytes.empty(); ++lines) {
     const std::size_t end = std::min(bytes.find('\n'), bytes.size());
     std::string_view line = bytes.substr(0, end);
-    // The last line stands before its CR LF.
+    // The last line is before its CR LF.
     if (end < bytes.size() && line.ends_with('\r')) line.remove_suffix(1);
     bytes.remove_prefix(std::min(end + 1, bytes.size()));
     status = lines == 0 ? request_line_status(line) : is_field(line) ? 200 : 400;
@@ -301,7 +301,7 @@ Verdict judge(const Head& head, const Post& post, const std::vector<Route>& rout
     if (Verdict v = judge_body(head, *found.route); v.status != 200) return v;
     return found;
   }
-  // Nobody without the token learns which addresses there are.
+  // A client without the token does not learn which addresses exist.
   const auto tokens = head.all("X-Nonio-Token");
   if (tokens.size() != 1 || post.token.empty() || !same_secret(tokens.front(), post.token))
     return denied(403, "token");

@@ -85,9 +85,9 @@ std::vector<std::pair<std::string, std::string>> security_headers();
 /// Whether two texts are the same; the time depends on their lengths only.
 bool same_secret(std::string_view one, std::string_view other);
 
-/// What stands behind "?": names and values, percent-decoded. None if it is not well-formed.
+/// What follows "?": names and values, percent-decoded. None if it is not well-formed.
 std::optional<std::vector<std::pair<std::string, std::string>>> query_of(std::string_view target);
-/// "%2F" as "/"; none where a % stands before something else than two digits, or a NUL comes out.
+/// "%2F" as "/"; none where a % is not followed by two digits, or a NUL comes out.
 std::optional<std::string> percent_decoded(std::string_view text);
 
 }  // namespace nonio::live

@@ -238,13 +238,13 @@ class Pool {
     const int fd = socket.get();
     ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) & ~O_NONBLOCK);
     if (refused != 0) return refuse(fd, refused, house_.service.sentences());
-    // Poco closes its own descriptor at the end, with bytes that nobody has read.
+    // Poco closes its own descriptor at the end, with bytes that were not read.
     const int copy = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
     if (copy < 0) return;
     try {
       net::HTTPServerConnection(net::StreamSocket(new Socket(copy)), params_, handlers_).run();
     } catch (const Poco::Exception&) {
-      // A handler catches what it throws: this is a head that nobody can read.
+      // A handler catches what it throws: this is an unreadable head.
       if (!house_.over) refuse(fd, 400, house_.service.sentences());
     }
   }

@@ -10,7 +10,7 @@
 #include "live/events.h"
 #include "live/guard.h"
 
-/// What stands between HTTP and what a person does: requests that the guard let through, answers.
+/// Between HTTP and what a person does: requests that the guard let through, answers.
 namespace nonio::live {
 
 struct Request {
@@ -35,7 +35,7 @@ struct Answer {
 /// {"error": sentence, "id": name, "status": status}; `name` without "refused." in front.
 Answer refused(int status, const std::string& name,
                std::vector<std::pair<std::string, std::string>> places = {});
-/// The same with a sentence that somebody else has made.
+/// The same with a sentence that the caller has made.
 Answer refusal(int status, const std::string& words);
 
 /// Sentences of the page in the language of the site, by their names.

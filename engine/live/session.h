@@ -25,7 +25,7 @@ struct Excluded {
   bool operator==(const Excluded&) const = default;
 };
 
-/// Everything that a fit depends on beside the files.
+/// Everything that a fit depends on apart from the files.
 struct Trial {
   std::vector<std::string> model;           ///< in the order in which saving would write it
   std::vector<Excluded> excluded;           ///< by part and row
@@ -76,7 +76,7 @@ class Session {
   /// The files were read again: readings may be others, so none is excluded any more. Model and
   /// periods are those of the file.
   void was_read_again(const std::vector<std::string>& model);
-  /// Something that the page shows has changed beside the trial.
+  /// Something that the page shows has changed, apart from the trial.
   void touch() { ++version_; }
 
  private:

@@ -12,7 +12,7 @@
 
 namespace nonio::live {
 
-/// How the nights of an output folder stand.
+/// State of the runs of an output folder.
 struct NightNow {
   std::string state{};       ///< none, or as `nonio status` says
   std::uint64_t number = 0;  ///< of the last that began

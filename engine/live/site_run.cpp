@@ -87,7 +87,7 @@ Json SiteRun::now() const {
 void SiteRun::close() {
   const std::lock_guard lock(mutex_);
   over_ = true;
-  // A night that is interrupted so is resumed by the next one.
+  // A run that is interrupted in this way is resumed by the next one.
   if (channel_ >= 0) ::shutdown(channel_, SHUT_RDWR);
 }
 

@@ -17,7 +17,7 @@ namespace nonio::live {
 struct ResultsNow {
   std::string status;                 ///< empty: there were none
   std::string sha256;                 ///< of results.json
-  std::vector<std::string> findings;  ///< those that ask for attention
+  std::vector<std::string> findings;  ///< those that require action
 };
 ResultsNow results_now(const std::filesystem::path& out, const std::string& id);
 
@@ -31,7 +31,7 @@ class SiteRun {
   SiteRun& operator=(const SiteRun&) = delete;
   ~SiteRun();
 
-  /// `id`: of the campaign; empty: a night. False if one is at work.
+  /// `id`: of the campaign; empty: a whole run. False if one is at work.
   Expected<bool> begin(const std::vector<std::string>& arguments, const std::string& command,
                        const std::string& id);
   /// Asks the one at work to end. False if there is none.

@@ -301,7 +301,7 @@ Answer SiteService::state() {
   return answered(200, json);
 }
 
-/// Of a folder only what lies there as a plain file, by its name.
+/// Of a folder only its plain files, by name.
 bool is_plain_file_in(const fs::path& folder, const std::string& name) {
   if (storage::in_pack(folder))
     return (storage::is_artifact_name(name) || name == evaluation::results_name) &&
@@ -315,7 +315,7 @@ bool is_plain_file_in(const fs::path& folder, const std::string& name) {
   return false;
 }
 
-/// A page of the morning by its name, as it would be now: only those that the night has left.
+/// A page of the site by its name, as it would be now: only those that the run has written.
 Answer SiteService::page(const std::string& name) {
   const bool below = name.starts_with("machines/");
   const fs::path folder = below ? wish_.out / "machines" : wish_.out;
@@ -413,7 +413,7 @@ Answer SiteService::verify(const Request& request) {
                    (folder.path() / name).string()}));
 }
 
-/// One campaign of the last night again; or what a night would do now, of all that has changed.
+/// One campaign of the previous run again; or what a run would do now, of all that has changed.
 Answer SiteService::run(const Json& body) {
   if (wish_.out.empty()) return refused(409, "no_out");
   std::vector<std::string> arguments{"run", option("out", wish_.out.string())};

@@ -45,8 +45,8 @@ Expected<Sample> open_source(const Source& source, const std::vector<Reader>& re
   if (!manifest) return fail(manifest.error().front());
   Sample s{source.name, std::move(manifest->campaign), std::move(manifest->options), {}};
   for (Axis& axis : s.campaign.machine.axes) {  // else no control writes a table
-    if (!axis.table_on) axis.table_on.emplace();
-    if (!axis.backlash_on) axis.backlash_on = 0.0;
+    if (!axis.active_table) axis.active_table.emplace();
+    if (!axis.active_backlash) axis.active_backlash = 0.0;
   }
   for (const Measurement& m : s.campaign.measurements) {
     const std::string place = "sample " + source.name + ", " + m.file;

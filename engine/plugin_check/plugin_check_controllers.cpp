@@ -58,7 +58,7 @@ Sample sample_of(const KnownError& k) {
   const std::string name = k.rotary ? "C" : "X";
   s.campaign.id = "planted";
   s.campaign.machine.axes.push_back(
-      {.name = name, .rotary = k.rotary, .table_on = "", .backlash_on = 0.0});
+      {.name = name, .rotary = k.rotary, .active_table = "", .active_backlash = 0.0});
   Measurement m;
   m.id = m.axis = name;
   m.kind = "axis";

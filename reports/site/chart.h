@@ -20,7 +20,7 @@ Html curves_chart(const Page&, const MachineHistory&, const std::string& axis);
 /// The last curve less the one before it, with U.
 Html difference_chart(const Page&, const MachineHistory&, const std::string& axis);
 
-/// Values of machines of one model beside each other.
+/// Values of machines of one model next to each other.
 Html comparison_chart(const Page&, const ModelComparison&);
 
 }  // namespace nonio::reports::site

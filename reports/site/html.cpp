@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "html.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -81,11 +82,20 @@ std::string proposal_text(const Page& page, const IntervalProposal& proposal) {
   return months + ". " + why;
 }
 
+bool shows_value(const MorningLine& l) { return l.value && !is_log_of_scatter(l.quantity); }
+
+std::string factor_text(const Page& page, double difference, double u) {
+  constexpr double k = 2.0;
+  const auto three = [&](double x) {
+    return localised(short_text(std::exp(x), 3), page.words.language());
+  };
+  return page.words.get("site.factor", {{"factor", three(difference)},
+                                        {"low", three(difference - k * u)},
+                                        {"high", three(difference + k * u)}});
+}
+
 std::string line_text(const Page& page, const MorningLine& l, const char* part) {
-  MorningLine line = l;
-  for (auto& [name, text] : line.finding.texts)
-    if (name == "event") text = event_text(page.words, text);
-  return reports::line_text(page.templates, page.words.language(), line, part);
+  return reports::line_text(page.templates, page.words.language(), l, part);
 }
 
 std::string also_text(const Page& page, const MorningLine& l) {
@@ -171,8 +181,11 @@ std::string titles(const Templates& templates, std::string_view language, const 
 std::string line_text(const Templates& templates, std::string_view language, const MorningLine& l,
                       std::string_view part) {
   Finding finding = l.finding;
-  for (auto& [name, text] : finding.texts)
+  for (auto& [name, text] : finding.texts) {
     if (name == "withheld") text = titles(templates, language, text, l.axis);
+    if (name == "event")
+      text = event_text(Wording(templates, std::string(language), {"site"}), text);
+  }
   if (!l.campaigns.empty()) {
     std::string names;
     for (std::size_t i = 0; i < std::min(l.campaigns.size(), most_named); ++i)
@@ -180,6 +193,12 @@ std::string line_text(const Templates& templates, std::string_view language, con
     if (l.campaigns.size() > most_named) names += ", ...";
     finding.texts.emplace_back("campaigns", names);
   }
+  // The size of a change: of a scatter a factor.
+  for (const auto& [number, key] : {std::pair{"size", "site.size"}, {"factor", "site.factor"}})
+    if (std::any_of(finding.evidence.begin(), finding.evidence.end(),
+                    [&](const Number& n) { return n.name == number; }))
+      finding.texts.emplace_back("change",
+                                 filled(words(templates, language, key), finding, language));
   return finding_text(templates, language, finding, part);
 }
 

@@ -82,7 +82,7 @@ std::string due_calendar(const Page& page) {
   for (const MachineHistory* m : by_due(page.site)) {
     if (!day_of(m->due) || !day_of(page.site.date)) continue;
     const std::string what = page.words.get("site.calibrate", {{"machine", m->id}});
-    // The night's date stands for the moment: these files have no clock.
+    // The date of the run is used as the time: these files have no clock.
     out += "BEGIN:VEVENT\r\n" + folded("UID:" + calendar_text(m->id) + "-due@nonio") +
            folded("DTSTAMP:" + without_dashes(page.site.date) + "T000000Z") +
            folded("DTSTART;VALUE=DATE:" + without_dashes(m->due)) +

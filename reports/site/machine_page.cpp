@@ -35,7 +35,7 @@ void add_open_lines(View& view, const Page& page, const MachineHistory& m) {
     std::string text = page.words.get("site.kind." + std::string(name_of(l.kind))) + ": ";
     if (!l.axis.empty()) text += l.axis + " ";
     if (!l.quantity.empty()) text += quantity_text(page, l.quantity) + " ";
-    if (l.value) text += value_text(page, *l.value, l.u, l.unit) + ". ";
+    if (shows_value(l)) text += value_text(page, *l.value, l.u, l.unit) + ". ";
     text = html_of(text).text;
     for (const char* part : {"says", "advice"})
       text += typeset_html(line_text(page, l, part)) + " ";
@@ -69,7 +69,8 @@ void add_tables(View& view, const Page& page, const MachineHistory& m) {
 
 /// As found and as left on one day has words of its own.
 std::string change_text(const Page& page, const HistorySeries& s, const HistoryChange& c) {
-  const std::string size = value_text(page, c.size, c.u, s.unit);
+  const std::string size = is_log_of_scatter(s.quantity) ? factor_text(page, c.size, c.u)
+                                                         : value_text(page, c.size, c.u, s.unit);
   if (c.cause == "table" && c.after == c.before)
     return page.words.get("site.change.adjusted", {{"size", size}, {"date", c.before}});
   return page.words.get(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The morning as text: one line, one decision.
+// The worklist as text: one line per action.
 #include <algorithm>
 #include <map>
 
@@ -31,7 +31,7 @@ std::string where_of(const MorningLine& l) {
 std::string number_of(const Page& page, const MorningLine& l) {
   std::string out;
   if (!l.quantity.empty()) out = site::quantity_text(page, l.quantity);
-  if (!l.value) return out;
+  if (!site::shows_value(l)) return out;
   out += (out.empty() ? "" : " ") + site::value_text(page, *l.value, l.u, l.unit);
   if (l.limit)
     out += ", " +

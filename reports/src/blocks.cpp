@@ -289,7 +289,7 @@ Expected<Laid> lay(const SignatureBox& box, double width, const Context& context
 }
 
 Expected<Laid> lay(const Spacer& spacer, double, const Context&, std::string_view) {
-  return Laid{{{0.0, spacer.height, {}, true}}};  // what stands before it may have to stay with
+  return Laid{{{0.0, spacer.height, {}, true}}};  // what precedes it may have to stay with
                                                   // what follows
 }
 

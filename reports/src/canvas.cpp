@@ -161,7 +161,7 @@ void PdfCanvas::show(bool bold, double size, std::span<const Glyph> glyphs) {
     std::size_t end = i + 1;
     while (end < glyphs.size() && glyphs[end].wide == first.wide && !is_accent(glyphs[end])) ++end;
     const bool outlined = bold && first.wide;
-    if (outlined) {  // the wide font has no bold one beside it
+    if (outlined) {  // the wide font has no bold face
       stroke_colour(state_.fill);
       line(0.03 * size);
       ops += "2 Tr ";

@@ -20,7 +20,7 @@ bool is_control(char32_t);
 /// Letters over which an accent is set though no character has both: of Latin, Greek, Cyrillic.
 bool bears_accent(char32_t);
 
-/// Beside an ideograph, where else a line may be divided (GB/T 15834: punctuation).
+/// Next to an ideograph, where else a line may be divided (GB/T 15834: punctuation).
 bool begins_no_line(char32_t);
 bool ends_no_line(char32_t);
 

@@ -20,7 +20,7 @@ class Outlines {
     const std::size_t from = begin(glyph), to = begin(glyph + 1);
     return to > from ? to - from : 0;
   }
-  /// Where in the file the numbers of the glyphs stand that this one is composed of.
+  /// Positions in the file of the numbers of the glyphs that this one is composed of.
   std::vector<std::size_t> components(std::size_t glyph) const {
     std::vector<std::size_t> out;
     if (size(glyph) < 10 || r_.s16(begin(glyph)) >= 0) return out;

@@ -15,7 +15,7 @@ constexpr double head_room = 16, foot_room = 16;
 /// Puts strips on pages, from top to bottom.
 class Pages {
  public:
-  /// `foot`: stands at the foot of the first page, where its place is kept free.
+  /// `foot`: is placed at the foot of the first page, where its place is kept free.
   Pages(const Style& style, bool head, const Laid& foot)
       : style_(style),
         room_(style.page_height - style.top - style.bottom - foot_room),
@@ -80,7 +80,7 @@ class Pages {
   std::optional<pdf::SignaturePlace> signature_;
 };
 
-/// What stands at the foot of the first page.
+/// The foot of the first page.
 Expected<Laid> lay_first_foot(const Document& document, double width, const Context& context) {
   Laid foot;
   double height = 0.0;
@@ -221,7 +221,7 @@ Expected<std::string> pdf_bytes(const Document& document, const Fonts& fonts) {
   const auto foot = lay_first_foot(document, width, context);
   if (!foot) return fail(foot.error());
   Pages pages(style, !document.head.empty(), *foot);
-  std::optional<Laid> before_last;  // the last block does not stand on a page by itself
+  std::optional<Laid> before_last;  // the last block is not alone on a page
   for (const Block& block : document.blocks) {
     auto laid = lay_block(block, width, context);
     if (!laid) return fail(laid.error());

@@ -28,7 +28,7 @@ const ModelFit::Curve* curve_named(const ModelFit& fit, const std::string& effec
   return nullptr;
 }
 
-/// What a curve comes to: nobody reads the coefficients of a spline.
+/// What a curve amounts to: the coefficients of a spline are not readable.
 void add_curve(std::vector<ParameterRow>& rows, const std::string& effect,
                const ModelFit::Curve& curve, const ModelFit& fit, const Templates& templates,
                const std::string& language) {

@@ -22,6 +22,10 @@ std::string followed_quantity(const Wording& site, const std::string& quantity) 
   return of + ", " + site.get_or("site.part." + part, part);
 }
 
+bool is_log_of_scatter(const std::string& quantity) {
+  return quantity == "ln_s" || quantity.ends_with(".ln_s");
+}
+
 std::string event_text(const Wording& site, const std::string& event) {
   const std::string kind = event.substr(0, event.find(": "));
   return site.get_or("site.event." + kind, kind) + event.substr(kind.size());

@@ -246,7 +246,7 @@ class TableSetter {
     }
   }
 
-  /// Short tables stay whole; of long ones at least two rows come to stand on each side.
+  /// Short tables stay whole; of long ones at least two rows are on each side.
   void keep_together(Laid& laid) const {
     constexpr std::size_t whole = 14;
     const std::size_t n = laid.pieces.size();

@@ -16,7 +16,7 @@ struct Glyph {
   bool space;                        ///< may vanish at the end of a line
   bool break_after;                  ///< a line may end here
   bool wide = false;                 ///< of Fonts::wide
-  std::int16_t shift = 0, rise = 0;  ///< where an accent stands, 1/1000 of the font size
+  std::int16_t shift = 0, rise = 0;  ///< position of an accent, 1/1000 of the font size
   char32_t character = 0;
 };
 using Glyphs = std::vector<Glyph>;

@@ -25,8 +25,8 @@ format = 1
 id = "a"
 [machine.axes.X]
 kind = "linear"
-table_on = "none"
-backlash_on_mm = "none"
+active_table = "none"
+active_backlash_mm = "none"
 [[measurement]]
 id = "X"
 kind = "axis"

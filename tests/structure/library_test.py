@@ -22,7 +22,7 @@ def table():
     rows = ["| name | of | cause | deviation | usual size | table | prior |", "|---|---|---|---|---|---|---|"]
     for group, c in causes():
         expression = c["expression"].replace("|", "&#124;")
-        rows.append(f"| `{c['name']}` | {group}, {c['axis']} | {c['title']} | <code>{expression}</code> | {c['size']} "
+        rows.append(f"| `{c['name']}` | {group}, {c['axis']} | {c['title']['en']} | <code>{expression}</code> | {c['size']} "
                     f"| {'yes' if c.get('compensable') else 'no'} | {c.get('prior', 'common')} |")
     return "\n".join(rows) + "\n"
 

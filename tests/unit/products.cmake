@@ -4,7 +4,7 @@ add_executable(test_engine
   batch/campaign_state_test.cpp batch/earlier_results_test.cpp batch/night_plan_test.cpp
   platform/storage/files_test.cpp
   campaign/config/causes_test.cpp campaign/config/formula_test.cpp campaign/config/keys_test.cpp campaign/config/machines_test.cpp campaign/config/manifest_test.cpp campaign/config/schema_test.cpp
-  campaign/config/secrets_test.cpp campaign/config/site_logs_test.cpp campaign/config/words_test.cpp
+  campaign/config/secrets_test.cpp campaign/config/site_logs_test.cpp campaign/config/upgrade_test.cpp campaign/config/words_test.cpp
   live/difference_test.cpp live/events_test.cpp live/guard_test.cpp live/session_test.cpp
   campaign/modelling/model_edit_test.cpp
   campaign/evaluation/decision_test.cpp campaign/evaluation/record_test.cpp

@@ -93,7 +93,7 @@ Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::u
 }
 
 void HistoryUpdate::nothing_done() const {
-  // If it cannot be noted, the next night makes the store again.
+  // If it cannot be noted, the next run makes the store again.
   if (known_) [[maybe_unused]]
     const auto noted = store::note_known_night(options_.out, *known_);
 }

@@ -22,17 +22,17 @@ class HistoryUpdate {
   HistoryUpdate(const RunOptions& options, const reading::Context& context)
       : options_(options), context_(context) {}
 
-  /// Before the first result is stored. `known`: the night that the store knows, where the plan of
-  /// this night has noted it.
+  /// Before the first result is stored. `known`: the run up to which the store is complete, where the plan of
+  /// this run has noted it.
   Expected<void> begin(std::optional<std::uint64_t> known = {});
   std::optional<std::uint64_t> known() const { return known_; }
-  /// When all are: adds these campaigns. `last` is the night whose end the store ought to know,
-  /// `night` the one that it knows from now on. Gives what the morning should know. An error leaves
-  /// the store as it was, and the next night makes it again.
+  /// When all are: adds these campaigns. `last` is the run whose end the store should contain,
+  /// `night` the one that it contains from now on. Returns notes for the summary. An error leaves
+  /// the store as it was, and the next run makes it again.
   Expected<std::vector<std::string>> end(std::uint64_t last, std::uint64_t night,
                                          const std::vector<std::string>& campaigns,
                                          const Expected<store::Told>& told);
-  /// No result was stored after `begin`: the store still knows the night that it knew.
+  /// No result was stored after `begin`: the store is complete up to the same run as before.
   void nothing_done() const;
   /// The same between nights, where a store that is behind is left to the next one.
   Expected<std::vector<std::string>> end(const std::vector<std::string>& campaigns,
@@ -43,7 +43,7 @@ class HistoryUpdate {
  private:
   const RunOptions& options_;
   const reading::Context& context_;
-  std::optional<std::uint64_t> known_{};  ///< the night that the store knows
+  std::optional<std::uint64_t> known_{};  ///< the run up to which the store is complete
   bool rebuilt_ = false;
 };
 

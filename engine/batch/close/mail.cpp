@@ -86,7 +86,7 @@ void fill(net::MailMessage& message, const config::Mail& mail, const Letter& let
     message.addRecipient(net::MailRecipient(net::MailRecipient::PRIMARY_RECIPIENT, to));
   message.setSubject(encoded_subject(letter.subject));
   message.setContentType("text/plain; charset=UTF-8");
-  message.set("Auto-Submitted", "auto-generated");  // RFC 3834: nobody's holidays answer it
+  message.set("Auto-Submitted", "auto-generated");  // RFC 3834: no automatic reply
   message.setDate(Poco::Timestamp());
   message.setContent(letter.text, net::MailMessage::ENCODING_BASE64);
 }
@@ -190,7 +190,7 @@ void log_in(net::SMTPClientSession& session, const std::string& host, const conf
 void converse(net::SecureSMTPClientSession& session, const config::Mail& mail,
               const net::Context::Ptr& context, const std::string& password,
               const net::MailMessage& message) {
-  const std::string own = "localhost";  // the name of this machine is nobody's business
+  const std::string own = "localhost";  // the name of this machine is not published
   session.open();
   session.login(own);
   if (mail.tls == config::Mail::Tls::starttls) {

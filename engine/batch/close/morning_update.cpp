@@ -92,7 +92,7 @@ void add_curves(reports::SiteHistory& site, const fs::path& out,
   }
 }
 
-/// What the night writes to those whom `[mail]` names; empty if nothing asks for it. Leaves `site` as it
+/// The mail of the run to the addresses in `[mail]`; empty if no line requires it. Leaves `site` as it
 /// was.
 Expected<std::string> mail_text(reports::SiteHistory& site, const reading::Context& context,
                                 const std::string& language) {
@@ -120,15 +120,20 @@ Expected<Texts> texts_of(reports::SiteHistory site, const reading::Context& cont
   const auto asking = std::count_if(site.lines.begin(), site.lines.end(), reports::asks);
   const auto mail = mail_text(site, context, language);
   if (!mail) return fail(mail.error());
+  reports::SiteHistory action;
+  std::copy_if(site.lines.begin(), site.lines.end(), std::back_inserter(action.lines),
+               reports::asks);
+  const std::string actions = assessment::lines_json(action, context.templates, language);
   std::erase_if(site.lines, stands_in_a_list);
   auto text = site.lines.empty()
                   ? Expected<std::string>()
                   : reports::morning_text(site, context.templates, language, most_lines);
   if (!text) return fail(text.error());
-  return Texts{std::move(*text), json, std::to_string(asking), site.judged ? "1" : "", *mail};
+  return Texts{std::move(*text),       json,  std::to_string(asking),
+               site.judged ? "1" : "", *mail, actions};
 }
 
-/// All machines anew, with the error curves that stand in each campaign's results.json.
+/// All machines anew, with the error curves of each campaign's results.json.
 Expected<Texts> small_morning(const fs::path& out, const reading::Context& context,
                               const assessment::Tonight& tonight,
                               const std::function<void()>& alive) {
@@ -250,7 +255,8 @@ Expected<Morning> make_morning(const RunOptions& options, const reading::Context
         return make(options.out, context, tonight, alive);
       });
   if (!made) return fail(made.error());
-  return Morning{(*made)[0], (*made)[1], std::stoull((*made)[2]), !(*made)[3].empty(), (*made)[4]};
+  return Morning{(*made)[0],          (*made)[1], std::stoull((*made)[2]),
+                 !(*made)[3].empty(), (*made)[5], (*made)[4]};
 }
 
 }  // namespace nonio::batch

@@ -10,16 +10,17 @@
 
 namespace nonio::batch {
 
-/// What a night says to the people of the morning.
+/// What a run reports to people.
 struct Morning {
-  std::string text;  ///< of summary.txt: one line a decision, without what failed or is lost
+  std::string text;  ///< of summary.txt: one line per action, without what failed or is lost
   std::string json;  ///< the same lines as a list, of summary.json
   std::uint64_t asking = 0;  ///< lines that are new and no mere notes
   bool judged = true;        ///< some campaign states a limit
-  std::string mail;          ///< the lines that are grave enough for one; empty: none is
+  std::string actions;  ///< like `json`, in the language of the site: lines that require action
+  std::string mail;     ///< the lines that are grave enough for one; empty: none is
 };
 
-/// What the night knows and the history does not.
+/// What the run knows and the history does not.
 assessment::Tonight tonight_of(const Night& night, const std::filesystem::path& out,
                                const Templates& templates);
 

@@ -28,7 +28,7 @@ bool show_histories(const RunOptions& options, const RunEvents& events,
                     const reading::Context& context, const NightState& state, ReleaseDesk desk,
                     HistoryUpdate& history, const Expected<store::Told>& told,
                     const std::string& only, Night& night) {
-  if (!told || !night.history_error.empty()) return true;  // said already; the next night does it
+  if (!told || !night.history_error.empty()) return true;  // reported already; the next run does it
   const ShownHistories shown(options, context);
   auto others = shown.others(night.campaigns, *told, history.rebuilt());
   std::string error = others ? std::string() : others.error().message;

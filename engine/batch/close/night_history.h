@@ -11,7 +11,7 @@
 
 namespace nonio::batch {
 
-/// An index that cannot be written is no reason to lose a night: it is made again from the results.
+/// If the index cannot be written, the run does not fail: it is made again from the results.
 void write_history(Night& night, HistoryUpdate& history, std::uint64_t known,
                    const std::vector<std::string>& done, const Expected<store::Told>& told,
                    const RunEvents& events);
@@ -19,7 +19,7 @@ void write_history(Night& night, HistoryUpdate& history, std::uint64_t known,
 /// Reports that show another history of their machine than the store has by now are written again:
 /// whatever the order in which campaigns came, each sees all that its day knew. False if it was
 /// interrupted.
-/// `only`: the campaign of a night that is reopened; reports of others are left to the next night.
+/// `only`: the campaign of a run that is reopened; reports of others are left to the next run.
 bool show_histories(const RunOptions& options, const RunEvents& events,
                     const reading::Context& context, const NightState& state, ReleaseDesk desk,
                     HistoryUpdate& history, const Expected<store::Told>& told,

@@ -12,7 +12,7 @@
 
 namespace nonio::batch {
 
-/// Which campaigns show another history of their machine than the store has. A night asks when the
+/// Which campaigns show another history of their machine than the store has. A run asks when the
 /// store knows its results; then those campaigns are done again. Where nothing has changed since
 /// all were right (OUT/.nonio/histories says so), no history is looked at.
 class ShownHistories {

@@ -28,21 +28,12 @@ std::string where(const Error& e) {
 /// Why a campaign was done, in the language of `words`: a fixed text, or a name and what became of
 /// it.
 std::string one_reason(const std::string& text, const config::TerminalWords& words) {
+  if (std::string whole = words.of("reason", text); whole != text) return whole;
   for (const char* what : {" changed", " is missing from the output", " was changed in the output"})
     if (text.ends_with(what))
       return words(std::string("reason.*") + what,
                    {{"what", text.substr(0, text.size() - std::string_view(what).size())}});
-  return words.of("reason", text);
-}
-
-std::string reason_in(const std::string& text, const config::TerminalWords& words) {
-  std::string out;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t to = std::min(text.find("; ", from), text.size());
-    out += (from == 0 ? "" : "; ") + one_reason(text.substr(from, to - from), words);
-    from = to + 2;
-  }
-  return out;
+  return text;
 }
 
 constexpr std::size_t most_shown = 6;  // of a list, in summary.txt
@@ -85,7 +76,7 @@ storage::Json night_json(const evaluation::NightOf& night) {
   return {{"night", night.number}, {"date", night.date}};
 }
 
-/// Which night this is, and whether campaigns are missing: first of all, so that nobody takes an
+/// Which run this is, and whether campaigns are missing: first of all, so that no reader takes an
 /// old summary for tonight's.
 std::string night_line(const Night& night, const config::TerminalWords& words) {
   std::string line =
@@ -114,7 +105,7 @@ struct Lists {
         fresh("new_findings", folder) {}
   const config::TerminalWords& words;
   List done, unchanged, attention, failed, vanished, fresh;
-  std::map<std::string, Fresh> fresh_by_heading;  ///< those that ask for attention
+  std::map<std::string, Fresh> fresh_by_heading;  ///< those that require action
 
   void add(const Vanished& v) {
     vanished.add(v.id + (config::is_campaign_id(v.id) ? ": " : " ") + v.why,
@@ -159,7 +150,7 @@ struct Lists {
   }
 
  private:
-  /// With how long it has been so, and where results are that still stand.
+  /// Since when it has been so, and the folder of results that are still valid.
   void add_failed(const CampaignState& c, const fs::path& out) {
     std::string line = c.id + ": " + first_error(c, words);
     storage::Json entry = entry_json(c, first_error(c, {words.templates(), "en"}));
@@ -237,7 +228,7 @@ std::string counts_line(const Night& night, const Lists& lists, const Morning& m
          words.counted("asking", morning.asking) + "\n";
 }
 
-/// One line a heading, those with the most findings first.
+/// One line per heading, those with the most findings first.
 void write_fresh(storage::Spool& out, const Lists& lists) {
   if (lists.fresh_by_heading.empty()) return;
   std::vector<std::pair<std::string, Fresh>> all(lists.fresh_by_heading.begin(),
@@ -253,14 +244,14 @@ void write_fresh(storage::Spool& out, const Lists& lists) {
             "\n");
 }
 
-/// A night on which nothing is new, and nobody must decide anything.
+/// A run in which nothing is new and no action is required.
 bool is_quiet(const Night& night, const Lists& lists, const Morning& morning) {
   return lists.done.count == 0 && lists.failed.count == 0 && lists.vanished.count == 0 &&
          morning.asking == 0 && !morning.json.empty() && night.issued.empty() &&
          night.waiting.empty() && night.notes.empty();
 }
 
-/// What somebody must act on comes first. Of long lists the begin: summary.json has them whole.
+/// What requires action comes first. Of long lists the begin: summary.json has them whole.
 void write_text(storage::Spool& out, const Night& night, Lists& lists, const std::string& version,
                 const Morning& morning) {
   const config::TerminalWords& words = lists.words;
@@ -346,6 +337,16 @@ std::size_t Night::lost_parts() const {
   return static_cast<std::size_t>(
       std::count_if(vanished.begin(), vanished.end(),
                     [](const Vanished& v) { return !config::is_campaign_id(v.id); }));
+}
+
+std::string reason_in(const std::string& text, const config::TerminalWords& words) {
+  std::string out;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find("; ", from), text.size());
+    out += (from == 0 ? "" : "; ") + one_reason(text.substr(from, to - from), words);
+    from = to + 2;
+  }
+  return out;
 }
 
 std::string first_error(const CampaignState& c, const config::TerminalWords& words) {

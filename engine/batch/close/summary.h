@@ -14,6 +14,9 @@ namespace nonio::batch {
 /// is no error.
 std::string first_error(const CampaignState& c, const config::TerminalWords& words);
 
+/// Why a campaign is done or not, in the language of `words`.
+std::string reason_in(const std::string& text, const config::TerminalWords& words);
+
 /// summary.txt and summary.json (schema nonio-summary/1) of a complete night, written into `out`.
 /// summary.txt speaks the language of `words`, summary.json English. The findings come from the
 /// campaigns' records there, one at a time; the lists grow in files.

@@ -9,7 +9,7 @@
 
 namespace nonio::batch {
 
-/// What the survey has failed: a good result of a night before stays, else there is one that says
+/// What the survey has failed: a good result of an earlier run stays, else there is one that says
 /// what is wrong. Several campaigns with one id claim one folder.
 void store_refused(const RunOptions& options, const reading::Context& context,
                    const NightState& night, const RunEvents& events,

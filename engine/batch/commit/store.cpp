@@ -26,7 +26,7 @@ evaluation::RecordedFile recorded(const Artifact& a) {
 }
 
 /// Under a temporary name, whole or not at all: until tonight's record has its name, this is what
-/// tells a night that is resumed why the campaign is done.
+/// states to a run that is resumed why the campaign is done.
 Expected<void> write_record(const fs::path& folder, const evaluation::Record& record) {
   const std::string unfinished = std::string(".") + evaluation::record_name;
   const std::string text = evaluation::to_json(record);
@@ -37,7 +37,7 @@ Expected<void> write_record(const fs::path& folder, const evaluation::Record& re
                               [&] { return storage::read_file(path).value_or("") == text; });
 }
 
-/// What the record says of the nights before.
+/// What the record states of the previous runs.
 Expected<void> look_back(const fs::path& folder, evaluation::Record& record) {
   const auto last = evaluation::last_record(folder);
   if (!last) return fail(last.error());
@@ -214,7 +214,7 @@ class Move {
     return storage::is_artifact_name(name) || name == evaluation::results_name ||
            name == store::earlier_name;
   }
-  /// Whether the results that are there are of this night, or of a later one that has begun since.
+  /// Whether the present results are of this run, or of a later one that has begun since.
   bool is_stored(std::uint64_t night) const {
     const auto record = evaluation::read_record(folder_);
     return record && record->night >= night;

@@ -10,7 +10,7 @@
 
 namespace nonio::batch {
 
-/// What the record of a campaign says beside its results.
+/// What the record of a campaign states in addition to its results.
 struct StoreNote {
   std::string folder;
   evaluation::NightOf night{};

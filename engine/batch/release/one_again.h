@@ -9,11 +9,11 @@
 
 namespace nonio::batch {
 
-/// Of a night that is reopened: one campaign is to do, every other one stands as the night left it.
+/// Of a run that is reopened: one campaign is to do, every other one stays as the run left it.
 /// Its id; an error if no campaign has that folder or id.
 Expected<std::string> leave_only(const RunOptions& options, const NightState& state, Night& night);
 
-/// Campaigns that came after a night that is reopened are the next one's.
+/// Campaigns that came after a run that is reopened belong to the next one.
 void leave_out_new(const NightState& state, std::vector<CampaignState>& campaigns);
 
 }  // namespace nonio::batch

@@ -60,7 +60,7 @@ std::string mistake_in(const ReleaseRequest& request) {
   if (const std::string mistake = certificates::mistake_in_name(request.by); !mistake.empty())
     return "--by: " + mistake;
   for (const auto& [finding, reason] : request.reasons)
-    if (!says_something(reason) || !is_one_line(reason))
+    if (!has_content(reason) || !is_one_line(reason))
       return "the reason for " + finding +
              " is empty or has a control character; expected one line of text";
   return {};
@@ -242,7 +242,7 @@ class Releaser {
     if (!(*place)->no_key.empty()) return refuse((*place)->no_key);
     const certificates::Releasing releasing{seen_, approval, twins_};
     ReleaseDesk desk{&*(*place)->signer, &releasing, {}, &*(*place)->host};
-    // What the store does not know yet comes in with the next night.
+    // What the store does not contain yet is entered by the next run.
     if (auto bases = assessment::history_bases(options_.out, {id_}); bases)
       for (assessment::HistoryBasis& b : *bases) desk.histories.emplace(id_, std::move(b));
     CampaignState campaign;
@@ -254,7 +254,7 @@ class Releaser {
     if (const auto begun = history.begin(); !begun) return fail_with(begun.error().message);
     if (!do_campaigns(options_, events_, (*place)->context, night_, desk, campaigns))
       return fail_with("interrupted");
-    // What does not come in now does with the next night.
+    // What is not entered now is entered by the next run.
     [[maybe_unused]] const auto entered =
         history.end({id_}, read_told(options_, (*place)->context));
     auto opened = certificates::Register::open(options_.site, numbering_);
@@ -295,7 +295,7 @@ class Releaser {
   std::optional<OutputLock> lock_;
   std::string id_, role_, last_number_;
   certificates::WaitingDraft seen_;  ///< the draft as the register had it when it was read
-  reading::Twins twins_;             ///< what the night knew of other campaigns
+  reading::Twins twins_;             ///< what the run knew of other campaigns
   Released out_;
 };
 

@@ -17,7 +17,7 @@ struct ReleaseRequest {
   std::string by;                              ///< a person's name, as it is printed
   std::string role;                            ///< author, authoriser; empty: what the site wants
   std::map<std::string, std::string> reasons;  ///< by finding_key or by the finding's id
-  std::filesystem::path out;                   ///< of the night; empty: where it was
+  std::filesystem::path out;                   ///< of the run; empty: where it was
 };
 
 struct Released {
@@ -33,14 +33,14 @@ struct Released {
   std::vector<std::string> without_reason;  ///< keys of findings
   std::vector<std::string> notes;
   certificates::RegisterEntry entry;         ///< of what was issued
-  std::vector<std::filesystem::path> files;  ///< in the output folder of the night
+  std::vector<std::filesystem::path> files;  ///< in the output folder of the run
 };
 
-/// Issues what a night has left as a draft, exactly that: its data, plugins, templates and version
+/// Issues the draft of a run, exactly that: its data, plugins, templates and version
 /// must be the same. `base` gives plugins, templates and version.
 Released release(const ReleaseRequest& request, const RunOptions& base, const RunEvents& events);
 
-/// The drafts of the site that `folder` is or lies in; of a campaign's folder its own alone.
+/// The drafts of the site that `folder` is or belongs to; of a campaign's folder its own alone.
 Expected<std::vector<certificates::WaitingDraft>> waiting_drafts(
     const std::filesystem::path& folder);
 

@@ -99,8 +99,8 @@ Expected<void> PackedShard::hand_over(const RunOptions& options, const NightPlan
 
 namespace {
 
-/// Removes the results that a folder has of a night before. The record goes when all files are gone that only it
-/// names; what is left until then counts as nobody's results of tonight. Files of other people stay.
+/// Removes the results that a folder has of an earlier run. The record goes when all files are gone that only it
+/// names; what is left until then does not count as results of this run. Other files stay.
 Expected<void> clear_folder(const fs::path& folder, std::uint64_t night) {
   const auto there = storage::is_there(folder);
   if (!there) return fail(there.error());

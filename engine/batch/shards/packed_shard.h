@@ -25,7 +25,7 @@ class PackedShard {
   static Expected<PackedShard> begin(const RunOptions& options,
                                      const std::vector<CampaignState>& campaigns);
   const std::filesystem::path& out() const { return folder_->path(); }
-  /// The results of this night into a pack, and that to where all hosts see it. Marks them in `record`; an error
+  /// The results of this run into a pack, and that to where all hosts see it. Marks them in `record`; an error
   /// names a campaign that is not stored.
   Expected<void> hand_over(const RunOptions& options, const NightPlan& plan,
                            ShardRecord& record) const;
@@ -36,8 +36,8 @@ class PackedShard {
   std::unique_ptr<storage::ScratchFolder> folder_;
 };
 
-/// The packs of these shards count from now on. Results in folders of the same campaigns, of nights before, are
-/// removed; those of this night stay, and count.
+/// The packs of these shards count from now on. Results in folders of the same campaigns, of earlier runs, are
+/// removed; those of this run stay, and count.
 Expected<void> accept_packs(const std::filesystem::path& out, const NightPlan& plan,
                             const std::vector<const ShardRecord*>& shards);
 /// Of a plan that is given up: what its shards have handed over counts. Packs that are damaged are left out.

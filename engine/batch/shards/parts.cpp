@@ -71,7 +71,7 @@ std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site
   return states;
 }
 
-/// Stored in this night already: by this shard before it was killed, or by another copy of it.
+/// Stored in this run already: by this shard before it was killed, or by another copy of it.
 bool take_stored(const fs::path& out, std::uint64_t night, CampaignState& c) {
   const auto record = evaluation::read_record(storage::results_folder(out, c.id));
   if (!record || record->night != night) return false;
@@ -131,7 +131,7 @@ void take_reported(const ShardRecord& record, std::vector<CampaignState>& campai
   }
 }
 
-/// The campaigns of a shard, the first `own` of the night's. An error without a word of the night: it was refused, or
+/// The campaigns of a shard, the first `own` of the run's. An error without a message of the run: it was refused, or
 /// interrupted.
 Expected<void> do_part(const RunOptions& options, const RunEvents& events, const NightPlan& plan,
                        std::size_t own, Night& night) {
@@ -156,6 +156,8 @@ Expected<void> do_part(const RunOptions& options, const RunEvents& events, const
   if (to_do > 0) {  // else no plugin is loaded
     const auto place = set_up(options);
     if (!place) return fail(place.error());
+    const reading::Context& read = (*place)->context;
+    if (events.words) events.words(config::TerminalWords(read.templates, read.site.language));
     if (const auto same = check_made_with(plan, (*place)->context); !same) return same;
     NightState state;
     state.number = plan.night.number;
@@ -210,7 +212,7 @@ Night run_shard(const RunOptions& options, const RunEvents& events) {
 
 namespace {
 
-/// What this night has stored in a pack, into the folder of the campaign.
+/// What this run has stored in a pack, into the folder of the campaign.
 Expected<void> take_in_of(const fs::path& out, std::uint64_t night, const std::string& id) {
   const auto record = evaluation::read_record(storage::results_folder(out, id));
   if (!record || record->night != night) return {};
@@ -230,7 +232,7 @@ Expected<void> plan_shards(const RunOptions& options, const reading::Context& co
     if (auto tidied = tidy_all(night, options.out, true); !tidied) return tidied;
   for (const CampaignState& c : night.campaigns) {
     if (!state.resumed || c.action != Action::todo || !c.is_campaign) continue;
-    // Its shard would take what this night has stored before for its own.
+    // Its shard would take what this run has stored before for its own.
     if (auto taken = take_in_of(options.out, state.number, c.id); !taken) return taken;
     const fs::path folder = storage::own_folder(options.out, c.id);
     const auto record = evaluation::read_record(folder);

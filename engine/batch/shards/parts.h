@@ -16,7 +16,7 @@ namespace nonio::batch {
 /// do the same shard, at once or one after the other, and leave the same bytes.
 Night run_shard(const RunOptions& options, const RunEvents& events);
 
-/// After the survey: the lists of the shards. The night stays open.
+/// After the survey: the lists of the shards. The run stays open.
 Expected<void> plan_shards(const RunOptions& options, const reading::Context& context,
                            const NightState& state, bool register_read, std::size_t own_notes,
                            Night& night);

@@ -22,6 +22,10 @@ void CampaignState::set_errors(std::vector<Error> errors) {
   if (seldom_.at || !errors.empty()) change().errors = std::move(errors);
 }
 
+void CampaignState::set_warnings(std::vector<Error> warnings) {
+  if (seldom_.at || !warnings.empty()) change().warnings = std::move(warnings);
+}
+
 void CampaignState::set_twins_before(std::vector<TwinBefore> twins) {
   if (seldom_.at || !twins.empty()) change().twins_before = std::move(twins);
 }

@@ -14,7 +14,7 @@
 
 namespace nonio::batch {
 
-/// One campaign of the night, as it is known so far. Small, since there may be ten million: 56 bytes and its texts. What
+/// One campaign of the run, as it is known so far. Small, since there may be ten million: 56 bytes and its texts. What
 /// its record holds (findings) is read again for the summary.
 class CampaignState {
  public:
@@ -25,7 +25,7 @@ class CampaignState {
   enum class Action : char { todo, done, unchanged } action = Action::todo;
   evaluation::Status status = evaluation::Status::none;  ///< none while it is to do
   bool named_by_folder = false;                          ///< its manifest gives no id
-  bool is_campaign = true;     ///< false: a folder of which nobody knows what lies in it
+  bool is_campaign = true;     ///< false: a folder whose content is unknown
   bool shows_history = false;  ///< a document shows the machine's history
 
   using TwinBefore = std::pair<std::uint64_t, std::string>;
@@ -33,7 +33,10 @@ class CampaignState {
 
   const std::vector<Error>& errors() const { return seldom().errors; }
   void set_errors(std::vector<Error> errors);
-  /// Begin of the SHA-256 of files that another campaign has too, and where that one stands in the list of campaigns.
+  /// Of the manifest: keys with former names. Not kept for the next run.
+  const std::vector<Error>& warnings() const { return seldom().warnings; }
+  void set_warnings(std::vector<Error> warnings);
+  /// Begin of the SHA-256 of files that another campaign has too, and its position in the list of campaigns.
   const std::vector<Twin>& twins() const { return seldom().twins; }
   void add_twin(Twin twin) { change().twins.push_back(twin); }
   /// The same as its record knew it, with the other one's id.
@@ -46,7 +49,7 @@ class CampaignState {
  private:
   /// What few campaigns have.
   struct Seldom {
-    std::vector<Error> errors;
+    std::vector<Error> errors, warnings;
     std::vector<Twin> twins;
     std::vector<TwinBefore> twins_before;
   };

@@ -8,7 +8,7 @@
 
 namespace nonio::batch {
 
-/// Text of which a night has very many (ids, folders): it takes its own length and a byte, copies share it, and it stays
+/// Text of which a run has very many (ids, folders): it takes its own length and a byte, copies share it, and it stays
 /// in memory until the process ends. A std::string takes 32 bytes, and from 16 characters on 32 or more besides.
 class KeptText {
  public:

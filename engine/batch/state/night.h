@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "batch/state/campaign_state.h"
+#include "campaign/config/terminal_words.h"
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/evaluation/record.h"
 #include "campaign/evaluation/status.h"
@@ -21,18 +22,18 @@ namespace nonio::batch {
 struct RunOptions {
   std::filesystem::path site, out;
   std::vector<std::filesystem::path> plugin_folders, template_folders;
-  std::filesystem::path own_plugins;  ///< the plugin folder beside the program
+  std::filesystem::path own_plugins;  ///< the program's own plugin folder
   std::size_t jobs = 0;               ///< 0: one for each core
   bool force = false;
   std::string
       only{};  ///< a campaign's folder below the site, or its id: that alone, between nights
   bool dry_run = false;
   bool verify_results = false;  ///< compare the digests of all files given out, touched or not
-  std::string date{};           ///< of the night, YYYY-MM-DD; empty: today's
+  std::string date{};           ///< of the run, YYYY-MM-DD; empty: today's
   std::string version;
   bool as_root = false;  ///< root may run it, whoever can write the plugins
   bool confine = true;   ///< false: only to measure what confining plugins costs
-  /// Of a night that is done in parts; `whole`: it is not.
+  /// Of a run that is done in parts; `whole`: it is not.
   enum class Step { whole, plan, shard, merge } step = Step::whole;
   std::uint64_t shard = 0, shards = 0;  ///< which of how many
   bool pack = false;                    ///< the shard hands its results over as one file
@@ -57,17 +58,19 @@ struct RunEvents {
   std::function<void()> tick;  ///< several times a second, to redraw
   /// What is done from now on: survey, campaigns, history, pages.
   std::function<void(const char* name)> stage{};
+  /// Before everything else, once site.toml and the templates are read.
+  std::function<void(const config::TerminalWords&)> words{};
 };
 
 struct Night {
   enum class End { complete, interrupted, refused } end = End::complete;
   evaluation::NightOf night{};
-  std::optional<std::uint64_t> seen_before{};  ///< campaigns that the night before saw
+  std::optional<std::uint64_t> seen_before{};  ///< campaigns that the previous run saw
   std::string error;                           ///< of a refused run: usage or configuration
   std::vector<CampaignState> campaigns;        ///< ordered by id
   std::vector<std::string> notes;
   std::vector<certificates::RegisterEntry>
-      issued;  ///< certificates that are new since the night before
+      issued;  ///< certificates that are new since the previous run
   std::vector<certificates::WaitingDraft> waiting;  ///< for their release
   std::vector<Vanished> vanished;                   ///< ordered by id
   std::size_t failed() const;      ///< campaigns, and folders that could not be listed
@@ -77,11 +80,12 @@ struct Night {
     return failed() > 0 || lost_parts() > 0 || vanished.size() > may_vanish ||
            !history_error.empty() || !morning_error.empty();
   }
-  std::size_t may_vanish = 0;             ///< so many campaigns may vanish, by site.toml
-  std::optional<std::uint64_t> asking{};  ///< lines of the morning that ask for a decision
+  std::size_t may_vanish = 0;  ///< so many campaigns may vanish, by site.toml
+  std::string actions{};       ///< JSON: lines that require action, in the language of the site
+  std::optional<std::uint64_t> asking{};  ///< lines of the worklist that require action
   std::string morning_error{};            ///< why the pages were not made, or the mail not sent
-  std::string history_error{};            ///< why OUT/history.sqlite does not know this night
-  /// How many campaigns each shard has; of a night that was planned only.
+  std::string history_error{};            ///< why OUT/history.sqlite does not contain this run
+  /// How many campaigns each shard has; of a run that was planned only.
   std::vector<std::uint64_t> planned{};
 };
 

@@ -108,7 +108,7 @@ bool is_for_shard(const CampaignState& c) {
   return c.action == Action::todo && c.status != evaluation::Status::failed;
 }
 
-/// Where campaigns stand, those of the first shard first and the rest last. Counts them in the plan.
+/// Positions of campaigns, those of the first shard first and the rest last. Counts them in the plan.
 std::vector<std::uint32_t> by_list(const fs::path& out, NightPlan& plan,
                                    const std::vector<CampaignState>& campaigns) {
   const auto rest = static_cast<std::uint32_t>(plan.shards.size());

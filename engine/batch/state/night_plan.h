@@ -14,7 +14,7 @@
 
 namespace nonio::batch {
 
-/// A night that several processes, perhaps on several hosts, do in parts. It is kept in
+/// A run that several processes, perhaps on several hosts, do in parts. It is kept in
 /// OUT/.nonio/plan: `plan.json`, written last, names a folder with a list for each shard and one of
 /// all other campaigns. Whoever does a part opens its files by these names and lists nothing.
 struct NightPlan {
@@ -27,7 +27,8 @@ struct NightPlan {
   std::string site;            ///< its folder on the host that planned
   reading::Inputs made_with;   ///< site.toml, plugins, templates, version: as for every campaign
   bool register_read = false;  ///< false: another process kept the register of numbers locked
-  std::optional<std::uint64_t> history_known{};  ///< the night that the history knew before
+  std::optional<std::uint64_t>
+      history_known{};  ///< the run up to which the history was complete before
   std::uint64_t to_do = 0, seen = 0;
   std::vector<std::string> notes{};
   std::vector<Vanished> vanished{};
@@ -50,7 +51,7 @@ Expected<std::optional<NightPlan>> find_plan(const std::filesystem::path& out);
 Expected<NightPlan> read_plan(const std::filesystem::path& out);
 /// plan.json first: without it there is no plan.
 Expected<void> remove_plan(const std::filesystem::path& out);
-/// An error names what is other here than where the night was planned.
+/// An error names what differs here from where the run was planned.
 Expected<void> check_made_with(const NightPlan& plan, const reading::Context& context);
 
 /// A campaign of a list. Other campaigns that have its readings are named by their ids.

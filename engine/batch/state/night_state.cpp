@@ -64,7 +64,7 @@ Expected<std::optional<storage::Json>> read_state(const fs::path& out) {
   return json;
 }
 
-/// `end`: of a night that is complete; none while it is running.
+/// `end`: of a run that is complete; none while it is running.
 Expected<void> write_state(const fs::path& out, const NightState& night,
                            const std::optional<NightEnd>& end) {
   storage::Json json = {{"schema", "nonio-night/1"}, {"night", night.number},
@@ -78,7 +78,7 @@ Expected<void> write_state(const fs::path& out, const NightState& night,
 }
 
 /// Why the results of `site` may not go among those of `other`; empty if they may. A site that was
-/// moved is the same one under another name, and its old folder is gone.
+/// moved is the same one under another name, and its old folder no longer exists.
 std::string other_site(const std::string& other, const std::string& site, const fs::path& out) {
   std::error_code error;
   if (other.empty() || other == site || !fs::is_directory(other, error) ||

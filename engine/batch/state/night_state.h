@@ -12,9 +12,9 @@
 
 namespace nonio::batch {
 
-/// What a night keeps for itself in the output folder; no campaign can have its name.
+/// What a run keeps for itself in the output folder; no campaign can have its name.
 inline constexpr const char* state_folder = ".nonio";
-/// In it: the plan of a night that is done in parts, from the plan to the end of the merge.
+/// In it: the plan of a run that is done in parts, from the plan to the end of the merge.
 inline constexpr const char* plan_folder = "plan";
 inline constexpr const char* plan_name = "plan.json";
 
@@ -23,13 +23,13 @@ inline constexpr const char* plan_name = "plan.json";
 struct NightState {
   std::uint64_t number = 1;
   std::string date{};              ///< YYYY-MM-DD, as it was given
-  std::optional<NightEnd> last{};  ///< the night before; none before the first
+  std::optional<NightEnd> last{};  ///< the previous run; none before the first
   bool force = false;
   bool resumed = false;
-  /// Certificates in the register when the night before ended, or when the first one began; none
+  /// Certificates in the register when the previous run ended, or when the first one began; none
   /// if the register could not be read.
   std::optional<std::uint64_t> issued_before{};
-  /// The same when this night began, for one that is reopened.
+  /// The same when this run began, for one that is reopened.
   std::optional<std::uint64_t> issued_at_begin{};
   bool reopened = false;  ///< a complete night, of which one campaign is done again
   std::string site{};     ///< whose results they are, its folder
@@ -37,13 +37,13 @@ struct NightState {
 };
 
 /// An error if the folder holds the results of another site that is still there: campaigns of both
-/// would be taken for one another's, and the summary would tell of one of them only.
+/// would be taken for one another's, and the summary would report one of them only.
 Expected<NightState> begin_night(const RunOptions& options, const std::string& site,
                                  std::optional<std::uint64_t> issued_so_far);
-/// The last night, which has to be complete, as it was when it began: one campaign of it is done
-/// again. Nothing is written; what is cut short leaves the night complete.
+/// The last run, which has to be complete, as it was when it began: one campaign of it is done
+/// again. Nothing is written; what is cut short leaves the run complete.
 Expected<NightState> reopen_night(const RunOptions& options, const std::string& site);
-/// The night that was planned, as it was when it began: it is running. Nothing is written.
+/// The run that was planned, as it was when it began: it is in progress. Nothing is written.
 Expected<NightState> planned_night(const RunOptions& options, const std::string& site,
                                    std::uint64_t number);
 /// `night.issued_before` is then what the next one begins with.
@@ -54,7 +54,7 @@ Expected<void> end_night(const std::filesystem::path& out, const NightState& nig
 /// are there, and marks a new output folder. Results are never moved: another layout is an error.
 Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
-/// An error while a night is planned and not merged yet: the next run would be refused.
+/// An error while a run is planned and not merged yet: the next run would be refused.
 Expected<void> check_not_planned(const std::filesystem::path& out);
 
 }  // namespace nonio::batch

@@ -11,21 +11,21 @@
 
 namespace nonio::batch {
 
-/// What a night that is complete has counted.
+/// The counts of a complete run.
 struct NightEnd {
   evaluation::NightOf night{};
   std::uint64_t seen = 0;  ///< campaigns
   std::uint64_t failed = 0;
 };
 
-/// How an output folder's nights stand.
+/// The state of an output folder's runs.
 struct NightStatus {
   enum class State { complete, running, cut_short, planned } state = State::complete;
   evaluation::NightOf night{};             ///< the last that began
   std::optional<NightEnd> last{};          ///< the last that is complete
   double age = 0.0;                        ///< s since the last summary was written
-  std::uint64_t shards = 0, reported = 0;  ///< of a night that is planned
-  std::string used_by{};                   ///< who uses the folder now, for people; "" if nobody
+  std::uint64_t shards = 0, reported = 0;  ///< of a run that is planned
+  std::string used_by{};  ///< who uses the folder now, for people; "" if no process
 };
 
 /// complete, running, planned, cut-short

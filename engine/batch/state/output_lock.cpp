@@ -59,7 +59,7 @@ std::string text_of(const User& user) {
          "\n";
 }
 
-/// A file that says nothing that can be understood names nobody, and is believed all the same.
+/// A file with unreadable content names no process, and is respected all the same.
 User user_in(const std::string& text) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return {};
@@ -113,7 +113,7 @@ void sweep(const fs::path& path, const User& own) {
 enum class Made { done, taken, no_links };
 
 /// Gives `path` the bytes, if there is no such file. link(2) is one step on every server; two names
-/// prove that it was done, also where the answer was lost and a second try was told "exists".
+/// prove that it was done, also where the answer was lost and a second try got "exists".
 Expected<Made> make_user(const fs::path& path, const User& user, const std::string& says) {
   std::string own = temporary(path, user) + "XXXXXX";  // mkostemp puts its letters there
   const int fd = ::mkostemp(own.data(), O_CLOEXEC);

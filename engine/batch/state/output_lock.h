@@ -15,13 +15,13 @@ namespace nonio::batch {
 /// file systems among hosts. OUT/.nonio/user, made by link(2), names the process that uses the
 /// folder for itself, and holds among hosts wherever a file can have two names. It is taken over
 /// only when its process is known to be gone: the same boot of this host, where flock tells, or
-/// this host before it started anew. Of another host nobody here can know: `unlock` is told.
+/// this host before it started anew. Of another host this is unknown here: `unlock` states it.
 class OutputLock {
  public:
   enum class Use {
-    whole,    ///< refused while a night is planned, too
+    whole,    ///< refused while a run is planned, too
     planned,  ///< makes, merges or withdraws a plan
-    shard     ///< beside other shards: flock only, since two of the same shard are harmless
+    shard     ///< together with other shards: flock only, since two of the same shard are harmless
   };
   static Expected<OutputLock> take(const std::filesystem::path& out, Use use = Use::whole);
   OutputLock(OutputLock&& other) noexcept;
@@ -36,7 +36,7 @@ class OutputLock {
   long pid_ = 0;                  ///< of the owner: no process that it starts removes the file
 };
 
-/// Who uses the folder for itself now, for people: "process 17 on host a (job 5)"; empty if nobody.
+/// Who uses the folder for itself now, for people: "process 17 on host a (job 5)"; empty if no process does.
 std::string user_of(const std::filesystem::path& out);
 
 /// Frees a folder whose user, on another host, is known to be gone; gives who it was, nothing if

@@ -20,7 +20,7 @@ struct EarlierResult {
   bool failed = false;
 };
 
-/// The campaigns whose manifests give an id, to be found by it. Keeps where they stand, four bytes each.
+/// The campaigns whose manifests give an id, to be found by it. Keeps their positions, four bytes each.
 class ClaimedIds {
  public:
   explicit ClaimedIds(const std::vector<CampaignState>& campaigns);

@@ -10,13 +10,13 @@
 
 namespace nonio::batch {
 
-/// What the register says before the night; nothing if another process keeps it locked.
+/// The entries of the register before the run; nothing if another process keeps it locked.
 struct Known {
   std::vector<certificates::RegisterEntry> numbers;
   std::vector<certificates::WaitingDraft> drafts;
 };
 
-/// An error if the register cannot be read, or lies where it would be lost.
+/// An error if the register cannot be read, or is where it would be lost.
 /// `first`: before anything is issued; then a journal that is no chain is an error too.
 enum class Look { first, again };
 Expected<std::optional<Known>> known_of(const RunOptions& options, const reading::Context& context,

@@ -39,7 +39,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// `Campaign.toml`, `campaign.toml.txt`: somebody meant a manifest.
+/// `Campaign.toml`, `campaign.toml.txt`: probably meant as a manifest.
 bool is_nearly_manifest(const std::string& name) {
   const std::string word = lower(name), wanted = config::manifest_name;
   return word == wanted || word.starts_with(wanted + ".");

@@ -10,17 +10,17 @@
 
 namespace nonio::batch {
 
-/// What lies in a site. Paths are relative to it, in order; the site itself is ".".
+/// The content of a site. Paths are relative to it, in order; the site itself is ".".
 struct SiteWalk {
   struct Unlisted {
     std::string folder, why;
   };
   std::vector<KeptText> campaigns;  ///< folders with a manifest
-  std::vector<Unlisted> unlisted;   ///< what lies in them is not known
+  std::vector<Unlisted> unlisted;   ///< their content is not known
   std::vector<std::string> notes;   ///< what looks like a campaign and is passed over
 };
 
-/// All folders below a site. Links are not followed: a campaign is what lies in the site. Hidden
+/// All folders below a site. Links are not followed: a campaign is a folder inside the site. Hidden
 /// folders and the output folder are left out. The walk is done in a child process with one
 /// descriptor: a folder that gives no answer within `seconds` is an unlisted one. An error if the
 /// site itself cannot be listed. What is returned after `stopped` said yes is not whole.

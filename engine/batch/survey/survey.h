@@ -18,7 +18,7 @@ struct SurveyInput {
   std::uint64_t night;  ///< the one that is being done
   bool force;
   /// All of the site's register, and the campaigns whose drafts wait there; none while another
-  /// process keeps it locked: then nobody is asked.
+  /// process keeps it locked: then it is not consulted.
   std::optional<std::vector<certificates::RegisterEntry>> numbers;
   std::set<std::string> drafts;
   std::vector<std::string>& notes;  ///< what was passed over, for the summary
@@ -40,7 +40,7 @@ Expected<Surveyed> survey(const SurveyInput& input);
 void set_in_order(std::vector<CampaignState>& campaigns);
 
 /// An error if the output folder has a number that the register does not know: numbers would be
-/// used twice. For a night whose survey could not ask.
+/// used twice. For a run whose survey could not consult it.
 Expected<void> check_numbers(const std::filesystem::path& out,
                              const std::vector<CampaignState>& campaigns,
                              const std::vector<certificates::RegisterEntry>& numbers);

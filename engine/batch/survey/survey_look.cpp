@@ -75,6 +75,7 @@ std::string ChangeDetector::read_whole(CampaignState& state, const std::string& 
   signs_.reads = true;
   signs_.beat();
   if (!parsed) return {};
+  state.set_warnings(parsed->warnings);
   std::set<std::string> files;
   std::vector<std::uint64_t> readings;
   for (const Measurement& m : parsed->campaign.measurements) {
@@ -98,7 +99,7 @@ ChangeDetector::Last ChangeDetector::last_of(const std::string& id) {
 }
 
 /// Where storing tonight's results was cut short: why the campaign was done. The files that would
-/// tell are no longer those of the night before.
+/// tell are no longer those of the previous run.
 std::string ChangeDetector::staged_reason(const CampaignState& state) const {
   const auto staged = evaluation::staged_record(storage::own_folder(in_.out, state.id));
   return staged && *staged && (*staged)->night == in_.night ? (*staged)->reason : "";

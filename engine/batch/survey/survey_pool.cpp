@@ -19,13 +19,31 @@ constexpr std::size_t campaigns_in_batch = 2000;
 /// After so many that hang, a disk gets no more time than a second.
 constexpr std::size_t most_patience = 8;
 
+void pack(process::Parcel& parcel, const std::vector<Error>& errors) {
+  parcel.add(errors.size());
+  for (const Error& e : errors) parcel.add(e.message).add(e.file).add(e.line).add(e.column);
+}
+
+/// After those that `known` holds already.
+std::vector<Error> unpack_errors(process::Parcel& parcel, std::vector<Error> known) {
+  for (std::uint64_t n = parcel.number(); n-- > 0;) {
+    Error error{parcel.text()};
+    error.file = parcel.text();
+    error.line = parcel.number();
+    error.column = parcel.text();
+    known.push_back(std::move(error));
+  }
+  return known;
+}
+
 process::Parcel packed(const CampaignState& state, const std::string& unknown) {
   process::Parcel parcel;
   parcel.add(state.id.view()).add(std::uint64_t{state.named_by_folder});
   parcel.add(static_cast<std::uint64_t>(state.action)).add(state.reason.view());
   parcel.add(static_cast<std::uint64_t>(state.status));
-  parcel.add(unknown).add(state.errors().size());
-  for (const Error& e : state.errors()) parcel.add(e.message).add(e.file).add(e.line).add(e.column);
+  parcel.add(unknown);
+  pack(parcel, state.errors());
+  pack(parcel, state.warnings());
   const std::vector<std::uint64_t> readings = state.readings();
   parcel.add(readings.size());
   for (const std::uint64_t digest : readings) parcel.add(digest);
@@ -43,15 +61,8 @@ std::string unpack(process::Parcel& parcel, CampaignState& state) {
   state.reason = KeptText::shared(parcel.text());
   state.status = static_cast<evaluation::Status>(parcel.number());
   std::string unknown = parcel.text();
-  std::vector<Error> errors = state.errors();
-  for (std::uint64_t n = parcel.number(); n-- > 0;) {
-    Error error{parcel.text()};
-    error.file = parcel.text();
-    error.line = parcel.number();
-    error.column = parcel.text();
-    errors.push_back(std::move(error));
-  }
-  state.set_errors(std::move(errors));
+  state.set_errors(unpack_errors(parcel, state.errors()));
+  state.set_warnings(unpack_errors(parcel, {}));
   std::vector<std::uint64_t> readings;
   for (std::uint64_t n = parcel.number(); n-- > 0;) readings.push_back(parcel.number());
   state.set_readings(readings);

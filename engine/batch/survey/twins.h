@@ -16,7 +16,7 @@ void find_twins(std::vector<CampaignState>& campaigns);
 /// As the evaluation wants them, in order.
 reading::Twins twins_of(const CampaignState& campaign, const std::vector<CampaignState>& all);
 
-/// Of a record: what the night knew when it was written.
+/// Of a record: what the run knew when it was written.
 reading::Twins twins_of(const reading::Inputs& inputs);
 
 }  // namespace nonio::batch

@@ -21,7 +21,7 @@ void evaluate_for(int stream, const reading::Context& context, process::SharedSt
 /// In the process that has files, register and signer, and no plugin code.
 class Evaluator {
  public:
-  /// `secrets`: files that are handed to nobody.
+  /// `secrets`: files that are not handed over.
   Evaluator(int stream, std::vector<std::filesystem::path> secrets)
       : stream_(stream), secrets_(std::move(secrets)) {}
 
@@ -31,7 +31,7 @@ class Evaluator {
     std::optional<std::vector<std::string>> missing;  ///< for a number; none: none is wanted
   };
 
-  /// `read_campaign` and `analyse`, done by the other side. Where that is gone, this process ends
+  /// `read_campaign` and `analyse`, done by the other side. If that has ended, this process ends
   /// too: its parent knows why. An error: it says what no process of ours says.
   Expected<Analysed> analyse(const std::filesystem::path& folder, const std::string& id,
                              const reading::Twins& twins,

@@ -15,15 +15,15 @@
 
 namespace nonio::batch {
 
-/// What all campaigns of a night, or the one that is released, are done with.
+/// What all campaigns of a run, or the one that is released, share.
 struct SiteWork {
   const RunOptions& options;
   const reading::Context& context;
   const NightState& night;
   const std::vector<CampaignState>& campaigns;
   const certificates::Numbers& numbers;
-  certificates::Signer* signer;  ///< null: nobody signs
-  const reading::Twins* twins;   ///< of the one campaign that is released; null: it is a night
+  certificates::Signer* signer;  ///< null: nothing is signed
+  const reading::Twins* twins;   ///< of the one campaign that is released; null: it is a run
   /// Of campaigns whose documents show their machine's history.
   const std::map<std::string, assessment::HistoryBasis>& histories;
   bool elsewhere = false;  ///< register and key are: what needs them waits
@@ -33,7 +33,7 @@ struct SiteWork {
 struct RegisterState {
   bool read = true;         ///< false: another process keeps it to itself
   std::string unsound{};    ///< why no number is drawn; empty: it is sound
-  bool last_trial = false;  ///< nobody waits for it any longer
+  bool last_trial = false;  ///< no process waits for it any longer
 };
 
 /// In the worker's process, which has no plugin code: that runs at the other end of the evaluator's

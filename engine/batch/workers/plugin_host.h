@@ -15,7 +15,7 @@
 
 namespace nonio::batch {
 
-/// Where the libraries lie that plugins need, beside their own folders; `own_plugins`: beside the
+/// Folders of the libraries that plugins need, in addition to their own folders; `own_plugins`: beside the
 /// program.
 std::vector<std::filesystem::path> library_folders(const std::filesystem::path& own_plugins);
 

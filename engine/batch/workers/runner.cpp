@@ -166,7 +166,7 @@ class Runner {
   }
 
   /// What needs the register that another process keeps to itself is done when all else is, or by
-  /// the next night.
+  /// the next run.
   void wait_for_register() {
     using Clock = Worker::Clock;
     const config::Numbering& numbering = context_.site.numbering;
@@ -356,7 +356,7 @@ class Runner {
   const RunEvents& events_;
   const reading::Context& context_;
   const NightState& night_;
-  certificates::Signer* signer_;  ///< null: nobody signs
+  certificates::Signer* signer_;  ///< null: nothing is signed
   PluginHost& plugins_;
   const std::vector<fs::path> secrets_;
   const certificates::Numbers numbers_;

@@ -20,8 +20,8 @@ using NumbersCheck = std::function<Expected<void>(const std::vector<certificates
 
 /// What certificates need.
 struct ReleaseDesk {
-  certificates::Signer* signer = nullptr;              ///< null: nobody signs
-  const certificates::Releasing* releasing = nullptr;  ///< null: it is a night
+  certificates::Signer* signer = nullptr;              ///< null: nothing is signed
+  const certificates::Releasing* releasing = nullptr;  ///< null: it is a run
   NumbersCheck recheck{};                              ///< empty: the register was read before
   PluginHost* plugins = nullptr;                       ///< makes the processes that evaluate
   /// Of campaigns whose documents show their machine's history; the others do without.

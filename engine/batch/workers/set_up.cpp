@@ -28,7 +28,7 @@ std::string all_of(const std::vector<Error>& errors) {
   return text;
 }
 
-/// What the morning's reader should know of the key.
+/// What the reader of the summary should know of the key.
 void note_key(SetUp& place, bool is_stamped) {
   constexpr sign::Time month = sign::Time{30} * 86400;
   std::vector<std::string>& notes = place.notes;
@@ -111,7 +111,7 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   auto site = config::site_in(*files, context.site_sha256);
   if (!site) return fail(all_of(site.error()));
   context.site = std::move(*site);
-  place->notes = context.site.notes;
+  for (const Error& warning : context.site.warnings) place->notes.push_back(all_of({warning}));
   auto machines = config::read_machines(options.site);
   if (!machines) return fail(all_of({machines.error()}));
   place->parts.complete(*machines);

@@ -13,15 +13,15 @@
 
 namespace nonio::batch {
 
-/// What a night, or a release, works with: site, key, templates, plugins. Stays where it is.
+/// What a run, or a release, works with: site, key, templates, plugins. Stays where it is.
 struct SetUp {
   reading::Context context;
   std::optional<certificates::Signer> signer;
   loader::Plugins plugins;  ///< what they say of themselves: this process has none of their code
   std::optional<PluginHost> host;
   SiteParts parts;
-  std::vector<std::string> notes;  ///< for the morning's reader
-  std::string unstamped;           ///< for the summary alone: it is the same every night
+  std::vector<std::string> notes;  ///< for the reader of the summary
+  std::string unstamped;           ///< for the summary alone: it is the same in every run
   std::string no_key;              ///< why nothing can be signed; empty: it can
 };
 

@@ -23,7 +23,7 @@ enum class Answer : char {
   failed,
   again,       ///< failed, and not written: it may owe that to the worker's earlier campaigns
   waits,       ///< needs the register of certificates, which another process keeps locked
-  not_stored,  ///< why stands in the worker's words
+  not_stored,  ///< the worker's message states why
   none,        ///< the process ended without a word
 };
 

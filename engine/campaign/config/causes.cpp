@@ -24,7 +24,12 @@ Cause read_cause(TableReader& reader) {
   for (TableReader& parameter : reader.tables("parameters"))
     c.formula.parameters.push_back(read_parameter(parameter));
   c.rotary = reader.text("axis") == "rotary";
-  c.title = reader.text("title");
+  c.titles = reader.translations("title");
+  for (const char* language : {"", "en"})
+    if (const auto found = c.titles.find(language); found != c.titles.end())
+      c.title = found->second;
+  if (c.title.empty() && reader.raw().contains("title"))
+    reader.error("title", "expected a text, or one for en among the texts by language");
   c.is = reader.text("is");
   c.size = reader.text("size");
   c.looks = reader.text("looks");
@@ -113,6 +118,9 @@ void add_words(const std::vector<Cause>& causes, Templates& templates) {
   auto& words = templates.tables["words/en/causes"].values;
   for (const Cause& c : causes) {
     const std::string at = "effect." + c.formula.name + ".";
+    for (const auto& [language, title] : c.titles)
+      if (!language.empty() && language != "en")
+        templates.tables["words/" + language + "/causes"].values[at + "title"] = title;
     for (const auto& [key, text] : {std::pair{"title", &c.title},
                                     {"is", &c.is},
                                     {"size", &c.size},

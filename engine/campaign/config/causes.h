@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,9 +20,10 @@ inline constexpr std::string_view site_causes = "causes/site/";
 struct Cause {
   Formula formula;  ///< without an axis: of every axis of its kind
   bool rotary = false;
-  std::string title, is, size, looks, alike, cure;
-  std::string prior;   ///< common, rare, very-rare
-  bool timed = false;  ///< readings without times do not show it
+  std::string title, is, size, looks, alike, cure;  ///< English
+  std::map<std::string, std::string> titles{};      ///< by language
+  std::string prior;                                ///< common, rare, very-rare
+  bool timed = false;                               ///< readings without times do not show it
   bool compensable = false;
   std::string file;  ///< of the formula's line
 

@@ -20,7 +20,7 @@ CertificateTexts read_certificate(TableReader& reader) {
 
 void read_certificate_of_campaign(TableReader& reader, CertificateTexts& into) {
   into.deviations = reader.text("deviations");
-  into.nothing_else_by = reader.text("nothing_else_by");
+  into.no_other_deviations_by = reader.text("no_other_deviations_by");
   into.conditions = reader.text("conditions");
   into.opinions = reader.text("opinions");
   into.amendment = reader.text("amendment");
@@ -34,14 +34,14 @@ Numbering read_numbering(TableReader& reader) {
   n.patience = reader.number("register_seconds").value_or(n.patience);
   n.automatic = reader.text("release") == "automatic";
   n.two_persons = reader.flag("two_persons").value_or(false);
-  for (TableReader& rule : reader.tables("may_stand")) {
-    n.may_stand.push_back({rule.text("finding"), rule.text("reason")});
+  for (TableReader& rule : reader.tables("accept")) {
+    n.accepted.push_back({rule.text("finding"), rule.text("reason")});
     rule.finish();
   }
-  if (n.automatic && !reader.raw().contains("may_stand"))
+  if (n.automatic && !reader.raw().contains("accept"))
     reader.error("release",
-                 "\"automatic\" requires the list of accepted findings, [[certificate.may_stand]] "
-                 "with finding and reason; may_stand = [] if none is accepted");
+                 "\"automatic\" requires the list of accepted findings, [[certificate.accept]] "
+                 "with finding and reason; accept = [] if none is accepted");
   if (n.automatic && n.two_persons)
     reader.error("two_persons", "true and release = \"automatic\" contradict each other");
   if (const auto sound = number_text(n.pattern, "2026", 1); !sound)

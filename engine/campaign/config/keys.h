@@ -83,6 +83,8 @@ struct Key {
   std::string_view initials{};
   std::string_view by_name{};
   std::string_view named_so{};
+  /// Name of an earlier version. It is accepted with a warning; schema and reference omit it.
+  std::string_view former{};
 };
 
 /// The whole file as one table: what is not named here is unknown.

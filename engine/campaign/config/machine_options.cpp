@@ -141,9 +141,9 @@ class Layers {
 
   /// What was in the parameter while measured, as these plugins take it.
   void add_backlash(const Axis& a, std::vector<Error>& errors) {
-    if (!a.backlash_on) return;
+    if (!a.active_backlash) return;
     const std::string key = a.rotary ? "backlash_deg" : "backlash_mm";
-    const double on = *a.backlash_on * (a.rotary ? deg_per_rad : 1e3);
+    const double on = *a.active_backlash * (a.rotary ? deg_per_rad : 1e3);
     NumberTable& table = tables_[a.name];
     const auto known = table.find(key);
     if (known == table.end())

@@ -34,7 +34,7 @@ std::optional<double> expansion_of(TableReader& reader) {
 }
 
 /// Nothing where nobody says it; empty where it is said that there was none.
-std::optional<std::string> table_on(const std::string& text) {
+std::optional<std::string> active_table(const std::string& text) {
   if (text.empty()) return std::nullopt;
   return text == "none" ? std::string() : text;
 }
@@ -55,9 +55,9 @@ Axis read_axis(const std::string& name, TableReader& reader) {
     if (axis.slave == axis.name && !axis.slave.empty())
       reader.error("slave", "expected another axis than " + axis.name + ", which is the master");
   }
-  axis.table_on = table_on(reader.text("table_on"));
-  axis.backlash_on = axis.rotary ? reader.number_or_none("backlash_on_deg", deg)
-                                 : reader.number_or_none("backlash_on_mm", mm);
+  axis.active_table = active_table(reader.text("active_table"));
+  axis.active_backlash = axis.rotary ? reader.number_or_none("active_backlash_deg", deg)
+                                     : reader.number_or_none("active_backlash_mm", mm);
   for (const auto& [result, limit] : axis.rotary ? reader.number_table("tolerance_arcsec", arcsec)
                                                  : reader.number_table("tolerance_um", um))
     axis.tolerance[result] = limit;
@@ -406,13 +406,13 @@ void read_measurements(TableReader& top, Manifest& manifest, const std::vector<M
 void read_tables(TableReader& top, Manifest& manifest) {
   auto reader = top.table("tables");
   if (!reader) return;
-  for (TableReader& one : reader->tables("may_stand")) {
-    StandingFinding standing{one.text("finding"), one.text("reason"), one.line_of("finding")};
-    if (!standing.reason.empty() && !says_something(standing.reason))
+  for (TableReader& one : reader->tables("accept")) {
+    AcceptedFinding accepted{one.text("finding"), one.text("reason"), one.line_of("finding")};
+    if (!accepted.reason.empty() && !has_content(accepted.reason))
       one.error("reason", "expected why a table may be written all the same, found \"" +
-                              standing.reason + "\"");
+                              accepted.reason + "\"");
     one.finish();
-    manifest.tables_may_stand.push_back(std::move(standing));
+    manifest.accepted.push_back(std::move(accepted));
   }
   reader->finish();
 }
@@ -456,6 +456,7 @@ Checked<Manifest> parse(std::string_view text, const std::string& file,
   std::vector<Error> errors;
   Manifest manifest;
   Campaign& campaign = manifest.campaign;
+  manifest.warnings = warnings_of(rename_former_keys(*root, campaign_file()), file);
   TableReader top(*root, campaign_file(), file, errors);
   top.integer("format");
   read_campaign(top, manifest);

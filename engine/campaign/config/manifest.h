@@ -41,9 +41,9 @@ struct RunChoice {
   std::optional<std::vector<std::string>> analyses, outputs;  ///< absent: all that apply
 };
 
-/// `[[tables.may_stand]]`: a finding that makes readings implausible, and why a table may be
+/// `[[tables.accept]]`: a finding that makes readings implausible, and why a table may be
 /// written from them all the same.
-struct StandingFinding {
+struct AcceptedFinding {
   std::string finding, reason;
   std::uint64_t line = 0;
 };
@@ -52,10 +52,11 @@ struct Manifest {
   Campaign campaign;
   std::string purpose{};  ///< periodic, acceptance, after-repair, check; empty: not said
   std::vector<std::string> undeclared_axes{};  ///< measured, and not among [machine.axes]
-  std::vector<StandingFinding> tables_may_stand{};
+  std::vector<AcceptedFinding> accepted{};
   RunChoice run;
   RawOptions options;
   KeyLines lines;
+  std::vector<Error> warnings{};  ///< keys with former names
 };
 
 struct Limits {
@@ -106,7 +107,7 @@ struct Signing {
 };
 
 /// Of `[certificate]`: a finding that does not hold up an automatic release.
-struct StandingRule {
+struct AcceptedRule {
   std::string finding;  ///< its id, or "kind.*": all whose id begins with "kind."
   std::string reason;
 };
@@ -118,7 +119,7 @@ struct Numbering {
   std::optional<DatabaseChoice> server{};  ///< in place of the file; its schema is the register's
   double patience = 60.0;                  ///< s, with a register that another process keeps locked
   bool automatic = false;                  ///< a night may release what no finding holds up
-  std::vector<StandingRule> may_stand{};
+  std::vector<AcceptedRule> accepted{};
   bool two_persons = false;  ///< author and authoriser must not be the same
 };
 
@@ -154,11 +155,11 @@ struct SiteFile {
   std::vector<DueRule> due{};    ///< one for each machine at most
   std::optional<DatabaseChoice> database{};
   KeyLines lines;
-  std::string language = "en";     ///< of the terminal and of summary.txt
-  bool hashed_folders = false;     ///< results in OUT/ab/<id>
-  std::string settings;            ///< TOML: what of the file has a say in a certificate
-  std::string evaluation;          ///< TOML: what of it has a say in results
-  std::vector<std::string> notes;  ///< sections that this version does not use yet
+  std::string language = "en";    ///< of the terminal and of summary.txt
+  bool hashed_folders = false;    ///< results in OUT/ab/<id>
+  std::string settings;           ///< TOML: what of the file has a say in a certificate
+  std::string evaluation;         ///< TOML: what of it has a say in results
+  std::vector<Error> warnings{};  ///< keys with former names
 };
 
 template <class T>

@@ -62,7 +62,7 @@ bool takes_back(const Withdrawal& w, const Acknowledgement& a) {
 /// A word that excuses something stands beside a name for years.
 std::string reason_of(TableReader& reader) {
   std::string why = reader.text("why");
-  if (!why.empty() && !says_something(why))
+  if (!why.empty() && !has_content(why))
     reader.error("why", "expected a reason in words, found \"" + why + "\"");
   return why;
 }

@@ -86,7 +86,7 @@ std::vector<Alias> read_aliases(TableReader& top) {
     Alias alias{reader.text("name"), reader.text("asset"), reader.text("why")};
     if (!alias.name.empty() && !names.insert(alias.name).second)
       reader.error("name", "\"" + alias.name + "\" is given twice");
-    if (!alias.why.empty() && !says_something(alias.why))
+    if (!alias.why.empty() && !has_content(alias.why))
       reader.error("why", "expected how this is known, found \"" + alias.why + "\"");
     reader.finish();
     aliases.push_back(std::move(alias));
@@ -147,6 +147,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   if (!root) return tl::unexpected(std::vector<Error>{root.error()});
   std::vector<Error> errors;
   SiteFile site;
+  site.warnings = warnings_of(rename_former_keys(*root, site_file()), file);
   TableReader top(*root, site_file(), file, errors);
   top.integer("format");
   if (const std::string language = top.text("language"); !language.empty())
@@ -178,7 +179,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   toml::table printed = *root;
   // How it comes to a release is the laboratory's own business, and nothing that is printed.
   if (toml::table* certificate = printed["certificate"].as_table())
-    for (const char* key : {"release", "may_stand", "two_persons", "register", "register_seconds"})
+    for (const char* key : {"release", "accept", "two_persons", "register", "register_seconds"})
       certificate->erase(key);
   site.settings = settings_of(printed, {"run", "options", "laboratory", "certificate"});
   if (const toml::table* laboratory = (*root)["laboratory"].as_table())

@@ -107,6 +107,19 @@ class TableReader {
 /// The whole file, or one error with its line.
 Expected<toml::table> parse_toml(std::string_view text, const std::string& file);
 
+/// A key of a file that has the name of an earlier version, or the header of a table with such a
+/// key.
+struct FormerKey {
+  std::string place;         ///< of the table that contains it: "machine.axes.X"; empty: the file
+  std::string former, name;  ///< "table_on", "active_table"
+  std::uint64_t line = 0;    ///< 1-based
+};
+/// Renames keys with former names in `table` as `declaration` requires, so that nobody else sees
+/// them; in the order of the lines. Where a table has both names, the former one stays unknown.
+std::vector<FormerKey> rename_former_keys(toml::table& table, const Key& declaration);
+/// A warning for each, without those of further headers of the same key.
+std::vector<Error> warnings_of(const std::vector<FormerKey>& keys, const std::string& file);
+
 /// Adds the line of each key below a table to `lines`: "axes.X.number".
 void note_lines(const toml::table& table, const std::string& prefix, KeyLines& lines);
 

@@ -19,7 +19,7 @@ namespace {
 
 /// Readings that were taken out without a word why. The evaluation stands; nothing is issued.
 void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
-  if (m.exclude.empty() || says_something(m.exclude_reason)) return;
+  if (m.exclude.empty() || has_content(m.exclude_reason)) return;
   evaluation.findings.push_back(
       {.id = "readings.excluded-without-reason",
        .attention = true,
@@ -148,28 +148,30 @@ std::vector<Results::Analysed> fit_models(const Work& work, std::vector<ModelFit
 }
 
 std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Analysed>& analyses) {
-  const auto& may_stand = work.read.manifest->tables_may_stand;
+  const auto& accepted = work.read.manifest->accepted;
   std::set<std::string> known, open;
   for (Results::Analysed& a : analyses) {
     if (a.plugin != reading::plausibility_name) continue;
     for (Finding& f : a.evaluation.findings) {
       known.insert(f.id);
-      const auto standing =
-          std::find_if(may_stand.begin(), may_stand.end(),
-                       [&](const config::StandingFinding& one) { return one.finding == f.id; });
-      if (standing != may_stand.end())
-        f.texts.emplace_back(reading::stands_because, standing->reason);
-      else if (f.attention)
+      const auto entry =
+          std::find_if(accepted.begin(), accepted.end(),
+                       [&](const config::AcceptedFinding& one) { return one.finding == f.id; });
+      if (entry != accepted.end()) {
+        f.texts.emplace_back(reading::accepted_because, entry->reason);
+        f.texts.emplace_back(reading::formerly_accepted_because, entry->reason);
+      } else if (f.attention) {
         open.insert(f.id);
+      }
     }
   }
   std::string found;
   for (const std::string& id : known) found += (found.empty() ? "" : ", ") + id;
-  for (const config::StandingFinding& standing : may_stand)
-    if (!known.contains(standing.finding))
-      work.report(Error{"tables.may_stand: the readings have no finding " + standing.finding +
+  for (const config::AcceptedFinding& entry : accepted)
+    if (!known.contains(entry.finding))
+      work.report(Error{"tables.accept: the readings have no finding " + entry.finding +
                             "; they have " + (known.empty() ? "none" : found),
-                        config::manifest_name, standing.line});
+                        config::manifest_name, entry.line});
   return {open.begin(), open.end()};
 }
 

@@ -169,9 +169,10 @@ Expected<OutputResult> write_over_present(const Work& work, const WantedControll
   const reading::ReadCampaign& read = work.read;
   const Controller& controller = *w.controller;
   const std::vector<Observations>& taken = of_model ? **of_model : read.observations;
-  auto on = tables::what_was_on(read, controller, w.options);
+  auto on = tables::active_compensation(read, controller, w.options);
   if (!on) {
-    if (w.asked) on.error().key = "machine.axes." + read.tables_on.begin()->first + ".table_on";
+    if (w.asked)
+      on.error().key = "machine.axes." + read.active_tables.begin()->first + ".active_table";
     return fail(on.error());
   }
   if (!*on)

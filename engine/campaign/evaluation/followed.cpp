@@ -28,8 +28,8 @@ std::string found_or_left(const Measurement& m) {
 std::string compensation_of(const Machine& machine, const Measurement& m) {
   if (!m.compensation.empty()) return m.compensation;
   const Axis* axis = machine.axis(m.axis);
-  if (axis == nullptr || !axis->table_on) return {};
-  return axis->table_on->empty() ? "off" : "on";
+  if (axis == nullptr || !axis->active_table) return {};
+  return axis->active_table->empty() ? "off" : "on";
 }
 
 std::optional<double> mean_temperature(const Observations& o) {

@@ -380,7 +380,8 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
   json["candidates"] = std::move(candidates);
   json["unseen"] = std::move(unseen);
   json["together"] = x.together;
-  json["certain"] = x.certain;
+  json["significant"] = x.certain;
+  json["certain"] = x.certain;  // its name in version 0.1
   storage::Json cancelling = storage::Json::array();
   for (const auto& pair : x.cancelling) cancelling.push_back({pair.first, pair.second});
   json["cancelling"] = std::move(cancelling);

@@ -260,7 +260,7 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   if (v.kind == Kind::unknown && !e.certain.empty()) {
     f.id = "verdict.certain";
     f.texts.emplace_back("effects", storage::listed(e.certain));
-    f.evidence.push_back({"after", e.certain_rms, q});
+    f.evidence.push_back({"after", e.significant_rms, q});
   }
   return f;
 }

@@ -55,6 +55,9 @@ bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
     return false;
   }
   out.manifest = std::move(*manifest);
+  for (const Error& w : out.manifest->warnings)
+    out.notes.push_back(Remark{
+        former_key_note, {}, {}, {}, w.file + ":" + std::to_string(w.line) + ": " + w.message});
   Campaign& campaign = out.manifest->campaign;
   campaign.laboratory = from.context.site.laboratory;
   campaign.certificate =
@@ -69,12 +72,12 @@ void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign
   if (found == file.record->axes.end()) return;
   const config::RecordedAxis& recorded = found->second;
   if (recorded.since.empty() || !(campaign_in(out).date > recorded.since)) return;
-  if (!axis.table_on && recorded.table) {
-    axis.table_on = recorded.table;
+  if (!axis.active_table && recorded.table) {
+    axis.active_table = recorded.table;
     if (const auto files = file.tables.find(axis.name); files != file.tables.end())
-      out.tables_on[axis.name] = files->second;
+      out.active_tables[axis.name] = files->second;
   }
-  if (!axis.backlash_on) axis.backlash_on = recorded.backlash;
+  if (!axis.active_backlash) axis.active_backlash = recorded.backlash;
 }
 
 /// What the site's record of the machine says counts where the manifest says nothing.
@@ -113,22 +116,23 @@ void note_tables(ReadCampaign& out, const std::string& list, const std::vector<A
 }
 
 /// The tables that were on while it was measured.
-void look_up_what_was_on(const CampaignSource& from, ReadCampaign& out) {
+void look_up_active_tables(const CampaignSource& from, ReadCampaign& out) {
   for (const Axis& axis : campaign_in(out).machine.axes) {
-    if (!axis.table_on || axis.table_on->empty() || out.tables_on.contains(axis.name)) continue;
-    const std::string key = "machine.axes." + axis.name + ".table_on";
-    auto files = config::read_table_files(*axis.table_on, from.folder);
+    if (!axis.active_table || axis.active_table->empty() || out.active_tables.contains(axis.name))
+      continue;
+    const std::string key = "machine.axes." + axis.name + ".active_table";
+    auto files = config::read_table_files(*axis.active_table, from.folder);
     if (files) {
-      note_tables(out, *axis.table_on, *files);
-      out.tables_on[axis.name] = std::move(*files);
+      note_tables(out, *axis.active_table, *files);
+      out.active_tables[axis.name] = std::move(*files);
     } else {
       report_in(out, key_error(from, out, key, files.error().message));
     }
   }
   for (const Measurement& m : campaign_in(out).measurements)
-    if (m.compensation == "off" && out.tables_on.contains(m.axis))
+    if (m.compensation == "off" && out.active_tables.contains(m.axis))
       report_in(out, key_error(from, out, "measurement." + m.id + ".compensation",
-                               "\"off\" contradicts table_on of axis " + m.axis));
+                               "\"off\" contradicts active_table of axis " + m.axis));
 }
 
 /// What the effect says that is said already; empty if nothing.
@@ -235,7 +239,7 @@ ReadCampaign read_campaign(const fs::path& folder, const Context& context, const
   out.effects = context.plugins->effects();
   if (!read_manifest(from, out)) return out;
   look_up_machine(from, out);
-  look_up_what_was_on(from, out);
+  look_up_active_tables(from, out);
   read_measurements(from, out);
   add_own_effects(out);
   add_library(context, out);

@@ -13,13 +13,17 @@
 
 namespace nonio::reading {
 
+/// Id of the remark on a key of the manifest with a former name. It is of the file, not of the
+/// measurement: documents omit it.
+inline constexpr const char* former_key_note = "manifest.former-key";
+
 /// One campaign folder: what its manifest says and what its measurements hold.
 struct ReadCampaign {
   std::optional<config::Manifest> manifest;  ///< none if it cannot be read; then nothing else is
   std::optional<config::MachineRecord>
       machine{};  ///< what the site knows of the campaign's machine
   /// Of each axis: files of the table that was on while it was measured, where it was one.
-  std::map<std::string, std::vector<Artifact>> tables_on{};
+  std::map<std::string, std::vector<Artifact>> active_tables{};
   std::vector<Observations> observations;  ///< of each measurement; empty where none could be read
   std::vector<Effect> effects;             ///< of the plugins, the campaign and the library
   std::vector<config::Cause> causes{};     ///< the library

@@ -35,6 +35,9 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   place->plugins.load(plugin_folders);
   if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
   place->notes = place->plugins.refusal_notes();
+  for (const Error& warning : context.site.warnings)
+    place->notes.push_back(warning.file + ":" + std::to_string(warning.line) + ": " +
+                           warning.message);
   context.plugins = &place->plugins;
   // After the process for the plugins was forked: it would copy each page of them when it frees them.
   const auto folders = config::with_site_templates(template_folders, site);

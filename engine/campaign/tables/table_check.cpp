@@ -144,11 +144,11 @@ void state_backlash_of(Settings& options, const Tables& tables) {
 }
 
 /// In the words of the new table.
-void say_what_was_on(Campaign& campaign, const Settings& options, const Tables& present) {
+void state_active_compensation(Campaign& campaign, const Settings& options, const Tables& present) {
   for (Axis& axis : campaign.machine.axes) {
     if (!corrects(present, axis.name)) continue;
-    axis.table_on = "nonio table predict --active-table";
-    axis.backlash_on = present_backlash(options, axis.name, axis.rotary);
+    axis.active_table = "nonio table predict --active-table";
+    axis.active_backlash = present_backlash(options, axis.name, axis.rotary);
   }
 }
 
@@ -244,13 +244,13 @@ Campaign with_one(Campaign campaign, Measurement m) {
   return campaign;
 }
 
-Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign& read,
-                                              const Controller& controller,
-                                              const Settings& options) {
-  if (read.tables_on.empty()) return std::optional<Underlay>();
+Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaign& read,
+                                                      const Controller& controller,
+                                                      const Settings& options) {
+  if (read.active_tables.empty()) return std::optional<Underlay>();
   const Campaign& campaign = read.manifest->campaign;
   Underlay on{{}, options, {}};
-  for (const auto& [axis, files] : read.tables_on) {
+  for (const auto& [axis, files] : read.active_tables) {
     const std::string who =
         "the compensation that was active while axis " + axis + " was measured: ";
     auto tables = tables_in(controller, files, campaign, options);
@@ -263,7 +263,7 @@ Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign& read,
       if (t.output != axis) continue;
       const auto stated = stated_backlash(options, axis, t.rotary);
       if (stated && t.backlash.value_or(0.0) != 0.0 && std::fabs(*stated - *t.backlash) > 5e-10)
-        return fail(who + "its files hold another backlash than backlash_on states");
+        return fail(who + "its files hold another backlash than active_backlash states");
       on.tables.push_back(t);
     }
   }
@@ -317,7 +317,7 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controlle
                               Settings options, const Tables& present) {
   Campaign campaign = read.manifest->campaign;
   state_backlash_of(options, present);
-  say_what_was_on(campaign, options, present);
+  state_active_compensation(campaign, options, present);
   const std::vector<Observations> raw = without_tables(campaign, read.observations, present);
   const Results none;
   const auto write = [&](const Campaign& c, const std::vector<Observations>& o) {

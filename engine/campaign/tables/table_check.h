@@ -64,8 +64,8 @@ Campaign with_one(Campaign campaign, Measurement m);
 
 /// The tables that were on, as manifest and record say; none: there was no table. An error where
 /// the control does not read them as tables of these axes.
-Expected<std::optional<Underlay>> what_was_on(const reading::ReadCampaign&, const Controller&,
-                                              const Settings& options);
+Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaign&,
+                                                      const Controller&, const Settings& options);
 /// The same readings, or what a model says of them, without these tables; the backlash stays.
 std::vector<Observations> without_tables(const Campaign&, const std::vector<Observations>&,
                                          const std::vector<LoadedTable>&);

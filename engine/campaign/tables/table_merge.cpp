@@ -54,14 +54,14 @@ Expected<void> take_active_of_backup(OneAxis& one, const Controller& controller,
   auto& axes = one.campaign.machine.axes;
   const auto of_campaign =
       std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == axis; });
-  if (of_campaign == axes.end() || of_campaign->table_on ||
+  if (of_campaign == axes.end() || of_campaign->active_table ||
       one.campaign.measurements.front().compensation == "off")
     return {};
   const auto present = tables_in(controller, backup, one.campaign, options);
   if (!present) return fail(present.error());
   std::string files;
   for (const Artifact& f : backup) files += (files.empty() ? "" : ", ") + f.name;
-  std::optional<double> backlash = of_campaign->backlash_on;
+  std::optional<double> backlash = of_campaign->active_backlash;
   bool corrected = false;
   for (const LoadedTable& t : *present) {
     if (t.output != axis || t.input != std::vector{axis}) continue;
@@ -73,12 +73,12 @@ Expected<void> take_active_of_backup(OneAxis& one, const Controller& controller,
     return fail(files + " does not contain the value of " + controller.table.backlash +
                 " of axis " + axis +
                 ", which was active during the measurement: give its file too, or state " +
-                (of_campaign->rotary ? "backlash_on_deg" : "backlash_on_mm") +
+                (of_campaign->rotary ? "active_backlash_deg" : "active_backlash_mm") +
                 " in [machine.axes." + axis + "]");
   one.readings = without_tables(one.campaign, one.readings, *present);
-  of_campaign->table_on = corrected ? files : std::string();
-  of_campaign->backlash_on = backlash.value_or(0.0);
-  state_backlash(options, axis, of_campaign->rotary, *of_campaign->backlash_on);
+  of_campaign->active_table = corrected ? files : std::string();
+  of_campaign->active_backlash = backlash.value_or(0.0);
+  state_backlash(options, axis, of_campaign->rotary, *of_campaign->active_backlash);
   findings.push_back({"table.active-from-backup",
                       true,
                       {},
@@ -116,7 +116,7 @@ Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh
 
 Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign& read,
                                             const Controller& controller, const Settings& given) {
-  const auto on = what_was_on(read, controller, given);
+  const auto on = active_compensation(read, controller, given);
   if (!on) return fail(on.error());
   const Settings& options = *on ? (*on)->options : given;
   const Campaign& campaign = read.manifest->campaign;
@@ -140,7 +140,7 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
   if (controller.merge == nullptr)
     return fail(controller.info.name +
                 " does not merge: load the new file of the axis as it is, in place of the old one");
-  const auto on = what_was_on(read, controller, given);
+  const auto on = active_compensation(read, controller, given);
   if (!on) return fail(on.error());
   Settings options = *on ? (*on)->options : given;
   auto one = one_axis(read, axis, *on);

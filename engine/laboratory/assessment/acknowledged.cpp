@@ -20,7 +20,7 @@ bool is_of(const config::Acknowledgement& a, const MorningLine& l) {
   return a.finding == l.id || a.finding == id || a.finding == id.substr(0, id.find('-', 8));
 }
 
-/// What somebody knew on a day, and its U.
+/// What was known on a day, and its U.
 struct Knew {
   double value = 0.0, U = 0.0;
 };
@@ -77,7 +77,7 @@ bool was_known(const config::Acknowledgement& a, const AssessedMachine& m, const
   return open && v.value && std::fabs(*v.value * unit_of(v.unit).per_si - knew.value) <= knew.U;
 }
 
-/// A line of its own for what nobody has acknowledged.
+/// A separate line for what is not acknowledged.
 MorningLine line_of_rest(const MorningLine& known, std::vector<reports::OpenValue> rest) {
   const auto first = std::find_if(rest.begin(), rest.end(),
                                   [](const reports::OpenValue& v) { return !v.undecided; });

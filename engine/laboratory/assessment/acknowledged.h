@@ -9,7 +9,7 @@
 
 namespace nonio::assessment {
 
-/// A line that somebody has acknowledged, until then, is known. It is new again when what it says
+/// A line that a person has acknowledged, until then, is known. It is new again when what it says
 /// happened after that day, or when its value has moved by more than U since: from the value that
 /// the acknowledgement names, else from the last one before its day. What else the line lists is
 /// known if it was open on that day too and has not moved; a new line is returned with the rest.

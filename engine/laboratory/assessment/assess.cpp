@@ -38,7 +38,7 @@ std::optional<int> months_of_rule(const std::string& machine, const store::Store
 
 Due due_of(const AssessedMachine& m, const store::StoredLogs& logs) {
   const auto months = months_of_rule(m.state.machine.name, logs);
-  // When a campaign of no machine is measured again nobody knows.
+  // It is unknown when a campaign without a machine is measured again.
   if (!months || m.stored.campaigns.empty() || m.state.machine.name.empty()) return {};
   return {months_later(m.stored.campaigns.back().day, *months),
           "[[due]] months = " + std::to_string(*months)};
@@ -142,7 +142,7 @@ class Assessment::State {
  private:
   void take_entered(const config::SiteLogs& now) {
     logs_.acknowledged = now.acknowledged;
-    // Entered after the night: known from now on, not from its day on.
+    // Entered after the run: known from now on, not from its day on.
     for (config::Acknowledgement& a : logs_.acknowledged) a.date = std::min(a.date, tonight_.date);
     for (const config::Event& e : now.events)
       if (std::none_of(logs_.events.begin(), logs_.events.end(), [&](const config::Event& known) {
@@ -256,7 +256,7 @@ class Assessment::State {
     rows(std::uint64_t{m.events.size()});
   }
 
-  /// A night's tests are counted once.
+  /// The tests of a run are counted once.
   Expected<void> count_tests(const std::vector<store::StoredEvaluation>& evaluations) {
     std::map<std::uint64_t, ByteWriter> of_night;
     for (const store::StoredEvaluation& e : evaluations)
@@ -385,7 +385,7 @@ class Assessment::State {
       w(a->date, a->finding, a->machine, a->axis, a->quantity, a->until, a->value, a->U, a->by,
         a->why);
     for (const std::string& campaign : m.campaigns) w(links_.of(campaign));
-    // What came tonight is told as what came tonight.
+    // What came with this run is reported as new.
     if (m.state.night >= tonight_.night) w(tonight_.night);
     return storage::sha256(w.take());
   }

@@ -47,7 +47,7 @@ class Assessment {
   bool has_page(std::size_t machine, const std::string& templates) const;
   /// It was written just now.
   void note_page(std::size_t machine, const std::string& templates);
-  /// For the next night.
+  /// For the next run.
   void keep();
   reports::SiteHistory take_site() &&;
   /// With all series of all machines.
@@ -65,6 +65,7 @@ std::string history_json(const reports::SiteHistory& site, const Tonight& tonigh
 
 /// The lines as a list: of summary.json, and what `nonio status --actions --json` prints. Numbers in the
 /// printed unit, u standard, sentences in English.
-std::string lines_json(const reports::SiteHistory& site, const Templates& templates);
+std::string lines_json(const reports::SiteHistory& site, const Templates& templates,
+                       const std::string& language = "en");
 
 }  // namespace nonio::assessment

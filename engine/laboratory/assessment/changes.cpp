@@ -18,7 +18,7 @@ constexpr double excess_step = 0.05;
 constexpr double spread_step = 0.1;  // of its logarithm
 
 /// A step where the instrument changed is called the instrument's, unless its calibration, which is
-/// in the covariance, would have to be wrong by as much as nobody sees in years.
+/// in the covariance, would have to be wrong by an unusual amount.
 constexpr double no_instrument_below = 1e-4;
 
 /// Of very many the last of two digits counts: one more series or campaign moves no trend of the
@@ -49,13 +49,13 @@ bool shows_instrument(const FollowedSeries& s, std::size_t gap) {
                      });
 }
 
-/// One test of a night.
+/// One test of a run.
 struct Asked {
   double p = 1.0;
   Adjusted* adjusted = nullptr;
 };
 
-/// Over the tests of one night; what is no candidate counts with p = 1.
+/// Over the tests of one run; what is no candidate counts with p = 1.
 void adjust(const std::vector<Asked>& tests, std::size_t asked, double Adjusted::*which,
             std::vector<double> by(const std::vector<double>&)) {
   std::vector<double> p(std::max(asked, tests.size()), 1.0);
@@ -87,7 +87,7 @@ std::set<Place> places_of(const AssessedMachine& m) {
   return out;
 }
 
-/// The gap of a series in which a place lies; nothing if it lies in none or there is a step.
+/// The gap of a series that contains a place; nothing if none does, or if there is a step.
 std::optional<std::size_t> gap_of(const AssessedMachine& m, const FollowedSeries& s,
                                   const Place& place) {
   for (std::size_t k = 0; k + 1 < s.results.size(); ++k) {
@@ -115,7 +115,7 @@ void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
     c.declared.reset();
     tried.told[i] = true;
     tried.p_adjusted[i] = c.p;
-    // What the night has said of the others stays.
+    // What the run has reported of the others stays.
     for (std::size_t k = 0; k < s.trend.changes.size(); ++k)
       for (std::size_t j = 0; j < tried.trend.changes.size(); ++j)
         if (tried.trend.changes[j].after == s.trend.changes[k].after) {
@@ -203,7 +203,7 @@ std::vector<std::vector<Adjusted>> adjusted_by_night(
   std::vector<std::vector<Adjusted>> out;
   for (const SeriesTests* s : tests) out.emplace_back(s->changes.size());
   std::map<std::uint64_t, std::vector<Asked>> unsaid, said;
-  std::map<std::uint64_t, std::size_t> still;  // of the series whose last night it was
+  std::map<std::uint64_t, std::size_t> still;  // of the series whose last run it was
   for (std::size_t k = 0; k < tests.size(); ++k) {
     const SeriesTests& s = *tests[k];
     still[s.night] += s.has_model;

@@ -57,7 +57,7 @@ Manner manner_of(const std::string& quantity, const Learned& learned);
 /// With the trend.
 void fit(FollowedSeries& series, const Manner& manner, Fits& fits);
 
-/// What one series asks in the night of its last point.
+/// The tests of one series in the run of its last point.
 struct SeriesTests {
   std::uint64_t night = 0;
   bool has_model = false;
@@ -71,16 +71,16 @@ SeriesTests tests_of(const FollowedSeries& series);
 
 /// p of a change, adjusted for all that its night has asked.
 struct Adjusted {
-  double news = 1.0;  ///< Benjamini and Hochberg: of what is told, few are false
-  double any = 1.0;   ///< Holm: the chance that the night tells any that is false
+  double news = 1.0;  ///< Benjamini and Hochberg: few of the reported changes are false
+  double any = 1.0;   ///< Holm: the probability that the run reports any false one
 };
 
-/// Of each change of each series. `asked`: how many each night asked.
+/// Of each change of each series. `asked`: number of tests of each run.
 std::vector<std::vector<Adjusted>> adjusted_by_night(
     const std::vector<const SeriesTests*>& tests,
     const std::map<std::uint64_t, std::uint64_t>& asked);
 
-/// Whether a change is told, whether it is surely more than its instrument, and whether it is sure
+/// Whether a change is reported, whether it is surely more than its instrument, and whether it is sure
 /// enough for a mail.
 struct Verdict {
   bool told = false, surely = false, mailed = false;

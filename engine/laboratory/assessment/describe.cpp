@@ -223,7 +223,7 @@ class Describing {
     if (!open && out.date < today_ && f.answer != kernel::Answer::cannot_say)
       out.answer = "overdue";
     if (!open) return out;
-    // Whatever comes, nobody may wait for it.
+    // A value is out of its limit or indeterminate: act, whatever the forecast.
     if (f.answer == kernel::Answer::cannot_say)
       out.value = out.u = out.p_out = std::numeric_limits<double>::quiet_NaN();
     out.answer = name_of(kernel::Answer::act);
@@ -314,7 +314,7 @@ std::optional<std::int64_t> usual_interval(const std::vector<StoredCampaign>& ca
 
 namespace {
 
-/// By how much B was larger than |B_mean| in the campaigns since the last change that was told.
+/// By how much B was larger than |B_mean| in the campaigns since the last reported change.
 std::optional<kernel::Beyond> beyond_mean(const AssessedMachine& m, const FollowedSeries& mean,
                                           const ShownSeries& B) {
   std::size_t first = 0;

@@ -42,7 +42,7 @@ struct FollowedLimit {
   double limit = 0.0;
   nonio::statistics::Beyond beyond{};
 };
-/// None: no quantity of the axis has one, or no campaign of the series has B beside B_mean.
+/// None: no quantity of the axis has one, or no campaign of the series has B in addition to B_mean.
 std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const FollowedSeries& series);
 
 /// What pages and programs show of a machine. `due`: day of the next calibration by a rule, `why`

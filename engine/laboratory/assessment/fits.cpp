@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t key_size = 64;
 
-/// Everything that has a say in a trend.
+/// Everything that affects a trend.
 std::string key_of(char what, const kernel::Series& s) {
   ByteWriter w;
   w.put(what);

@@ -94,7 +94,7 @@ Expected<std::vector<HistoryBasis>> history_bases(const fs::path& out,
 
 namespace {
 
-/// The campaigns of the basis and the campaign itself, as if all had come in one night.
+/// The campaigns of the basis and the campaign itself, as if all had come in one run.
 store::StoredMachine campaigns_up_to(const store::StoredMachine& all, const HistoryBasis& basis) {
   std::set<std::string> wanted{basis.campaign};
   for (const auto& [campaign, digest] : basis.campaigns) wanted.insert(campaign);

@@ -77,7 +77,7 @@ constexpr const char* machines_name = "machines.sqlite";
 /// Another program may find out something else, and come to another trend of the same series.
 constexpr std::string_view machines_version = "7 " NONIO_VERSION, trends_version = "3";
 constexpr std::size_t digest_size = 64;
-constexpr double patience = 5.0;  // s; without the file a night takes longer
+constexpr double patience = 5.0;  // s; without the file a run takes longer
 
 constexpr const char* tables =
     "CREATE TABLE version(of TEXT PRIMARY KEY, is_ TEXT NOT NULL);"

@@ -53,7 +53,7 @@ class KeptMachines {
   /// What `Fits::kept` returned for the machine.
   std::string trends_of(const std::string& machine);
 
-  /// What a night adds. All of it comes into the file, or nothing.
+  /// What a run adds. All of it comes into the file, or nothing.
   struct Changes {
     struct Of {
       std::string machine;

@@ -7,6 +7,7 @@
 
 #include "campaign/config/manifest.h"
 #include "laboratory/assessment/lines_of_machine.h"
+#include "nonio/reports/quantity_words.h"
 
 namespace nonio::assessment {
 
@@ -98,7 +99,7 @@ std::vector<MorningLine> failed(const Known& known) {
   return out;
 }
 
-/// Machines of which nobody has said a limit: what they have is no conformity.
+/// Machines without a stated limit: their conformity was not assessed.
 void not_judged(const Known& known, std::vector<MorningLine>& out) {
   std::string names;
   std::size_t count = 0;
@@ -132,7 +133,7 @@ void drafts(const Known& known, std::vector<MorningLine>& out) {
   put_count(out.back(), "count", known.tonight.waiting.size());
 }
 
-/// Findings that ask for attention in last campaigns of which every judged value conforms.
+/// Findings with severity warning in last campaigns of which every judged value conforms.
 void conforming(const Known& known, std::vector<MorningLine>& out) {
   std::size_t machines = 0, lost_motion = 0;
   for (const Standing* m : known.machines) {
@@ -146,7 +147,7 @@ void conforming(const Known& known, std::vector<MorningLine>& out) {
   put_count(out.back(), "reversal", lost_motion);
 }
 
-/// What is said of a machine that nobody has measured is said of no machine: a slip of a letter.
+/// An entry for a machine without campaigns applies to no machine: a spelling mistake.
 void unknown(const Known& known, std::vector<MorningLine>& out) {
   const std::size_t count = known.unknown.size();
   if (count == 0) return;
@@ -188,7 +189,7 @@ std::vector<MorningLine> of_site(const Known& known) {
   return out;
 }
 
-/// Where many days lie ahead of the night, its own is wrong.
+/// If many days are later than the run, the date of the run is wrong.
 void fold(std::vector<MorningLine>& lines, const char* finding, const char* several) {
   const auto is_one = [&](const MorningLine& l) {
     return l.finding.id == finding && l.state == MorningLine::State::fresh;
@@ -231,6 +232,7 @@ bool comes_before(const MorningLine& a, const MorningLine& b) {
 
 std::string kind_of(const std::string& quantity) {
   const auto is = [&](const char* begin) { return quantity.starts_with(begin); };
+  if (reports::is_log_of_scatter(quantity)) return "scatter";
   if (is("B_mean") || is("backlash")) return "reversal";
   for (const char* of_circle :
        {"B_circle", "bow:", "lateral", "radius:", "scale_mismatch", "servo_mismatch"})
@@ -239,7 +241,6 @@ std::string kind_of(const std::string& quantity) {
   if (is("curve") || is("pitch-curve")) return "curve";
   if (is("turn")) return "turn";
   if (is("cyclic")) return "cyclic";
-  if (is("ln_s")) return "scatter";
   if (is("squareness")) return "squareness";
   if (is("straightness")) return "straightness";
   if (is("centre") || is("direction") || is("chain_")) return "centre";

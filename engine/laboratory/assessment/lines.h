@@ -20,12 +20,12 @@ struct Known {
   const std::map<std::string, std::string>& machine_of_campaign;
   const std::vector<store::Spelling>& spellings;
   const std::map<std::string, OfQuantity>& learned;
-  /// Names of machines that people use and no campaign has, each with where it stands.
+  /// Names of machines that people use and no campaign has, each with its file.
   const std::vector<std::string>& unknown;
 };
 
 /// What asks for a decision this morning, one line each: in the order of what ignoring it costs,
-/// within that new before known, then the largest first. One cause is told once.
+/// within that new before known, then the largest first. One cause is reported once.
 std::vector<reports::MorningLine> lines_of(const Known& known);
 
 /// Of a quantity: reversal, scale, curve, turn, cyclic, scatter, squareness, straightness, centre,

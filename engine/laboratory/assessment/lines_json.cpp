@@ -48,7 +48,7 @@ Json json_of(const reports::OpenValue& v) {
   return json;
 }
 
-Json json_of(const MorningLine& l, const Templates& templates) {
+Json json_of(const MorningLine& l, const Templates& templates, const std::string& language) {
   Json json = {{"id", l.id}, {"kind", name_of(l.kind)}, {"state", name_of(l.state)}};
   put(json, "machine", l.machine);
   put(json, "axis", l.axis);
@@ -60,8 +60,8 @@ Json json_of(const MorningLine& l, const Templates& templates) {
   if (!l.also.empty()) json["also"] = Json::array();
   for (const reports::OpenValue& v : l.also) json["also"].push_back(json_of(v));
   if (!l.campaigns.empty()) json["campaigns"] = l.campaigns;
-  put(json, "says", reports::line_text(templates, "en", l, "says"));
-  put(json, "advice", reports::line_text(templates, "en", l, "advice"));
+  put(json, "says", reports::line_text(templates, language, l, "says"));
+  put(json, "advice", reports::line_text(templates, language, l, "advice"));
   put(json, "since", l.since);
   put(json, "link", l.link);
   put(json, "by", l.by);
@@ -73,11 +73,12 @@ Json json_of(const MorningLine& l, const Templates& templates) {
 
 }  // namespace
 
-std::string lines_json(const reports::SiteHistory& site, const Templates& templates) {
+std::string lines_json(const reports::SiteHistory& site, const Templates& templates,
+                       const std::string& language) {
   std::string out = "[";
   for (const MorningLine& l : site.lines)
     out += (&l == &site.lines.front() ? "\n  " : ",\n  ") +
-           json_of(l, templates).dump(-1, ' ', false, Json::error_handler_t::replace);
+           json_of(l, templates, language).dump(-1, ' ', false, Json::error_handler_t::replace);
   return out + (site.lines.empty() ? "]" : "\n ]");
 }
 

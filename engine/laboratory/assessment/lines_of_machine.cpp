@@ -10,6 +10,7 @@
 #include "laboratory/assessment/lines.h"
 #include "laboratory/assessment/open_values.h"
 #include "laboratory/statistics/forecast.h"
+#include "nonio/reports/quantity_words.h"
 
 namespace nonio::assessment {
 
@@ -74,7 +75,7 @@ class OfMachine {
 
   // ---- what changed
 
-  /// The changes of each axis that nobody has mended since.
+  /// The changes of each axis that were not repaired since.
   void causes_by_axis() {
     for (const HistorySeries& s : d_.series) {
       std::string mended;
@@ -91,8 +92,8 @@ class OfMachine {
                          [](const auto& a, const auto& b) { return a.size() > b.size(); });
   }
 
-  /// Somebody has said that this axis was repaired or compensated after that campaign. What is
-  /// planned has mended nothing yet.
+  /// An event states that this axis was repaired or compensated after that campaign. A plan
+  /// has repaired nothing yet.
   bool is_repaired(const std::string& axis, const std::string& after) const {
     return std::any_of(m_.events.begin(), m_.events.end(), [&](const config::Event& e) {
       return (e.kind == "repair" || e.kind == "compensation") && e.date > after &&
@@ -116,8 +117,15 @@ class OfMachine {
   void describe(MorningLine& l, const AxisChange& cause) const {
     const AxisChange::Seen& first = cause.seen.front();
     const Quantity q = first.series->unit;
-    l.finding.evidence.push_back({"size", first.change->size, q});
-    l.finding.evidence.push_back({"U", 2.0 * first.change->u, q});
+    const double size = first.change->size, U = 2.0 * first.change->u;
+    if (reports::is_log_of_scatter(first.series->quantity)) {
+      l.finding.evidence.push_back({"factor", std::exp(size), Quantity::ratio});
+      l.finding.evidence.push_back({"low", std::exp(size - U), Quantity::ratio});
+      l.finding.evidence.push_back({"high", std::exp(size + U), Quantity::ratio});
+    } else {
+      l.finding.evidence.push_back({"size", size, q});
+      l.finding.evidence.push_back({"U", U, q});
+    }
     l.finding.evidence.push_back({"p", first.change->p, Quantity::probability});
     put_text(l, "after", cause.after);
     put_text(l, "before", cause.before);
@@ -166,7 +174,7 @@ class OfMachine {
     return r.axis.empty() ? r.source : r.axis;
   }
 
-  /// Of each axis one line with all that does not conform or cannot be decided.
+  /// Of each axis one line with all that does not conform or is indeterminate.
   void judged() {
     std::map<std::string, std::vector<Judged>> out, open, good, anew;
     std::map<std::string, std::vector<reports::OpenValue>> missing;
@@ -204,7 +212,7 @@ class OfMachine {
       if (!out.contains(axis) && !good.contains(axis)) add_fixed("morning.judged-anew", all);
   }
 
-  /// What is open beside the values of the line.
+  /// What is open in addition to the values of the line.
   void also(MorningLine& l, std::vector<Judged> open,
             const std::vector<reports::OpenValue>& missing) const {
     worst_first(open);
@@ -400,7 +408,7 @@ class OfMachine {
     add(std::move(l));
   }
 
-  /// Nobody has measured yet what is dated after the night.
+  /// A campaign that is dated after the run is not measured yet.
   void later() {
     for (const store::StoredMachine::Later& c : m_.stored.later) {
       MorningLine l = line(Kind::undecided, "morning.later", c.campaign);

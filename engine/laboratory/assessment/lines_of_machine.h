@@ -10,7 +10,7 @@
 
 namespace nonio::assessment {
 
-/// A line with an id that is the same every night: the finding and what it is of.
+/// A line with an id that is the same in every run: the finding and its subject.
 reports::MorningLine line_of(reports::MorningLine::Kind kind, const char* finding,
                              const std::string& of);
 

@@ -147,7 +147,7 @@ std::optional<IntervalProposal> chart(const AssessedMachine& m,
     const double months = soon ? 0.0 : *p.months;
     if (shortest && months >= least) continue;
     least = months;
-    if (least < 1.0) {  // sooner than any interval: it is to be measured or mended now
+    if (least < 1.0) {  // sooner than any interval: measure or repair now
       one.why.id = "interval.out-already";
       one.months.reset();
     } else {

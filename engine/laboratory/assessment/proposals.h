@@ -14,7 +14,7 @@ namespace nonio::assessment {
 
 /// Share of machines that are to be in tolerance when they are measured again.
 inline constexpr double reliability_target = 0.95;
-/// Machines of one model with one interval that are told from each other by chance only.
+/// Machines of one model with one interval that differ by chance only.
 inline constexpr std::size_t fewest_of_a_fleet = 5;
 
 /// What one machine has to do with the proposals of a site.

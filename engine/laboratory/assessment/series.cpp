@@ -115,7 +115,7 @@ class Happenings {
     return concerns(e, s_) && day(k) <= e.date && e.date <= day(k + 1);
   }
 
-  /// What somebody entered for the day of an adjustment is that adjustment.
+  /// An event on the day of an adjustment is that adjustment.
   bool on_day_of_table(const config::Event& e, const std::vector<bool>& table) const {
     for (std::size_t k = 0; k < table.size(); ++k)
       if (table[k] && (day(k) == e.date || day(k + 1) == e.date)) return true;
@@ -302,7 +302,7 @@ std::vector<FollowedSeries> followed_series(const StoredMachine& machine,
 
 namespace {
 
-/// 0 conforms or is not judged, 1 cannot be decided, 2 does not conform.
+/// 0 conforms or is not judged, 1 indeterminate, 2 does not conform.
 int gravity(const StoredResult& r) {
   if (r.decision.empty() || r.decision == "conforms") return 0;
   return r.decision == "does not conform" ? 2 : 1;

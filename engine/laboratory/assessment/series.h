@@ -41,11 +41,11 @@ struct FollowedSeries {
   nonio::statistics::Trend trend{};
   /// Of each change of the trend: p, adjusted for all that its night has asked.
   std::vector<double> p_adjusted{};
-  /// Whether it is told, and whether a mail tells it.
+  /// Whether it is reported, and whether a mail reports it.
   std::vector<bool> told{}, mailed{};
 };
 
-/// Largest deviations and the like of one axis: shown, and held against limits.
+/// Largest deviations and the like of one axis: shown, and compared with limits.
 struct ShownSeries {
   std::string axis, quantity, unit;
   std::vector<std::size_t> results;

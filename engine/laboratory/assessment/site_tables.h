@@ -15,7 +15,7 @@ namespace nonio::assessment {
 std::vector<reports::MonthOfMachine> months_of(const AssessedMachine& machine,
                                                const reports::MachineHistory& described);
 
-/// What of one machine hangs on each instrument under each of its certificates.
+/// The results of one machine that depend on each instrument and certificate.
 std::vector<reports::InstrumentUse> instruments_of(const AssessedMachine& machine,
                                                    const std::filesystem::path& out);
 /// Of all machines together.

@@ -72,7 +72,7 @@ Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& de
   s.until = acknowledgements_of(described.id, logs).empty()
                 ? same_until(m, described, s.lines, tonight.date)
                 : tonight.date;
-  for (std::size_t i = 0; i < s.lines.size(); ++i)  // what nobody has acknowledged comes behind
+  for (std::size_t i = 0; i < s.lines.size(); ++i)  // what is not acknowledged comes last
     if (auto rest = acknowledge(s.lines[i], m, logs, tonight.date)) s.lines.push_back(*rest);
   s.months = months_of(m, described);
   s.instruments = instruments_of(m, out);

@@ -29,7 +29,7 @@ struct Standing {
   bool attention = false;  ///< the last campaign has a finding that requires action
   bool reversal = false;   ///< and it is one of the reversal
   IntervalFacts interval{};
-  std::string until{};  ///< last night's date on which the lines are the same
+  std::string until{};  ///< date of the last run with the same lines
 };
 
 /// `described`: of the same machine, see `describe`.

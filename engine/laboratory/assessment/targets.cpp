@@ -75,7 +75,7 @@ std::optional<std::size_t> degree_of(const std::string& kind) {
   return std::nullopt;
 }
 
-/// Which of the sinusoids beside the curve: a turn comes first, then what a drive makes.
+/// Which of the sinusoids in addition to the curve: a turn comes first, then what a drive makes.
 std::optional<std::size_t> sinusoid_of(const std::string& kind, std::size_t count) {
   if (count < 2) return std::nullopt;
   for (const auto& [name, at] :

@@ -17,7 +17,7 @@ namespace nonio::assessment {
 struct StoredFit {
   double beyond = 0.0, dof = 0.0;          ///< variance about the fit beyond the readings
   nonio::statistics::FittedCurve curve{};  ///< no coefficients: its quantities do not refer to ends
-  /// Of cos and sin of each sinusoid beside it.
+  /// Of cos and sin of each sinusoid in addition to it.
   std::vector<nonio::statistics::CoefficientOver> sinusoids{};
   std::vector<double> residuals{};  ///< of the values, by target; none: not in the store
 };

@@ -10,7 +10,7 @@
 
 namespace nonio::assessment {
 
-/// What a night itself knows and the history does not.
+/// What a run itself knows and the history does not.
 struct Tonight {
   struct Failed {
     std::string campaign, folder;  ///< folder: relative to the site, as text
@@ -23,14 +23,14 @@ struct Tonight {
     std::string why;  ///< what is there instead
   };
   std::uint64_t night = 0;
-  std::string date;  ///< of the night, YYYY-MM-DD: the only clock
+  std::string date;  ///< of the run, YYYY-MM-DD: the only clock
   std::uint64_t campaigns = 0, done = 0, unchanged = 0;
   std::vector<Failed> failed{};        ///< by campaign
-  std::vector<Vanished> vanished{};    ///< by campaign; none that somebody has said to be gone
+  std::vector<Vanished> vanished{};    ///< by campaign; without those that were removed on purpose
   std::vector<std::string> issued{};   ///< numbers of certificates
   std::vector<std::string> waiting{};  ///< campaigns whose drafts wait for a release
   std::string language = "en";         ///< of the site
-  std::string history_error{};         ///< the store does not know this night
+  std::string history_error{};         ///< the store does not contain this run
 };
 
 /// Of the last complete night, out of OUT/summary.json. An error if there is none.

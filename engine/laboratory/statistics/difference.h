@@ -20,7 +20,7 @@ struct Difference {
 };
 
 /// after - before - expected. An error as `check` gives it, of point 1 (before) or 2, or where
-/// `expected` is no number.
+/// `expected` is not a number.
 Expected<Difference> difference(const Point& before, const Point& after, double expected = 0.0,
                                 double u_expected = 0.0);
 

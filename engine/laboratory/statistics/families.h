@@ -3,7 +3,7 @@
 
 #include <vector>
 
-/// Many tests of one night: adjusted p, in the order of `p`. A test whose adjusted p is below the
+/// Many tests of one run: adjusted p, in the order of `p`. A test whose adjusted p is below the
 /// level is news.
 namespace nonio::statistics {
 

@@ -34,7 +34,7 @@ struct Gls {
   double chi2 = 0.0, dof = 0.0;
 };
 
-/// None if the points cannot tell the columns apart.
+/// None if the points cannot separate the columns.
 std::optional<Gls> gls(const Whitened&, const MatrixXd& whitened_columns);
 
 double normal_two_sided(double z);  ///< P(|N| > |z|)

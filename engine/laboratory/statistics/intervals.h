@@ -16,7 +16,7 @@ namespace nonio::statistics {
 struct Proposal {
   enum class Method { staircase, control_chart, fleet, reliability, drift };
   Method method = Method::staircase;
-  std::optional<double> months{};  ///< none: this history cannot tell
+  std::optional<double> months{};  ///< none: not determined by this history
   /// Why: id of a word, and the numbers that belong to it, by name.
   std::string why{};
   std::vector<std::pair<std::string, double>> numbers{};
@@ -82,7 +82,7 @@ struct Drift {
   double u_prediction(double t) const;  ///< of one value there
 };
 
-/// None if degree + 1 or fewer values, or they cannot tell the coefficients apart.
+/// None if degree + 1 or fewer values, or they cannot separate the coefficients.
 std::optional<Drift> drift_since_adjustment(const std::vector<double>& t,
                                             const std::vector<double>& d, int degree);
 

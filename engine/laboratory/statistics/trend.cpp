@@ -20,7 +20,7 @@ constexpr double sharp = 1e-3;     // below it Bonferroni's bound is nearly exac
 constexpr double inseparable = 4;  // of chi2, between a line and a step
 constexpr std::size_t fewest_for_walk = 8;
 
-/// What the model is made of beside the level.
+/// What the model contains in addition to the level.
 struct Shape {
   std::vector<Change> changes;
   bool drifts = false;
@@ -122,7 +122,7 @@ class Trending {
                        [&](const Change& c) { return c.after == after; });
   }
 
-  /// Directions in which a step at each free place is seen, beside the model.
+  /// Directions in which a step at each free place is seen, in addition to the model.
   struct Places {
     std::vector<std::size_t> after;
     MatrixXd direction;  // a column of unit length for each

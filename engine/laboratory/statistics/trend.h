@@ -56,7 +56,7 @@ struct Trend {
   double chi2 = 0.0, dof = 0.0;  ///< with the slope held
   /// A step at the last place that is named 8 times in 10.
   std::optional<double> smallest_change{};
-  bool line_or_step = false;  ///< these points cannot tell a drift from a step
+  bool line_or_step = false;  ///< these points cannot separate a drift from a step
 
   // To go on from here (forecast.h): what the model says at a time after the last point is
   // coefficients . (1, 1 of each change, time).

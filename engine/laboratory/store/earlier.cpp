@@ -141,7 +141,7 @@ std::string text_of(const std::vector<CertificateRow>& certificates) {
   return all.dump(-1, ' ', false, storage::Json::error_handler_t::replace);
 }
 
-/// The results stand in it as they were.
+/// It contains the results as they were.
 std::string text_of(const IndexedSince& since, const reading::Inputs& inputs,
                     std::string_view results) {
   storage::Json json = {{"night", since.night.number},

@@ -33,10 +33,10 @@ struct FolderHistory {
 /// that may pass. Empty if nothing was evaluated yet. An error names the file that is damaged.
 Expected<FolderHistory> history_of(const std::filesystem::path& folder, const std::string& id);
 
-/// The nights of those evaluations, without a look at the results.
+/// The runs of those evaluations, without reading the results.
 Expected<std::vector<std::uint64_t>> nights_of(const std::filesystem::path& folder);
 
-/// What is to be stored beside new results, so that nothing that was known before is lost.
+/// What is to be stored in addition to new results, so that earlier knowledge is kept.
 struct Carried {
   std::optional<evaluation::IndexedSince> indexed{};
   std::string earlier{};  ///< bytes of earlier.json; empty: none

@@ -166,7 +166,7 @@ class EntryReader {
     entry_.results.push_back(std::move(row));
   }
 
-  /// What a table promises of a result, beside that result.
+  /// What a table predicts of a result, next to that result.
   void read_prediction(dom::object p, const std::string& plugin) {
     const std::string measurement = text_at(p, "measurement");
     entry_.results.push_back({.measurement = measurement,

@@ -8,7 +8,7 @@ namespace nonio::store {
 
 namespace {
 
-/// What is left of a name where nobody looked closely.
+/// A name without differences that are easily overlooked.
 std::string carelessly(const std::string& name) {
   std::string out;
   for (const char c : name) {

@@ -46,7 +46,7 @@ bool is_of_somebody_else(const fs::path& path) {
   return ::stat(path.c_str(), &info) != 0 || (info.st_uid != ::geteuid() && info.st_uid != 0);
 }
 
-/// Where nobody can go on by himself.
+/// Where only a person can continue.
 constexpr const char* another_owner =
     " holds the history of another output folder: give each site a schema of its own ([database] "
     "schema in site.toml). If the output folder of this site was lost, restore OUT/.nonio/database "

@@ -35,7 +35,7 @@ Expected<void> note_evaluations(const std::filesystem::path& out, std::int64_t c
 std::string name_of(const StorePlace& place, const std::filesystem::path& out);
 std::string store_in(const std::filesystem::path& out);
 
-/// The store, opened to be read: on a server all that is read from it is of one night.
+/// The store, opened to be read: on a server all that is read from it belongs to one run.
 Expected<storage::Database> open_store(const std::filesystem::path& out);
 
 /// Makes the server's schema if it is not there. An error if it is another output folder's, or if a

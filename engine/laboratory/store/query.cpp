@@ -25,7 +25,7 @@ Expected<std::vector<NamedMachine>> machines_of(Database& database, const char* 
   return machines;
 }
 
-/// The name under which this one's campaigns stand.
+/// The name under which the campaigns of this machine are stored.
 Expected<std::string> known_machine(Database& database, const std::string& name) {
   const std::string alias =
       database.first("SELECT machine FROM machine_alias WHERE alias = ?", {name});

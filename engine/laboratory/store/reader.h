@@ -125,7 +125,7 @@ class StoreReader {
   Expected<std::vector<CountedCampaign>> counted_campaigns();
   /// Numbers of each campaign and what they replace, as one text.
   Expected<std::map<std::string, std::string>> certificates();
-  /// How many different quantities of axes each night from this one on has evaluated.
+  /// How many different quantities of axes each run from this one on has evaluated.
   Expected<std::map<std::uint64_t, std::uint64_t>> followed_since(std::uint64_t night);
 
  private:

@@ -24,7 +24,7 @@ namespace {
 constexpr const char* known_folder = ".nonio";
 constexpr const char* known_name = "history";
 
-/// Where an evaluation stands in the order of the store.
+/// Position of an evaluation in the order of the store.
 struct Place {
   std::uint64_t night = 0;
   std::string campaign;
@@ -139,7 +139,7 @@ class Filling {
 
   Expected<std::vector<Place>> all_places() {
     std::vector<Place> places;
-    // A chain keeps its order, even where somebody has put back the count of the nights.
+    // A chain keeps its order, even if the count of the runs was set back.
     const auto listed = storage::each_results_folder(out_, [&](const fs::path& folder) {
       alive_();
       const std::string campaign = folder.filename().string();
@@ -207,7 +207,7 @@ Expected<void> check_version(std::optional<std::int64_t> version, const std::str
               ": use the newer program, or remove it; it is made again");
 }
 
-/// A file of before would grow old, and nobody would see it.
+/// An earlier file would become outdated without notice.
 Expected<void> leave_to_server(const fs::path& out, std::int64_t evaluations) {
   std::error_code error;
   const fs::path path = out / store_name;
@@ -232,7 +232,7 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
   if (place->server)
     if (auto ours = take_schema(database, out); !ours) return fail(ours.error());
   bool again = all || version != schema_version;
-  // A server whose backup was restored, or whose standby took over, has forgotten the last nights.
+  // A server whose backup was restored, or whose standby took over, has lost the last runs.
   if (!again && place->server) again = last_number(database) != place->evaluations;
   Filling filling(out, database, alive, updated);
   if (!again) {

@@ -15,7 +15,7 @@ namespace nonio::store {
 
 inline constexpr const char* store_name = "history.sqlite";
 
-/// What the site says beside its campaigns.
+/// What the site states apart from its campaigns.
 struct Told {
   config::SiteLogs logs{};
   std::vector<config::Alias> aliases{};

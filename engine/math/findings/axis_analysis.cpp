@@ -40,7 +40,7 @@ Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput& in) {
   a.approaches = approaches_behind_means(a.test);
   const Axis* stated = in.campaign.machine.axis(in.measurement.axis);
   Axis axis = stated != nullptr ? *stated : Axis{};
-  if (in.measurement.compensation == "off") axis.backlash_on = 0.0;
+  if (in.measurement.compensation == "off") axis.active_backlash = 0.0;
   const Observations* own = &o;
   HeldLimits limits = limits_held(in.campaign, {&own, 1});
   const BudgetOrGap of =

@@ -84,7 +84,7 @@ std::vector<Finding> axis_findings(const AxisTest& test, const Observations& o, 
                                    double U_mean) {
   std::vector<Finding> findings;
   drift_findings(test, findings);
-  reversal_findings(test, findings, axis != nullptr ? axis->backlash_on : std::nullopt, U_mean);
+  reversal_findings(test, findings, axis != nullptr ? axis->active_backlash : std::nullopt, U_mean);
   scatter_findings(test, findings);
   turn_findings(test, findings);
   plan_findings(test, o, axis, findings);

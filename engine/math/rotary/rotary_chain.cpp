@@ -313,11 +313,12 @@ ChainValue chain_value(const ChainFit& fit, const std::function<double(const Cha
   double size = 0.0;
   for (Index k = 0; k < gradient.size(); ++k)
     size = std::hypot(size, gradient[k] * fit.scale[static_cast<std::size_t>(k)]);
-  out.told = std::isfinite(out.value) && std::isfinite(size);
+  out.identifiable = std::isfinite(out.value) && std::isfinite(size);
   for (const auto& v : fit.null_space) {
     double part = 0.0;
     for (std::size_t k = 0; k < v.size(); ++k) part += v[k] * gradient[at(k)] * fit.scale[k];
-    out.told = out.told && std::fabs(part) <= changes_nothing * std::max(size, rounding_size);
+    out.identifiable =
+        out.identifiable && std::fabs(part) <= changes_nothing * std::max(size, rounding_size);
   }
   out.by.assign(fit.by.front().size(), 0.0);
   for (std::size_t k = 0; k < fit.by.size(); ++k)

@@ -213,7 +213,7 @@ class Readings {
 struct Solved {
   MatrixXd inverse;  ///< pseudoinverse
   Eigen::Index rank = 0;
-  std::array<bool, 4> told{};
+  std::array<bool, 4> identifiable{};
 };
 
 Solved solved(const MatrixXd& j) {
@@ -244,7 +244,7 @@ Solved solved(const MatrixXd& j) {
     VectorXd unit = VectorXd::Zero(j.cols());
     unit[i] = 1.0;
     const VectorXd left = residual(unit, product_transposed(row_space, row_space), unit);
-    out.told[k] = scale[i] > 0.0 && left.norm() < in_row_space;
+    out.identifiable[k] = scale[i] > 0.0 && left.norm() < in_row_space;
   }
   return out;
 }
@@ -266,13 +266,14 @@ tl::expected<RtcpFit, RtcpRefusal> fit_rtcp(const std::vector<RtcpReading>& all,
   fit.point = plain(readings.point());
   fit.direction = plain(readings.direction());
   fit.across = readings.across();
-  fit.told = fit.told_with_ball = solution.told;
+  fit.identifiable = fit.identifiable_with_ball = solution.identifiable;
   if (!wish.ball_known) {
     RtcpWish with = wish;
     with.ball_known = true;
     Readings other(all, with);
     if (!other.prepare())
-      fit.told_with_ball = solved(other.jacobian(VectorXd::Zero(other.unknowns()))).told;
+      fit.identifiable_with_ball =
+          solved(other.jacobian(VectorXd::Zero(other.unknowns()))).identifiable;
   }
   fit.ball = readings.ball_of_line();
   for (const Vector3d& ball : readings.balls()) fit.place.push_back(plain(ball));

@@ -456,13 +456,14 @@ class CourseExplanation {
       out_.together.push_back(search_.term_of(e).name());
       terms.push_back(search_.term_of(e));
     }
-    out_.best_rms = out_.certain_rms = out_.comparison.fit.rms;
+    out_.best_rms = out_.significant_rms = out_.comparison.fit.rms;
     out_.fails = out_.comparison.seats;
     Verdict& v = out_.verdict;
     v.trials = copies;
     v.false_alarms = named_p;
     if (!set_.empty()) {
-      if (const auto fit = fit_course(part_, terms)) out_.best_rms = out_.certain_rms = fit->rms;
+      if (const auto fit = fit_course(part_, terms))
+        out_.best_rms = out_.significant_rms = fit->rms;
       v.kind = Verdict::Kind::missing;
       v.effect = certain_.empty() ? best_.second : out_.certain.front();
       return;

@@ -84,7 +84,7 @@ void describe(const Finding& finding, const std::vector<Term>& catalogue, Explan
     for (Candidate& found : certain_in(finding.part, model, catalogue, finding.seed))
       take_over(std::move(found), beside, out);
   }
-  out.certain_rms = rms_beside(finding, out);
+  out.significant_rms = rms_beside(finding, out);
   if (out.certain.size() == before) return;
   std::stable_sort(out.candidates.begin(), out.candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });

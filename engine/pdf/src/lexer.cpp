@@ -106,7 +106,7 @@ Expected<void> Lexer::read_container(Value& value, int depth) {
   }
 }
 
-/// None twice; in n log n, since nobody says how many there are.
+/// None twice; in n log n, since their number is unknown.
 Expected<void> Lexer::check_keys(const Value& value) const {
   std::vector<std::string_view> keys(value.keys.begin(), value.keys.end());
   std::sort(keys.begin(), keys.end());

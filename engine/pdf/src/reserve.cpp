@@ -65,7 +65,7 @@ class Reservation {
   }
 
  private:
-  /// The frame that the document has for its signature: four whole numbers, as they stand there.
+  /// The frame that the document has for its signature: four whole numbers, unchanged.
   std::string frame_of(std::size_t page) const {
     const Value* frame = file_.objects[page].value.find(signature_key);
     if (frame == nullptr || !frame->is(Value::Kind::array) || frame->items.size() != 4) return {};

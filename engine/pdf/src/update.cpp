@@ -99,7 +99,7 @@ std::string list_of(const char* key, const std::vector<std::size_t>& numbers) {
   return out + "]\n";
 }
 
-/// An object as it stands in the signed file, with more text at these places of the file.
+/// An object of the signed file, with more text at these places of the file.
 std::string with(const File& file, const Object& object,
                  const std::vector<std::pair<std::size_t, std::string>>& more) {
   std::string out;
@@ -221,7 +221,7 @@ class Updater::Objects {
 
  private:
   Updater& to_;
-  std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< number, where it stands
+  std::vector<std::pair<std::size_t, std::size_t>> places_;  ///< number, position
   std::string bytes_;
   std::size_t range_ = 0, gap_ = 0;
 };

@@ -243,7 +243,7 @@ void add_property(HPDF_Doc doc, const char* key, std::string_view text) {
                                 static_cast<HPDF_UINT>(bytes.size())));
 }
 
-/// A property is a label; the text itself stands in the document.
+/// A property is a label; the text itself is in the document.
 std::string label(std::string text) {
   constexpr std::size_t most = 2000;
   if (text.size() <= most) return text;

@@ -92,7 +92,7 @@ void allow_all_but(int ruleset, const fs::path& folder, const std::set<fs::path>
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const fs::path& path = it->path();
     std::error_code ignored;
-    // What a link leads to is allowed where it lies.
+    // The target of a link is allowed at its own path.
     if (it->is_symlink(ignored) || secrets.contains(path)) continue;
     if (above.contains(path))
       allow_all_but(ruleset, path, above, secrets);

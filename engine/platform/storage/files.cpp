@@ -43,7 +43,7 @@ std::function<int(const fs::path&)>& opener() {
   return set;
 }
 
-/// Without waiting: a named pipe must not stop the night.
+/// Without waiting: a named pipe must not stop the run.
 Descriptor open_to_read(const fs::path& path) {
   if (opener()) return Descriptor(opener()(path));
   return Descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
@@ -54,7 +54,7 @@ tl::unexpected<Error> system_error(std::string_view what, const fs::path& path) 
   return fail(std::string(what) + " " + path.string() + ": " + std::strerror(code));
 }
 
-/// Made and filled, not yet flushed; the system is told to begin writing.
+/// Made and filled, not yet flushed; the system is asked to begin writing.
 Expected<Descriptor> write_new(const fs::path& path, std::string_view bytes) {
   Descriptor file(
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0644));
@@ -107,7 +107,7 @@ void MappedFile::release(std::size_t offset) const {
 
 namespace {
 
-/// Whether nobody wrote between the two.
+/// Whether no process wrote between the two.
 bool same_state(const struct stat& a, const struct stat& b) {
   const auto same = [](const timespec& x, const timespec& y) {
     return x.tv_sec == y.tv_sec && x.tv_nsec == y.tv_nsec;

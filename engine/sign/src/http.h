@@ -8,7 +8,7 @@
 
 namespace nonio::sign {
 
-/// A question over plain HTTP. What comes back is signed by somebody, so that it needs no TLS.
+/// A question over plain HTTP. The answer is signed, so that it needs no TLS.
 struct Question {
   const char* query = nullptr;  ///< media type of the body; null: there is no body (GET)
   const char* reply = nullptr;  ///< media type that is wanted; null: any

@@ -25,7 +25,7 @@ struct Statement {
   static Expected<Statement> of_answer(std::string_view der);
 };
 
-/// What a revocation is held against.
+/// What a revocation is compared with.
 struct Revocation {
   enum class Of { signer, time_server };
   Time at;   ///< when the certificates were used

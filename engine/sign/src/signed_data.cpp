@@ -58,7 +58,7 @@ Expected<SignedData> SignedData::parse(std::string_view der, Content content) {
   return out;
 }
 
-/// RFC 5652, 5.1: what OpenSSL reads generously and nobody signs.
+/// RFC 5652, 5.1: unsigned parts that OpenSSL accepts leniently.
 Expected<void> SignedData::read_outside(Content content) {
   const auto info = Der::only(der_, Der::sequence);
   if (!info || !Der::sound(der_)) return malformed("no DER");

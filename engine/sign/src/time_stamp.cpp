@@ -50,7 +50,7 @@ Expected<Request> request_for(std::string_view imprint_wanted) {
                  {reinterpret_cast<const char*>(random.data()), random.size()}};
 }
 
-/// TimeStampResp ::= SEQUENCE { status, token }: the token as it stands there.
+/// TimeStampResp ::= SEQUENCE { status, token }: the token with its bytes unchanged.
 Expected<std::string> token_of(const std::string& answer) {
   ERR_clear_error();
   const unsigned char* at = data_of(answer);

@@ -27,7 +27,7 @@ Expected<Added> read_updates(std::string_view bytes, const std::vector<std::size
 /// statements, each with the time at which it is proved to have existed.
 Expected<std::vector<Stamp>> check_document_stamps(Added& added, Trusted& known, Time now);
 
-/// Every statement and every certificate is needed for one of the chains, and none is there twice.
+/// Every statement and every certificate is needed for one of the chains, and none occurs twice.
 Expected<void> check_needed(const Added& added, const Trusted& known,
                             const std::vector<std::vector<CertificatePtr>>& chains);
 

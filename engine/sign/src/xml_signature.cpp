@@ -35,7 +35,7 @@ bool started() {
     xmlInitParser();
     const bool all_well =
         xmlSecInit() == 0 && xmlSecCryptoAppInit(nullptr) == 0 && xmlSecCryptoInit() == 0;
-    // What goes wrong is told by what is returned, not on the terminal.
+    // Errors are returned, not printed on the terminal.
     xmlSecErrorsSetCallback(nullptr);
     return all_well;
   }();
@@ -257,7 +257,7 @@ Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey) {
   return key;
 }
 
-/// A second opinion, by somebody else's program.
+/// A second opinion, by an independent program.
 Expected<void> ask_xmlsec(xmlDoc* document, X509* certificate) {
   auto key = key_of(X509_get0_pubkey(certificate));
   if (!key) return fail(key.error());

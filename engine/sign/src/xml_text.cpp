@@ -151,7 +151,7 @@ std::string XmlSignature::text() const {
 
 namespace {
 
-/// What stands between two marks; goes on behind it. Empty if they are not there.
+/// What is between two marks; continues after it. Empty if they are missing.
 std::string_view between(std::string_view& rest, std::string_view begin, std::string_view end) {
   const std::size_t from = rest.find(begin);
   if (from == std::string_view::npos) return {};

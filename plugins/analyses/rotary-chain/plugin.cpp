@@ -175,7 +175,7 @@ void say_tools(Work& w, const math::BudgetOf& budget) {
                       const auto &a = s.tool[tools.from], &b = s.tool[tools.to];
                       return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
                     })};
-  if (!c.value.told) return;
+  if (!c.value.identifiable) return;
   const double u = budget.expand(repetition_in(w, c.value.by), shares_of(w, c)).u;
   const double U = 2.0 * std::hypot(u, *w.wish.U_tool / std::numbers::sqrt2);
   if (std::fabs(c.value.value - tools.stated) > U)
@@ -227,7 +227,7 @@ void follow(Evaluation& e) {
 void put_values(Work& w, math::BudgetOf& budget) {
   std::vector<std::string> withheld;
   for (const Candidate& c : candidates(w.chain, w.places, w.solved.fit)) {
-    if (!c.value.told) {
+    if (!c.value.identifiable) {
       withheld.push_back(c.name);
       continue;
     }

@@ -42,7 +42,7 @@ Vector3 tool_vector(const Places& places, const Tools& tools, const ChainState& 
 bool tells_direction(const math::ChainFit& fit, std::size_t axis) {
   return std::all_of(fit.across[axis].begin(), fit.across[axis].end(), [&](std::size_t k) {
     return math::chain_value(fit, [&](const ChainState& s) { return s.lines[axis].direction[k]; })
-        .told;
+        .identifiable;
   });
 }
 
@@ -55,11 +55,11 @@ void put_line(const Chain& chain, const math::ChainFit& fit, std::size_t axis,
   for (std::size_t k = 0; k < 3; ++k)
     out.push_back({std::string("centre_") + "xyz"[k] + "_" + name, Quantity::length,
                    math::chain_value(fit, [&](const ChainState& s) { return centre(s)[k]; })});
-  const bool told = tells_direction(fit, axis);
+  const bool identifiable = tells_direction(fit, axis);
   for (std::size_t k = 0; k < 3; ++k) {
     auto value =
         math::chain_value(fit, [&](const ChainState& s) { return s.lines[axis].direction[k]; });
-    value.told = told;
+    value.identifiable = identifiable;
     out.push_back(
         {std::string("direction_") + "ijk"[k] + "_" + name, Quantity::number, std::move(value)});
   }
@@ -119,16 +119,16 @@ Tools tools_of(const Places& places) {
 std::vector<Candidate> candidates(const Chain& chain, const Places& places,
                                   const math::ChainFit& fit) {
   std::vector<Candidate> out;
-  bool told = true;
+  bool identifiable = true;
   for (std::size_t axis = 0; axis < chain.axes.size(); ++axis) {
     put_line(chain, fit, axis, out);
-    told = told && tells_direction(fit, axis);
+    identifiable = identifiable && tells_direction(fit, axis);
   }
   // The linear axes move a head past a table: their lines have an angle, and no distance.
   if (chain.is_head(0) == chain.is_head(1)) {
     auto distance = math::chain_value(
         fit, [](const ChainState& s) { return math::signed_distance(s.lines[0], s.lines[1]); });
-    distance.told = distance.told && told;
+    distance.identifiable = distance.identifiable && identifiable;
     if (distance.value < 0.0) {
       distance.value = -distance.value;
       for (double& by : distance.by) by = -by;
@@ -137,7 +137,7 @@ std::vector<Candidate> candidates(const Chain& chain, const Places& places,
   }
   auto angle = math::chain_value(
       fit, [](const ChainState& s) { return math::angle_between(s.lines[0], s.lines[1]); });
-  angle.told = angle.told && told;
+  angle.identifiable = angle.identifiable && identifiable;
   out.push_back({"angle", Quantity::angle, std::move(angle)});
   put_pivots(chain, places, fit, out);
   return out;

@@ -213,7 +213,7 @@ class Check {
     const auto u = whole_u(out_);
     for (std::size_t k = 0; k < 4; ++k) {
       const double limit = k < 2 ? wish_.tolerance : wish_.tolerance_direction;
-      if (!out_.fit.told[k] || 2.0 * u[k] <= limit) continue;
+      if (!out_.fit.identifiable[k] || 2.0 * u[k] <= limit) continue;
       out_.wide[k] = 2.0 * u[k];
       const Quantity q = k < 2 ? Quantity::deviation : Quantity::small_angle;
       out_.findings.push_back(finding("rtcp.too-uncertain",
@@ -226,8 +226,8 @@ class Check {
   void tell_not_told() {
     std::string by_ball, by_direction;
     for (std::size_t k = 0; k < 4; ++k) {
-      if (out_.fit.told[k]) continue;
-      std::string& list = out_.fit.told_with_ball[k] ? by_ball : by_direction;
+      if (out_.fit.identifiable[k]) continue;
+      std::string& list = out_.fit.identifiable_with_ball[k] ? by_ball : by_direction;
       list += (list.empty() ? "" : ", ") + out_.names[k];
     }
     std::string lines;
@@ -261,7 +261,8 @@ std::array<double, 4> whole_u(const Checked& c) {
   const math::BudgetOf budget(c.model, c.sigma, c.dof, Quantity::deviation);
   std::array<double, 4> out{};
   for (std::size_t k = 0; k < 4; ++k)
-    if (c.fit.told[k]) out[k] = budget.expand(c.u_repetition(k), c.model.shares(c.fit.by[k])).u;
+    if (c.fit.identifiable[k])
+      out[k] = budget.expand(c.u_repetition(k), c.model.shares(c.fit.by[k])).u;
   return out;
 }
 

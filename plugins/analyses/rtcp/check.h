@@ -33,7 +33,9 @@ struct Checked {
 
   double u_repetition(std::size_t value) const;
   /// Whether the readings, and the uncertainty that is wanted, give it.
-  bool tells(std::size_t value) const { return given && fit.told[value] && wide[value] == 0.0; }
+  bool tells(std::size_t value) const {
+    return given && fit.identifiable[value] && wide[value] == 0.0;
+  }
   double wide[4] = {0.0, 0.0, 0.0, 0.0};  ///< U that is above the tolerance; 0: it is not
 };
 

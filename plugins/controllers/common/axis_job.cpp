@@ -52,9 +52,9 @@ Active active_of(const ControllerInput& input, const std::string& axis,
   const Measurement* m = measurement_of(input, measurement);
   const bool off = m != nullptr && m->compensation == "off";
   Active out;
-  if (a != nullptr) out.table = a->table_on;
+  if (a != nullptr) out.table = a->active_table;
   if (!out.table && off) out.table = std::string();
-  out.backlash = off || in_options || (a != nullptr && a->backlash_on);
+  out.backlash = off || in_options || (a != nullptr && a->active_backlash);
   return out;
 }
 
@@ -257,10 +257,11 @@ bool states_active(const ControllerInput& input, const std::string& axis,
   const Active active = active_of(input, axis, measurement, backlash_in_options);
   if (active.table && active.backlash) return true;
   const Axis* a = input.campaign.machine.axis(axis);
-  const std::string backlash = a != nullptr && a->rotary ? "backlash_on_deg" : "backlash_on_mm";
+  const std::string backlash =
+      a != nullptr && a->rotary ? "active_backlash_deg" : "active_backlash_mm";
   const std::string missing = active.table      ? backlash
-                              : active.backlash ? "table_on"
-                                                : "table_on, " + backlash;
+                              : active.backlash ? "active_table"
+                                                : "active_table, " + backlash;
   result.findings.push_back({"table.active-not-stated",
                              true,
                              {},

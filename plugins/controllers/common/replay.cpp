@@ -143,7 +143,8 @@ Replay replay_of(const CrossJob& set, const std::vector<AxisJob>& pitch,
     for (const LoadedTable& t : *job.loaded) replay.tables.push_back(t);
     replay.backlash[job.axis] = job.present_backlash();
     const Axis* axis = input.campaign.machine.axis(job.axis);
-    if (axis != nullptr && axis->table_on && !axis->table_on->empty()) replay.replaces = job.axis;
+    if (axis != nullptr && axis->active_table && !axis->active_table->empty())
+      replay.replaces = job.axis;
   }
   return replay;
 }

@@ -104,7 +104,7 @@ NONIO_PLUGIN(registry) {
              .columns = tilt,
              .instances =
                  [](const Observations& o) {
-                   return lines_that(o, [](const SpaceLine& line) { return line.goes_in_steps(); });
+                   return lines_that(o, [](const SpaceLine& line) { return line.is_stepwise(); });
                  },
              .is_nuisance = true});
 }

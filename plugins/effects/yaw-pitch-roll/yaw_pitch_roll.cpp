@@ -115,7 +115,7 @@ std::vector<double> levers_of(const Observations& o, const SpaceReadings& s, con
     const bool one_sense = std::all_of(line.rows.begin(), line.rows.end(), [&](std::size_t i) {
       return SpaceLine::dot(o.sense_of(i), line.sense) > 1.0 - 1e-9;
     });
-    if (!one_sense || !line.goes_in_steps()) continue;  // a circle is sensed all round
+    if (!one_sense || !line.is_stepwise()) continue;  // a circle is sensed all round
     const auto turned = SpaceLine::cross(about, line.sense);
     // The beam meets the far corner: there all axes have gone all steps.
     const auto far = *std::max_element(

@@ -15,14 +15,14 @@ using pages::Source;
 
 /// What of a test was other than its method plans, as the program knows it: sentences.
 std::vector<std::string> departures_of(const Source&, const pages::Measured&);
-/// How a test was made, and what of that nobody said.
+/// How a test was made, and what of that is not stated.
 std::string test_parameters(const Source&, const pages::Measured&);
 
 /// The name of an analysis as a method, with the edition and k that it used; without that of a
 /// standard whose plan of the test was not followed.
 std::string method_of(const Source&, const Results::Analysed&);
 
-/// Where the conditions of a measurement stand in its readings, degC, hPa, %: lowest and highest.
+/// The conditions of a measurement as its readings contain them, degC, hPa, %: lowest and highest.
 struct Range {
   double low, high;
   bool known() const { return low <= high; }
@@ -39,7 +39,7 @@ bool is_by_own_procedure(const Results::Analysed&);
 bool is_printed(const Results::Analysed&);
 bool is_printed(const pages::Measured&);
 
-/// With a full stop, where somebody's text ends without one and another sentence follows.
+/// With a full stop, where a person's text ends without one and another sentence follows.
 std::string ended(const Source&, std::string text);
 
 /// The title in the document's language: the laboratory's, or that of the words.
@@ -73,7 +73,7 @@ void add_authority(const Source&, Blocks&);
 /// Who released it, the frame of the signature and the code: at the foot of the first page.
 void add_signature(const Source&, Blocks&);
 
-/// Limits that nothing was held against; empty if there are none.
+/// Limits that no result was compared with; empty if there are none.
 std::string undecided_text(const Source&);
 
 /// Measurements of the campaign of which nothing is printed; empty if there are none.

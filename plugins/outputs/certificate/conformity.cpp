@@ -67,7 +67,7 @@ std::vector<Shown> shown_results(const Source& source,
   return all;
 }
 
-/// In two languages a column of meanings makes each row two lines high: they stand below.
+/// In two languages a column of meanings makes each row two lines high: they are printed below.
 bool is_brief(const Source& source) { return source.in.campaign.certificate.languages.size() > 1; }
 
 /// "A: Accuracy, both directions. B: Reversal error, largest."

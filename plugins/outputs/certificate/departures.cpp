@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What of a test was other than its method plans, as far as readings and manifest show it (ISO/IEC
-// 17025:2017, 7.8.2.1 n), and how it was made. Nobody has to state it, and nobody can leave it out.
+// 17025:2017, 7.8.2.1 n), and how it was made. It need not be stated and cannot be left out.
 #include <algorithm>
 #include <cmath>
 
@@ -148,7 +148,7 @@ bool is_printed(const pages::Measured& m) {
                      [](const Results::Analysed* a) { return is_printed(*a); });
 }
 
-/// Its parts, and then what of them nobody said: ISO 230-2 wants them reported.
+/// Its parts, and then those that are not stated: ISO 230-2 requires them to be reported.
 std::string test_parameters(const Source& source, const pages::Measured& m) {
   const Wording& w = source.words;
   const Measurement& t = m.measurement;
@@ -167,7 +167,7 @@ std::string test_parameters(const Source& source, const pages::Measured& m) {
   };
   const double per_minute = 60.0;
   const Quantity travel = position_of(m.rotary);
-  // That of a circle stands with its readings.
+  // That of a circle is printed with its readings.
   if (t.kind != "circle" || !t.feed)
     add("feed", t.feed.has_value(),
         with("test.feed", "feed",

@@ -141,9 +141,9 @@ void add_statements(const std::vector<Source>& sources, dcc::About& about) {
     add("", in_all(sources, [&](const Source& s) {
           return s.words.get("method_heading.deviations", {{"deviations", t.deviations}});
         }));
-  if (!t.nothing_else_by.empty())
+  if (!t.no_other_deviations_by.empty())
     add("", in_all(sources, [&](const Source& s) {
-          return s.words.get("method_heading.nothing_else", {{"person", t.nothing_else_by}});
+          return s.words.get("method_heading.nothing_else", {{"person", t.no_other_deviations_by}});
         }));
   own("conditions.title", t.conditions);
   own("opinions.title", t.opinions);

@@ -15,7 +15,7 @@ namespace {
 
 /// A place-holder names no instrument: "n/a", "unknown", "xxx", "000".
 bool names_something(std::string_view text) {
-  if (!says_something(text)) return false;
+  if (!has_content(text)) return false;
   std::string letters;
   for (const char c : text)
     if (std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80)
@@ -31,7 +31,7 @@ class List {
     if (!there && seen_.insert(key).second) keys_.push_back(std::move(key));
   }
   void laboratory(const std::string& value, const char* key) {
-    want(says_something(value), std::string("laboratory.") + key + " (site.toml)");
+    want(has_content(value), std::string("laboratory.") + key + " (site.toml)");
   }
   std::vector<std::string> take() { return std::move(keys_); }
 
@@ -88,7 +88,7 @@ std::vector<std::string> lacks(const OutputInput& in) {
   List list;
   for (const Results::Analysed& a : in.results.analyses)
     if (is_printed(a) && is_by_own_procedure(a))
-      list.want(says_something(c.certificate.procedure),
+      list.want(has_content(c.certificate.procedure),
                 "certificate.procedure (site.toml; the laboratory's procedure, which is based on "
                 "the standard)");
   list.laboratory(c.laboratory.name, "name");
@@ -97,19 +97,19 @@ std::vector<std::string> lacks(const OutputInput& in) {
             "laboratory.country (site.toml; two capital letters: IT)");
   list.laboratory(c.laboratory.authoriser, "authoriser");
   if (const std::string claim = accredited_claim(in); !claim.empty())
-    list.want(says_something(c.laboratory.accreditation),
+    list.want(has_content(c.laboratory.accreditation),
               "laboratory.accreditation (site.toml; " + claim + ")");
   list.want(c.laboratory.accreditation.empty() || c.laboratory.cmc.stated(),
             "laboratory.cmc (site.toml; the smallest uncertainty that the accreditation covers)");
-  list.want(says_something(c.customer), "campaign.customer");
-  list.want(says_something(c.customer_address), "campaign.customer_address");
-  list.want(says_something(c.site), "campaign.site");
+  list.want(has_content(c.customer), "campaign.customer");
+  list.want(has_content(c.customer_address), "campaign.customer_address");
+  list.want(has_content(c.site), "campaign.site");
   list.want(!c.date.empty(), "campaign.date");
-  list.want(says_something(c.machine.maker), "machine.maker");
-  list.want(says_something(c.machine.model), "machine.model");
+  list.want(has_content(c.machine.maker), "machine.maker");
+  list.want(has_content(c.machine.model), "machine.model");
   list.want(names_something(c.machine.serial), "machine.serial");
-  list.want(says_something(c.instrument.maker), "instrument.maker");
-  list.want(says_something(c.instrument.model), "instrument.model");
+  list.want(has_content(c.instrument.maker), "instrument.maker");
+  list.want(has_content(c.instrument.model), "instrument.model");
   list.want(names_something(c.instrument.serial), "instrument.serial");
   list.want(!c.instrument.calibrated.empty(), "instrument.calibrated");
   list.want(names_something(c.instrument.certificate), "instrument.certificate");
@@ -119,13 +119,14 @@ std::vector<std::string> lacks(const OutputInput& in) {
     list.want(!s.calibrated.empty(), key + "calibrated");
     list.want(names_something(s.certificate), key + "certificate");
   }
-  list.want(c.certificate.nothing_else_by.empty() || says_something(c.certificate.nothing_else_by),
-            "certificate.nothing_else_by (a person's name, or not at all)");
+  list.want(c.certificate.no_other_deviations_by.empty() ||
+                has_content(c.certificate.no_other_deviations_by),
+            "certificate.no_other_deviations_by (a person's name, or not at all)");
   for (const Measurement& m : c.measurements)
-    list.want(m.exclude.empty() || says_something(m.exclude_reason),
+    list.want(m.exclude.empty() || has_content(m.exclude_reason),
               "measurement." + m.id + ".exclude_reason (why readings were excluded)");
   const Conditions found = conditions_of(in.observations);
-  list.want(found.material.known() || found.air.known() || says_something(c.certificate.conditions),
+  list.want(found.material.known() || found.air.known() || has_content(c.certificate.conditions),
             "certificate.conditions (no file of readings has temperatures)");
   want_uncertainty(in, list);
   return list.take();

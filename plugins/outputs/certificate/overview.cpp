@@ -165,7 +165,7 @@ void add_overview(const Source& source, Blocks& blocks) {
     if (!plot) continue;
     if (plot->scales) {
       plot->title = pages::heading_of(source, m);
-    } else {  // its caption stands with the measurement
+    } else {  // its caption is printed with the measurement
       plot->x_title.clear();
       for (Curve& c : plot->curves) c.legend.clear();
     }

@@ -107,7 +107,7 @@ void add_title(const Source& source, Blocks& blocks) {
 
 namespace {
 
-/// A row for each place: what stood there, and what stands there now.
+/// A row for each place: its former and its present text.
 void add_changes(const Source& source, const FileChange& file, Grid& into) {
   const Wording& w = source.words;
   const std::string field = "amendment.changes";
@@ -142,7 +142,7 @@ Grid changes_of(const Source& source) {
   return changes;
 }
 
-/// So long that the results would not stand on the first page: it stands before the method.
+/// So long that the results would not fit the first page: it is printed before the method.
 bool is_long(const Grid& changes) {
   constexpr std::size_t few = 6;
   return changes.rows.size() > few;
@@ -269,7 +269,7 @@ std::string not_reported_text(const Source& source) {
 
 namespace {
 
-/// What the program found, then what a person states. Nobody states by default.
+/// What the program found, then what a person states. By default no person states anything.
 void add_departures(const Source& source, Blocks& blocks) {
   const CertificateTexts& texts = source.in.campaign.certificate;
   blocks.push_back({Heading{label(source, "method_heading.departures"), 2}, "departures"});
@@ -292,10 +292,11 @@ void add_departures(const Source& source, Blocks& blocks) {
     paragraph(blocks,
               source.words.get("method_heading.deviations", {{"deviations", texts.deviations}}),
               "certificate.deviations");
-  if (!texts.nothing_else_by.empty())
-    paragraph(blocks,
-              source.words.get("method_heading.nothing_else", {{"person", texts.nothing_else_by}}),
-              "certificate.nothing_else_by");
+  if (!texts.no_other_deviations_by.empty())
+    paragraph(
+        blocks,
+        source.words.get("method_heading.nothing_else", {{"person", texts.no_other_deviations_by}}),
+        "certificate.no_other_deviations_by");
 }
 
 }  // namespace

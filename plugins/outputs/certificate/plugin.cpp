@@ -118,7 +118,7 @@ std::vector<Error> check_templates(const Templates& templates) {
 
 }  // namespace
 
-/// Words of every language that claim an accreditation stand in title.claims, divided by commas.
+/// Words of every language that claim an accreditation are listed in title.claims, divided by commas.
 std::string accredited_claim(const OutputInput& in) {
   const auto lower = [](std::string text) {
     for (char& c : text)

@@ -100,7 +100,7 @@ class Requests {
     return a;
   }
 
-  /// That `length` from `start`, with the over-travel before and after it, lies in the travel.
+  /// That `length` from `start`, with the over-travel before and after it, is within the travel.
   Expected<void> room(const Axis& a, double length) const {
     const double wanted = length + 2.0 * over_travel(a.rotary);
     const double travel = a.travel->second - a.travel->first;

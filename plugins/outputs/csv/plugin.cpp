@@ -68,7 +68,7 @@ std::vector<std::string> value_row(const Results& results, const Results::Analys
   return row;
 }
 
-/// A tolerance whose value could not be given is a row too: nobody should miss it.
+/// A tolerance whose value could not be given is a row too, so that it is not overlooked.
 void add_undecided(std::string& out, const Results& results) {
   for (const Conformity& c : results.conformity) {
     const bool has_value =

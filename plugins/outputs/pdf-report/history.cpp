@@ -136,7 +136,7 @@ class HistoryPage {
     if (c.cause == "instrument") return w_.get("history.instrument_cause");
     if (c.cause == "table") return w_.get("history.table_cause");
     if (c.cause != "event") return w_.get("history.unknown_cause");
-    return kind(c.event.substr(0, c.event.find(": ")));  // its text stands with the events
+    return kind(c.event.substr(0, c.event.find(": ")));  // its text is printed with the events
   }
 
   std::string change(const HistorySeries& s, const HistoryChange& c) const {
@@ -181,7 +181,7 @@ class HistoryPage {
     return w_.get("history.new_value");
   }
 
-  /// What stands before the value: what it is compared with, and the difference.
+  /// The columns before the value: what it is compared with, and the difference.
   struct Before {
     std::string value = "–", since = "–", difference = "–";
     bool any = false;

@@ -120,7 +120,7 @@ bool has_results(const Evaluation& e) {
 }
 
 /// Nothing requires action. Green only where there was something that could have: what was not
-/// evaluated, or held against no tolerance, is not good for that.
+/// evaluated, or compared with no tolerance, does not permit that.
 void say_what_was_looked_at(const Source& source, Status& status, bool of_laboratory) {
   const Results& results = source.in.results;
   const Wording& w = source.words;
@@ -161,7 +161,7 @@ void add_status(const Source& source, Blocks& blocks) {
     status = {};
   }
   add_conformity(source, status.lines);
-  bool of_laboratory = false;  // what stands in the part for the laboratory alone
+  bool of_laboratory = false;  // what only the part for the laboratory contains
   for (const Measured& m : measured(source.in)) {
     for (const Finding* f : m.findings)
       if (f->attention && is_for_laboratory(source, *f))

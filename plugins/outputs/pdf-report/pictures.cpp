@@ -115,7 +115,7 @@ class Pictures {
     return plot;
   }
 
-  double held(double y) const {  // suspects beyond the picture stand at its edge
+  double held(double y) const {  // suspects beyond the picture are drawn at its edge
     const double inset = 0.03 * (range_.second - range_.first);
     return std::clamp(y, range_.first + inset, range_.second - inset);
   }

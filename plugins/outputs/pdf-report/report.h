@@ -27,16 +27,16 @@ struct Source : pages::Source {
 /// Its template, checked.
 Expected<pages::Look> look_of(const Templates&, const std::string& name);
 
-/// Title and status (with what needs attention), campaign, machine, instrument.
+/// Title and status (with what requires action), campaign, machine, instrument.
 void add_title(const Source&, Blocks&);
 void add_identity(const Source&, Blocks&);
 void add_status(const Source&, Blocks&);
 
 /// What analyses of the whole campaign say: rows of a plan, and their findings.
 void add_plans(const Source&, Blocks&);
-/// Whether advice stands in a part of its own, block "laboratory".
+/// Whether advice is printed in a part of its own, block "laboratory".
 bool has_laboratory_part(const Source&);
-/// What a model says is no result: it stands in that part alone.
+/// What a model states is not a result: it is printed in that part alone.
 bool is_for_laboratory(const Source&, const Finding&);
 void add_laboratory(const Source&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);

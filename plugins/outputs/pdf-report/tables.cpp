@@ -25,12 +25,12 @@ Block note_of(const Source& source, const Finding& f) {
 
 namespace {
 
-/// Controllers' tables are told from other outputs by what they say.
+/// Controllers' tables are recognised by their content.
 bool speaks(const OutputResult& r) {
   return !r.predictions.empty() || !r.findings.empty() || !r.notes.empty();
 }
 
-/// Where there is a part for the laboratory, advice stands in it alone.
+/// Where there is a part for the laboratory, advice is printed in it alone.
 Block without_advice(const Source& source, const Finding& f) {
   Block block = note_of(source, f);
   if (has_laboratory_part(source)) std::get<Note>(block.what).advice.clear();
@@ -67,7 +67,7 @@ void add_laboratory(const Source& source, Blocks& blocks) {
     for (const Finding* f : m.findings) {
       Block block = note_of(source, *f);
       Note& note = std::get<Note>(block.what);
-      const bool whole = is_for_laboratory(source, *f);  // its words stand nowhere else
+      const bool whole = is_for_laboratory(source, *f);  // its words are not printed elsewhere
       if ((note.advice.empty() && !whole) || !told.insert(m.measurement.id + note.title).second)
         continue;
       note.title = m.measurement.id + ": " + note.title;
@@ -121,7 +121,7 @@ std::vector<Row> prediction_rows(const Source& source, std::vector<std::string>&
   return rows;
 }
 
-/// With many results there is no room for the names of files, which then stand below.
+/// With many results there is no room for the names of files, which are then printed below.
 Table predictions(const Source& source, bool& with_files) {
   const Wording& w = source.words;
   std::vector<std::string> names;
@@ -323,7 +323,7 @@ void add_notes(const Source& source, Blocks& blocks) {
   std::set<std::string> said;
   std::string methods;
   for (const Results::Analysed& a : results.analyses)
-    for (const Remark& note : a.evaluation.notes)  // those of rules stand below their tables
+    for (const Remark& note : a.evaluation.notes)  // those of rules are printed below their tables
       if (pages::rules_of(a) == nullptr && said.insert(remark(source, note)).second)
         methods += (methods.empty() ? "" : " ") + remark(source, note);
   add(methods);

@@ -39,7 +39,7 @@ struct Place {
 /// the carrier at 0, then about the carrier's.
 Place place_of(const Ball&, double height, double angle, std::optional<double> carrier);
 
-/// One touch: from beside the ball to inside it.
+/// One touch: from next to the ball to inside it.
 struct Touch {
   Vector from{}, to{};
 };

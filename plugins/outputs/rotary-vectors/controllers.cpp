@@ -93,7 +93,7 @@ std::string text_of(const Field& f, double value) {
   return f.length ? millimetres(value) : component(value);
 }
 
-/// What was there before, from the options; none if nobody said it.
+/// The former value, from the options; none if it is not stated.
 std::optional<double> before(const Wish& wish, const Change& c, const Field& f) {
   const auto table = wish.before.find(c.control);
   if (table == wish.before.end()) return std::nullopt;

@@ -160,7 +160,7 @@ bool applies(const Campaign& campaign) {
                      [](const Measurement& m) { return m.kind == "ball-centres"; });
 }
 
-/// Findings for which nobody has said why the readings are right all the same (evidence `stands`):
+/// Findings without a stated reason why the readings are accepted (evidence `accepted`):
 /// what a control reads is held back, as the host does with tables.
 std::string doubts_of(const Results& results) {
   std::set<std::string> ids;
@@ -168,7 +168,7 @@ std::string doubts_of(const Results& results) {
     for (const Finding& f : a.evaluation.findings)
       if (f.id.starts_with("plausibility.") &&
           std::none_of(f.texts.begin(), f.texts.end(),
-                       [](const auto& text) { return text.first == "stands"; }))
+                       [](const auto& text) { return text.first == "accepted"; }))
         ids.insert(f.id);
   std::string list;
   for (const std::string& id : ids) list += (list.empty() ? "" : ", ") + id;

@@ -21,10 +21,10 @@ struct Line {
   std::string tables{};
   bool head = false;  ///< as seen from the tip of the tool
 };
-/// Of an axis that stands in a fit of two together, that one alone.
+/// Of an axis that is part of a fit of two together, that one alone.
 std::vector<Line> lines_of(const Campaign&, const Results&);
 
-/// In mm, or without a unit: as many digits as stand for 0.1 um and 0.1 urad.
+/// In mm, or without a unit: as many digits as 0.1 um and 0.1 urad need.
 std::string millimetres(double si);
 std::string component(double value);
 /// With spaces before it.

@@ -85,7 +85,7 @@ Vector interpolated(const Grid& g, const Vector& at) {
   return out;
 }
 
-/// Where a reading was; a place that nobody said is the middle of the grid.
+/// Where a reading was; a place that is not stated is the middle of the grid.
 Vector place_of(const Grid& g, const Measurement& m, const Observations& o, std::size_t row) {
   Vector at{};
   for (std::size_t k = 0; k < 3; ++k) at[k] = (g.nodes[k].front() + g.nodes[k].back()) / 2.0;

@@ -132,7 +132,7 @@ class TableReader {
       return wrong("a run, 1 or more,");
     if (role == Role::pos && (row.pos = parse_run(text)) == 0)
       return wrong("the number of a target, 1 or more,");
-    if (role == Role::direction && (row.way = way_named(text)) == Way::none)
+    if (role == Role::direction && (row.way = direction_of_word(text)) == Way::none)
       return wrong("+, -, forward or reverse");
     if (role != Role::target && role != Role::value) return {};
     const bool target = role == Role::target;

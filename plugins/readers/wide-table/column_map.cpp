@@ -33,7 +33,7 @@ Expected<Column> column_of(const std::string& text) {
   if (words.size() != 2) return wrong();
   if (words[0] == "dead" && words[1] == "zone") return Column{Role::dead_zone};
   Column column;
-  column.way = way_named(words[1]);
+  column.way = direction_of_word(words[1]);
   if (column.way == Way::none) return wrong();
   if (words[0] == "mean" || words[0] == "2s") {
     column.role = words[0] == "mean" ? Role::mean : Role::two_sigma;

@@ -61,7 +61,7 @@ class SignedNight(SigningTest):
 
     def test_a_night_signs_nothing_that_nobody_has_released(self):
         keys = self.keys()
-        for extra in ("[certificate]\nrelease = \"by-hand\"\n", '[certificate]\nrelease = "automatic"\nmay_stand = []\n'):
+        for extra in ("[certificate]\nrelease = \"by-hand\"\n", '[certificate]\nrelease = "automatic"\naccept = []\n'):
             with self.subTest(extra):
                 self.site_toml(keys, extra=extra)
                 self.signed_campaign("c1")

@@ -29,7 +29,7 @@ def readings(seed, runs=5, targets=6):
 
 def manifest(campaign_id, extra="", run=""):
     return (f'format = 1\n[campaign]\nid = "{campaign_id}"\ndate = 2026-11-03\n'
-            f'[machine]\nmodel = "M"\n[machine.axes.X]\nkind = "linear"\ntable_on = "none"\nbacklash_on_mm = 0\n'
+            f'[machine]\nmodel = "M"\n[machine.axes.X]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm = 0\n'
             f'[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n{run}{extra}')
 
 

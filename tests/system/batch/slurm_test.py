@@ -311,7 +311,7 @@ class SlurmTest(NightTest):
             manifest.write_text(manifest.read_text().replace('id = "adjusted"', f'id = "z{i}"'))
             for readings in (self.site / f"z{i}").glob("*.csv"):
                 readings.write_text(readings.read_text() + f"# {i}\n")
-        rules = ('release = "automatic"\nmay_stand = [{ finding = "reversal.*", reason = "as found" }, '
+        rules = ('release = "automatic"\naccept = [{ finding = "reversal.*", reason = "as found" }, '
                  '{ finding = "tolerance.*", reason = "as found" }]\nregister_seconds = 60\n')
         text = (sample / "site.toml").read_text().replace("[signing]", rules + "[signing]")
         here = f"slurm_{os.getpid()}"

@@ -139,7 +139,7 @@ class Space(NightTest):
         self.changed(TABLE, "inch", ("c.csv", replaced("x_mm", "x_in")))
         self.changed(TABLE, "letters", ("c.csv", replaced("45,596.8527", "45,596,8527")))
         self.changed(TABLE, "repeated", ("c.csv", replaced("45,596", "0,596")))
-        self.changed(TABLE, "linear", ("campaign.toml", replaced('[machine.axes.C]\nkind = "rotary"\ntravel = [0.0, 360.0]\ntable_on = "none"\nbacklash_on_deg = "none"', '[machine.axes.C]\nkind = "linear"')))
+        self.changed(TABLE, "linear", ("campaign.toml", replaced('[machine.axes.C]\nkind = "rotary"\ntravel = [0.0, 360.0]\nactive_table = "none"\nactive_backlash_deg = "none"', '[machine.axes.C]\nkind = "linear"')))
         self.changed(TABLE, "two", ("c.csv", lines(lambda rows: rows.__delitem__(slice(4, None)))))
         self.run_nonio(expect=1)
         self.expect_error("inch", "c.csv", 2, "unknown column", "x_mm")

@@ -20,7 +20,7 @@ def number(n):
 
 
 KNOWN = "reversal.lost-motion"  # all campaigns here have it
-AUTOMATIC = f'release = "automatic"\nmay_stand = [{{ finding = "{KNOWN}", reason = "it is what was ordered" }}]\n'
+AUTOMATIC = f'release = "automatic"\naccept = [{{ finding = "{KNOWN}", reason = "it is what was ordered" }}]\n'
 
 
 class NumberedTest(SigningTest):

@@ -222,7 +222,7 @@ class Releases(NumberedTest):
         self.release = 'release = "automatic"\n'
         self.site_with()
         self.signed_campaign("c1")
-        self.assertIn("may_stand", self.night(expect=2).stderr)
+        self.assertIn("accept", self.night(expect=2).stderr)
         self.release = AUTOMATIC
         self.site_with()
         self.out_of_tolerance()

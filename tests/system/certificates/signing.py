@@ -17,7 +17,7 @@ if shutil.which("openssl") is None:
 PASSWORD = "correct horse"
 # The campaigns here have one finding that requires action.
 AUTOMATIC = ('[certificate]\nrelease = "automatic"\n'
-             'may_stand = [{ finding = "reversal.lost-motion", reason = "it is what was ordered" }]\n')
+             'accept = [{ finding = "reversal.lost-motion", reason = "it is what was ordered" }]\n')
 SIGNER = "CN=Ada Bianchi,O=Laboratorio di Prova"
 CNF = """[req]
 distinguished_name = dn

@@ -44,13 +44,13 @@ class BenchTest(unittest.TestCase):
     def tearDown(self):
         self._folder.cleanup()
 
-    active_stated, backlash_on = True, '"none"'
+    active_stated, active_backlash = True, '"none"'
 
     def none_active(self, name, kind):
         """No table was active while this axis was measured, and this backlash value; or nothing is stated."""
         text = '[machine.axes.%s]\nkind = "%s"\n' % (name, kind)
         unit = "deg" if kind == "rotary" else "mm"
-        return text + ('table_on = "none"\nbacklash_on_%s = %s\n' % (unit, self.backlash_on) if self.active_stated else "")
+        return text + ('active_table = "none"\nactive_backlash_%s = %s\n' % (unit, self.active_backlash) if self.active_stated else "")
 
     def campaign(self, files, extra="", axes=(("X", "linear"),), control=None):
         text = 'format = 1\n[campaign]\nid = "c"\n[machine]\n'

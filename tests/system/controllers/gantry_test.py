@@ -69,7 +69,7 @@ class Gantry(BenchTest):
         for axis, size in ((u, L["U"]), (v, L["V"]), (u + "2", None)):
             if axis == u + "2" and not sides:
                 continue
-            text += '[machine.axes.%s]\nkind = "linear"\ntable_on = "none"\nbacklash_on_mm = "none"\n' % axis
+            text += '[machine.axes.%s]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm = "none"\n' % axis
             if size:
                 text += "travel = [0, %g]\nexpansion_um_per_m_K = 11.5\n" % size
             if axis == u and sides:

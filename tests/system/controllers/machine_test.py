@@ -204,7 +204,7 @@ class WhatWasOn(MachineTest):
     def test_the_night_takes_off_what_was_on(self):
         self.comp(self.folder / "backup/z.comp", lambda x: -half(x))
         self.measured("linuxcnc", plus=half, minus=half, options="[options.linuxcnc]\ntype = 1\n",
-                      of_axis='table_on = "backup/z.comp"\nbacklash_on_mm = "none"\n')
+                      of_axis='active_table = "backup/z.comp"\nactive_backlash_mm = "none"\n')
         table, results = self.tables("linuxcnc")
         rows = [list(map(float, l.split())) for l in self.file("linuxcnc-Z.comp").splitlines()]
         zero = wave(0.0)
@@ -225,11 +225,11 @@ class WhatWasOn(MachineTest):
         """The table of what remained would replace the table that corrected the rest."""
         self.record(["X", "Y", "Z"])
         for control in ("siemens-840d", "heidenhain-tnc", "fanuc", "linuxcnc"):
-            for stated, missing in (("", "table_on, backlash_on_mm"),
-                                    ('table_on = "none"\n', "backlash_on_mm"),
-                                    ("backlash_on_mm = 0.01\n", "table_on"),
-                                    ('table_on = "none"\nbacklash_on_mm = "none"\n', None),
-                                    ('table_on = "none"\nbacklash_on_mm = 0.0\n', None)):
+            for stated, missing in (("", "active_table, active_backlash_mm"),
+                                    ('active_table = "none"\n', "active_backlash_mm"),
+                                    ("active_backlash_mm = 0.01\n", "active_table"),
+                                    ('active_table = "none"\nactive_backlash_mm = "none"\n', None),
+                                    ('active_table = "none"\nactive_backlash_mm = 0.0\n', None)):
                 with self.subTest(control=control, stated=stated):
                     self.measured(control, machine='asset = "S-1"\n', of_axis=stated)
                     table, _ = self.tables(control)
@@ -250,7 +250,7 @@ class WhatWasOn(MachineTest):
     def test_backlash_that_was_on_is_the_beginning_of_the_new_value(self):
         self.record(["X", "Y", "Z"])
         self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0,
-                      of_axis='table_on = "none"\nbacklash_on_mm = 0.010\n')
+                      of_axis='active_table = "none"\nactive_backlash_mm = 0.010\n')
         self.tables("siemens-840d")
         self.assertIn("]=0.013\n", self.file("siemens-840d-Z-backlash.ini"))
 
@@ -270,9 +270,9 @@ class WhatWasOn(MachineTest):
 
     def test_what_was_on_is_wrong(self):
         self.record(["X", "Y", "Z"])
-        for said, complaint in (('table_on = "missing.ini"\n', "missing.ini"), ('table_on = "../../x.ini"\n', "leads outside"),
-                                ('table_on = "a.csv"\n', "what was on while axis Z was measured"),
-                                ('backlash_on_mm = "no"\n', 'or "none"'), ('backlash_on_mm = 12\n', "-10 to 10")):
+        for said, complaint in (('active_table = "missing.ini"\n', "missing.ini"), ('active_table = "../../x.ini"\n', "leads outside"),
+                                ('active_table = "a.csv"\n', "what was on while axis Z was measured"),
+                                ('active_backlash_mm = "no"\n', 'or "none"'), ('active_backlash_mm = 12\n', "-10 to 10")):
             self.measured("siemens-840d", machine='asset = "S-1"\n', of_axis=said)
             error = self.tables("siemens-840d", expect=1)[1]["errors"][0]
             self.assertIn(complaint, error["message"])
@@ -286,7 +286,7 @@ class WhatWasOn(MachineTest):
         table = self.eec("z.ini")
         new = self.site / "new"
         done = self.nonio("table", "predict", table, self.folder, "--active-table", "--out", new, expect=2)
-        for word in ("MD32450", "--active-backlash", "backlash_on_mm", "[machine.axes.Z]"):
+        for word in ("MD32450", "--active-backlash", "active_backlash_mm", "[machine.axes.Z]"):
             self.assertIn(word, done.stderr)
         self.assertFalse(new.exists())
         for said, value in (("0.010", "]=0.013\n"), ("none", "]=0.003\n"), ("Z=0.010", "]=0.013\n")):
@@ -300,7 +300,7 @@ class WhatWasOn(MachineTest):
         self.nonio("table", "predict", both, self.folder, "--active-table", "--out", new)
         self.assertIn("]=0.013\n", (new / "siemens-840d-Z-backlash.ini").read_text())
         self.nonio("table", "predict", both, self.folder, "--active-table", "--active-backlash", "0.02", expect=2)
-        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="backlash_on_mm = 0.010\n")
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="active_backlash_mm = 0.010\n")
         self.nonio("table", "predict", table, self.folder, "--active-table", "--out", new)
         self.assertIn("]=0.013\n", (new / "siemens-840d-Z-backlash.ini").read_text())
         self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="")
@@ -401,7 +401,7 @@ class Merge(MachineTest):
 
     def test_siemens_archive_of_all_axes(self):
         self.record(["X", "Y", "Z"])
-        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 4.0, of_axis='table_on = "none"\nbacklash_on_mm = 0.003\n')
+        self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 4.0, of_axis='active_table = "none"\nactive_backlash_mm = 0.003\n')
         for axes, end in (((1, 0.001), (2, 0.002), (3, 0.003)), "\n"), (((3, 0.003), (1, 0.001)), "\n"), (((1, 0.001), (2, 0.002)), "\r\n"):
             path = self.site / "EEC.INI"
             before = self.archive(axes).replace("\n", end)

@@ -114,7 +114,7 @@ class Axis(BenchTest):
 
     def test_twincat_cnc_bilateral_replaces_backlash(self):
         # 10 um were in the parameter, and 3 um were still lost: 13 um come into the two columns
-        self.backlash_on = "0.010"
+        self.active_backlash = "0.010"
         keys, side = self.ssfk(self.write(
             "twincat-cnc", "twincat-cnc-X.lis", "[options.twincat-cnc]\ndirections = true\n"))
         self.assertEqual(keys["kw.ssfk.bilateral"], "1")
@@ -246,7 +246,7 @@ class Planes(BenchTest):
             files[name] = ("diagonal", axis_csv([length * i / n for i in range(n + 1)], along, along),
                            "from = { X = 0, Y = %d }\nto = { X = 1200, Y = %d }" % (start, end))
         for finding in ("readings-all-equal", "file-twice"):
-            extra += '[[tables.may_stand]]\nfinding = "plausibility.%s"\nreason = "positioning is made perfect"\n' % finding
+            extra += '[[tables.accept]]\nfinding = "plausibility.%s"\nreason = "positioning is made perfect"\n' % finding
         self.campaign(files, extra, (("X", "linear"), ("Y", "linear")), control)
         return self.run_site()
 

@@ -97,7 +97,7 @@ class Tables(BenchTest):
         self.active_stated = True
         self.one_axis(TARGETS, wave, wave, control="linuxcnc")
         done = self.nonio("table", "predict", present, self.folder, "--active-table", "--out", self.site / "other", expect=2)
-        self.assertIn('states table_on = "none" of axis X', done.stderr)
+        self.assertIn('states active_table = "none" of axis X', done.stderr)
 
     def test_backlash_of_the_present_files_is_counted(self):
         # 10 um in the parameter, 3 um still lost: 13 um

@@ -400,7 +400,7 @@ def random_campaign(rng, folder, i):
     text = (f'format = 1\n[campaign]\nid = "c{i}"\ncustomer = "Customer"\ndate = 2026-{1 + i % 9:02}-{1 + i % 27:02}\n[machine]\nmodel = "M"\n{machine}'
             f'control = "{control}"\n[machine.axes.{axis}]\nkind = "{"rotary" if rotary else "linear"}"\ntravel = [0, {length:g}]\n'
             + ("" if rotary else "expansion_um_per_m_K = 11.5\n")
-            + (f'table_on = "none"\nbacklash_on_{unit} = "none"\n' if rng.random() < 0.8 else "")
+            + (f'active_table = "none"\nactive_backlash_{unit} = "none"\n' if rng.random() < 0.8 else "")
             + (f"tolerance_{small} = {{ A = {rng.choice([6.0, 10.0, 20.0])}, B = {rng.choice([2.0, 4.0, 8.0])} }}\n" if limits else "")
             + ("[instrument]\nU_arcsec = 0.3\n[environment]\ndrift_arcsec = 0.3\n" if rotary else
                "[instrument]\nU_fixed_um = 0.2\nU_per_m_um = 0.5\n[environment]\nmisalignment_mm = 0.5\ntemperature_range_K = 0.2\n"

@@ -14,8 +14,8 @@ def campaign():
             "asset": "S-1", "maker": "M", "model": "M", "serial": "1", "description": "D", "condition": "C", "control": "fanuc",
             "structure": "gantry",
             "axes": {"X": {"kind": "linear", "travel": [0.0, 500.0], "screw_pitch_mm": 10.0,
-                           "expansion_um_per_m_K": 11.5, "fixed_point_mm": -40.0, "tolerance_um": {"A": 15.0, "R+": 6}, "slave": "X2", "table_on": "backup/x.ini", "backlash_on_mm": 0.01},
-                     "C": {"kind": "rotary", "travel": [0, 360], "teeth": 120, "tolerance_arcsec": {"A": 8.0}, "backlash_on_deg": "none"},
+                           "expansion_um_per_m_K": 11.5, "fixed_point_mm": -40.0, "tolerance_um": {"A": 15.0, "R+": 6}, "slave": "X2", "active_table": "backup/x.ini", "active_backlash_mm": 0.01},
+                     "C": {"kind": "rotary", "travel": [0, 360], "teeth": 120, "tolerance_arcsec": {"A": 8.0}, "active_backlash_deg": "none"},
                      "Y": {"screw_pitch_mm": 10.0}, "B": {"teeth": 90},
                      "U": {"kind": "rotary", "teeth": 60}, "A1": {"kind": "linear", "tolerance_um": {"A": 1}}}},
         "instrument": {"maker": "M", "model": "M", "serial": "1", "calibrated": DAY, "certificate": "C",
@@ -29,7 +29,7 @@ def campaign():
                         "drift_minutes": 30, "warm_up": "W", "sensors": "S", "normalised": True},
         "certificate": {"languages": ["it", "en"], "template": "certificate", "location": "customer",
                         "procedure": "P", "title": {"it": "T", "en": "T"}, "decision_rule": "iso14253-1",
-                        "deviations": "D", "nothing_else_by": "B", "conditions": "C", "opinions": "O", "amendment": "A",
+                        "deviations": "D", "no_other_deviations_by": "B", "conditions": "C", "opinions": "O", "amendment": "A",
                         "customer_data": ["machine.serial"]},
         "run": {"analyses": ["iso230-2", "model-fit"], "outputs": ["json"]},
         "measurement": [
@@ -58,7 +58,7 @@ def campaign():
                   "formula": [{"name": "sag", "axis": "X", "expression": "a*cos(2*_pi*p/P)",
                                "parameters": [{"name": "a", "unit": "um"},
                                               {"name": "P", "unit": "mm", "start": 800, "range": [500, 1500.5]}]}]},
-        "tables": {"may_stand": [{"finding": "plausibility.passes-identical", "reason": "R"}]},
+        "tables": {"accept": [{"finding": "plausibility.passes-identical", "reason": "R"}]},
         "options": {"iso230-2": {"edition": 2006}},
     }
 
@@ -113,6 +113,6 @@ def site():
         "certificate": {"languages": ["en"], "template": "certificate", "location": "laboratory", "procedure": "P",
                         "title": "T", "decision_rule": "iso14253-1", "numbering": "{year}-{number:4}",
                         "register": "", "register_seconds": 5, "release": "by-hand", "two_persons": False,
-                        "may_stand": [{"finding": "tolerance.*", "reason": "R"}]},
+                        "accept": [{"finding": "tolerance.*", "reason": "R"}]},
         "database": {"url": "postgresql://u@h/d", "password_file": "p", "schema": "nonio_a", "register": "nonio_b"},
     }

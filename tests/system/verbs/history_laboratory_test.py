@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`nonio machine history` of samples/laboratory, against what is true of it and against results.json."""
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -123,19 +124,41 @@ class Laboratory(unittest.TestCase):
 
     def test_on_a_terminal(self):
         table = nonio("machine", "history", self.out).stdout.splitlines()
-        self.assertEqual(table[0].split()[0], "machine")
+        self.assertEqual(table[0].split()[0], "Machine")
         self.assertEqual(len(table), 1 + len(self.history["machines"]))
         said = nonio("machine", "history", self.out, "LAB-02", "--axis", "X", "--quantity", "B_mean").stdout
         self.assertRegex(said, r"2025-07-14 .*\n +~ -4\.\d+ ± 0\.\d+ um, p < 0\.0001: changed; no event is known\n +2026-01-24")
         said = nonio("machine", "history", self.out, "LAB-03", "--axis", "Z", "--quantity", "B_mean").stdout
         self.assertIn("* crash: Drove into the pallet", said)
-        self.assertIn("slope", said)
+        self.assertIn("Slope: ", said)
         said = nonio("machine", "history", self.out, "LAB-01", "--axis", "X", "--quantity", "B_mean").stdout
-        self.assertRegex(said, r"no change without a known event; detection limit 0\.\d+")
+        self.assertRegex(said, r"No change without a known event. Detection limit: 0\.\d+ um")
         self.assertIn('nearest: "LAB-01"', nonio("machine", "history", self.out, "LAB-O1", expect=2).stderr)
         self.assertIn("nonio run", nonio("machine", "history", self.site, expect=2).stderr)
         one = json.loads(nonio("machine", "history", self.out, "LAB-02", "--json").stdout)
         self.assertEqual({s["machine"] for s in one["series"]}, {"LAB-02"})
+
+    def test_the_scatter_is_a_scatter_and_its_change_a_factor(self):
+        said = nonio("machine", "history", self.out, "LAB-04", "--axis", "X", "--quantity", "ln_s").stdout
+        self.assertIn("X  Scatter of the readings (ln_s), um: ", said)
+        known = {s["machine"]: s for s in self.history["series"] if s["axis"] == "X" and s["quantity"] == "ln_s"}["LAB-04"]
+        for p in known["points"]:
+            low, s, high = (math.exp(p["value"] + k * p["u"]) for k in (-2, 0, 2))
+            self.assertRegex(said, rf"{p['date']}  as \w+ +{s:.3f} \({low:.3f} to {high:.3f}\)")
+        self.assertEqual(1, len(known["changes"]))
+        factor = math.exp(known["changes"][0]["size"])
+        self.assertIn(f"~ a factor of {factor:.2f} (", said)
+        lines = json.loads(nonio("status", "--actions", self.out, "--json", expect=1).stdout)["lines"]
+        says = " ".join(line["says"] for line in lines if (line.get("machine"), line.get("axis")) == ("LAB-04", "X"))
+        self.assertIn(f"Scatter changed by a factor of {factor:.2f} (", says)
+        turning = nonio("machine", "history", self.out, "LAB-11", "--axis", "C", "--quantity", "ln_s").stdout
+        self.assertIn("(ln_s), arcsec: ", turning)
+
+    def test_lines_fit_100_columns(self):
+        shown = nonio("machine", "history", self.out).stdout
+        for m in self.history["machines"]:
+            shown += nonio("machine", "history", self.out, m["machine"]).stdout
+        self.assertEqual([], [line for line in shown.split("\n") if len(line) > 100])
 
     def test_the_store_keeps_when_machines_are_due(self):
         site, out = self.site.parent / "due", self.site.parent / "due-out"

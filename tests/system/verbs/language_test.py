@@ -81,6 +81,38 @@ class Languages(VerbTest):
                               self.nonio("model", "add", self.folder, "backlash:X", "--quiet").stdout)
                 self.nonio("model", "drop", self.folder, "backlash:X", "--quiet")
 
+    def test_run_and_check_speak_the_language(self):
+        said = {"de": ("1 Kampagne, 1 auszuwerten", "1 ausgewertet, 0 unverändert, 0 fehlgeschlagen; Handlungsbedarf: ",
+                       "unverändert  c: nichts geändert", "1 Kampagne geprüft: kein Fehler"),
+                "en": ("1 campaign, 1 to do", "1 done, 0 unchanged, 0 failed; actions required: ", "unchanged  c: nothing changed",
+                       "1 campaign checked: no error"),
+                "it": ("1 campagna, 1 da elaborare", "1 elaborate, 0 invariate, 0 non riuscite; azioni richieste: ",
+                       "invariata  c: nessuna modifica", "1 campagna controllata: nessun errore")}
+        for language, (planned, counts, unchanged, checked) in said.items():
+            with self.subTest(language):
+                self.speak(language)
+                done = self.nonio("run", self.site, "--out", self.out, "--force")
+                self.assertIn(planned, done.stderr)
+                self.assertIn(counts, done.stdout)
+                self.assertIn(unchanged, self.nonio("run", self.site, "--out", self.out, "--dry-run").stdout)
+                self.assertIn(checked, self.nonio("check", self.site).stdout)
+
+    def test_run_states_an_action_in_the_language(self):
+        limit = manifest(effects=["scale:X"]).replace('active_table', 'tolerance_um = { B = 3.0 }\nactive_table', 1)
+        self.campaign(limit, x=readings(backlash=-6.0))
+        for language, words in {"de": "Handlung erforderlich  c (X B): ", "en": "action required  c (X B): ",
+                                "it": "azione richiesta  c (X B): "}.items():
+            with self.subTest(language):
+                self.speak(language)
+                shutil.rmtree(self.out, ignore_errors=True)
+                self.assertIn(words, self.nonio("run", self.site, "--out", self.out).stdout)
+
+    def test_show_states_the_range_of_an_axis(self):
+        for language, words in {"de": "Messung X, 0 bis 370 mm", "en": "Measurement X, 0 to 370 mm", "it": "X, da 0 a 370 mm"}.items():
+            with self.subTest(language):
+                self.speak(language)
+                self.assertIn(words, self.nonio("show", self.folder, "--quiet").stdout)
+
     def test_help_is_english(self):
         self.speak("de")
         self.assertIn("nightly job", self.nonio("run", "--help").stdout)

@@ -58,7 +58,7 @@ class New(VerbTest):
             for line in path.read_text().splitlines():
                 bare = line.removeprefix("# ")
                 is_key = line.startswith("# ") and (bare.startswith("[") or " = " in bare.split("#")[0])
-                if is_key and not any(bare.startswith(w) for w in ("[signing]", "pkcs12", "password_file", "exclude", "teeth",
+                if is_key and not any(bare.startswith(w) for w in ("[signing]", "pkcs12", "password_file", "trust", "exclude", "teeth",
                                                                    "tolerance_arcsec")):
                     line = bare
                 lines.append(line)
@@ -76,7 +76,7 @@ class New(VerbTest):
         texts = [path.read_text() for path in (lab / "first-campaign" / "campaign.toml", lab / "site.toml")]
         for key in ("feed_mm_per_min", "dwell_s", "over_travel_mm", "tool_offset", "workpiece_offset", "compensation",
                     "sphere_um", "probe_um", "issuer", "valid_until", "measures", "warm_up", "sensors", "conditions",
-                    "nothing_else_by", "release", "two_persons"):
+                    "no_other_deviations_by", "release", "two_persons"):
             with self.subTest(key):
                 line, = (row for text in texts for row in text.splitlines() if row.startswith(f"# {key} = "))
                 self.assertRegex(line, r"  # .{15}")

@@ -84,8 +84,14 @@ class Triples(VerbTest):
 
     def test_the_table_for_people(self):
         shown = self.nonio("plan", "triples", "--x", 20000, "--y", 2000).stdout
-        for words in ("gain EYX", "why: covers the worse axis furthest", "gives up: ", "warning: "):
+        for words in ("EYX", "why: covers the worse axis furthest", "gives up: ", "warning: "):
             self.assertIn(words, shown)
+
+    def test_tables_fit_100_columns(self):
+        for words in (("triples", "--x", 20000, "--y", 2000), ("triples", "--x", 123456.789, "--y", 98765.432, "--resolution", 0.001),
+                      ("table", "--x", 12000, "--y", 9000), ("rotary", "--axis", "C", "--balls", 5, "--radius", 250, "--probe-u", 1.5)):
+            shown = self.nonio("plan", *words).stdout
+            self.assertEqual([], [line for line in shown.split("\n") if len(line) > 100], words)
 
     def test_nothing_fits(self):
         done = self.nonio("plan", "triples", "--x", 4000, "--y", 4000, "--max-step", 2, expect=1)

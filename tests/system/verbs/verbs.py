@@ -37,7 +37,7 @@ def readings(seed=1, runs=3, targets=TARGETS, noise=0.5, directions="+-", times=
 def manifest(effects=(), extra="", model="", axes="X", campaign_id="c"):
     text = f'format = 1\n[campaign]\nid = "{campaign_id}"\n'
     for axis in axes:
-        text += f'[machine.axes.{axis}]\nkind = "linear"\ntable_on = "none"\nbacklash_on_mm = "none"\n'
+        text += f'[machine.axes.{axis}]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm = "none"\n'
     for axis in axes:
         text += f'[[measurement]]\nid = "{axis}"\nkind = "axis"\naxis = "{axis}"\nfile = "{axis.lower()}.csv"\n'
     text += extra

@@ -29,7 +29,7 @@ control = "{control}"
 [machine.axes.{axis}]
 kind = "{kind}"
 travel = [0, {travel}]
-table_on = "none"
+active_table = "none"
 {more}
 [instrument]
 U_fixed_um = 0.1
@@ -108,7 +108,7 @@ class Axes(unittest.TestCase):
                 with self.subTest(control=control, amplitude=amplitude, mean=mean):
                     results, files = self.results(
                         f"opposed-{control}-{amplitude}-{-mean}", rotary=True, control=control, directions=True,
-                        curve=lambda x, d: d * (amplitude * math.sin(math.radians(x)) + mean / 2), more="backlash_on_deg = 0.0")
+                        curve=lambda x, d: d * (amplitude * math.sin(math.radians(x)) + mean / 2), more="active_backlash_deg = 0.0")
                     found = self.findings(results)
                     self.assertNotIn("plausibility.pass-sign-turned", found)
                     self.assertNotIn("plausibility.pass-order-turned", found)
@@ -120,7 +120,7 @@ class Axes(unittest.TestCase):
         for shape, half in shapes.items():
             for slope in (0.0, 5.0):
                 with self.subTest(shape=shape, slope=slope):
-                    results, _ = self.results(f"{shape}-{slope}", more="backlash_on_mm = 0.0",
+                    results, _ = self.results(f"{shape}-{slope}", more="active_backlash_mm = 0.0",
                                               curve=lambda x, d: slope * x / 800 + d * half(x))
                     wrong = {i for i in self.findings(results) if i.startswith("plausibility.pass-")}
                     self.assertEqual(wrong, set())
@@ -135,7 +135,7 @@ class Axes(unittest.TestCase):
             odd[0] += 1
             turned = 2 * len(LINEAR) < odd[0] <= 3 * len(LINEAR)
             return (-1 if turned else 1) * (12 * math.exp(-((x - 300) / 120) ** 2) + 4 * d)
-        results, files = self.results("one-pass", curve, more="backlash_on_mm = 0.0")
+        results, files = self.results("one-pass", curve, more="active_backlash_mm = 0.0")
         self.assertIn("plausibility.pass-sign-turned", self.findings(results))
         self.assertEqual(self.tables(files, "siemens-840d"), [])
 
@@ -144,7 +144,7 @@ class Axes(unittest.TestCase):
             for name, drift in (("parallel", lambda t, x: 10 * t), ("wedge", lambda t, x: 10 * t * x / 800)):
                 with self.subTest(control=control, drift=name):
                     results, files = self.results(f"{name}-{control}", control=control, runs=2, scatter=0.3, drift=drift,
-                                                  curve=lambda x, d: 10 * x / 800 - d, more="backlash_on_mm = 0.0")
+                                                  curve=lambda x, d: 10 * x / 800 - d, more="active_backlash_mm = 0.0")
                     self.assertIn("drift." + name, self.findings(results))
                     self.assertEqual(self.tables(files, control), [])
                     B = results["analyses"][0]["values"]["B_mean"]
@@ -155,7 +155,7 @@ class Axes(unittest.TestCase):
         for control in ("siemens-840d", "heidenhain-tnc", "fanuc", "linuxcnc"):
             with self.subTest(control=control):
                 results, files = self.results(f"steps-{control}", control=control, runs=2, scatter=0.3,
-                                              drift=lambda t, x: shifts[int(4 * t)], more="backlash_on_mm = 0.0",
+                                              drift=lambda t, x: shifts[int(4 * t)], more="active_backlash_mm = 0.0",
                                               curve=lambda x, d: 10 * math.sin(x / 150) - d)
                 B = results["analyses"][0]["values"]["B_mean"]
                 self.assertLessEqual(abs(B["value"] - -2.0), B["U"])
@@ -171,8 +171,8 @@ class Axes(unittest.TestCase):
                 self.assertTrue(all(v >= B["U"] - 1e-6 for v in left), (left, B))
 
     def test_positive_reversal(self):
-        for name, more, wanted in (("none", "backlash_on_mm = 0.0", "reversal.positive-uncompensated"),
-                                   ("active", "backlash_on_mm = 0.02", "reversal.over-compensated"),
+        for name, more, wanted in (("none", "active_backlash_mm = 0.0", "reversal.positive-uncompensated"),
+                                   ("active", "active_backlash_mm = 0.02", "reversal.over-compensated"),
                                    ("unknown", "", "reversal.positive")):
             with self.subTest(active=name):
                 results, _ = self.results("positive-" + name, lambda x, d: 5 * x / 800 + 4 * d, more=more)

@@ -120,7 +120,7 @@ class Cases(unittest.TestCase):
         self.assertIn("found -999", error["message"])
 
     def test_a_person_says_why(self):
-        standing = '[[tables.may_stand]]\nfinding = "plausibility.{}"\nreason = "the new bearing only"\n'
+        standing = '[[tables.accept]]\nfinding = "plausibility.{}"\nreason = "the new bearing only"\n'
         short = csv(scaled(1e-3)(self.rows, None), target="{:.6f}")
         self.campaign("one", short, lambda text: text + standing.format("span-against-travel"))
         both = standing.format("span-against-travel") + standing.format("span-against-pitch")

@@ -50,8 +50,8 @@ kind = "linear"
 travel = [0.0, 1000.0]
 screw_pitch_mm = 10.0
 expansion_um_per_m_K = 11.5
-table_on = "none"
-backlash_on_mm = "none"
+active_table = "none"
+active_backlash_mm = "none"
 [instrument]
 maker = "Maker"
 model = "Laser"

@@ -212,7 +212,7 @@ class Stopped(unittest.TestCase):
             manifest = cls.site / f"{finding}-stands" / "campaign.toml"
             doubts = cls.doubts(f"{finding}-stands")
             manifest.write_text(manifest.read_text() + "".join(
-                f'[[tables.may_stand]]\nfinding = "{d}"\nreason = "{REASON}"\n' for d in sorted(doubts)))
+                f'[[tables.accept]]\nfinding = "{d}"\nreason = "{REASON}"\n' for d in sorted(doubts)))
         cls.night()
 
     @classmethod
@@ -271,7 +271,7 @@ class Stopped(unittest.TestCase):
                 self.assertEqual(content["errors"], [])
                 self.assertIn("plausibility." + finding, self.doubts(name))
                 self.assertNotIn("table.withheld", json.dumps(content))
-                stands = [f["evidence"].get("stands") for a in content["analyses"] for f in a["findings"]
+                stands = [f["evidence"].get("accepted") for a in content["analyses"] for f in a["findings"]
                           if f["id"] == "plausibility." + finding]
                 self.assertEqual(set(stands), {REASON})
 

@@ -264,5 +264,5 @@ def of_manifests():
     add("feed-in-m-per-min", "unit", "remarked", 'file = "x.csv"', 'file = "x.csv"\nfeed_mm_per_min = 0.003')
     add("over-travel-in-um", "unit", "remarked", 'file = "x.csv"', 'file = "x.csv"\nover_travel_mm = 2000')
     add("dwell-in-ms", "unit", "remarked", 'file = "x.csv"', 'file = "x.csv"\ndwell_s = 4000')
-    add("backlash-on-in-um", "unit", "remarked", "screw_pitch_mm = 10.0", "screw_pitch_mm = 10.0\nbacklash_on_mm = 4.5")
+    add("backlash-on-in-um", "unit", "remarked", "screw_pitch_mm = 10.0", "screw_pitch_mm = 10.0\nactive_backlash_mm = 4.5")
     return some

@@ -6,7 +6,7 @@
 //   NONIO_MACHINES=1000 test_controllers --gtest_filter='BlindMachines.*'
 //
 // The same with a table already on, of another curve, that the control goes on reading while the
-// axis is measured: the engine takes it off (what_was_on), and the new one takes its place.
+// axis is measured: the engine takes it off (active_compensation), and the new one takes its place.
 #include <cstdlib>
 #include <numbers>
 
@@ -198,8 +198,8 @@ Bench bench_of(const Measured& m) {
   for (const char* other : {"A", "X", "Y", "Z", "C"})
     bench.campaign.machine.axes.push_back({.name = other,
                                            .rotary = *other == 'A' || *other == 'C',
-                                           .table_on = "",
-                                           .backlash_on = 0.0});
+                                           .active_table = "",
+                                           .active_backlash = 0.0});
   bench.add(m);
   return bench;
 }
@@ -259,11 +259,12 @@ std::optional<Renewed> renewed(const Kind& k, const Controller& output, const Bl
   read.manifest.emplace();
   read.manifest->campaign = r.bench.campaign;
   read.observations = r.bench.observations;
-  read.tables_on[b.axis.name] = first->artifacts;
+  read.active_tables[b.axis.name] = first->artifacts;
   Blind told = b;
   told.backlash = r.was;
   const auto& told_or_read = r.old.backlash ? b.settings : told.stated();
-  const auto on = tables::what_was_on(read, output, settings(output, with(k, told_or_read)));
+  const auto on =
+      tables::active_compensation(read, output, settings(output, with(k, told_or_read)));
   EXPECT_TRUE(on && *on) << who << (on ? "nothing was on" : on.error().message);
   if (!on || !*on) return std::nullopt;
   const Results none;

@@ -303,7 +303,8 @@ Bench volume(bool with_lengths) {
   }
   for (const char* axis : {"X", "Y", "Z"})
     if (bench.campaign.machine.axis(axis) == nullptr)
-      bench.campaign.machine.axes.push_back(Axis{.name = axis, .table_on = "", .backlash_on = 0.0});
+      bench.campaign.machine.axes.push_back(
+          Axis{.name = axis, .active_table = "", .active_backlash = 0.0});
   bench.campaign.measurements.push_back(std::move(m));
   bench.observations.push_back(std::move(o));
   return bench;

@@ -82,7 +82,8 @@ Bench bench_of(const Gantry& m, bool both_sides = true) {
   const Curve e = [&m](double y) { return m.Y(y); };
   bench.add({.axis = "Y", .id = "Y", .targets = ys, .plus = e, .minus = e});
   bench.campaign.machine.axes.front().slave = m.slave;
-  bench.campaign.machine.axes.push_back({.name = m.slave, .table_on = "", .backlash_on = 0.0});
+  bench.campaign.machine.axes.push_back(
+      {.name = m.slave, .active_table = "", .active_backlash = 0.0});
 
   Results::Analysed a{"diagonal-straightness", "1.0.0", "D1", {}};
   Evaluation& r = a.evaluation;

@@ -182,7 +182,7 @@ struct Bench {
       Axis a;
       a.name = m.axis;
       a.rotary = m.rotary;
-      if (active_stated) a.table_on = "", a.backlash_on = 0.0;
+      if (active_stated) a.active_table = "", a.active_backlash = 0.0;
       campaign.machine.axes.push_back(a);
     }
     Measurement entry;

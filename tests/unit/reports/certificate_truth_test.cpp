@@ -74,7 +74,7 @@ TEST_F(Truth, NobodyStatesByDefaultThatNothingWasChanged) {
   Case c = whole_case(plugins);
   EXPECT_FALSE(has(page(c), unchanged));
   EXPECT_TRUE(has(page(c), "The evaluation of the readings found none."));
-  c.campaign.certificate.nothing_else_by = "B. Verdi";
+  c.campaign.certificate.no_other_deviations_by = "B. Verdi";
   EXPECT_TRUE(
       has(page(c), "B. Verdi states: apart from the departures listed here, nothing was added"));
   EXPECT_TRUE(has(dcc(c), "B. Verdi states: apart from"));

@@ -66,10 +66,11 @@ constexpr Key certificate_of_campaign[] = {
      .holds = text,
      .help = "Additions to the method, deviations from it and exclusions, in addition to those "
              "that the program finds."},
-    {.name = "nothing_else_by",
+    {.name = "no_other_deviations_by",
      .holds = text,
      .help = "The person who states that, apart from the departures listed in the certificate, the "
-             "method was followed. Without it no such statement is printed."},
+             "method was followed. Without it no such statement is printed.",
+     .former = "nothing_else_by"},
     {.name = "conditions",
      .holds = text,
      .help = "Conditions that influence the results; required if no readings have temperatures."},
@@ -86,7 +87,7 @@ constexpr Key certificate_of_campaign[] = {
              "certificate marks them."},
 };
 
-constexpr Key table_standing_keys[] = {
+constexpr Key accepted_finding_keys[] = {
     {.name = "finding",
      .holds = text,
      .help = "Id of a finding that makes readings implausible, "
@@ -103,11 +104,12 @@ constexpr Key table_standing_keys[] = {
 };
 
 constexpr Key tables_keys[] = {
-    {.name = "may_stand",
+    {.name = "accept",
      .holds = tables,
      .help = "Findings plausibility.* that do not prevent controller tables, each with the "
              "reason.",
-     .keys = table_standing_keys},
+     .keys = accepted_finding_keys,
+     .former = "may_stand"},
 };
 
 constexpr Key campaign_file_keys[] = {

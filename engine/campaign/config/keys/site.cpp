@@ -4,10 +4,9 @@
 namespace nonio::config {
 namespace declared {
 
-constexpr Choice releases[] = {
-    {"by-hand", "a person, with nonio certificate approve"},
-    {"automatic", "the nightly run, for findings accepted in may_stand"}};
-constexpr Key standing_keys[] = {
+constexpr Choice releases[] = {{"by-hand", "a person, with nonio certificate approve"},
+                               {"automatic", "the nightly run, for findings that `accept` lists"}};
+constexpr Key accepted_rule_keys[] = {
     {.name = "finding",
      .holds = text,
      .help = "Id of a finding, \"plan.few-runs\"; with \".*\" at its end a group of findings.",
@@ -50,14 +49,15 @@ constexpr Key certificate_of_site[] = {
     {.name = "release",
      .holds = text,
      .help = "Release of certificates: by a person, or by the nightly run if every finding "
-             "with severity warning is listed in may_stand.",
+             "with severity warning is listed in `accept`.",
      .otherwise = "by-hand",
      .choices = releases},
-    {.name = "may_stand",
+    {.name = "accept",
      .holds = tables,
      .help = "Findings with severity warning that do not prevent an automatic release, each "
              "with the reason; [] for none.",
-     .keys = standing_keys},
+     .keys = accepted_rule_keys,
+     .former = "may_stand"},
     {.name = "two_persons",
      .holds = flag,
      .help = "The author approves a certificate, and another person releases it.",

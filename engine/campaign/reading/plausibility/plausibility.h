@@ -16,9 +16,10 @@ namespace nonio::reading {
 
 inline constexpr std::string_view plausibility_name = "plausibility";
 inline constexpr std::string_view plausibility_prefix = "plausibility.";
-/// Evidence of a finding that a person lets stand for tables: the reason. Outputs that write for
-/// controls without being tables look for it.
-inline constexpr const char* stands_because = "stands";
+/// Evidence of a finding that a person accepts for tables: the reason. Outputs that write for
+/// controls without being tables look for it. The second one is its name in version 0.1.
+inline constexpr const char* accepted_because = "accepted";
+inline constexpr const char* formerly_accepted_because = "stands";
 inline constexpr std::string_view file_of_another_campaign =
     "plausibility.file-of-another-campaign";
 

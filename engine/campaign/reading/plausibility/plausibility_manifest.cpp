@@ -27,10 +27,11 @@ void axis_statements(const Axis& a, std::vector<Statement>& all) {
   all.push_back({key + "expansion_um_per_m_K", a.expansion, 3e-6, 3e-5, Quantity::expansion});
   // The new value begins there: one in um would turn a motor by millimetres.
   if (a.rotary)
-    all.push_back(
-        {key + "backlash_on_deg", a.backlash_on, -0.5 * degree, 0.5 * degree, Quantity::angle});
+    all.push_back({key + "active_backlash_deg", a.active_backlash, -0.5 * degree, 0.5 * degree,
+                   Quantity::angle});
   else
-    all.push_back({key + "backlash_on_mm", a.backlash_on, -1 * mm, 1 * mm, Quantity::length});
+    all.push_back(
+        {key + "active_backlash_mm", a.active_backlash, -1 * mm, 1 * mm, Quantity::length});
   // One that is too small is not met, and that is seen; one too large is met by everything.
   for (const auto& [name, tolerance] : a.tolerance)
     if (a.rotary)

@@ -26,7 +26,7 @@ std::string number_text(double si, Quantity q) {
   return {buffer.data(), end.ptr};
 }
 
-/// As it stands on paper: to the digits that U allows.
+/// As printed: to the digits that U allows.
 RoundedResult result_text(double si, std::optional<double> U, Quantity q) {
   if (U)
     if (const auto rounded = rounded_result(printed(si, q), printed(*U, q))) return *rounded;

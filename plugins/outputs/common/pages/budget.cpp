@@ -35,7 +35,7 @@ ShortUnit short_unit(Quantity q) {
   return {q, 1.0, unit_text(q)};
 }
 
-/// What makes less than a millionth of the variance is nothing beside the others.
+/// What makes less than a millionth of the variance is negligible.
 std::string part(const Source& source, double u, double whole, const ShortUnit& unit) {
   constexpr double nothing = 1e-3;
   if (!(u > nothing * whole)) return "0";

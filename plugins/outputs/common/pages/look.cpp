@@ -71,7 +71,7 @@ class Keys {
     return {part(16), part(8), part(0)};
   }
 
-  /// After everything was asked for: the first complaint, or a key that nobody knows.
+  /// After all keys were read: the first complaint, or an unknown key.
   Expected<void> done() const {
     if (!error_.message.empty()) return fail(error_);
     for (const auto& [key, value] : settings_.values)

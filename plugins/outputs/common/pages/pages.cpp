@@ -321,7 +321,7 @@ Expected<void> check_texts(const Campaign& c, const Fonts& fonts) {
       {"laboratory.contact", l.contact},
       {"certificate.procedure", t.procedure},
       {"certificate.deviations", t.deviations},
-      {"certificate.nothing_else_by", t.nothing_else_by},
+      {"certificate.no_other_deviations_by", t.no_other_deviations_by},
       {"environment.warm_up", c.environment.warm_up},
       {"environment.sensors", c.environment.sensors},
       {"certificate.conditions", t.conditions},

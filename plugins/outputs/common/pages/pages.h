@@ -33,7 +33,7 @@ struct Measured {
   const Observations& observations;
   bool rotary = false;
   std::vector<const Results::Analysed*> analyses;
-  std::vector<const Finding*> findings;  ///< each id once, what needs attention first
+  std::vector<const Finding*> findings;  ///< each id once, warnings first
 };
 std::vector<Measured> measured(const OutputInput&);
 
@@ -69,7 +69,7 @@ std::vector<double> along_line(const Measured&);
 std::string analysis_title(const Source&, const Results::Analysed&);
 /// Whether the test was made as the standard plans it, as the findings say. Of an axis that the
 /// standard wants measured in two tests (the whole travel, and a part of it more often) the other
-/// one may stand in another measurement.
+/// one may belong to another measurement.
 bool follows_plan(const OutputInput&, const Results::Analysed&);
 const Conformity* conformity_of(const OutputInput&, const Results::Analysed&,
                                 const std::string& name);
@@ -115,7 +115,7 @@ double round_factor(double v);
 void add_circle(const Source&, const Measured&, std::vector<reports::Plot>&);
 /// The residuals of two rotary axes as one chain, over the angle of each.
 void add_chain(const Source&, const Measured&, std::vector<reports::Plot>&);
-/// The path of a circular test over rings, and beside it the causes by their size.
+/// The path of a circular test over rings, and next to it the causes by their size.
 std::optional<reports::Plot> path_plot(const Source&, const Measured&);
 void add_path(const Source&, const Measured&, Blocks&);
 /// Rings for a polar picture: the mean is four divisions from the middle, what is drawn at most three

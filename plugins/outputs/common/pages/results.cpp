@@ -192,7 +192,7 @@ std::vector<std::string> undecided(const Source& source) {
              !(source.certificate && k.reason == "no-uncertainty");
     });
   };
-  // A value that stands with another measurement and was made of this one too (the worst line).
+  // A value that is printed with another measurement and was made from this one too (the worst line).
   const auto is_held_with = [&](const std::string& measurement, const std::string& name) {
     const auto& all = source.in.results.analyses;
     return std::any_of(all.begin(), all.end(), [&](const Results::Analysed& a) {
@@ -238,7 +238,7 @@ std::vector<std::string> undecided(const Source& source) {
 
 namespace {
 
-/// What no rule has (slopes) stands below their tables.
+/// What no rule has (slopes) is printed below their tables.
 void add_by_rules(const Source& source, const Results::Analysed& a, Blocks& blocks) {
   add_rule_tables(source, a, blocks);
   Results::Analysed rest = a;

@@ -207,7 +207,7 @@ void add_rule_notes(const Source& source, const Results::Analysed& a, Blocks& bl
   const std::string field = "results of " + a.plugin + ", measurement " + a.measurement;
   if (!source.certificate) add_decisions(source, a, blocks);
   std::vector<std::string> paragraphs;
-  bool differ = false;  // the reasons why they differ stand together
+  bool differ = false;  // the reasons why they differ are printed together
   for (const Remark& note : a.evaluation.notes) {
     if (note.id == "rules.evaluated" || (source.certificate && is_sureness(note)))
       continue;  // the table says it, or the method

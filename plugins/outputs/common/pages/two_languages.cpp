@@ -18,7 +18,7 @@ bool same(const std::string& a, const std::string& b) {
                     [&](char x, char y) { return plain(x) == plain(y); });
 }
 
-/// "Hall 4 (beim Auftraggeber / at the customer's)": what both begin with stands once.
+/// "Hall 4 (beim Auftraggeber / at the customer's)": the common beginning is printed once.
 bool join_in_brackets(std::string& a, const std::string& b) {
   const std::size_t open = a.find(" (");
   if (open == std::string::npos || open == 0 || b.find(" (") != open || !a.ends_with(')') ||

@@ -54,7 +54,7 @@ struct Paragraph {
   bool with_next = false;  ///< not the last thing on a page
 };
 
-/// Labels with values beside them; a value that is empty has no row.
+/// Labels with their values; a value that is empty has no row.
 struct Grid {
   struct Row {
     std::string label, value, field;
@@ -115,7 +115,7 @@ struct Plot {
     double at;
     std::string text, title;
   };
-  /// A word in the picture, beside its place as seen from the middle.
+  /// A word in the picture, next to its place as seen from the middle.
   struct Label {
     double x, y;
     std::string text;
@@ -154,7 +154,7 @@ struct BarChart {
   };
   struct Bar {
     double value = 0.0;  ///< in the unit that is printed; not finite: there is none
-    std::string text;    ///< beside it
+    std::string text;    ///< next to it
   };
   struct Row {
     std::string label;

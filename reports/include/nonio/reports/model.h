@@ -10,7 +10,7 @@
 /// What every document says of a model in words and numbers; its pictures are in residuals.h.
 namespace nonio::reports {
 
-/// The host's analysis whose values stand with the model and not with the measurement.
+/// The host's analysis whose values are printed with the model, not with the measurement.
 inline constexpr std::string_view model_analysis = "model-fit";
 
 struct ParameterRow {
@@ -22,7 +22,7 @@ struct ParameterRow {
 std::vector<ParameterRow> parameter_rows(const ModelFit&, const Templates&,
                                          const std::string& language);
 
-/// "backlash:X b and periodic:X a (-0.95); ...": what the readings hardly tell apart; or nothing.
+/// "backlash:X b and periodic:X a (-0.95); ...": what the readings hardly separate; or nothing.
 std::string correlated_parameters(const ModelFit&, const Wording&);
 
 /// An effect that is not in the model, in words and printed numbers.

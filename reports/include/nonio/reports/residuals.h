@@ -52,11 +52,11 @@ ModelFit of_measurement(const ModelFit&, std::uint32_t measurement);
 /// Several axes: places are those on each line.
 bool in_space(const ModelFit&);
 
-/// Lines in space beside each other: each has a lane of width 1 on the horizontal axis.
+/// Lines in space next to each other: each has a lane of width 1 on the horizontal axis.
 struct Lanes {
   std::vector<std::string> names;               ///< empty: there is one line, or all have one axis
   std::vector<std::pair<double, double>> ends;  ///< first and last place of each, SI
-  /// Where a place of this line lies: the lane's number and the part of its length, with room at
+  /// Position of a place of this line: the lane's number and the part of its length, with room at
   /// both sides.
   double at(std::size_t line, double place) const;
 };

@@ -42,7 +42,7 @@ class Wording {
 /// stands between backquotes (commands, keys) comes into quotation marks.
 std::string typeset(std::string_view sentence);
 
-/// The same as HTML: what stands between backquotes is code.
+/// The same as HTML: text between backquotes is code.
 std::string typeset_html(std::string_view sentence);
 
 }  // namespace nonio::reports

@@ -64,7 +64,7 @@ TEST(RotaryChain, WhileOneStandsAtZeroItIsTheFitOfTheOther) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto c = chain_value(*chain, [&](const auto& s) { return centre(s)[k]; });
       const auto n = chain_value(*chain, [&](const auto& s) { return s.lines[j].direction[k]; });
-      EXPECT_TRUE(c.told);
+      EXPECT_TRUE(c.identifiable);
       EXPECT_NEAR(c.value, alone->centre[k], 1e-10);
       EXPECT_NEAR(n.value, alone->direction[k], 1e-9);
       double variance = 0.0;
@@ -73,10 +73,10 @@ TEST(RotaryChain, WhileOneStandsAtZeroItIsTheFitOfTheOther) {
     }
     for (const std::size_t k : chain->across[1 - j])
       EXPECT_FALSE(
-          chain_value(*chain, [&](const auto& s) { return s.lines[1 - j].point[k]; }).told);
+          chain_value(*chain, [&](const auto& s) { return s.lines[1 - j].point[k]; }).identifiable);
     EXPECT_FALSE(chain_value(*chain, [](const auto& s) {
                    return signed_distance(s.lines[0], s.lines[1]);
-                 }).told);
+                 }).identifiable);
   }
 }
 
@@ -85,7 +85,8 @@ TEST(RotaryChain, WhereTheCarryingAxisStandsElsewhereNothingAtZeroIsTold) {
   const auto fit = math::fit_chain(readings(m, grid({30}, turns)), order_of(m));
   ASSERT_TRUE(fit);
   EXPECT_EQ(fit->rank, 7U);
-  EXPECT_FALSE(chain_value(*fit, [](const auto& s) { return s.lines[1].direction[0]; }).told);
+  EXPECT_FALSE(
+      chain_value(*fit, [](const auto& s) { return s.lines[1].direction[0]; }).identifiable);
 }
 
 TEST(RotaryChain, TheOrderMattersWhereBothTurn) {
@@ -129,10 +130,12 @@ TEST(RotaryChain, ABallOnAnAxisDoesNotTellItsDirection) {
   m.ball = m.tables[1].point;
   const auto fit = math::fit_chain(readings(m, grid(tilts, turns)), order_of(m));
   ASSERT_TRUE(fit);
-  EXPECT_FALSE(chain_value(*fit, [](const auto& s) { return s.lines[1].direction[0]; }).told);
+  EXPECT_FALSE(
+      chain_value(*fit, [](const auto& s) { return s.lines[1].direction[0]; }).identifiable);
   EXPECT_FALSE(fit->open.empty());
   // That of the other one it does.
-  EXPECT_TRUE(chain_value(*fit, [](const auto& s) { return s.lines[0].direction[0]; }).told);
+  EXPECT_TRUE(
+      chain_value(*fit, [](const auto& s) { return s.lines[0].direction[0]; }).identifiable);
 }
 
 /// An error of a reading moves each value by its derivative.

@@ -71,6 +71,22 @@ TEST(Causes, OneOfASiteIsReadWithItsTextsAndItsPrice) {
   EXPECT_EQ(words(t, "en", "effect.crane.cure"), "Park it elsewhere.");
 }
 
+TEST(Causes, ATitleMayHaveLanguages) {
+  Templates t = with("causes/site/shop.toml",
+                     changed("\"The crane\"", "{ en = \"The crane\", de = \"Der Kran\" }"));
+  const auto causes = causes_in(t);
+  ASSERT_TRUE(causes) << message(t);
+  EXPECT_EQ("The crane", causes->front().title);
+  add_words(*causes, t);
+  EXPECT_EQ("The crane", words(t, "en", "effect.crane.title"));
+  EXPECT_EQ("Der Kran", words(t, "de", "effect.crane.title"));
+  EXPECT_EQ("", words(t, "it", "effect.crane.title")) << "English takes its place";
+  EXPECT_EQ(
+      message(with("causes/site/shop.toml", changed("\"The crane\"", "{ de = \"Der Kran\" }"))),
+      "causes/shop.toml:4: cause.title: expected a text, or one for en among the texts by "
+      "language");
+}
+
 TEST(Causes, ANameInTwoPlacesNamesBoth) {
   Templates t = with("causes/machine.toml", one);
   t.files["causes/site/shop.toml"] = one;

@@ -214,11 +214,11 @@ TEST(Machines, ACampaignThatContradictsTheRecordIsRefused) {
 }
 
 TEST(Machines, WhatWasOnWhileMeasuredIsTheBacklashThen) {
-  const config::Manifest m = manifest_with("[machine.axes.Z]\nbacklash_on_mm = 0.02\n");
+  const config::Manifest m = manifest_with("[machine.axes.Z]\nactive_backlash_mm = 0.02\n");
   EXPECT_EQ(config::settle_table_options(control_named("fanuc"), {}, m, nullptr)->tables("axes"),
             (NumberTables{{"Z", {{"backlash_mm", 0.02}}}}));
   const config::Manifest other = manifest_with(
-      "[machine.axes.Z]\nbacklash_on_mm = 0.02\n[options.fanuc]\naxes = [\"Z "
+      "[machine.axes.Z]\nactive_backlash_mm = 0.02\n[options.fanuc]\naxes = [\"Z "
       "backlash_mm=0.01\"]\n");
   EXPECT_FALSE(config::settle_table_options(control_named("fanuc"), {}, other, nullptr));
 }

@@ -123,7 +123,7 @@ struct Explanation {
   /// Growth and drift of `together` that are as well one growth away from this place on the axis,
   /// m.
   std::optional<double> one_growth{};
-  double certain_rms = 0.0;               ///< unknown: with them in the model, m or rad
+  double significant_rms = 0.0;           ///< unknown: with them in the model, m or rad
   std::vector<Description> descriptions;  ///< unknown: of what is left beside the certain
   std::vector<Statement> statements;      ///< unknown, of an axis
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's

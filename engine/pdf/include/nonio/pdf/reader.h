@@ -38,7 +38,7 @@ struct Value {
   std::string text{};               ///< of a string or name, decoded
   std::vector<Value> items{};       ///< of an array; of a dictionary: the values of `keys`
   std::vector<std::string> keys{};  ///< of a dictionary
-  std::size_t begin = 0, end = 0;   ///< where it stands in the file
+  std::size_t begin = 0, end = 0;   ///< its position in the file
   bool hexadecimal = false;         ///< of a string: written as <...>
 
   bool is(Kind k) const { return kind == k; }
@@ -50,7 +50,7 @@ struct Object {
   Value value;
   std::size_t begin = 0, end = 0;  ///< from its number to the end of "endobj" and the line's end
   bool has_stream = false;
-  std::string_view stream{};  ///< as it stands in the file
+  std::string_view stream{};  ///< as in the file
 };
 
 struct File {

@@ -31,9 +31,9 @@ Expected<std::string> reserve(std::string_view pdf, const std::vector<Attachment
 struct PdfSignature {
   const Value* dictionary = nullptr;
   std::string_view before, behind;  ///< what is signed
-  std::size_t gap = 0;              ///< where the signature's "<" stands
+  std::size_t gap = 0;              ///< position of the signature's "<"
   std::string_view contents;        ///< its hexadecimal digits
-  Time time = 0;                    ///< as the signer says; nobody else vouches for it
+  Time time = 0;                    ///< as the signer states; not confirmed by others
 
   std::size_t room() const { return contents.size() / 2; }
 };
@@ -45,7 +45,7 @@ Expected<PdfSignature> signature_at_end(std::string_view bytes);
 /// `reserve` does.
 Expected<Time> stated_time(std::string_view pdf);
 
-/// Exactly one signature field, reachable from the form, that stands on the first page.
+/// Exactly one signature field, reachable from the form, on the first page.
 Expected<const Value*> find_signature(const File& file);
 /// Its dictionary's /ByteRange covers the whole file but for /Contents.
 Expected<PdfSignature> signature_of(const File& file, const Value& dictionary);

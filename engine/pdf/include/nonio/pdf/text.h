@@ -37,7 +37,7 @@ std::string hexadecimal(std::string_view bytes);
 std::string reference(std::size_t number);
 /// The name of an attachment in letters that every reader shows; others become "_".
 std::string plain_name(std::string_view name);
-/// Text out of a file that nobody vouches for, in a message: in quotes, at most 200 bytes of it.
+/// Text out of an untrusted file, in a message: in quotes, at most 200 bytes of it.
 std::string quoted(std::string_view text);
 
 }  // namespace nonio::pdf

@@ -19,7 +19,7 @@ struct Store {
   bool empty() const { return certificates.empty() && answers.empty() && lists.empty(); }
 };
 
-/// An update as it stands, or is to stand, at the end of a file.
+/// An update at the end of a file, present or planned.
 struct Update {
   Store store;  ///< what is new in it
   bool has_stamp = false;
@@ -59,7 +59,7 @@ class Updater {
 
   const File* file_;
   std::size_t catalogue_ = 0, page_ = 0;
-  std::size_t end_ = 0, last_table_ = 0;  ///< of what stands before the next update
+  std::size_t end_ = 0, last_table_ = 0;  ///< of what precedes the next update
   std::size_t size_ = 0;                  ///< the first number that is free
   std::size_t store_ = 0;                 ///< the object with the whole store; 0: there is none
   std::vector<std::size_t> certificates_, answers_, lists_, fields_;

@@ -27,8 +27,8 @@ struct Axis {
   std::map<std::string, double> tolerance{};  ///< upper limit of a result, by its name: m or rad
   std::string slave{};  ///< of a gantry: name of the control's axis that drives the second side
   /// What was on in the control while the axis was measured; none: nobody says it.
-  std::optional<std::string> table_on{};  ///< files of the table; empty: there was none
-  std::optional<double> backlash_on{};    ///< m or rad; 0: there was none
+  std::optional<std::string> active_table{};  ///< files of the table; empty: there was none
+  std::optional<double> active_backlash{};    ///< m or rad; 0: there was none
 };
 
 struct Machine {
@@ -114,8 +114,8 @@ struct CertificateTexts {
   std::string opinions;                      ///< opinions and interpretations, marked as such
   std::string amendment;                     ///< why an earlier certificate is replaced
   std::vector<std::string> customer_data;    ///< keys of the manifest that the customer stated
-  std::string nothing_else_by{};  ///< who states that nothing else was changed in the method
-  std::string decision_rule{};    ///< iso14253-1, ilac-g8-simple, ilac-g8-guarded
+  std::string no_other_deviations_by{};  ///< who states that nothing else was changed in the method
+  std::string decision_rule{};           ///< iso14253-1, ilac-g8-simple, ilac-g8-guarded
 };
 
 /// An upper limit of the magnitude of a result.

@@ -25,7 +25,7 @@ inline Error of_option(std::string_view option, std::string message) {
 /// How the axis went. `plus` is towards larger coordinates; `forward` as the targets are listed.
 enum class Way : std::uint8_t { none, plus, minus, forward, reverse };
 
-inline Way way_named(std::string_view word) {
+inline Way direction_of_word(std::string_view word) {
   if (word == "+") return Way::plus;
   if (word == "-") return Way::minus;
   if (word == "forward") return Way::forward;
@@ -77,7 +77,7 @@ inline std::optional<RowRange> row_range_of(std::string_view text) {
   RowRange range;
   const std::size_t blank = text.find(' ');
   if (blank != text.npos) {
-    range.way = way_named(text.substr(blank + 1));
+    range.way = direction_of_word(text.substr(blank + 1));
     if (range.way == Way::none) return std::nullopt;
     text = text.substr(0, blank);
   }

@@ -93,7 +93,7 @@ inline bool take_exponent(const char* p, const char* end, Decimal& d) {
   return true;
 }
 
-inline bool take_apart(std::string_view text, bool comma_allowed, Decimal& d) {
+inline bool parse_decimal(std::string_view text, bool comma_allowed, Decimal& d) {
   const char* first = text.data();
   const char* const end = first + text.size();
   if (first != end && (*first == '-' || *first == '+')) d.negative = *first++ == '-';
@@ -139,7 +139,7 @@ inline bool missing_in_spreadsheet(std::string_view text) {
 /// separator, no hexadecimal, nothing behind it. The value is the double nearest to the text.
 inline Field parse_number(std::string_view text, bool comma_allowed) {
   detail::Decimal d;
-  if (!detail::take_apart(text, comma_allowed, d)) {
+  if (!detail::parse_decimal(text, comma_allowed, d)) {
     const auto kind = detail::means_not_taken(text) ? Field::Kind::not_taken : Field::Kind::bad;
     return {kind, DecimalMark::none, 0.0};
   }

@@ -79,7 +79,7 @@ struct SpaceLine {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   }
   /// A step diagonal: aside from the direction of sensing, where a flat mirror is, and along it.
-  bool goes_in_steps() const { return !straight && std::fabs(dot(farthest, sense)) > 0.5 * length; }
+  bool is_stepwise() const { return !straight && std::fabs(dot(farthest, sense)) > 0.5 * length; }
 };
 
 /// Of line `line`, an index into Observations::lines.

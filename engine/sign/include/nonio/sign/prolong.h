@@ -26,7 +26,7 @@ struct Prolonged {
 };
 
 /// The file with one update more. Only of a file that `verify_pdf` accepts, and only what it
-/// accepts again: an error names the certificate of which nobody says whether it was revoked.
+/// accepts again: an error names the certificate whose revocation status is unknown.
 Expected<Prolonged> prolong(std::string_view signed_pdf, const Prolonging& how);
 
 }  // namespace nonio::sign

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "nonio/reports/history_value.h"
+#include "nonio/reports/quantity_words.h"
 #include "nonio/sdk/history.h"
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
@@ -32,14 +33,14 @@ struct MorningLine {
   enum class State { fresh, known, fixed };
   Kind kind = Kind::information;
   State state = State::fresh;
-  std::string id;  ///< the same every night; `nonio machine ack` takes it
+  std::string id;  ///< the same in every run; `nonio machine ack` accepts it
   std::string machine, axis, quantity;
   std::string campaign, customer;
   std::string measurement{};  ///< of the value
   std::optional<double> value{}, u{}, limit{};
   Quantity unit = Quantity::deviation;
   Finding finding;      ///< its words: says, advice
-  std::string since{};  ///< the night or campaign's day from which on
+  std::string since{};  ///< day of the run or campaign since which
   std::string link{};
   std::string by{}, until{}, why{};      ///< of an acknowledgement
   bool sure = true;                      ///< enough for a mail
@@ -65,7 +66,7 @@ struct ErrorCurve {
 /// When to measure next. Nothing is changed by it.
 struct IntervalProposal {
   std::optional<int> months{};     ///< none: refused, and `why` says why
-  std::string method{};            ///< staircase, control-chart, fleet; empty: nobody asked
+  std::string method{};            ///< staircase, control-chart, fleet; empty: not required
   std::string axis{}, quantity{};  ///< what decides it, where it is one quantity
   Finding why{};                   ///< its words: says
 };
@@ -134,7 +135,7 @@ struct SiteHistory {
   std::vector<InstrumentUse> instruments;
   std::vector<ModelComparison> comparisons;
   bool judged = true;      ///< some campaign states a limit
-  std::size_t hidden = 0;  ///< lines that are not in `lines`, because nobody asked for them
+  std::size_t hidden = 0;  ///< lines that are not in `lines`, because the request excludes them
 };
 
 /// A part (says, advice) of a line's words, in a language: with the titles of the findings that it
@@ -142,12 +143,12 @@ struct SiteHistory {
 std::string line_text(const Templates&, std::string_view language, const MorningLine&,
                       std::string_view part);
 
-/// Whether somebody must decide something: it is new, and no mere note.
+/// Whether it requires action: it is new, and more than a note.
 bool asks(const MorningLine& line);
-/// The same, and it is sure enough to write to somebody.
+/// The same, and significant enough for a mail.
 bool asks_by_mail(const MorningLine& line);
 
-/// summary.txt and `nonio status --actions`: one line a decision, at most `most`, then how many more there
+/// summary.txt and `nonio status --actions`: one line per action, at most `most`, then how many more there
 /// are of each kind. Where there is none, the one sentence that says so.
 Expected<std::string> morning_text(const SiteHistory&, const Templates&,
                                    const std::string& language, std::size_t most);

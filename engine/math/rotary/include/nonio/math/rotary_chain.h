@@ -26,7 +26,7 @@
 /// most nearly across n; three of each q; three of each t but the first. Start: for n along each of
 /// the machine axes (and halfway between two of them) the rest is linear; the best of them go on by
 /// Gauss-Newton. Columns of tilts are scaled with the extent of the readings; singular values below
-/// `chain_rank` of the largest are 0. A value is told if no combination of unknowns that changes no
+/// `chain_rank` of the largest are 0. A value is identifiable if no combination of unknowns that changes no
 /// reading changes it.
 ///
 /// Derived (docs/formulas.md); tests compare with exact homogeneous transforms. Range: one or two
@@ -98,7 +98,7 @@ tl::expected<ChainFit, ChainRefusal> fit_chain(const std::vector<ChainReading>&,
 /// A value that depends on the unknowns.
 struct ChainValue {
   double value = 0.0;
-  bool told = false;
+  bool identifiable = false;
   std::vector<double> by;  ///< derivatives by the readings, as in `ChainFit::by`
 };
 /// Derivatives by central differences of 1 um and 1 urad.

@@ -53,8 +53,9 @@ struct RtcpFit {
   Vector3 point{}, direction{};             ///< of the control; point: where a and b hold
   std::array<std::size_t, 2> across{0, 1};  ///< coordinates of e1, e2
   std::array<double, 4> value{};            ///< a, b: m; p, q: rad
-  std::array<bool, 4> told{};
-  std::array<bool, 4> told_with_ball{};  ///< would be told if the place of the ball were known
+  std::array<bool, 4> identifiable{};
+  std::array<bool, 4>
+      identifiable_with_ball{};  ///< would be identifiable if the place of the ball were known
   /// Derivatives of a, b, p, q by the readings.
   std::array<std::vector<double>, 4> by{};
   std::vector<double> residual;
