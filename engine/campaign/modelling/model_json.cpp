@@ -514,6 +514,10 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
   std::vector<std::string> out;
   for (const std::string& effect : below_uncertainty(fit))
     out.push_back(words.below_uncertainty(effect));
+  for (const model::Parameter& p : fit.parameters)
+    if (p.quantity == Quantity::deviation_per_kelvin &&
+        std::fabs(p.value) - 2.0 * p.u > model::most_per_kelvin)
+      out.push_back(words.gain_too_large(p));
   for (std::size_t t = 0; t < fit.lost.size(); ++t)
     if (fit.lost[t] > 0) out.push_back(words.not_told(fit.terms[t].name(), fit.lost[t]));
   if (part.part.kind == model::Part::Kind::space && model::has_unstated_position(part.part))

@@ -439,6 +439,14 @@ std::string ModelWords::below_uncertainty(const std::string& effect) const {
   return says("below-uncertainty", {}, {{"effect", effect}});
 }
 
+std::string ModelWords::gain_too_large(const model::Parameter& gain) const {
+  return says("gain-too-large",
+              {{"gain", gain.value, gain.quantity},
+               {"U", 2.0 * gain.u, gain.quantity},
+               {"most", model::most_per_kelvin, gain.quantity}},
+              {{"effect", gain.effect}});
+}
+
 std::string ModelWords::not_told(const std::string& effect, std::size_t parameters) const {
   return says("not-told", {{"parameters", static_cast<double>(parameters), Quantity::count}},
               {{"effect", effect}});

@@ -46,6 +46,8 @@ class ModelWords {
   std::string suspect(const model::Suspect& suspect, const ReadingPlace& place,
                       Quantity deviation) const;
   std::string below_uncertainty(const std::string& effect) const;
+  /// A gain that no body has.
+  std::string gain_too_large(const model::Parameter& gain) const;
   /// A curve in space some of whose parameters are counted to other effects.
   std::string not_told(const std::string& effect, std::size_t parameters) const;
   /// Measurements that do not say where the other axes stood.

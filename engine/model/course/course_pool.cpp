@@ -10,7 +10,6 @@ namespace nonio::model {
 namespace {
 
 // docs/dev/constants.md, M40.
-constexpr double most_per_kelvin = 50e-6;  // m/K: two metres of aluminium
 constexpr double most_displacements = 3.0;
 constexpr double first_ridge = 1e-3;  // of the variance of the displacements
 

@@ -113,6 +113,16 @@ class Heat(VerbTest):
         z, = [p for p in answer["parts"] if p["part"] == "warm/z"]
         self.assertEqual(z["model"]["effects"], [])
 
+    def test_a_gain_that_no_body_has_is_said(self):
+        rows = record(11, [3.0])
+        for row in rows:
+            row[2] = 20.0 + (row[2] - 20.0) / 60.0  # a sensor whose scale is wrong: 180 um/K
+        folder = self.campaign("gain", rows, more='[model]\neffects = ["heat:bearing"]\n')
+        said = self.json("compare", folder)["parts"][0]["warnings"]
+        self.assertTrue([s for s in said if "heat:bearing" in s and "aluminium" in s], said)
+        usual = self.campaign("usual", record(11, [3.0]), more='[model]\neffects = ["heat:bearing"]\n')
+        self.assertFalse([s for s in self.json("compare", usual)["parts"][0]["warnings"] if "aluminium" in s])
+
     def test_noise_is_complete_and_an_unrecorded_cause_unknown(self):
         noise = self.campaign("noise", record(7, [0.0]))
         self.assertEqual(self.json("explain", noise)["verdict"]["kind"], "nothing")

@@ -17,6 +17,9 @@ namespace nonio::model {
 /// Blocks of time that are left out of a course, one after the other.
 inline constexpr int course_blocks = 6;
 
+/// Gain of two metres of aluminium, m/K; docs/dev/constants.md, M40.
+inline constexpr double most_per_kelvin = 50e-6;
+
 struct Candidate {
   Term term;            ///< with the shapes found
   bool visible = true;  ///< false: these readings cannot show it
