@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "course.h"
 #include "course_pool.h"
@@ -32,7 +33,7 @@ class CourseFit {
       of_.push_back(quantities_of(term));
     }
     search();
-    const double scatter = most_likely_scatter(data_, noise_, all_columns(), all_quantities());
+    const double scatter = most_likely_scatter(data_, noise_, chosen());
     if (scatter != noise_.scatter) {
       noise_.scatter = scatter;
       search();
@@ -42,22 +43,9 @@ class CourseFit {
   }
 
  private:
-  /// Bins x columns of all terms.
-  MatrixXd all_columns() const {
-    MatrixXd out(data_.size(), 0);
-    for (const CourseColumns& one : chosen_) {
-      out.conservativeResize(Eigen::NoChange, out.cols() + one.columns.cols());
-      out.rightCols(one.columns.cols()) = one.columns;
-    }
-    return out;
-  }
-
-  /// Of the coefficient of each column.
-  std::vector<Quantity> all_quantities() const {
-    std::vector<Quantity> out;
-    for (std::size_t k = 0; k < terms_.size(); ++k)
-      for (Index c = 0; c < chosen_[k].columns.cols(); ++c)
-        out.push_back(of_[k][std::min(static_cast<std::size_t>(c), of_[k].size() - 1)]);
+  CourseModel chosen() const {
+    CourseModel out{MatrixXd(data_.size(), 0)};
+    for (std::size_t k = 0; k < terms_.size(); ++k) out.add(chosen_[k].columns, of_[k]);
     return out;
   }
 
@@ -162,25 +150,34 @@ class CourseFit {
     constexpr int steps = 12;
     const auto bracket = math::golden_section(f, low, high, steps);
     const double best = 0.5 * (bracket.low + bracket.high);
-    if (f(best) < cost_of_chosen(k, chosen_[k].columns)) {
-      terms_[k].shape = with(best);
-      chosen_[k] = {terms_[k].shape, columns_at(terms_[k], terms_[k].shape)};
-    }
+    if (!(f(best) < cost_of_chosen(k, chosen_[k].columns))) return;
+    CourseColumns before =
+        std::exchange(chosen_[k], {with(best), columns_at(terms_[k], with(best))});
+    if (const auto qr = decomposed(); qr.rank() < qr.cols())
+      chosen_[k] = std::move(before);  // two effects of one channel have met
+    else
+      terms_[k].shape = chosen_[k].shape;
+  }
+
+  /// Of the columns of all terms; its rank says whether they can be separated.
+  Eigen::ColPivHouseholderQR<MatrixXd> decomposed() const {
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(
+        of_unit_length(CourseWhitening(data_, noise_).of(chosen().columns)));
+    qr.setThreshold(1e-7);
+    return qr;
   }
 
   Expected<Fit> fitted() {
     const Part& part = data_.part();
     const std::size_t n = part.table.size();
     Fit out;
-    const MatrixXd a = all_columns();
+    const CourseModel model = chosen();
+    const MatrixXd& a = model.columns;
     CoursePool pool(data_, noise_);
-    const std::vector<Index> places = pool.add(a, all_quantities());
+    const std::vector<Index> places = pool.add(a, model.of);
     pool.finish();
-    if (a.cols() > 0) {
-      Eigen::ColPivHouseholderQR<MatrixXd> qr(of_unit_length(pool.whitening().of(a)));
-      qr.setThreshold(1e-7);
-      if (qr.rank() < a.cols()) return fail(cannot_separate(qr));
-    }
+    if (a.cols() > 0)
+      if (const auto qr = decomposed(); qr.rank() < a.cols()) return fail(cannot_separate(qr));
     const VectorXd x =
         pool.coefficients(places, CourseSides(pool, data_.displacements().leftCols(1))).col(0);
     out.residual = part.table.deviation;
@@ -202,7 +199,7 @@ class CourseFit {
     out.zero = {zero};
     out.weight.assign(n, 1.0);
     out.rms = std::sqrt(squares / static_cast<double>(n));
-    uncertainties(a, x, out);
+    uncertainties(model, x, out);
     out.terms = terms_;
     out.lost.assign(terms_.size(), 0);
     return out;
@@ -221,9 +218,9 @@ class CourseFit {
   }
 
   /// Of coefficients and searched shapes, of the linearised problem.
-  void uncertainties(const MatrixXd& a, const VectorXd& x, Fit& out) const {
-    MatrixXd j = a;
-    std::vector<Quantity> of = all_quantities();
+  void uncertainties(const CourseModel& model, const VectorXd& x, Fit& out) const {
+    const MatrixXd& a = model.columns;
+    CourseModel linearised = model;
     Index at = 0;
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       const Index own = chosen_[k].columns.cols();
@@ -234,21 +231,20 @@ class CourseFit {
         std::vector<double> near = terms_[k].shape;
         near[s] = now + step;
         const MatrixXd change = columns_at(terms_[k], near) - chosen_[k].columns;
-        j = math::with_column(j, math::times(change, x.segment(at, own)) / step);
-        of.push_back(Quantity::time);
+        linearised.add(math::times(change, x.segment(at, own)) / step, {Quantity::time});
       }
       at += own;
     }
     VectorXd rest = data_.displacements().col(0);
     if (a.cols() > 0) rest -= math::times(a, x);
     rest.array() -= rest.mean();
-    const auto unknowns = static_cast<double>(j.cols() + 1);
+    const auto unknowns = static_cast<double>(linearised.columns.cols() + 1);
     const auto bins = static_cast<double>(data_.size());
     out.redundancy = bins > unknowns ? static_cast<std::size_t>(bins - unknowns) : 0;
     out.s = std::sqrt(rest.squaredNorm() / std::max(bins - unknowns, 1.0));
     out.noise.measured = out.noise.neighbours = successive(rest);
     out.noise.p = 0.0;
-    const MatrixXd covariance = uncertainty_of(data_, j, of).covariance;
+    const MatrixXd covariance = uncertainty_of(data_, linearised).covariance;
     const auto u = [&](Index k) {
       const double v = covariance(k, k);
       return v > 0.0 ? std::sqrt(v) : std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "course_noise.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -53,12 +54,39 @@ MatrixXd CourseWhitening::of(MatrixXd columns) const {
   return columns;
 }
 
+namespace {
+
+/// Every noise that is looked for: its correlation time as a part of the test.
+template <class Visit>
+void for_each_noise(const CourseData& data, const CourseModel& model, const MatrixXd& displacements,
+                    const Visit& visit) {
+  for (const double part_of_test : {96.0, 24.0, 6.0, 1.5})
+    for (const double scatter : CoursePool::scatters) {
+      CoursePool pool(data, {data.duration() / part_of_test, scatter});
+      const std::vector<Index> at = pool.add(model.columns, model.of);
+      pool.finish();
+      const CourseSides sides(pool, displacements);
+      visit(pool, at, sides, scatter,
+            pool.cost(at, sides).mean() + pool.whitening().half_log_determinant());
+    }
+}
+
+}  // namespace
+
+void CourseModel::add(const MatrixXd& more, const std::vector<Quantity>& quantities) {
+  for (Index k = 0; k < more.cols(); ++k) {
+    columns = columns.size() == 0 ? MatrixXd(more.col(k))
+                                  : math::with_column(columns, VectorXd(more.col(k)));
+    of.push_back(quantities[std::min(static_cast<std::size_t>(k), quantities.size() - 1)]);
+  }
+}
+
 double most_likely_scatter(const CourseData& data, const CourseNoise& noise,
-                           const MatrixXd& columns, const std::vector<Quantity>& of) {
+                           const CourseModel& model) {
   double best = 0.0, least = std::numeric_limits<double>::infinity();
   for (const double scatter : CoursePool::scatters) {
     CoursePool pool(data, {noise.correlation_time, scatter});
-    const std::vector<Index> at = pool.add(columns, of);
+    const std::vector<Index> at = pool.add(model.columns, model.of);
     pool.finish();
     const double cost = pool.cost(at, CourseSides(pool, data.displacements())).mean() +
                         pool.whitening().half_log_determinant();
@@ -67,24 +95,27 @@ double most_likely_scatter(const CourseData& data, const CourseNoise& noise,
   return best;
 }
 
-CourseUncertainty uncertainty_of(const CourseData& data, const MatrixXd& columns,
-                                 const std::vector<Quantity>& of) {
+double likely_cost(const CourseData& data, const CourseModel& model) {
+  double least = std::numeric_limits<double>::infinity();
+  for_each_noise(data, model, data.displacements(),
+                 [&](const CoursePool&, const std::vector<Index>&, const CourseSides&, double,
+                     double cost) { least = std::min(least, cost); });
+  return least;
+}
+
+CourseUncertainty uncertainty_of(const CourseData& data, const CourseModel& model) {
   CourseUncertainty out;
   double least = std::numeric_limits<double>::infinity();
-  for (const double part_of_test : {96.0, 24.0, 6.0, 1.5})
-    for (const double scatter : CoursePool::scatters) {
-      CoursePool pool(data, {data.duration() / part_of_test, scatter});
-      const std::vector<Index> at = pool.add(columns, of);
-      pool.finish();
-      const CourseSides sides(pool, data.displacements().leftCols(1));
-      const double cost = pool.cost(at, sides)(0) + pool.whitening().half_log_determinant();
-      if (out.s > 0.0 && !(cost < least)) continue;
-      least = cost;
-      const double variance = pool.variance(at, sides);
-      out.covariance = variance * pool.covariance(at, variance);
-      out.s = std::sqrt(variance * (1.0 + scatter));
-      out.zero = std::sqrt(variance * pool.whitening().variance_of_zero());
-    }
+  for_each_noise(data, model, data.displacements().leftCols(1),
+                 [&](const CoursePool& pool, const std::vector<Index>& at, const CourseSides& sides,
+                     double scatter, double cost) {
+                   if (out.s > 0.0 && !(cost < least)) return;
+                   least = cost;
+                   const double variance = pool.variance(at, sides);
+                   out.covariance = variance * pool.covariance(at, variance);
+                   out.s = std::sqrt(variance * (1.0 + scatter));
+                   out.zero = std::sqrt(variance * pool.whitening().variance_of_zero());
+                 });
   return out;
 }
 

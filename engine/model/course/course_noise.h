@@ -36,9 +36,21 @@ class CourseWhitening {
   void filter(MatrixXd& columns) const;
 };
 
-/// The scatter with most evidence in addition to these columns. `of`: what the coefficient of each is.
+/// Columns and what the coefficient of each is.
+struct CourseModel {
+  MatrixXd columns;  ///< bins x k
+  std::vector<Quantity> of{};
+
+  /// Adds columns of a term whose coefficients are these; the last one is that of all further ones.
+  void add(const MatrixXd& more, const std::vector<Quantity>& quantities);
+};
+
+/// The scatter with most evidence in addition to these columns.
 double most_likely_scatter(const CourseData& data, const CourseNoise& noise,
-                           const MatrixXd& columns, const std::vector<Quantity>& of);
+                           const CourseModel& model);
+
+/// - ln of the evidence of these columns with the most likely noise, in the mean over displacements.
+double likely_cost(const CourseData& data, const CourseModel& model);
 
 /// What the fit of some columns does not know.
 struct CourseUncertainty {
@@ -47,9 +59,7 @@ struct CourseUncertainty {
   MatrixXd covariance;  ///< of the coefficients of the columns
 };
 
-/// With the most likely noise of this part's displacement. columns: bins x k; of: what their
-/// coefficients are, k entries.
-CourseUncertainty uncertainty_of(const CourseData& data, const MatrixXd& columns,
-                                 const std::vector<Quantity>& of);
+/// With the most likely noise of this part's displacement.
+CourseUncertainty uncertainty_of(const CourseData& data, const CourseModel& model);
 
 }  // namespace nonio::model

@@ -91,7 +91,8 @@ class CourseSearch {
     CourseNoise noise = noise_of_fit(data_);
     fill(noise);
     set_ = best();
-    if (const double scatter = likely_scatter(noise); scatter != noise.scatter) {
+    if (const double scatter = most_likely_scatter(data_, noise, model_with(set_));
+        scatter != noise.scatter) {
       noise.scatter = scatter;
       fill(noise);
       set_ = best();
@@ -147,7 +148,8 @@ class CourseSearch {
       }
   }
 
-  /// The set with most evidence, less the penalty for each of its effects.
+  /// Of the best sets of each size that with most evidence under its most likely noise, less the
+  /// penalty for each of its effects.
   Set best() const {
     std::vector<Set> beam{{}};
     std::vector<std::pair<Set, double>> best{{{}, level_of({})}};
@@ -174,12 +176,13 @@ class CourseSearch {
       for (auto it = all.begin(); it != last; ++it) beam.push_back(it->first);
       best.push_back(all.front());
     }
-    const auto least = [&](std::size_t k) {
-      return best[k].second + static_cast<double>(k) * pool_->penalty();
-    };
     std::size_t chosen = 0;
-    for (std::size_t k = 1; k < best.size(); ++k)
-      if (least(k) < least(chosen)) chosen = k;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < best.size(); ++k) {
+      const double cost =
+          likely_cost(data_, model_with(best[k].first)) + static_cast<double>(k) * pool_->penalty();
+      if (cost < least) least = cost, chosen = k;
+    }
     return best[chosen].first;
   }
 
@@ -283,22 +286,15 @@ class CourseSearch {
     sides_.emplace(*pool_, data_.displacements());
   }
 
-  /// With the columns of the set that was found.
-  double likely_scatter(CourseNoise noise) const {
-    MatrixXd columns(data_.size(), 0);
-    std::vector<Quantity> of;
-    const auto add = [&](const MatrixXd& more, const Term& term) {
-      const std::vector<Quantity> quantities = quantities_of(term);
-      for (Index k = 0; k < more.cols(); ++k) {
-        columns = math::with_column(columns, VectorXd(more.col(k)));
-        of.push_back(quantities[std::min(static_cast<std::size_t>(k), quantities.size() - 1)]);
-      }
-    };
+  /// The columns of the model and of a set.
+  CourseModel model_with(const Set& set) const {
+    CourseModel out{MatrixXd(data_.size(), 0)};
     for (const Term& term : model_)
       if (const auto made = term.effect->columns(data_.part().table, term.axis, term.shape); made)
-        add(data_.means(*made), term);
-    for (const std::size_t e : set_) add(entries_[e].made, catalogue_[entries_[e].term]);
-    return most_likely_scatter(data_, noise, columns, of);
+        out.add(data_.means(*made), quantities_of(term));
+    for (const std::size_t e : set)
+      out.add(entries_[e].made, quantities_of(catalogue_[entries_[e].term]));
+    return out;
   }
 
   CourseSides sides_of_copies(const std::vector<Index>& columns) const {

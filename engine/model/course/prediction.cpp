@@ -75,10 +75,10 @@ Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, c
   MatrixXd means(data.size(), known->cols());
   for (Index k = 0; k < known->cols(); ++k)
     means.col(k) = data.means(std::vector<double>(known->col(k).begin(), known->col(k).end()));
-  std::vector<Quantity> of;
+  CourseModel columns{means};
   for (const Parameter& p : fit->parameters)
-    if (!p.shape) of.push_back(p.quantity);
-  const CourseUncertainty unknown = uncertainty_of(data, means, of);
+    if (!p.shape) columns.of.push_back(p.quantity);
+  const CourseUncertainty unknown = uncertainty_of(data, columns);
   Prediction out;
   VectorXd x(known->cols());
   Index at = 0;
