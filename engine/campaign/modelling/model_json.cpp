@@ -35,6 +35,7 @@ storage::Json parameters_json(const std::vector<model::Parameter>& parameters,
     one["unit"] = unit_of(p.quantity).symbol;
     if (!p.group.empty()) one["group"] = p.group;
     if (p.shape) one["searched"] = true;
+    if (p.held) one["held"] = true;
     if (terms != nullptr && is_stated(p, *terms)) one["stated"] = true;
     if (!p.shape && std::fabs(p.value) < 2.0 * p.u) one["below_uncertainty"] = true;
     list.push_back(std::move(one));
@@ -176,7 +177,7 @@ storage::Json positioning_json(const AfterTable::Positioning& p, Quantity q) {
 }
 
 /// What a table in the control would leave; nothing where the model has nothing for a table.
-void put_after_table(storage::Json& json, const model::Part& part, const model::Fit& fit,
+void put_after_table(storage::Json& json, const PartModel& part, const model::Fit& fit,
                      Quantity q) {
   const AfterTable predicted = after_table(part, fit);
   if (predicted.effects.empty()) return;
@@ -223,7 +224,7 @@ storage::Json compared_json(const Compared& c, const Campaign& campaign, const M
   if (comparison.means > 0) json["means"] = comparison.means;
   json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
   json["warnings"] = warnings_of(c.part, comparison.fit, words);
-  if (extent == Extent::whole) put_after_table(json, c.part.part, comparison.fit, q);
+  if (extent == Extent::whole) put_after_table(json, c.part, comparison.fit, q);
   return json;
 }
 

@@ -54,6 +54,7 @@ std::vector<Term> offered_to(const std::vector<Term>& model, const std::vector<T
 
 Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
                               const std::vector<double>& shape) {
+  if (term.held) return MatrixXd(static_cast<Index>(o.size()), 0);
   auto made = term.effect->columns(o, term.axis, shape);
   if (!made) {
     made.error().message = term.name() + ": " + made.error().message;
