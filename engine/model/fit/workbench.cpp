@@ -238,17 +238,17 @@ double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
 }
 
 /// The same in those directions of the block that are independent.
-double fall_of_some(const MatrixXd& s, const VectorXd& t) {
+double fall_of_some(const MatrixXd& s, const VectorXd& t, Index& rank) {
   const auto [values, vectors] = math::spectrum(s);
   const VectorXd along = math::transposed_times(vectors, t);
   double fall = 0.0;
-  bool any = false;
+  rank = 0;
   for (Index k = 0; k < along.size(); ++k) {
     if (!(values(k) > independent)) continue;
     fall += along(k) * along(k) / values(k);
-    any = true;
+    ++rank;
   }
-  return any ? fall : nan;
+  return rank > 0 ? fall : nan;
 }
 
 double fall_of_two(double aa, double ab, double bb, double ta, double tb, double least) {
@@ -365,7 +365,9 @@ Workbench::Directions Workbench::directions(const std::vector<std::size_t>& bloc
 }
 
 /// `p.products` holds what columns have in the directions of the state, those of the block from `row` on.
-double Workbench::fall_of_block(const Projection& p, Index row, const Block& block) const {
+double Workbench::fall_of_block(const Projection& p, Index row, const Block& block,
+                                Index& rank) const {
+  rank = block.count;
   const auto w = p.products.middleRows(row, block.count);
   VectorXd left = xy_.segment(block.first, block.count);
   if (p.z.size() > 0) left.noalias() -= w * p.z;
@@ -378,31 +380,38 @@ double Workbench::fall_of_block(const Projection& p, Index row, const Block& blo
                        1.0 - w.row(1).squaredNorm(), left(0), left(1), least_of(block));
   const MatrixXd s = block.own - w * w.transpose();
   const double fall = fall_of(s, left, least_of(block));
-  return std::isnan(fall) && reducible(block) ? fall_of_some(s, left) : fall;
+  return std::isnan(fall) && reducible(block) ? fall_of_some(s, left, rank) : fall;
 }
 
-VectorXd Workbench::gains(const State& state) const {
-  VectorXd fall(static_cast<Index>(blocks_.size()));
+void Workbench::put_gain(const Projection& p, Index row, std::size_t block, Gains& out) const {
+  out.fall(static_cast<Index>(block)) = fall_of_block(p, row, blocks_[block], out.rank[block]);
+}
+
+Workbench::Gains Workbench::no_gains() const {
+  return {VectorXd::Constant(static_cast<Index>(blocks_.size()), nan),
+          std::vector<Index>(blocks_.size(), 0)};
+}
+
+Workbench::Gains Workbench::gains(const State& state) const {
+  Gains out = no_gains();
   const Projection p = projection(state, products(state.blocks));
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
-    fall(static_cast<Index>(b)) = fall_of_block(p, blocks_[b].first, blocks_[b]);
-  return fall;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) put_gain(p, blocks_[b].first, b, out);
+  return out;
 }
 
-VectorXd Workbench::gains(const State& state, std::size_t effect) const {
-  VectorXd fall = VectorXd::Constant(static_cast<Index>(blocks_.size()), nan);
+Workbench::Gains Workbench::gains(const State& state, std::size_t effect) const {
+  Gains out = no_gains();
   const std::vector<std::size_t>& own = instances_[effect].blocks;
   const Projection p = projection(state, products(own, state.blocks));
   Index row = 0;
   for (const std::size_t b : own) {
-    fall(static_cast<Index>(b)) = fall_of_block(p, row, blocks_[b]);
+    put_gain(p, row, b, out);
     row += blocks_[b].count;
   }
-  return fall;
+  return out;
 }
 
-Workbench::State Workbench::with(const State& state, const VectorXd& gains,
-                                 std::size_t effect) const {
+Workbench::State Workbench::with(const State& state, const Gains& gains, std::size_t effect) const {
   if (instances_[effect].reducible) return with_curve(state, gains, effect);
   std::size_t best = blocks_.size();
   double least = std::numeric_limits<double>::infinity();
@@ -410,7 +419,7 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
   for (const std::size_t b : state.blocks)
     if (blocks_[b].of_position) of_position += unknowns_of(blocks_[b]);
   for (const std::size_t b : instances_[effect].blocks) {
-    const double fall = gains(static_cast<Index>(b));
+    const double fall = gains(b);
     if (std::isnan(fall)) continue;
     if (follows_targets(blocks_[b], of_position)) continue;
     const double c =
@@ -421,7 +430,7 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
   if (best == blocks_.size()) return state;
   State more = state;
   more.blocks.push_back(best);
-  more.squares = std::max(state.squares - gains(static_cast<Index>(best)), 0.0);
+  more.squares = std::max(state.squares - gains(best), 0.0);
   more.parameters += unknowns_of(blocks_[best]);
   more.price += price(blocks_[best]);
   more.criterion = criterion(more.squares, more.price, more.parameters);
@@ -429,21 +438,26 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
 }
 
 /// A curve counts with as many parameters as it has directions of its own beside the state's.
-Workbench::State Workbench::with_curve(const State& state, const VectorXd& gains,
+Workbench::State Workbench::with_curve(const State& state, const Gains& gains,
                                        std::size_t effect) const {
   State best = state;
   double least = std::numeric_limits<double>::infinity();
   for (const std::size_t b : instances_[effect].blocks) {
-    if (std::isnan(gains(static_cast<Index>(b)))) continue;
-    std::vector<std::size_t> blocks = state.blocks;
-    blocks.push_back(b);
-    State more = this->state(std::move(blocks));
-    if (more.criterion < least) least = more.criterion, best = std::move(more);
+    if (std::isnan(gains(b))) continue;
+    const Block& block = blocks_[b];
+    const double squares = std::max(state.squares - gains(b), 0.0);
+    const double price = state.price + this->price(block, gains.rank[b]);
+    const Index parameters = state.parameters + unknowns_of(block) - block.count + gains.rank[b];
+    const double c = criterion(squares, price, parameters);
+    if (!(c < least)) continue;
+    least = c;
+    best = {state.blocks, squares, parameters, price, c};
+    best.blocks.push_back(b);
   }
   return best;
 }
 
-Workbench::State Workbench::joined(const State& state, const VectorXd& gains,
+Workbench::State Workbench::joined(const State& state, const Gains& gains,
                                    std::size_t effect) const {
   State best = with(state, gains, effect);
   const auto& own = instances_[effect].blocks;

@@ -64,21 +64,28 @@ class Workbench {
   const Whitening& white() const { return white_; }
   double readings() const { return used_; }
   Index zeros() const { return zeros_; }
+  bool in_space() const { return several_axes_; }
 
   /// One more value of an effect's shapes, beside those of its grid.
   void add_shape(const Observations& o, std::size_t effect, const std::vector<double>& shape);
 
   State state(std::vector<std::size_t> blocks) const;
-  /// For each block the fall of `squares` if it is added; NaN if it adds no independent column.
-  VectorXd gains(const State& state) const;
+  /// For each block the fall of `squares` if it is added, NaN if it adds no independent column, and
+  /// how many independent columns it adds.
+  struct Gains {
+    VectorXd fall;
+    std::vector<Index> rank;
+    double operator()(std::size_t block) const { return fall(static_cast<Index>(block)); }
+  };
+  Gains gains(const State& state) const;
   /// The same for the blocks of one effect only; NaN elsewhere.
-  VectorXd gains(const State& state, std::size_t effect) const;
+  Gains gains(const State& state, std::size_t effect) const;
   /// The state with the best block of this effect added, or nothing that can be added (blocks as
   /// before).
-  State with(const State& state, const VectorXd& gains, std::size_t effect) const;
+  State with(const State& state, const Gains& gains, std::size_t effect) const;
   /// The same, where it is better with curves of fewer knots: a curve that is there follows what
   /// the new effect has to say, and takes the targets that it would need.
-  State joined(const State& state, const VectorXd& gains, std::size_t effect) const;
+  State joined(const State& state, const Gains& gains, std::size_t effect) const;
   /// Each effect's shapes looked for again while the others stay, until nothing improves.
   State settled(State state) const;
   bool holds(const State& state, std::size_t effect) const;
@@ -123,12 +130,15 @@ class Workbench {
     bool sound = true;  // every effect has a direction of its own, and all but curves all of theirs
   };
   Directions directions(const std::vector<std::size_t>& blocks, const MatrixXd& gram) const;
+  Gains no_gains() const;
   bool reducible(const Block& block) const;
   double least_of(const Block& block) const;
-  State with_curve(const State& state, const VectorXd& gains, std::size_t effect) const;
+  State with_curve(const State& state, const Gains& gains, std::size_t effect) const;
   /// `products` of columns with those of the state.
   Projection projection(const State& state, MatrixXd products) const;
-  double fall_of_block(const Projection& projection, Index row, const Block& block) const;
+  void put_gain(const Projection& projection, Index row, std::size_t block, Gains& out) const;
+  double fall_of_block(const Projection& projection, Index row, const Block& block,
+                       Index& rank) const;
   void push(Block block, const MatrixXd& columns);
   void count_shapes(Instance& instance) const;
   void fill_search(Block& block) const;

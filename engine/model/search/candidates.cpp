@@ -138,7 +138,7 @@ class CandidateOf {
   std::vector<std::string> aliases_of(std::size_t member) const {
     std::vector<std::string> names;
     const State rest = f_.bench->without(f_.best, member);
-    const VectorXd gains = f_.bench->gains(rest);
+    const Workbench::Gains gains = f_.bench->gains(rest);
     for (std::size_t other = f_.in_model; other < f_.terms.size(); ++other) {
       if (other == member || f_.bench->holds(f_.best, other)) continue;
       const State changed = f_.bench->settled(f_.bench->joined(rest, gains, other));

@@ -122,7 +122,7 @@ class Finder {
   Expected<State> started(std::vector<std::size_t> open, bool largest_first) const {
     State start = f_.bench->state({});
     while (!open.empty()) {
-      const VectorXd gains = f_.bench->gains(start);
+      const Workbench::Gains gains = f_.bench->gains(start);
       State best;
       std::size_t at = open.size();
       for (std::size_t k = 0; k < (largest_first ? open.size() : 1); ++k) {
