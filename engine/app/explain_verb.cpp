@@ -11,7 +11,7 @@ namespace nonio::app {
 
 namespace {
 
-constexpr std::size_t most_steps = 12;  // for each part
+constexpr std::size_t most_steps = 24;  // for each part
 
 struct ExplainOptions {
   std::string folder;

@@ -112,7 +112,8 @@ bool PartModel::shows(const std::string& written) const {
   for (const auto* list : {&terms, &catalogue, &library})
     for (const model::Term& t : *list)
       if (t.name() == name) return true;
-  return false;
+  return std::any_of(held.begin(), held.end(),
+                     [&](const Held& h) { return h.term.name() == name; });
 }
 
 std::string kind_of(const model::Part& part) {

@@ -496,17 +496,22 @@ std::string next_effect(const std::vector<Told>& parts) {
 std::vector<std::string> next_effects(const std::vector<Explained>& all) {
   if (all.empty()) return {};
   const Explained& worst = all[most_severe(all)];
-  if (worst.part.part.kind != model::Part::Kind::course) {
-    const std::string next = next_effect(told_of(all));
-    return next.empty() ? std::vector<std::string>{} : std::vector<std::string>{next};
+  const model::Explanation& e = worst.explanation;
+  const model::Part::Kind kind = worst.part.part.kind;
+  const std::string next = next_effect(told_of(all));
+  if (next.empty()) return {};
+  std::vector<std::string> out{next};
+  // Of a course the sensors of a set replace each other: it is added as a whole. A volume has many
+  // errors at once: the set where it leaves nothing, else what is significant.
+  std::vector<std::string> more;
+  if (kind == model::Part::Kind::course || (kind == model::Part::Kind::space && e.explains_all))
+    more = e.together;
+  else if (kind == model::Part::Kind::space)
+    more = e.certain;
+  for (const std::string& effect : more) {
+    std::string written = model::written_for(worst.part.part, effect);
+    if (written != next) out.push_back(std::move(written));
   }
-  // Of a course the sensors of a set replace each other: it is added as a whole.
-  std::vector<std::string> out;
-  if (worst.explanation.verdict.kind != model::Verdict::Kind::missing) return out;
-  out.push_back(worst.explanation.verdict.effect);
-  for (const std::string& effect : worst.explanation.together)
-    if (effect != out.front()) out.push_back(effect);
-  for (std::string& effect : out) effect = model::written_for(worst.part.part, effect);
   return out;
 }
 
