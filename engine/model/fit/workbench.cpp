@@ -13,6 +13,8 @@ constexpr double independent = 1e-7;
 // In space columns run along with each other (a step diagonal's mirror and its three axes): not
 // curves, which would rather be taken for the noise of rounding.
 constexpr double independent_in_space = 1e-11;
+// A part of a curve in space that the readings show so weakly would be as large as no guide is.
+constexpr double shown_of_curve = weakest_of_curve * weakest_of_curve;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uint32_t>& target) {
   if (target.empty()) return false;
@@ -207,7 +209,7 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
     const MatrixXd own = gram(out.blocks);
     const Eigen::LLT<MatrixXd> llt(own);
     if (llt.info() == Eigen::Success &&
-        llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent)) {
+        llt.matrixLLT().diagonal().minCoeff() > wholly_independent()) {
       const VectorXd z = math::whitened(llt, VectorXd(xy_(columns)));
       out.squares = z.allFinite() ? std::max(yy_ - z.squaredNorm(), 0.0) : nan;
     } else {
@@ -238,13 +240,13 @@ double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
 }
 
 /// The same in those directions of the block that are independent.
-double fall_of_some(const MatrixXd& s, const VectorXd& t, Index& rank) {
+double fall_of_some(const MatrixXd& s, const VectorXd& t, double least, Index& rank) {
   const auto [values, vectors] = math::spectrum(s);
   const VectorXd along = math::transposed_times(vectors, t);
   double fall = 0.0;
   rank = 0;
   for (Index k = 0; k < along.size(); ++k) {
-    if (!(values(k) > independent)) continue;
+    if (!(values(k) > least)) continue;
     fall += along(k) * along(k) / values(k);
     ++rank;
   }
@@ -323,7 +325,7 @@ Workbench::Projection Workbench::projection(const State& state, MatrixXd product
   const MatrixXd own = gram(state.blocks);
   const Eigen::LLT<MatrixXd> llt(own);
   if (!reducible_ || (llt.info() == Eigen::Success &&
-                      llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent))) {
+                      llt.matrixLLT().diagonal().minCoeff() > wholly_independent())) {
     out.z = math::whitened(llt, VectorXd(xy_(columns_of_state(state))));
     llt.matrixU().solveInPlace<Eigen::OnTheRight>(out.products);
     return out;
@@ -335,7 +337,13 @@ Workbench::Projection Workbench::projection(const State& state, MatrixXd product
 }
 
 double Workbench::least_of(const Block& block) const {
-  return several_axes_ && !reducible(block) ? independent_in_space : independent;
+  if (!several_axes_) return independent;
+  return reducible(block) ? shown_of_curve : independent_in_space;
+}
+
+/// Of the diagonal of a factor: all of every column counts.
+double Workbench::wholly_independent() const {
+  return several_axes_ && reducible_ ? 3.0 * weakest_of_curve : std::sqrt(independent);
 }
 
 bool Workbench::reducible(const Block& block) const { return instances_[block.effect].reducible; }
@@ -380,7 +388,7 @@ double Workbench::fall_of_block(const Projection& p, Index row, const Block& blo
                        1.0 - w.row(1).squaredNorm(), left(0), left(1), least_of(block));
   const MatrixXd s = block.own - w * w.transpose();
   const double fall = fall_of(s, left, least_of(block));
-  return std::isnan(fall) && reducible(block) ? fall_of_some(s, left, rank) : fall;
+  return std::isnan(fall) && reducible(block) ? fall_of_some(s, left, least_of(block), rank) : fall;
 }
 
 void Workbench::put_gain(const Projection& p, Index row, std::size_t block, Gains& out) const {

@@ -133,6 +133,7 @@ class Workbench {
   Gains no_gains() const;
   bool reducible(const Block& block) const;
   double least_of(const Block& block) const;
+  double wholly_independent() const;
   State with_curve(const State& state, const Gains& gains, std::size_t effect) const;
   /// `products` of columns with those of the state.
   Projection projection(const State& state, MatrixXd products) const;
