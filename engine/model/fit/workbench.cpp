@@ -15,6 +15,9 @@ constexpr double independent = 1e-7;
 constexpr double independent_in_space = 1e-11;
 // A part of a curve in space that the readings show so weakly would be as large as no guide is.
 constexpr double shown_of_curve = weakest_of_curve * weakest_of_curve;
+// Usual size of each part of a curve in space, m or rad: 30 um of straightness, 30 urad of angle.
+// docs/dev/constants.md, M45.
+constexpr double usual_curve = 30e-6;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uint32_t>& target) {
   if (target.empty()) return false;
@@ -79,8 +82,12 @@ bool Workbench::follows_targets(const Block& block, Index of_position) const {
 
 Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
                      const std::vector<double>& weight, const std::vector<std::uint32_t>& target,
-                     std::size_t stated, Made* made, const Noise& noise)
-    : white_(o, weight, noise), target_(target), stated_(stated), several_axes_(o.axes.size() > 1) {
+                     std::size_t stated, Made* made, const Noise& noise, double scatter)
+    : white_(o, weight, noise),
+      noise_(scatter),
+      target_(target),
+      stated_(stated),
+      several_axes_(o.axes.size() > 1) {
   most_of_position_ = most_stated_ = most_of_curve_ = std::numeric_limits<Index>::max();
   if (!target_.empty()) {
     const std::uint32_t targets = *std::max_element(target_.begin(), target_.end()) + 1;
@@ -116,7 +123,7 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
 
 MatrixXd Workbench::columns_for(const Observations& o, Instance& instance,
                                 const std::vector<double>& shape, bool& of_position,
-                                Made& made) const {
+                                VectorXd& prior, Made& made) const {
   const auto effect = static_cast<std::size_t>(&instance - instances_.data());
   auto at = made.find({effect, shape});
   if (at == made.end())
@@ -132,6 +139,8 @@ MatrixXd Workbench::columns_for(const Observations& o, Instance& instance,
   const VectorXd after = part.colwise().norm().transpose();
   if (part.cols() == 0 || !(after.array() > 1e-9 * before.array()).all()) return {};
   of_position = varies_with_target_only(*columns, target_);
+  if (several_axes_ && instance.reducible && !instance.term.effect->description)
+    prior = (after * usual_curve).cwiseInverse().cwiseAbs2();
   return part * after.cwiseInverse().asDiagonal();
 }
 
@@ -139,7 +148,8 @@ void Workbench::add_shape(const Observations& o, std::size_t effect,
                           const std::vector<double>& shape) {
   Block block{effect, shape, x_.cols(), 0, false};
   Made made;
-  const MatrixXd part = columns_for(o, instances_[effect], shape, block.of_position, made);
+  const MatrixXd part =
+      columns_for(o, instances_[effect], shape, block.of_position, block.prior, made);
   if (part.cols() == 0) return;
   const Index columns = x_.cols() + part.cols();
   x_.conservativeResize(Eigen::NoChange, columns);
@@ -154,6 +164,7 @@ void Workbench::add_shape(const Observations& o, std::size_t effect,
 void Workbench::push(Block block, const MatrixXd& columns) {
   block.count = columns.cols();
   block.own = math::transposed_product(columns, columns);
+  if (block.prior.size() > 0) block.own.diagonal() += noise_ * noise_ * block.prior;
   instances_[block.effect].blocks.push_back(blocks_.size());
   blocks_.push_back(std::move(block));
 }
@@ -164,10 +175,10 @@ void Workbench::add(const Observations& o, std::size_t effect, std::vector<Matri
   const auto shapes = shapes_of(o, instance.term);
   Index at = parts.empty() ? 0 : blocks_.back().first + blocks_.back().count;
   for (const std::vector<double>& shape : shapes) {
-    bool of_position = false;
-    MatrixXd part = columns_for(o, instance, shape, of_position, made);
+    Block block{effect, shape, at, 0, false};
+    MatrixXd part = columns_for(o, instance, shape, block.of_position, block.prior, made);
     if (part.cols() == 0) continue;
-    push({effect, shape, at, 0, of_position}, part);
+    push(std::move(block), part);
     at += part.cols();
     parts.push_back(std::move(part));
   }
@@ -306,6 +317,11 @@ MatrixXd Workbench::products(const std::vector<std::size_t>& of,
     Index row = 0;
     for (const std::size_t a : of) {
       auto to = out.block(row, column, blocks_[a].count, blocks_[b].count);
+      if (a == b) {
+        to = blocks_[a].own;
+        row += blocks_[a].count;
+        continue;
+      }
       if (products_[b].size() > 0)
         to = products_[b].middleRows(blocks_[a].first, blocks_[a].count);
       else if (products_[a].size() > 0)

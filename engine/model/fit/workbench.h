@@ -21,8 +21,10 @@ class Workbench {
     std::size_t effect;
     std::vector<double> shape;
     Index first, count;
-    bool of_position;            ///< the same at every reading of a target
-    MatrixXd own{};              ///< scalar products of its columns
+    bool of_position;  ///< the same at every reading of a target
+    MatrixXd own{};    ///< scalar products of its columns, with the prior of a curve
+    /// Of each column of a curve in space 1/(usual size)^2, in the units of its parameter.
+    VectorXd prior{};
     Index searched = 0;          ///< of its shapes so many were searched
     double cost_of_shape = 0.0;  ///< 2 ln of the number of independent values they were chosen from
   };
@@ -51,10 +53,12 @@ class Workbench {
 
   /// `target` of each reading: sets whose columns of position alone come near to one free value per
   /// target are not looked at. Empty: all are. The first `stated` terms are the model's: that they
-  /// are there is known, and their curves may follow the targets more closely.
+  /// are there is known, and their curves may follow the targets more closely. `scatter`: of a
+  /// reading; with it curves in space have a usual size (ridge).
   Workbench(const Observations& o, const std::vector<Term>& terms,
             const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {},
-            std::size_t stated = 0, Made* made = nullptr, const Noise& noise = {});
+            std::size_t stated = 0, Made* made = nullptr, const Noise& noise = {},
+            double scatter = 0.0);
 
   const std::vector<Instance>& instances() const { return instances_; }
   const std::vector<Block>& blocks() const { return blocks_; }
@@ -118,7 +122,7 @@ class Workbench {
   void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts, Made& made);
   /// Columns of unit length without the zeros of lines; none if the readings cannot show them.
   MatrixXd columns_for(const Observations& o, Instance& instance, const std::vector<double>& shape,
-                       bool& of_position, Made& made) const;
+                       bool& of_position, VectorXd& prior, Made& made) const;
   struct Projection {
     MatrixXd products;  // of columns with orthonormal directions of the state's
     VectorXd z;         // of the readings with them
@@ -157,7 +161,7 @@ class Workbench {
       pairs_;  // of two blocks' columns, likewise
   Whitening white_;
   VectorXd y_, xy_;
-  double yy_ = 0.0, used_ = 0.0;
+  double yy_ = 0.0, used_ = 0.0, noise_ = 0.0;
   std::vector<std::uint32_t> target_;
   std::size_t stated_ = 0;
   // Columns and searched shapes of position: of a set, with stated terms, of a curve not stated.
