@@ -35,7 +35,7 @@ struct Sides {
 /// made with a given standard deviation for two runs are. `low`: share of the readings.
 bool are_opposite(const std::vector<Sides>& of_cell, const std::vector<Sides>& of_pass,
                   double low) {
-  // docs/dev/constants.md, M46.
+  // docs/dev/constants.md, M44.
   constexpr double far = 4.0, of_one_pass = 0.75;
   double excess = 0.0, variance = 0.0, n = 0.0, as_pass = 0.0;
   for (const Sides& c : of_cell) {

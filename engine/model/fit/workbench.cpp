@@ -16,7 +16,7 @@ constexpr double independent_in_space = 1e-11;
 // A part of a curve in space that the readings show so weakly would be as large as no guide is.
 constexpr double shown_of_curve = weakest_of_curve * weakest_of_curve;
 // Usual size of each part of a curve in space, m or rad: 30 um of straightness, 30 urad of angle.
-// docs/dev/constants.md, M45.
+// docs/dev/constants.md, M43.
 constexpr double usual_curve = 30e-6;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uint32_t>& target) {

@@ -16,7 +16,7 @@ namespace {
 using State = Workbench::State;
 
 /// An effect that leaves so much less evidence does not become as good by other shapes of the rest.
-// docs/dev/constants.md, M43.
+// docs/dev/constants.md, M41.
 constexpr double hopeless = 100.0;
 
 double normal_below(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
