@@ -31,8 +31,8 @@ struct Sides {
 };
 
 /// Whether the repeats of a cell are on different sides more often than those of something with two
-/// states can be that changes neither in each reading nor from pass to pass: numbers that somebody
-/// made with a given standard deviation for two runs are. `low`: share of the readings.
+/// states can be that changes neither in each reading nor from pass to pass. Readings that were
+/// invented with a stated standard deviation for two runs are. `low`: share of the readings.
 bool are_opposite(const std::vector<Sides>& of_cell, const std::vector<Sides>& of_pass,
                   double low) {
   // docs/dev/constants.md, M44.

@@ -209,6 +209,7 @@ class Pictures {
 
   void readings(Plot& plot) const {
     constexpr std::size_t most_lines = 60;  // of more passes the lines hide each other
+    constexpr std::size_t most_single = 5000;
     const std::vector<double> x = places(), y = scaled(fit_.deviation, per_si_);
     std::vector<double> model(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) model[i] = y[i] - fit_.residual[i] * per_si_;
@@ -228,6 +229,7 @@ class Pictures {
           if (!plot.curves.empty()) plot.curves.back().width = 0.4;
         }
     scatter(plot, x, y);
+    if (fit_.size() > most_single) return mean_model(plot);
     for (const Pass& pass : passes) {
       if (pass.is_path) {
         line(plot, of(pass.rows, x), of(pass.rows, model), style_.text,
@@ -239,6 +241,21 @@ class Pictures {
       points.x = of(pass.rows, x), points.y = of(pass.rows, model);
       points.colour = style_.text, points.marker = Marker::dot, points.marker_size = 0.8;
       plot.curves.push_back(std::move(points));
+    }
+  }
+
+  /// Of very many readings the mean of the model at each target.
+  void mean_model(Plot& plot) const {
+    ModelFit model = fit_;
+    for (std::size_t i = 0; i < model.size(); ++i)
+      model.residual[i] = fit_.deviation[i] - fit_.residual[i];
+    for (std::uint32_t m = 0; m < std::max<std::size_t>(fit_.measurements.size(), 1); ++m) {
+      const ModelFit of = fit_.measurements.size() > 1 ? of_measurement(model, m) : model;
+      for (const int d : {+1, -1, 0}) {
+        const Trace mean = mean_by_target(of, d);
+        line(plot, along(mean.x, m), scaled(mean.y, per_si_), style_.text,
+             d < 0 ? Dash::dashed : Dash::solid);
+      }
     }
   }
 

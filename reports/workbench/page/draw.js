@@ -217,8 +217,11 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     const xs = shown.map((i) => place[i]), left = (i) => (named ? data.residual[i] : residual[i]), most_lines = 60;
     const model = data.deviation.map((v, i) => v - left(i));
     const [low, high] = extremes([0, ...extremes(shown.map((i) => data.deviation[i])), ...(looks ? [] : extremes(shown.map((i) => model[i])))]);
-    const edge = 0.06 * (high - low) || 1, both = {in: "fit", all: 400, lanes: true};
-    const above = new Frame(0, xs, {...both, to: 232, bare: true, band: false, range: [low - edge, high + edge], said: data.fit});
+    const edge = 0.06 * (high - low) || 1;
+    // All of it is seen on a low screen, too.
+    const is_low = !printing && window.innerHeight < 800, all_high = is_low ? 340 : 400, middle = is_low ? 190 : 232;
+    const both = {in: "fit", all: all_high, lanes: true};
+    const above = new Frame(0, xs, {...both, to: middle, bare: true, band: false, range: [low - edge, high + edge], said: data.fit});
     const passes = new Map();
     for (const i of shown) {
       const key = [data.measurement[i], data.run[i], data.direction[i]].join(" ");
@@ -240,7 +243,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       const single = all.filter((rows) => !rows.is_path).flat();
       if (single.length) put(above.g, "path", {class: "dots model", d: single.map((i) => `M${r1(above.px(place[i]))} ${r1(above.py(model[i]))}h0`).join("")});
     }
-    const below = new Frame(0, xs, {...both, from: 232, to: 400, range: looks ? [-1, 1] : named ? common_range(data.residual) : range});
+    const below = new Frame(0, xs, {...both, from: middle, to: all_high, range: looks ? [-1, 1] : named ? common_range(data.residual) : range});
     if (!looks) below.scatter(shown, xs, shown.map(left));
     return [above, below];
   }
