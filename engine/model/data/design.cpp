@@ -101,7 +101,8 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
     for (int twice = 0; twice < 2; ++twice) math::take_out(before, own);
     const Eigen::JacobiSVD<MatrixXd> svd(own, Eigen::ComputeThinU | Eigen::ComputeThinV);
     Index rank = 0;
-    const bool in_space = may_lose(o, terms[t]) && o.axes.size() > 1;
+    const bool in_space =
+        o.axes.size() > 1 && may_lose(o, terms[t]) && !terms[t].effect->description;
     const double least = in_space
                              ? weakest_of_curve * size / std::sqrt(static_cast<double>(own.cols()))
                              : curve_threshold * size;

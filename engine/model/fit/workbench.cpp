@@ -354,7 +354,8 @@ Workbench::Projection Workbench::projection(const State& state, MatrixXd product
 
 double Workbench::least_of(const Block& block) const {
   if (!several_axes_) return independent;
-  return reducible(block) ? shown_of_curve : independent_in_space;
+  if (!reducible(block)) return independent_in_space;
+  return instances_[block.effect].term.effect->description ? independent : shown_of_curve;
 }
 
 /// Of the diagonal of a factor: all of every column counts.
