@@ -86,7 +86,7 @@ class Compare(VerbTest):
 
     def test_every_reading_with_its_model(self):
         text = manifest(["scale:X", "backlash:X = -6 um"], axes="XC").replace(
-            '[machine.axes.C]\nkind = "linear"\ntable_on = "none"\nbacklash_on_mm', '[machine.axes.C]\nkind = "rotary"\ntable_on = "none"\nbacklash_on_deg')
+            '[machine.axes.C]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm', '[machine.axes.C]\nkind = "rotary"\nactive_table = "none"\nactive_backlash_deg')
         turn = readings(seed=3, axis="deg").replace("deviation_um", "deviation_arcsec")
         self.campaign(text, x=readings(scale=20, backlash=-6), c=turn)
         file = self.folder / "all.csv"
