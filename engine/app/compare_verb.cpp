@@ -1,20 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <iostream>
 
 #include "campaign/modelling/model_prediction.h"
+#include "campaign/modelling/readings_csv.h"
 #include "campaign_verb.h"
+#include "platform/storage/files.h"
 #include "tables.h"
 #include "verbs.h"
 
 namespace nonio::app {
+namespace fs = std::filesystem;
 
 namespace {
 
-struct PredictOptions {
+struct CompareOptions {
+  std::string csv;
   std::string model_of, zero = "free";
 };
 
-int compare(const std::string& folder, const Common& common) {
+/// What is wrong with the file; "" if it is written.
+std::string write_csv(const std::string& file, const std::vector<modelling::Compared>& all) {
+  const fs::path path = fs::path(file);
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const auto written =
+      storage::publish(folder, {{path.filename().string(), modelling::readings_csv(all)}});
+  return written ? "" : file + ": " + written.error().message;
+}
+
+int compare(const std::string& folder, const std::string& csv, const Common& common) {
   auto opened = open_campaign(folder, common, reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
@@ -38,6 +52,9 @@ int compare(const std::string& folder, const Common& common) {
   if (parts->empty())
     complain(text_of(errors.emplace_back(modelling::nothing_to_compare(open.read))));
   for (const std::string& warning : warnings) complain(warning);
+  if (!csv.empty() && !all.empty())
+    if (const std::string why = write_csv(csv, all); !why.empty())
+      return complain(why, exit_failed);
   if (common.json)
     std::cout << modelling::compare_json(all, open.campaign(), words, warnings, errors);
   else
@@ -47,7 +64,7 @@ int compare(const std::string& folder, const Common& common) {
 }
 
 /// The model of another campaign, applied to this one.
-int predict(const std::string& folder, const PredictOptions& options, const Common& common) {
+int predict(const std::string& folder, const CompareOptions& options, const Common& common) {
   auto unseen = open_campaign(folder, common, reading::TemplatesFor::terminal);
   if (!unseen) return unseen.error();
   auto seen = open_campaign(options.model_of, common, reading::TemplatesFor::terminal);
@@ -69,13 +86,17 @@ int predict(const std::string& folder, const PredictOptions& options, const Comm
 
 Verb compare_verb(Common& common) {
   auto folder = std::make_shared<std::string>();
-  auto options = std::make_shared<PredictOptions>();
+  auto options = std::make_shared<CompareOptions>();
   return {
       .name = "compare",
       .summary = "Compares the model in campaign.toml with the measurements",
       .arguments = joined(
           campaign_arguments(*folder, common),
-          {{.name = "--model-of",
+          {takes(Argument::Takes::file,
+                 {"--csv", &options->csv,
+                  "Also write every reading with the model to this file: target, run, direction, "
+                  "time, reading, model, residual, weight"}),
+           {.name = "--model-of",
             .target = &options->model_of,
             .help =
                 "Predict this campaign with the model of another one, fitted there: displacements "
@@ -93,9 +114,13 @@ Verb compare_verb(Common& common) {
           "the noise floor of repeated readings, the parameters with their uncertainty, and "
           "the factors that the residuals depend on: direction, position, run, time, "
           "temperature, screw or angle.",
-      .examples = {"nonio model compare samples/site/02-constant-reversal"},
+      .examples = {"nonio model compare samples/site/02-constant-reversal",
+                   "nonio model compare samples/site/02-constant-reversal --csv residuals.csv"},
       .run = [folder, options, &common] {
-        return options->model_of.empty() ? compare(*folder, common)
+        if (!options->model_of.empty() && !options->csv.empty())
+          return complain(
+              "--csv writes the readings of a fitted model; expected no --model-of with it");
+        return options->model_of.empty() ? compare(*folder, options->csv, common)
                                          : predict(*folder, *options, common);
       }};
 }

@@ -11,7 +11,7 @@ namespace nonio::app {
 
 namespace {
 
-constexpr std::size_t most_steps = 12;  // for each part
+constexpr std::size_t most_steps = 24;  // for each part
 
 struct ExplainOptions {
   std::string folder;
@@ -92,13 +92,15 @@ class Explain {
   }
 
   bool add(const std::string& effect) {
-    const auto change = modelling::change_model(open_.folder, open_.read, effect, true);
+    const auto change = modelling::change_model(open_.folder, open_.read, effect, true,
+                                                known_ ? &*known_ : nullptr);
     if (!change) {
       tell(text_of(change.error()));
       failed_ = true;
       return false;
     }
     steps_.push_back(change->step);
+    known_ = change->after;
     if (!common_.json) {
       std::cout << words_->terminal()("step", {{"number", std::to_string(steps_.size())}}) << ": ";
       print_change(std::cout, *change, *words_);
@@ -127,6 +129,7 @@ class Explain {
   std::optional<modelling::ModelWords> words_;
   std::vector<modelling::Explained> all_;
   std::vector<modelling::ModelStep> steps_;
+  std::optional<modelling::Compared> known_;  ///< the part that was changed, with its model
   std::vector<std::string> warnings_;
   std::vector<Error> errors_;
   bool failed_ = false;

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <iostream>
 
+#include "campaign/modelling/held_terms.h"
 #include "campaign_verb.h"
 #include "platform/storage/nearest.h"
 #include "tables.h"
@@ -46,12 +47,12 @@ int show_model(const ModelOptions& options, const Common& common) {
   return errors.empty() ? exit_done : exit_failed;
 }
 
-/// Why the effect cannot be added or dropped; "" if it can.
-std::string refusal(const OpenCampaign& open, const std::string& effect, bool add) {
+/// Why the effect cannot be added or dropped; "" if it can. `there`: its entry in the model.
+std::string refusal(const OpenCampaign& open, const std::string& effect, const std::string* there,
+                    bool add) {
   const std::vector<std::string>& model = open.campaign().model;
-  const bool there = std::find(model.begin(), model.end(), effect) != model.end();
-  if (add && there) return "\"" + effect + "\" is in the model already";
-  if (!add && !there)
+  if (add && there != nullptr) return "\"" + *there + "\" is in the model already";
+  if (!add && there == nullptr)
     return "\"" + effect + "\" is not in the model" + storage::suggestion(effect, model) +
            (model.empty() ? "; it is empty" : "; there are " + storage::listed(model));
   if (!add) return {};
@@ -63,9 +64,12 @@ int change(const ModelOptions& options, const Common& common, bool add) {
   auto opened = open_campaign(options.folder, common, reading::TemplatesFor::terminal);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
-  if (const std::string why = refusal(open, options.effect, add); !why.empty())
+  std::string effect = modelling::entry_of(options.effect).text();
+  const std::string* const there = modelling::find_effect(open.campaign().model, effect);
+  if (const std::string why = refusal(open, effect, there, add); !why.empty())
     return complain(why + "; nothing was changed");
-  const auto changed = modelling::change_model(open.folder, open.read, options.effect, add);
+  if (!add) effect = *there;
+  const auto changed = modelling::change_model(open.folder, open.read, effect, add);
   if (!changed) return complain(text_of(changed.error()), exit_failed);
   const modelling::ModelWords words = words_for(open, common);
   if (common.json)
@@ -86,7 +90,10 @@ Verb change_verb(const std::shared_ptr<ModelOptions>& options, Common& common, b
                          : "Removes an effect from the model",
           .arguments = joined(campaign_arguments(options->folder, common),
                               {required({"EFFECT", &options->effect,
-                                         "kind:axis, such as backlash:X (`nonio plugin list`)"})}),
+                                         add ? "kind:axis, such as backlash:X (`nonio plugin "
+                                               "list`); with a value, such as \"squareness:XY = "
+                                               "12.3 arcsec\", it is held at it and not fitted"
+                                             : "kind:axis, such as backlash:X"})}),
           .footer = keeps_the_rest,
           .examples = {"nonio model " + name + " samples/site/02-constant-reversal backlash:X"},
           .run = [options, &common, add] { return change(*options, common, add); }};

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "campaign/modelling/after_table.h"
+#include "campaign/modelling/held_terms.h"
 #include "nonio/sdk/format.h"
 #include "text_layout.h"
 
@@ -72,6 +73,13 @@ void print_head(std::ostream& out, const modelling::PartModel& part,
                                      {"model", effects.empty() ? say("head.empty") : effects}}));
 }
 
+/// The value as the model states it.
+std::string held_text(const modelling::PartModel& part, const model::Parameter& p) {
+  for (const auto& held : part.held)
+    if (held.parameter.effect == p.effect) return *modelling::entry_of(held.text).value;
+  return {};
+}
+
 /// Curves by what they say, everything else by its parameters.
 void print_parameters(std::ostream& out, const model::Fit& fit, const modelling::PartModel& part,
                       const modelling::ModelWords& words) {
@@ -89,6 +97,11 @@ void print_parameters(std::ostream& out, const model::Fit& fit, const modelling:
       if (told != p.effect)
         out << "    " << padded(p.effect, 20) << " " << words.curve(*curve, part) << "\n";
       told = p.effect;
+      continue;
+    }
+    if (p.held) {
+      out << "    " << padded(p.effect, 20) << " " << padded(p.name, 8) << " " << held_text(part, p)
+          << "  " << words.terminal()("held") << "\n";
       continue;
     }
     const double value = printed(p.value, p.quantity);
@@ -124,7 +137,7 @@ void print_suspects(std::ostream& out, const model::Comparison& c, const modelli
 }
 
 /// What a table in the control would leave, predicted; nothing if the model has nothing for one.
-void print_after_table(std::ostream& out, const model::Part& part, const model::Fit& fit,
+void print_after_table(std::ostream& out, const modelling::PartModel& part, const model::Fit& fit,
                        Quantity q, const config::TerminalWords& say) {
   const modelling::AfterTable predicted = modelling::after_table(part, fit);
   if (predicted.effects.empty()) return;
@@ -180,11 +193,14 @@ void print_candidates(std::ostream& out, const modelling::Explained& e, bool all
   if (shown.empty()) return;
   double best = 0.0;
   for (const model::Candidate* c : shown) best = std::max(best, c->score);
-  out << "  " << padded(say("candidate"), 22) << padded(say("evidence"), 32)
+  out << "  " << padded(say("candidate"), 22) << padded(say("evidence"), 13)
+      << padded(say("evidence.alone"), 9) << padded(say("evidence.within"), 10)
       << padded(say("rms-after"), 14) << padded(say("left-out"), 18) << "p\n";
+  const auto evidence = [](double score) { return score > 0.0 ? fixed_text(score, 1) : "-"; };
   for (const model::Candidate* c : shown)
-    out << "  " << padded(c->term.name() + " ", 22) << bar(c->score, best, 20) << " "
-        << padded(fixed_text(c->score, 1), 11) << padded(with_unit(c->rms, q), 14)
+    out << "  " << padded(c->term.name() + " ", 22) << bar(c->score, best, 12) << " "
+        << padded(evidence(c->alone), 9) << padded(evidence(c->within), 10)
+        << padded(with_unit(c->rms, q), 14)
         << padded(c->cv_rms ? with_unit(*c->cv_rms, q) : "-", 18) << p_text(c->p) << "\n";
   if (left > 0) out << "  " << say("show.more", {{"count", std::to_string(left)}}) << " (--all)\n";
 }
@@ -293,7 +309,7 @@ void print_comparison(std::ostream& out, const modelling::Compared& compared,
   print_places(out, c, words, part.deviation());
   if (c.means > 0) line(out, "", say("means", {{"count", std::to_string(c.means)}}));
   print_suspects(out, c, part, campaign, words);
-  print_after_table(out, part.part, c.fit, q, say);
+  print_after_table(out, part, c.fit, q, say);
   for (const std::string& warning : modelling::warnings_of(part, c.fit, words))
     sentence(out, 2, say("warning") + ": " + warning);
 }

@@ -212,7 +212,7 @@ Expected<Tried> tried(Bench& bench, const Json& request) {
 /// pixels, and needs a sample for quantiles and tables only.
 workbench::Kept kept_of(const PartModel& part) {
   constexpr std::size_t sample = 5000;
-  const std::vector<double>& measured = part.part.table.deviation;
+  const std::vector<double> measured = part.measured();
   const bool is_drawn = measured.size() <= workbench::most_readings;
   return workbench::kept_readings(measured, is_drawn ? workbench::most_readings : sample);
 }

@@ -86,8 +86,12 @@ std::vector<ParameterRow> parameter_rows(const ModelFit& fit, const Templates& t
     if (p.u && std::isfinite(*p.u)) U = 2 * *p.u;
     const Printed shown = printed_result(p.value, U, p.quantity, language);
     const bool same = above != nullptr && *above == p.effect;
+    const bool is_held = p.u && *p.u == 0.0 && !p.searched;  // stated, not fitted
+    const std::string says_U = is_held           ? words(templates, language, "model.held")
+                               : shown.U.empty() ? "–"
+                                                 : shown.U;
     rows.push_back({same ? "" : p.effect, p.name, meaning_of(p, templates, language), shown.value,
-                    shown.U.empty() ? "–" : shown.U, unit_text(p.quantity)});
+                    says_U, unit_text(p.quantity)});
     above = &p.effect;
   }
   return rows;

@@ -374,7 +374,7 @@ class PlotSetter {
     if (plot_.same_scale) widen(up, (across.high - across.low) * frame.h / (width_ - 12 * size_));
     frame.up = axis_scale(up.low, up.high, 6, Ticks::decimal, plot_.language);
     std::vector<SetText> labels;
-    double label_width = 0;
+    double label_width = plot_.number_room;
     for (const std::string& label : frame.up.labels) {
       auto text = set_line(context_, label, false, size_, width_, field_);
       if (!text) return fail(text.error());

@@ -107,6 +107,17 @@ ModelFit of_measurement(const ModelFit& fit, std::uint32_t measurement) {
   return out;
 }
 
+bool over_time(const ModelFit& fit) { return fit.size() > 0 && fit.target == fit.time; }
+
+PlaceScale place_scale(const ModelFit& fit) {
+  if (!over_time(fit)) {
+    const Quantity along = position_of(fit.rotary);
+    return {0.0, unit_of(along).per_si, std::string(unit_text(along))};
+  }
+  const auto [unit, seconds] = time_unit(fit);
+  return {*std::min_element(fit.time.begin(), fit.time.end()), 1.0 / seconds, unit};
+}
+
 bool in_space(const ModelFit& fit) {
   return std::count_if(fit.axis.begin(), fit.axis.end(),
                        [](char c) { return c == 'X' || c == 'Y' || c == 'Z'; }) > 1;
@@ -218,14 +229,17 @@ std::array<PictureWords, 9> picture_words(const ModelFit& fit, const Wording& wo
     PictureWords& w = out[i];
     w.title = words.get(key + "title");
     w.says = words.get((names[i] == "mesh" ? "picture.angle." : key) + "says");
-    w.x = words.get(along ? (!lanes_of(fit).names.empty() ? "picture.position.x_lanes"
-                             : in_space(fit)              ? "picture.position.x_lines"
-                                                          : "picture.position.x")
+    if (along && over_time(fit)) unit = time;
+    w.x = words.get(along ? (over_time(fit)                 ? "picture.time.x"
+                             : !lanes_of(fit).names.empty() ? "picture.position.x_lanes"
+                             : in_space(fit)                ? "picture.position.x_lines"
+                                                            : "picture.position.x")
                           : key + "x",
                     {{"axis", fit.axis}, {"unit", unit != nullptr ? unit : unit_text(q)}});
     w.y = words.get(own_y ? key + "y" : "picture.residual", {{"unit", unit_text(up)}});
     w.degrees = fit.rotary && (along || turn) && (along || picture == ResidualPlot::phase);
-    if (along || picture == ResidualPlot::phase) w.x_per_si = unit_of(across).per_si;
+    if (picture == ResidualPlot::phase) w.x_per_si = unit_of(across).per_si;
+    if (along) w.x_per_si = place_scale(fit).per_si;
     if (picture == ResidualPlot::predicted) w.x_per_si = unit_of(up).per_si;
   }
   const auto none = [&](ResidualPlot picture, bool there, const char* key) {
@@ -234,6 +248,7 @@ std::array<PictureWords, 9> picture_words(const ModelFit& fit, const Wording& wo
   out[static_cast<std::size_t>(ResidualPlot::time)].x_per_si = 1.0 / seconds;
   out[static_cast<std::size_t>(ResidualPlot::time)].time_unit = time;
   out[static_cast<std::size_t>(ResidualPlot::phase)].none = no_phase(fit, words);
+  none(ResidualPlot::position, !over_time(fit), "picture.position.none");
   none(ResidualPlot::reversal, both_directions(fit), "picture.reversal.none");
   none(ResidualPlot::time, any_finite(fit.time), "picture.time.none");
   none(ResidualPlot::run, !fit.run.empty(), "picture.run.none");
@@ -241,6 +256,38 @@ std::array<PictureWords, 9> picture_words(const ModelFit& fit, const Wording& wo
   none(ResidualPlot::left_out, any_finite(fit.cv_residual), "picture.left-out.none");
   if (fit.size() == 0)
     for (PictureWords& w : out) w.none = words.get("picture.no_readings");
+  return out;
+}
+
+PictureWords fit_words(const ModelFit& fit, const Wording& words) {
+  PictureWords out = picture_words(fit, words).front();
+  if (over_time(fit)) out.none.clear();
+  out.title = words.get("picture.fit.title");
+  out.says = words.get("picture.fit.says");
+  out.y = words.get("picture.fit.y", {{"unit", unit_text(deviation_of(fit.angular))}});
+  return out;
+}
+
+std::vector<Pass> passes_of(const ModelFit& fit) {
+  std::map<std::array<std::int64_t, 3>, Pass> passes;
+  for (std::size_t i = 0; i < fit.size(); ++i) {
+    const std::uint32_t m = i < fit.measurement.size() ? fit.measurement[i] : 0;
+    const std::int64_t run = i < fit.run.size() ? fit.run[i] : 0;
+    Pass& pass = passes[{m, run, -direction_of(fit, i)}];
+    pass.measurement = m;
+    pass.direction = direction_of(fit, i);
+    pass.rows.push_back(i);
+  }
+  std::vector<Pass> out;
+  for (auto& [key, pass] : passes) {
+    auto& rows = pass.rows;
+    std::stable_sort(rows.begin(), rows.end(),
+                     [&](std::size_t a, std::size_t b) { return fit.target[a] < fit.target[b]; });
+    pass.is_path = std::adjacent_find(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
+                     return fit.target[a] == fit.target[b];
+                   }) == rows.end();
+    out.push_back(std::move(pass));
+  }
   return out;
 }
 

@@ -71,7 +71,7 @@ void put_words(JsonWriter& json, const Drawn& source) {
 }
 
 void put_pictures(JsonWriter& json, const Drawn& source, bool titles) {
-  put_list(json, "pictures", source.pictures, [&](const PictureWords& p) {
+  const auto put = [&](const PictureWords& p) {
     json.begin_object();
     if (titles) json.member("title", p.title);
     if (titles) json.member("says", p.says);
@@ -80,7 +80,10 @@ void put_pictures(JsonWriter& json, const Drawn& source, bool titles) {
     json.member("none", p.none);
     json.member("degrees", p.degrees);
     json.end_object();
-  });
+  };
+  json.key("fit");
+  put(fit_words(source.fit, source.words));
+  put_list(json, "pictures", source.pictures, put);
 }
 
 /// The model fitted again without one effect: RMS of all readings, residuals of those on the page.
@@ -167,8 +170,9 @@ Kept kept_readings(const std::vector<double>& values, std::size_t most) {
 std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   const ModelFit& fit = source.fit;
   const std::vector<std::size_t>& rows = kept.rows;
-  const Quantity along = position_of(fit.rotary), up = deviation_of(fit.angular);
-  const double across = unit_of(along).per_si, per_si = unit_of(up).per_si;
+  const Quantity up = deviation_of(fit.angular);
+  const PlaceScale across = place_scale(fit);
+  const double per_si = unit_of(up).per_si;
   double first = INFINITY;
   for (const double t : fit.time)
     if (std::isfinite(t)) first = std::min(first, t);
@@ -189,7 +193,7 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   json.member("comma", localised(".", source.words.language()) == ",");
   json.member("axis", fit.axis);
   json.member("unit", unit_text(up));
-  json.member("position_unit", unit_text(along));
+  json.member("position_unit", across.unit);
   json.member("time_unit", over_time.time_unit);
   // Names of the lines that are next to each other; null where all readings have one axis.
   if (const Lanes lanes = lanes_of(fit); !lanes.names.empty()) {
@@ -200,7 +204,7 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   }
   put_number(json, "measurements", static_cast<double>(fit.measurements.size()));
   put_circles(json, source);
-  put_number(json, "period", period_of(fit) * across);
+  put_number(json, "period", period_of(fit) * across.per_si);
   put_number(json, "floor", fit.floor ? *fit.floor * per_si : std::nan(""));
   put_words(json, source);
   put_pictures(json, source, titles);
@@ -219,7 +223,7 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
   put_column(json, "line", known(fit.source_line, fit.size()), rows);
   put_column(json, "run", known(fit.run, fit.size()), rows);
   put_column(json, "direction", known(fit.direction, fit.size()), rows);
-  put_column(json, "target", fit.target, rows, across);
+  put_column(json, "target", fit.target, rows, across.per_si, across.from);
   put_column(json, "time", fit.time, rows, over_time.x_per_si, first);
   put_column(json, "temperature", fit.temperature, rows);
   put_column(json, "deviation", fit.deviation, rows, per_si);

@@ -54,9 +54,10 @@ AfterTable::Positioning positioning(const Observations& readings) {
 
 }  // namespace
 
-AfterTable after_table(const model::Part& part, const model::Fit& fit) {
+AfterTable after_table(const PartModel& model, const model::Fit& fit) {
+  const model::Part& part = model.part;
   AfterTable out;
-  const std::vector<double>& measured = part.table.deviation;
+  const std::vector<double> measured = model.measured();
   std::vector<double> left = measured;
   for (std::size_t t = 0; t < fit.terms.size(); ++t) {
     if (!fit.terms[t].effect->compensable) continue;

@@ -27,6 +27,6 @@ struct AfterTable {
   std::vector<Test> tests;             ///< empty where no axis is measured along itself
 };
 
-AfterTable after_table(const model::Part& part, const model::Fit& fit);
+AfterTable after_table(const PartModel& model, const model::Fit& fit);
 
 }  // namespace nonio::modelling

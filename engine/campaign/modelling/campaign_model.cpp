@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "campaign/modelling/held_terms.h"
 #include "platform/process/guarded.h"
 #include "platform/storage/nearest.h"
 
@@ -51,7 +52,15 @@ std::string mistake_of_channel(const std::string& effect, const Effect& known,
          storage::suggestion(effect, known_names(read));
 }
 
-std::string mistake_of(const std::string& effect, const reading::ReadCampaign& read) {
+std::string mistake_of_value(const Entry& entry, const Effect& effect, const Axis* axis) {
+  if (!entry.value) return {};
+  const auto value = held_value(entry, effect, axis != nullptr && axis->rotary);
+  return value ? "" : value.error().message;
+}
+
+std::string mistake_of(const std::string& written, const reading::ReadCampaign& read) {
+  const Entry entry = entry_of(written);
+  const std::string& effect = entry.effect;
   const auto [kind, axis] = split(effect);
   const auto is_kind = [&, &k = kind](const Effect& e) { return e.info.name == k; };
   const auto known = std::find_if(read.effects.begin(), read.effects.end(), is_kind);
@@ -62,6 +71,8 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
   if (known == read.effects.end()) return "there is no effect \"" + kind + "\"" + nearest();
   if (known->is_nuisance)
     return "\"" + effect + "\" belongs to the set-up: it is in every model, and not written";
+  const Axis* const of = read.manifest->campaign.machine.axis(axis);
+  if (std::string mistake = mistake_of_value(entry, *known, of); !mistake.empty()) return mistake;
   if (known->of_channels) return mistake_of_channel(effect, *known, read);
   if (known->instances)
     return can_be_in_space(axis)
@@ -69,7 +80,7 @@ std::string mistake_of(const std::string& effect, const reading::ReadCampaign& r
                : "\"" + effect +
                      "\": expected what the effect can be of, such as straightness:EYX, " +
                      "squareness:XY or yaw:X" + nearest();
-  if (read.manifest->campaign.machine.axis(axis) == nullptr)
+  if (of == nullptr)
     return "\"" + effect + "\": the machine has no axis \"" + axis + "\"" + nearest();
   return {};
 }
@@ -80,10 +91,19 @@ std::vector<std::string> PartModel::names() const {
   std::vector<std::string> out;
   for (const model::Term& t : terms)
     if (!t.effect->is_nuisance) out.push_back(t.name());
+  for (const Held& h : held) out.push_back(h.text);
   return out;
 }
 
-bool PartModel::shows(const std::string& effect) const {
+std::vector<double> PartModel::measured() const {
+  std::vector<double> out = part.table.deviation;
+  for (const Held& h : held)
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] += h.part[i];
+  return out;
+}
+
+bool PartModel::shows(const std::string& written) const {
+  const std::string effect = entry_of(written).effect;
   if (part.kind == model::Part::Kind::axis && split(effect).second == part.name) return true;
   if (!model::is_for(part, effect)) return false;
   // Of a course "heat:t4/x1" is its heat:t4 where it is among the terms.
@@ -92,7 +112,8 @@ bool PartModel::shows(const std::string& effect) const {
   for (const auto* list : {&terms, &catalogue, &library})
     for (const model::Term& t : *list)
       if (t.name() == name) return true;
-  return false;
+  return std::any_of(held.begin(), held.end(),
+                     [&](const Held& h) { return h.term.name() == name; });
 }
 
 std::string kind_of(const model::Part& part) {
@@ -127,9 +148,8 @@ std::vector<std::string> model_mistakes(const std::vector<std::string>& effects,
                                         const reading::ReadCampaign& read) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < effects.size(); ++i) {
-    const auto first = std::find(effects.begin(), effects.end(), effects[i]);
-    if (static_cast<std::size_t>(first - effects.begin()) != i)
-      out.push_back("\"" + effects[i] + "\" is given twice");
+    if (find_effect(effects, effects[i]) != &effects[i])
+      out.push_back("\"" + entry_of(effects[i]).effect + "\" is given twice");
     else if (std::string mistake = mistake_of(effects[i], read); !mistake.empty())
       out.push_back(std::move(mistake));
   }
@@ -158,10 +178,69 @@ Expected<void> without_mistakes(const std::vector<std::string>& effects,
                     line == read.manifest->lines.end() ? 0 : line->second});
 }
 
+namespace {
+
+/// Takes what the effect says off the readings; nothing where they do not show it.
+Expected<void> hold(PartModel& part, const Entry& entry, const Machine& machine,
+                    const std::vector<Effect>& effects) {
+  auto terms = model::terms_of(part.part, machine, {entry.effect}, effects);
+  if (!terms) return fail(terms.error());
+  const auto term = std::find_if(terms->begin(), terms->end(),
+                                 [&](const model::Term& t) { return t.name() == entry.effect; });
+  if (term == terms->end()) return {};
+  const auto value = held_value(entry, *term->effect, term->axis.rotary);
+  if (!value) return fail(value.error());
+  auto says = model::said_by(part.part.table, *term, *value);
+  if (!says) return fail(says.error());
+  PartModel::Held held{*term, {}, entry.text(), std::move(*says)};
+  held.term.held = true;
+  const Effect::Parameter& p = term->effect->linear.front();
+  const Quantity q = term->axis.rotary ? p.rotary : p.quantity;
+  held.parameter = {entry.effect, p.name, *value, 0.0, q, false, {}, true};
+  for (std::size_t i = 0; i < held.part.size(); ++i) part.part.table.deviation[i] -= held.part[i];
+  part.held.push_back(std::move(held));
+  return {};
+}
+
+/// The held terms behind those of the fit.
+void append_held(const PartModel& part, model::Fit& fit) {
+  for (const PartModel::Held& h : part.held) {
+    fit.terms.push_back(h.term);
+    fit.part.push_back(h.part);
+    fit.parameters.push_back(h.parameter);
+    if (!fit.lost.empty()) fit.lost.push_back(0);
+    for (auto& row : fit.correlation) row.push_back(0.0);
+    fit.correlation.emplace_back(fit.parameters.size(), 0.0).back() = 1.0;
+  }
+}
+
+/// What may be added to a model with these held terms.
+std::vector<model::Term> without_held(std::vector<model::Term> catalogue, const PartModel& part) {
+  std::erase_if(catalogue, [&](const model::Term& t) {
+    return std::any_of(part.held.begin(), part.held.end(),
+                       [&](const PartModel::Held& h) { return h.term.name() == t.of_all(); });
+  });
+  return catalogue;
+}
+
+}  // namespace
+
 void set_model(PartModel& part, const std::vector<std::string>& effects,
                const reading::ReadCampaign& read) {
-  auto terms = model::terms_of(part.part, read.manifest->campaign.machine, effects, read.effects);
-  part.unfit = terms ? "" : terms.error().message;
+  const Machine& machine = read.manifest->campaign.machine;
+  part.part.table.deviation = part.measured();
+  part.held.clear();
+  part.unfit.clear();
+  std::vector<std::string> fitted;
+  for (const std::string& written : effects) {
+    const Entry entry = entry_of(written);
+    if (!entry.value)
+      fitted.push_back(written);
+    else if (auto done = hold(part, entry, machine, read.effects); !done)
+      part.unfit = done.error().message;
+  }
+  auto terms = model::terms_of(part.part, machine, fitted, read.effects);
+  if (!terms) part.unfit = terms.error().message;
   part.terms = terms ? std::move(*terms) : std::vector<model::Term>{};
 }
 
@@ -258,8 +337,16 @@ std::vector<std::string> below_uncertainty(const model::Fit& fit) {
 Expected<model::Comparison> compare_part(const PartModel& part, const model::Groundwork* known,
                                          const model::Fitted& fitted) {
   if (!part.unfit.empty()) return fail(part.unfit);
-  return process::guarded(kind_of(part.part) + " " + part.part.name,
-                          [&] { return model::compare(part.part, part.terms, known, fitted); });
+  const model::Fitted with_held = [&](const model::Comparison& c) {
+    model::Comparison all = c;
+    append_held(part, all.fit);
+    fitted(all);
+  };
+  auto out = process::guarded(kind_of(part.part) + " " + part.part.name, [&] {
+    return model::compare(part.part, part.terms, known, fitted ? with_held : model::Fitted{});
+  });
+  if (out) append_held(part, out->fit);
+  return out;
 }
 
 namespace {
@@ -299,6 +386,7 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
   if ((out.verdict.kind != Kind::unknown && !explained) || part.library.empty()) return;
   std::vector<model::Term> all = part.catalogue;
   all.insert(all.end(), part.library.begin(), part.library.end());
+  all = without_held(std::move(all), part);
   auto more = model::explain(part.part, part.terms, all, seed, known);
   if (!more || more->verdict.kind != Kind::missing) return;
   const auto found = [&](const model::Term& t) {
@@ -320,9 +408,11 @@ Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t s
                                           const model::Groundwork* known, bool with_library) {
   if (!part.unfit.empty()) return fail(part.unfit);
   return process::guarded(kind_of(part.part) + " " + part.part.name, [&] {
-    auto out = model::explain(part.part, part.terms, part.catalogue, seed, known);
+    auto out =
+        model::explain(part.part, part.terms, without_held(part.catalogue, part), seed, known);
     if (out && with_library) look_up_library(part, seed, known, *out);
     if (out) leave_out_weaker_groups(*out);
+    if (out) append_held(part, out->comparison.fit);
     // None vanishes in silence.
     if (out)
       out->candidates.insert(out->candidates.end(), part.left_out.begin(), part.left_out.end());

@@ -25,7 +25,18 @@ struct PartModel {
   RowsPlace interpolated{};                  ///< readings whose temperature is interpolated
   /// Causes of the library, where they are asked for: searched if the catalogue does not explain.
   std::vector<model::Term> library{};
+  /// Effects whose value is stated. What they say is taken off the deviations of `part`, so that
+  /// everything else is fitted to the rest; a comparison has them behind its other terms.
+  struct Held {
+    model::Term term;
+    model::Parameter parameter;
+    std::string text;          ///< as the model has it: "squareness:XY = 12.3 arcsec"
+    std::vector<double> part;  ///< of each reading, m or rad
+  };
+  std::vector<Held> held{};
 
+  /// Deviations as they were read.
+  std::vector<double> measured() const;
   Quantity deviation() const { return deviation_of(part.table.angular); }
   /// Of the coordinate along the line of a reading: a position, an angle or a time.
   Quantity position() const {
@@ -35,7 +46,7 @@ struct PartModel {
   /// Of the model as it is written: without what is always there.
   std::vector<std::string> names() const;
   /// Whether the effect is of something that is measured here.
-  bool shows(const std::string& effect) const;
+  bool shows(const std::string& written) const;
 };
 
 /// What a part is called in words: "axis", "space", "balls", "course" (templates/words, term.part).

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "campaign/modelling/held_terms.h"
 #include "campaign/modelling/model_edit.h"
 #include "campaign/modelling/model_history.h"
 #include "platform/storage/digest.h"
@@ -14,13 +15,19 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The part that shows the effect, with this model; none if it was not measured.
+/// The part that shows the effect, with this model; none if it was not measured. Only where the
+/// model does not have the effect must the catalogue say which part that is.
 Expected<std::optional<Compared>> compare_axis(const reading::ReadCampaign& read,
                                                const std::vector<std::string>& effects,
                                                const std::string& effect) {
-  auto parts = part_models(read, effects);
-  if (!parts) return fail(parts.error());
-  for (PartModel& part : *parts) {
+  if (auto right = without_mistakes(effects, read); !right) return fail(right.error());
+  const bool has = find_effect(effects, effect) != nullptr;
+  for (PartModel& part : bare_parts(read)) {
+    set_model(part, effects, read);
+    if (has && part.unfit.empty())
+      fill_interpolated(part, read);
+    else
+      fill_catalogue(part, read);
     if (!part.shows(effect)) continue;
     auto comparison = compare_part(part);
     if (!comparison) return fail(comparison.error());
@@ -81,9 +88,9 @@ Expected<void> write(const fs::path& folder, const reading::ReadCampaign& read,
       folder, {{history_name, std::move(history)}, {config::manifest_name, std::move(*edited)}});
 }
 
-/// From one model to the next.
+/// From one model to the next. `known`: a comparison of the first one, if there is one already.
 Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<std::string>& model,
-                         const ModelEdit& edit) {
+                         const ModelEdit& edit, const Compared* known) {
   const std::string& effect = edit.effect;
   const bool add = edit.add;
   Change change;
@@ -94,16 +101,18 @@ Expected<Change> changed(const reading::ReadCampaign& read, const std::vector<st
     const auto found = std::find(change.effects.begin(), change.effects.end(), effect);
     if (found != change.effects.end()) change.effects.erase(found);
   }
-  auto before = compare_axis(read, model, effect);
-  if (before)
-    change.before = std::move(*before);
-  else
-    change.no_before = before.error().message;
   auto after = compare_axis(read, change.effects, effect);
   if (!after) {
     if (add) return fail(after.error());
   } else {
     change.after = std::move(*after);
+  }
+  if (known != nullptr && change.after && known->part.part.name == change.after->part.part.name) {
+    change.before = *known;
+  } else if (auto before = compare_axis(read, model, effect); before) {
+    change.before = std::move(*before);
+  } else {
+    change.no_before = before.error().message;
   }
   if (add && !change.after)
     return fail("no measurement of this campaign can show \"" + effect + "\"");
@@ -186,7 +195,7 @@ Expected<std::string> edited_manifest(std::string_view text, const CampaignEdit&
 }
 
 Expected<std::vector<Change>> change_campaign(const fs::path& folder, reading::ReadCampaign& read,
-                                              const CampaignEdit& edit) {
+                                              const CampaignEdit& edit, const Compared* known) {
   std::vector<Change> changes;
   std::vector<std::string> model = read.manifest->campaign.model;
   const auto note = [&](ModelStep step) {
@@ -204,7 +213,8 @@ Expected<std::vector<Change>> change_campaign(const fs::path& folder, reading::R
   if (!changes.empty())
     if (auto left = part_models(read, model); !left) return fail(left.error());
   for (const ModelEdit& one : edit.model) {
-    auto change = changed(read, model, one);
+    auto change = changed(read, model, one, known);
+    known = nullptr;
     if (!change) return fail(change.error());
     if (change->step.why.empty()) change->step.why = edit.why;
     model = change->effects;
@@ -218,8 +228,8 @@ Expected<std::vector<Change>> change_campaign(const fs::path& folder, reading::R
 }
 
 Expected<Change> change_model(const fs::path& folder, reading::ReadCampaign& read,
-                              const std::string& effect, bool add) {
-  auto changes = change_campaign(folder, read, {.model = {{effect, add, {}}}});
+                              const std::string& effect, bool add, const Compared* known) {
+  auto changes = change_campaign(folder, read, {.model = {{effect, add, {}}}}, known);
   if (!changes) return fail(changes.error());
   return std::move(changes->front());
 }

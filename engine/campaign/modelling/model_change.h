@@ -48,15 +48,15 @@ struct CampaignEdit {
 Expected<std::string> edited_manifest(std::string_view text, const CampaignEdit& edit);
 
 /// All of it is written, each change with its line of the history, or nothing. Exclusions and
-/// periods come first, so that effects are fitted to what is left.
+/// periods come first, so that effects are fitted to what is left. `known`: the model as it is, compared with a part.
 Expected<std::vector<Change>> change_campaign(const std::filesystem::path& folder,
-                                              reading::ReadCampaign& read,
-                                              const CampaignEdit& edit);
+                                              reading::ReadCampaign& read, const CampaignEdit& edit,
+                                              const Compared* known = nullptr);
 
 /// Adds an effect to campaign.toml or takes it out, and notes that in the history. Both files are
 /// written whole or not at all; an effect is only added if the new model can be fitted. `read` then
 /// has the new model.
 Expected<Change> change_model(const std::filesystem::path& folder, reading::ReadCampaign& read,
-                              const std::string& effect, bool add);
+                              const std::string& effect, bool add, const Compared* known = nullptr);
 
 }  // namespace nonio::modelling

@@ -40,7 +40,7 @@ std::vector<Value> values_of(const model::Comparison& c, Quantity q) {
     add(values, "lack_of_fit_p", c.lack_of_fit->p, Quantity::probability);
   }
   for (const model::Parameter& p : c.fit.parameters)
-    add(values, p.effect + "." + p.name, p.value, p.quantity, p.u);
+    if (!p.held) add(values, p.effect + "." + p.name, p.value, p.quantity, p.u);
   return values;
 }
 
@@ -105,7 +105,8 @@ Finding cannot_fit(const std::string& reason) {
   return {"model.cannot-fit", true, {}, {{"reason", reason}}};
 }
 
-void put_readings(ModelFit& out, const model::Part& part) {
+void put_readings(ModelFit& out, const PartModel& whole) {
+  const model::Part& part = whole.part;
   const Observations& o = part.table;
   out.measurement = part.measurement;
   out.source_line = o.source_line;
@@ -114,7 +115,7 @@ void put_readings(ModelFit& out, const model::Part& part) {
   out.direction = part.way;
   out.time = o.time;
   out.temperature = o.material;
-  out.deviation = o.deviation;
+  out.deviation = whole.measured();
 }
 
 void put_fit(ModelFit& out, const PartModel& part, const model::Comparison& c) {
@@ -287,7 +288,7 @@ ModelFit measured_value(const PartModel& part) {
     out.period = axis->screw_pitch;
   else if (!balls)
     out.period = 0.0;
-  put_readings(out, part.part);
+  put_readings(out, part);
   out.residual = out.deviation;
   return out;
 }

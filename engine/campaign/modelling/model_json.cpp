@@ -35,6 +35,7 @@ storage::Json parameters_json(const std::vector<model::Parameter>& parameters,
     one["unit"] = unit_of(p.quantity).symbol;
     if (!p.group.empty()) one["group"] = p.group;
     if (p.shape) one["searched"] = true;
+    if (p.held) one["held"] = true;
     if (terms != nullptr && is_stated(p, *terms)) one["stated"] = true;
     if (!p.shape && std::fabs(p.value) < 2.0 * p.u) one["below_uncertainty"] = true;
     list.push_back(std::move(one));
@@ -176,7 +177,7 @@ storage::Json positioning_json(const AfterTable::Positioning& p, Quantity q) {
 }
 
 /// What a table in the control would leave; nothing where the model has nothing for a table.
-void put_after_table(storage::Json& json, const model::Part& part, const model::Fit& fit,
+void put_after_table(storage::Json& json, const PartModel& part, const model::Fit& fit,
                      Quantity q) {
   const AfterTable predicted = after_table(part, fit);
   if (predicted.effects.empty()) return;
@@ -223,7 +224,7 @@ storage::Json compared_json(const Compared& c, const Campaign& campaign, const M
   if (comparison.means > 0) json["means"] = comparison.means;
   json["suspects"] = suspects_json(comparison.suspects, c.part, campaign, words);
   json["warnings"] = warnings_of(c.part, comparison.fit, words);
-  if (extent == Extent::whole) put_after_table(json, c.part.part, comparison.fit, q);
+  if (extent == Extent::whole) put_after_table(json, c.part, comparison.fit, q);
   return json;
 }
 
@@ -495,17 +496,22 @@ std::string next_effect(const std::vector<Told>& parts) {
 std::vector<std::string> next_effects(const std::vector<Explained>& all) {
   if (all.empty()) return {};
   const Explained& worst = all[most_severe(all)];
-  if (worst.part.part.kind != model::Part::Kind::course) {
-    const std::string next = next_effect(told_of(all));
-    return next.empty() ? std::vector<std::string>{} : std::vector<std::string>{next};
+  const model::Explanation& e = worst.explanation;
+  const model::Part::Kind kind = worst.part.part.kind;
+  const std::string next = next_effect(told_of(all));
+  if (next.empty()) return {};
+  std::vector<std::string> out{next};
+  // Of a course the sensors of a set replace each other: it is added as a whole. A volume has many
+  // errors at once: the set where it leaves nothing, else what is significant.
+  std::vector<std::string> more;
+  if (kind == model::Part::Kind::course || (kind == model::Part::Kind::space && e.explains_all))
+    more = e.together;
+  else if (kind == model::Part::Kind::space)
+    more = e.certain;
+  for (const std::string& effect : more) {
+    std::string written = model::written_for(worst.part.part, effect);
+    if (written != next) out.push_back(std::move(written));
   }
-  // Of a course the sensors of a set replace each other: it is added as a whole.
-  std::vector<std::string> out;
-  if (worst.explanation.verdict.kind != model::Verdict::Kind::missing) return out;
-  out.push_back(worst.explanation.verdict.effect);
-  for (const std::string& effect : worst.explanation.together)
-    if (effect != out.front()) out.push_back(effect);
-  for (std::string& effect : out) effect = model::written_for(worst.part.part, effect);
   return out;
 }
 

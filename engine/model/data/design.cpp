@@ -54,6 +54,7 @@ std::vector<Term> offered_to(const std::vector<Term>& model, const std::vector<T
 
 Expected<MatrixXd> columns_of(const Observations& o, const Term& term,
                               const std::vector<double>& shape) {
+  if (term.held) return MatrixXd(static_cast<Index>(o.size()), 0);
   auto made = term.effect->columns(o, term.axis, shape);
   if (!made) {
     made.error().message = term.name() + ": " + made.error().message;
@@ -100,7 +101,12 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
     for (int twice = 0; twice < 2; ++twice) math::take_out(before, own);
     const Eigen::JacobiSVD<MatrixXd> svd(own, Eigen::ComputeThinU | Eigen::ComputeThinV);
     Index rank = 0;
-    while (rank < own.cols() && svd.singularValues()(rank) > curve_threshold * size) ++rank;
+    const bool in_space =
+        o.axes.size() > 1 && may_lose(o, terms[t]) && !terms[t].effect->description;
+    const double least = in_space
+                             ? weakest_of_curve * size / std::sqrt(static_cast<double>(own.cols()))
+                             : curve_threshold * size;
+    while (rank < own.cols() && svd.singularValues()(rank) > least) ++rank;
     if (may_lose(o, terms[t]) && rank > 0 && rank < own.cols()) {
       if (lost != nullptr) (*lost)[t] = own.cols() - rank;
       blocks[t] = blocks[t] * svd.matrixV().leftCols(rank);

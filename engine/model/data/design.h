@@ -30,9 +30,11 @@ std::vector<Term> with_term(std::vector<Term> model, Term term);
 /// effect that it has without them.
 std::vector<Term> offered_to(const std::vector<Term>& model, const std::vector<Term>& catalogue);
 
-/// Of the root of the sum of squares of a curve's columns: what its readings must show beyond the
-/// terms before it.
-inline constexpr double curve_threshold = 1e-4;
+/// Of the size of a curve's columns: what the readings must show beyond the terms before it. In
+/// space what they show more weakly would have to be 30 times as large as what is read of it: two
+/// curves that cancel each other to their last digits.
+// docs/dev/constants.md, M42.
+inline constexpr double curve_threshold = 1e-4, weakest_of_curve = 0.03;
 
 /// Whether a term may say less beside those before it than it says alone: curves in space, and
 /// descriptions.

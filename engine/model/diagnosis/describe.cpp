@@ -72,7 +72,7 @@ std::vector<Description> described(const Finding& finding, const std::vector<Ter
   std::vector<Description> out;
   terms.resize(explained);
   while (true) {
-    const VectorXd gains = bench.gains(state);
+    const Workbench::Gains gains = bench.gains(state);
     Workbench::State best = state;
     for (std::size_t e = explained; e < bench.instances().size(); ++e) {
       if (bench.holds(state, e)) continue;

@@ -22,18 +22,46 @@ std::vector<double> within_passes(const Repeats& repeats, const std::vector<doub
   return saturate(alone, residual, weight).e;
 }
 
+/// Readings on the two sides of a split.
+struct Sides {
+  std::size_t low = 0, high = 0;
+  void add(bool is_low) { ++(is_low ? low : high); }
+  std::size_t all() const { return low + high; }
+  bool mixed() const { return low > 0 && high > 0; }
+};
+
+/// Whether the repeats of a cell are on different sides more often than those of something with two
+/// states can be that changes neither in each reading nor from pass to pass. Readings that were
+/// invented with a stated standard deviation for two runs are. `low`: share of the readings.
+bool are_opposite(const std::vector<Sides>& of_cell, const std::vector<Sides>& of_pass,
+                  double low) {
+  // docs/dev/constants.md, M44.
+  constexpr double far = 4.0, of_one_pass = 0.75;
+  double excess = 0.0, variance = 0.0, n = 0.0, as_pass = 0.0;
+  for (const Sides& c : of_cell) {
+    if (c.all() < 2) continue;
+    const auto k = static_cast<double>(c.all());
+    const double likely = 1.0 - std::pow(low, k) - std::pow(1.0 - low, k);
+    excess += (c.mixed() ? 1.0 : 0.0) - likely;
+    variance += likely * (1.0 - likely);
+  }
+  for (const Sides& p : of_pass)
+    n += static_cast<double>(p.all()), as_pass += static_cast<double>(std::max(p.low, p.high));
+  return excess > far * std::sqrt(variance) && as_pass < of_one_pass * n;
+}
+
 }  // namespace
 
 bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
                 const std::vector<double>& weight, double digit) {
-  std::vector<std::pair<double, std::uint32_t>> e;  // residual and cell
-  for (std::size_t i = 0; i < weight.size(); ++i)
-    if (weight[i] > 0.0) e.emplace_back(residual[i], repeats.cell[i]);
+  std::vector<std::pair<double, std::uint32_t>> e;  // residual and row
+  for (std::uint32_t i = 0; i < weight.size(); ++i)
+    if (weight[i] > 0.0) e.emplace_back(residual[i], i);
   if (e.size() < 40) return false;
   std::sort(e.begin(), e.end());
   const auto n = static_cast<double>(e.size());
   double sum = 0.0, squares = 0.0;
-  for (const auto& [x, cell] : e) sum += x, squares += x * x;
+  for (const auto& [x, row] : e) sum += x, squares += x * x;
   double left = 0.0, best = 0.0, best_apart = 0.0;
   std::size_t split = 0;
   for (std::size_t i = 0; i + 1 < e.size(); ++i) {
@@ -50,10 +78,15 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
   // docs/dev/constants.md, M33.
   constexpr double one_digit = 1.6;  // two neighbouring digits of a coarse display
   if (best < 18.0 || best_apart < one_digit * digit) return false;
-  std::vector<int> side(repeats.cells, 0);
-  for (std::size_t i = 0; i < e.size(); ++i) side[e[i].second] |= i < split ? 1 : 2;
-  const auto mixed = std::count(side.begin(), side.end(), 3);
-  return static_cast<double>(mixed) > 0.25 * static_cast<double>(repeats.cells);
+  std::vector<Sides> of_cell(repeats.cells), of_pass(repeats.passes);
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    of_cell[repeats.cell[e[i].second]].add(i < split);
+    of_pass[repeats.pass[e[i].second]].add(i < split);
+  }
+  const auto mixed =
+      std::count_if(of_cell.begin(), of_cell.end(), [](const Sides& c) { return c.mixed(); });
+  return static_cast<double>(mixed) > 0.25 * static_cast<double>(repeats.cells) &&
+         !are_opposite(of_cell, of_pass, static_cast<double>(split) / n);
 }
 
 namespace {

@@ -95,6 +95,7 @@ class Judge {
       v.effect = out_.together.front();
     }
     if (v.kind == Verdict::Kind::missing) {
+      out_.explains_all = serious.empty() && !lacks_fit();
       lift(v.effect);
       out_.plans = plans_for(f_.part, f_.of_model.fit.terms, out_.candidates.front(), f_.terms,
                              f_.of_best.fit.s);

@@ -564,6 +564,13 @@ Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
   return out;
 }
 
+Expected<std::vector<double>> said_by(const Observations& o, const Term& term, double value) {
+  const auto columns = columns_of(o, term, term.shape);
+  if (!columns) return fail(columns.error());
+  const VectorXd says = columns->col(0) * value;
+  return std::vector<double>(says.data(), says.data() + says.size());
+}
+
 double rms_with(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight) {
   const Whitening white(o, weight, {});

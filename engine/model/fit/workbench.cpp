@@ -13,6 +13,11 @@ constexpr double independent = 1e-7;
 // In space columns run along with each other (a step diagonal's mirror and its three axes): not
 // curves, which would rather be taken for the noise of rounding.
 constexpr double independent_in_space = 1e-11;
+// A part of a curve in space that the readings show so weakly would be as large as no guide is.
+constexpr double shown_of_curve = weakest_of_curve * weakest_of_curve;
+// Usual size of each part of a curve in space, m or rad: 30 um of straightness, 30 urad of angle.
+// docs/dev/constants.md, M43.
+constexpr double usual_curve = 30e-6;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 bool varies_with_target_only(const MatrixXd& columns, const std::vector<std::uint32_t>& target) {
   if (target.empty()) return false;
@@ -77,8 +82,12 @@ bool Workbench::follows_targets(const Block& block, Index of_position) const {
 
 Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
                      const std::vector<double>& weight, const std::vector<std::uint32_t>& target,
-                     std::size_t stated, Made* made, const Noise& noise)
-    : white_(o, weight, noise), target_(target), stated_(stated), several_axes_(o.axes.size() > 1) {
+                     std::size_t stated, Made* made, const Noise& noise, double scatter)
+    : white_(o, weight, noise),
+      noise_(scatter),
+      target_(target),
+      stated_(stated),
+      several_axes_(o.axes.size() > 1) {
   most_of_position_ = most_stated_ = most_of_curve_ = std::numeric_limits<Index>::max();
   if (!target_.empty()) {
     const std::uint32_t targets = *std::max_element(target_.begin(), target_.end()) + 1;
@@ -114,7 +123,7 @@ Workbench::Workbench(const Observations& o, const std::vector<Term>& terms,
 
 MatrixXd Workbench::columns_for(const Observations& o, Instance& instance,
                                 const std::vector<double>& shape, bool& of_position,
-                                Made& made) const {
+                                VectorXd& prior, Made& made) const {
   const auto effect = static_cast<std::size_t>(&instance - instances_.data());
   auto at = made.find({effect, shape});
   if (at == made.end())
@@ -130,6 +139,8 @@ MatrixXd Workbench::columns_for(const Observations& o, Instance& instance,
   const VectorXd after = part.colwise().norm().transpose();
   if (part.cols() == 0 || !(after.array() > 1e-9 * before.array()).all()) return {};
   of_position = varies_with_target_only(*columns, target_);
+  if (several_axes_ && instance.reducible && !instance.term.effect->description)
+    prior = (after * usual_curve).cwiseInverse().cwiseAbs2();
   return part * after.cwiseInverse().asDiagonal();
 }
 
@@ -137,7 +148,8 @@ void Workbench::add_shape(const Observations& o, std::size_t effect,
                           const std::vector<double>& shape) {
   Block block{effect, shape, x_.cols(), 0, false};
   Made made;
-  const MatrixXd part = columns_for(o, instances_[effect], shape, block.of_position, made);
+  const MatrixXd part =
+      columns_for(o, instances_[effect], shape, block.of_position, block.prior, made);
   if (part.cols() == 0) return;
   const Index columns = x_.cols() + part.cols();
   x_.conservativeResize(Eigen::NoChange, columns);
@@ -152,6 +164,7 @@ void Workbench::add_shape(const Observations& o, std::size_t effect,
 void Workbench::push(Block block, const MatrixXd& columns) {
   block.count = columns.cols();
   block.own = math::transposed_product(columns, columns);
+  if (block.prior.size() > 0) block.own.diagonal() += noise_ * noise_ * block.prior;
   instances_[block.effect].blocks.push_back(blocks_.size());
   blocks_.push_back(std::move(block));
 }
@@ -162,10 +175,10 @@ void Workbench::add(const Observations& o, std::size_t effect, std::vector<Matri
   const auto shapes = shapes_of(o, instance.term);
   Index at = parts.empty() ? 0 : blocks_.back().first + blocks_.back().count;
   for (const std::vector<double>& shape : shapes) {
-    bool of_position = false;
-    MatrixXd part = columns_for(o, instance, shape, of_position, made);
+    Block block{effect, shape, at, 0, false};
+    MatrixXd part = columns_for(o, instance, shape, block.of_position, block.prior, made);
     if (part.cols() == 0) continue;
-    push({effect, shape, at, 0, of_position}, part);
+    push(std::move(block), part);
     at += part.cols();
     parts.push_back(std::move(part));
   }
@@ -207,7 +220,7 @@ Workbench::State Workbench::state(std::vector<std::size_t> blocks) const {
     const MatrixXd own = gram(out.blocks);
     const Eigen::LLT<MatrixXd> llt(own);
     if (llt.info() == Eigen::Success &&
-        llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent)) {
+        llt.matrixLLT().diagonal().minCoeff() > wholly_independent()) {
       const VectorXd z = math::whitened(llt, VectorXd(xy_(columns)));
       out.squares = z.allFinite() ? std::max(yy_ - z.squaredNorm(), 0.0) : nan;
     } else {
@@ -238,17 +251,17 @@ double fall_of(const MatrixXd& s, const VectorXd& t, double least) {
 }
 
 /// The same in those directions of the block that are independent.
-double fall_of_some(const MatrixXd& s, const VectorXd& t) {
+double fall_of_some(const MatrixXd& s, const VectorXd& t, double least, Index& rank) {
   const auto [values, vectors] = math::spectrum(s);
   const VectorXd along = math::transposed_times(vectors, t);
   double fall = 0.0;
-  bool any = false;
+  rank = 0;
   for (Index k = 0; k < along.size(); ++k) {
-    if (!(values(k) > independent)) continue;
+    if (!(values(k) > least)) continue;
     fall += along(k) * along(k) / values(k);
-    any = true;
+    ++rank;
   }
-  return any ? fall : nan;
+  return rank > 0 ? fall : nan;
 }
 
 double fall_of_two(double aa, double ab, double bb, double ta, double tb, double least) {
@@ -304,6 +317,11 @@ MatrixXd Workbench::products(const std::vector<std::size_t>& of,
     Index row = 0;
     for (const std::size_t a : of) {
       auto to = out.block(row, column, blocks_[a].count, blocks_[b].count);
+      if (a == b) {
+        to = blocks_[a].own;
+        row += blocks_[a].count;
+        continue;
+      }
       if (products_[b].size() > 0)
         to = products_[b].middleRows(blocks_[a].first, blocks_[a].count);
       else if (products_[a].size() > 0)
@@ -323,7 +341,7 @@ Workbench::Projection Workbench::projection(const State& state, MatrixXd product
   const MatrixXd own = gram(state.blocks);
   const Eigen::LLT<MatrixXd> llt(own);
   if (!reducible_ || (llt.info() == Eigen::Success &&
-                      llt.matrixLLT().diagonal().minCoeff() > std::sqrt(independent))) {
+                      llt.matrixLLT().diagonal().minCoeff() > wholly_independent())) {
     out.z = math::whitened(llt, VectorXd(xy_(columns_of_state(state))));
     llt.matrixU().solveInPlace<Eigen::OnTheRight>(out.products);
     return out;
@@ -335,7 +353,14 @@ Workbench::Projection Workbench::projection(const State& state, MatrixXd product
 }
 
 double Workbench::least_of(const Block& block) const {
-  return several_axes_ && !reducible(block) ? independent_in_space : independent;
+  if (!several_axes_) return independent;
+  if (!reducible(block)) return independent_in_space;
+  return instances_[block.effect].term.effect->description ? independent : shown_of_curve;
+}
+
+/// Of the diagonal of a factor: all of every column counts.
+double Workbench::wholly_independent() const {
+  return several_axes_ && reducible_ ? 3.0 * weakest_of_curve : std::sqrt(independent);
 }
 
 bool Workbench::reducible(const Block& block) const { return instances_[block.effect].reducible; }
@@ -365,7 +390,9 @@ Workbench::Directions Workbench::directions(const std::vector<std::size_t>& bloc
 }
 
 /// `p.products` holds what columns have in the directions of the state, those of the block from `row` on.
-double Workbench::fall_of_block(const Projection& p, Index row, const Block& block) const {
+double Workbench::fall_of_block(const Projection& p, Index row, const Block& block,
+                                Index& rank) const {
+  rank = block.count;
   const auto w = p.products.middleRows(row, block.count);
   VectorXd left = xy_.segment(block.first, block.count);
   if (p.z.size() > 0) left.noalias() -= w * p.z;
@@ -378,31 +405,38 @@ double Workbench::fall_of_block(const Projection& p, Index row, const Block& blo
                        1.0 - w.row(1).squaredNorm(), left(0), left(1), least_of(block));
   const MatrixXd s = block.own - w * w.transpose();
   const double fall = fall_of(s, left, least_of(block));
-  return std::isnan(fall) && reducible(block) ? fall_of_some(s, left) : fall;
+  return std::isnan(fall) && reducible(block) ? fall_of_some(s, left, least_of(block), rank) : fall;
 }
 
-VectorXd Workbench::gains(const State& state) const {
-  VectorXd fall(static_cast<Index>(blocks_.size()));
+void Workbench::put_gain(const Projection& p, Index row, std::size_t block, Gains& out) const {
+  out.fall(static_cast<Index>(block)) = fall_of_block(p, row, blocks_[block], out.rank[block]);
+}
+
+Workbench::Gains Workbench::no_gains() const {
+  return {VectorXd::Constant(static_cast<Index>(blocks_.size()), nan),
+          std::vector<Index>(blocks_.size(), 0)};
+}
+
+Workbench::Gains Workbench::gains(const State& state) const {
+  Gains out = no_gains();
   const Projection p = projection(state, products(state.blocks));
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
-    fall(static_cast<Index>(b)) = fall_of_block(p, blocks_[b].first, blocks_[b]);
-  return fall;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) put_gain(p, blocks_[b].first, b, out);
+  return out;
 }
 
-VectorXd Workbench::gains(const State& state, std::size_t effect) const {
-  VectorXd fall = VectorXd::Constant(static_cast<Index>(blocks_.size()), nan);
+Workbench::Gains Workbench::gains(const State& state, std::size_t effect) const {
+  Gains out = no_gains();
   const std::vector<std::size_t>& own = instances_[effect].blocks;
   const Projection p = projection(state, products(own, state.blocks));
   Index row = 0;
   for (const std::size_t b : own) {
-    fall(static_cast<Index>(b)) = fall_of_block(p, row, blocks_[b]);
+    put_gain(p, row, b, out);
     row += blocks_[b].count;
   }
-  return fall;
+  return out;
 }
 
-Workbench::State Workbench::with(const State& state, const VectorXd& gains,
-                                 std::size_t effect) const {
+Workbench::State Workbench::with(const State& state, const Gains& gains, std::size_t effect) const {
   if (instances_[effect].reducible) return with_curve(state, gains, effect);
   std::size_t best = blocks_.size();
   double least = std::numeric_limits<double>::infinity();
@@ -410,7 +444,7 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
   for (const std::size_t b : state.blocks)
     if (blocks_[b].of_position) of_position += unknowns_of(blocks_[b]);
   for (const std::size_t b : instances_[effect].blocks) {
-    const double fall = gains(static_cast<Index>(b));
+    const double fall = gains(b);
     if (std::isnan(fall)) continue;
     if (follows_targets(blocks_[b], of_position)) continue;
     const double c =
@@ -421,7 +455,7 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
   if (best == blocks_.size()) return state;
   State more = state;
   more.blocks.push_back(best);
-  more.squares = std::max(state.squares - gains(static_cast<Index>(best)), 0.0);
+  more.squares = std::max(state.squares - gains(best), 0.0);
   more.parameters += unknowns_of(blocks_[best]);
   more.price += price(blocks_[best]);
   more.criterion = criterion(more.squares, more.price, more.parameters);
@@ -429,21 +463,26 @@ Workbench::State Workbench::with(const State& state, const VectorXd& gains,
 }
 
 /// A curve counts with as many parameters as it has directions of its own beside the state's.
-Workbench::State Workbench::with_curve(const State& state, const VectorXd& gains,
+Workbench::State Workbench::with_curve(const State& state, const Gains& gains,
                                        std::size_t effect) const {
   State best = state;
   double least = std::numeric_limits<double>::infinity();
   for (const std::size_t b : instances_[effect].blocks) {
-    if (std::isnan(gains(static_cast<Index>(b)))) continue;
-    std::vector<std::size_t> blocks = state.blocks;
-    blocks.push_back(b);
-    State more = this->state(std::move(blocks));
-    if (more.criterion < least) least = more.criterion, best = std::move(more);
+    if (std::isnan(gains(b))) continue;
+    const Block& block = blocks_[b];
+    const double squares = std::max(state.squares - gains(b), 0.0);
+    const double price = state.price + this->price(block, gains.rank[b]);
+    const Index parameters = state.parameters + unknowns_of(block) - block.count + gains.rank[b];
+    const double c = criterion(squares, price, parameters);
+    if (!(c < least)) continue;
+    least = c;
+    best = {state.blocks, squares, parameters, price, c};
+    best.blocks.push_back(b);
   }
   return best;
 }
 
-Workbench::State Workbench::joined(const State& state, const VectorXd& gains,
+Workbench::State Workbench::joined(const State& state, const Gains& gains,
                                    std::size_t effect) const {
   State best = with(state, gains, effect);
   const auto& own = instances_[effect].blocks;

@@ -21,8 +21,10 @@ class Workbench {
     std::size_t effect;
     std::vector<double> shape;
     Index first, count;
-    bool of_position;            ///< the same at every reading of a target
-    MatrixXd own{};              ///< scalar products of its columns
+    bool of_position;  ///< the same at every reading of a target
+    MatrixXd own{};    ///< scalar products of its columns, with the prior of a curve
+    /// Of each column of a curve in space 1/(usual size)^2, in the units of its parameter.
+    VectorXd prior{};
     Index searched = 0;          ///< of its shapes so many were searched
     double cost_of_shape = 0.0;  ///< 2 ln of the number of independent values they were chosen from
   };
@@ -51,10 +53,12 @@ class Workbench {
 
   /// `target` of each reading: sets whose columns of position alone come near to one free value per
   /// target are not looked at. Empty: all are. The first `stated` terms are the model's: that they
-  /// are there is known, and their curves may follow the targets more closely.
+  /// are there is known, and their curves may follow the targets more closely. `scatter`: of a
+  /// reading; with it curves in space have a usual size (ridge).
   Workbench(const Observations& o, const std::vector<Term>& terms,
             const std::vector<double>& weight, const std::vector<std::uint32_t>& target = {},
-            std::size_t stated = 0, Made* made = nullptr, const Noise& noise = {});
+            std::size_t stated = 0, Made* made = nullptr, const Noise& noise = {},
+            double scatter = 0.0);
 
   const std::vector<Instance>& instances() const { return instances_; }
   const std::vector<Block>& blocks() const { return blocks_; }
@@ -64,21 +68,28 @@ class Workbench {
   const Whitening& white() const { return white_; }
   double readings() const { return used_; }
   Index zeros() const { return zeros_; }
+  bool in_space() const { return several_axes_; }
 
   /// One more value of an effect's shapes, beside those of its grid.
   void add_shape(const Observations& o, std::size_t effect, const std::vector<double>& shape);
 
   State state(std::vector<std::size_t> blocks) const;
-  /// For each block the fall of `squares` if it is added; NaN if it adds no independent column.
-  VectorXd gains(const State& state) const;
+  /// For each block the fall of `squares` if it is added, NaN if it adds no independent column, and
+  /// how many independent columns it adds.
+  struct Gains {
+    VectorXd fall;
+    std::vector<Index> rank;
+    double operator()(std::size_t block) const { return fall(static_cast<Index>(block)); }
+  };
+  Gains gains(const State& state) const;
   /// The same for the blocks of one effect only; NaN elsewhere.
-  VectorXd gains(const State& state, std::size_t effect) const;
+  Gains gains(const State& state, std::size_t effect) const;
   /// The state with the best block of this effect added, or nothing that can be added (blocks as
   /// before).
-  State with(const State& state, const VectorXd& gains, std::size_t effect) const;
+  State with(const State& state, const Gains& gains, std::size_t effect) const;
   /// The same, where it is better with curves of fewer knots: a curve that is there follows what
   /// the new effect has to say, and takes the targets that it would need.
-  State joined(const State& state, const VectorXd& gains, std::size_t effect) const;
+  State joined(const State& state, const Gains& gains, std::size_t effect) const;
   /// Each effect's shapes looked for again while the others stay, until nothing improves.
   State settled(State state) const;
   bool holds(const State& state, std::size_t effect) const;
@@ -111,7 +122,7 @@ class Workbench {
   void add(const Observations& o, std::size_t effect, std::vector<MatrixXd>& parts, Made& made);
   /// Columns of unit length without the zeros of lines; none if the readings cannot show them.
   MatrixXd columns_for(const Observations& o, Instance& instance, const std::vector<double>& shape,
-                       bool& of_position, Made& made) const;
+                       bool& of_position, VectorXd& prior, Made& made) const;
   struct Projection {
     MatrixXd products;  // of columns with orthonormal directions of the state's
     VectorXd z;         // of the readings with them
@@ -123,12 +134,16 @@ class Workbench {
     bool sound = true;  // every effect has a direction of its own, and all but curves all of theirs
   };
   Directions directions(const std::vector<std::size_t>& blocks, const MatrixXd& gram) const;
+  Gains no_gains() const;
   bool reducible(const Block& block) const;
   double least_of(const Block& block) const;
-  State with_curve(const State& state, const VectorXd& gains, std::size_t effect) const;
+  double wholly_independent() const;
+  State with_curve(const State& state, const Gains& gains, std::size_t effect) const;
   /// `products` of columns with those of the state.
   Projection projection(const State& state, MatrixXd products) const;
-  double fall_of_block(const Projection& projection, Index row, const Block& block) const;
+  void put_gain(const Projection& projection, Index row, std::size_t block, Gains& out) const;
+  double fall_of_block(const Projection& projection, Index row, const Block& block,
+                       Index& rank) const;
   void push(Block block, const MatrixXd& columns);
   void count_shapes(Instance& instance) const;
   void fill_search(Block& block) const;
@@ -146,7 +161,7 @@ class Workbench {
       pairs_;  // of two blocks' columns, likewise
   Whitening white_;
   VectorXd y_, xy_;
-  double yy_ = 0.0, used_ = 0.0;
+  double yy_ = 0.0, used_ = 0.0, noise_ = 0.0;
   std::vector<std::uint32_t> target_;
   std::size_t stated_ = 0;
   // Columns and searched shapes of position: of a set, with stated terms, of a curve not stated.

@@ -15,6 +15,10 @@ namespace {
 
 using State = Workbench::State;
 
+/// An effect that leaves so much less evidence does not become as good by other shapes of the rest.
+// docs/dev/constants.md, M41.
+constexpr double hopeless = 100.0;
+
 double normal_below(double x) { return 0.5 * std::erfc(-x * std::numbers::sqrt2 / 2.0); }
 
 /// How large an effect must be to be found. In units of the variance of a reading the fall of the
@@ -138,10 +142,12 @@ class CandidateOf {
   std::vector<std::string> aliases_of(std::size_t member) const {
     std::vector<std::string> names;
     const State rest = f_.bench->without(f_.best, member);
-    const VectorXd gains = f_.bench->gains(rest);
+    const Workbench::Gains gains = f_.bench->gains(rest);
     for (std::size_t other = f_.in_model; other < f_.terms.size(); ++other) {
       if (other == member || f_.bench->holds(f_.best, other)) continue;
-      const State changed = f_.bench->settled(f_.bench->joined(rest, gains, other));
+      State changed = f_.bench->joined(rest, gains, other);
+      if (f_.bench->in_space() && !(changed.criterion < f_.best.criterion + hopeless)) continue;
+      changed = f_.bench->settled(std::move(changed));
       if (changed.blocks.size() > rest.blocks.size() && as_good(changed))
         names.push_back(f_.terms[other].name());
     }

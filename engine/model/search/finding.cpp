@@ -50,7 +50,7 @@ class Finder {
     f_.noise = noise_of(f_.part, f_.repeats, f_.weight);
     if (alone_) f_.noise.in_repeats = f_.noise.neighbours = 0.0;
     f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_,
-                     f_.noise);
+                     f_.noise, scatter());
     auto start = best_start();
     if (!start) return fail(start.error());
     f_.start = std::move(*start);
@@ -66,6 +66,13 @@ class Finder {
       if (!(f_.best.criterion < before - worth_another_round)) break;
     }
     return {};
+  }
+
+  /// Of the repeats; 0 where there are none.
+  double scatter() const {
+    constexpr double fewest = 8.0;
+    const Saturated repeated = saturate(f_.repeats, f_.part.table.deviation, f_.weight);
+    return repeated.dof >= fewest ? std::sqrt(repeated.squares / repeated.dof) : 0.0;
   }
 
   /// Within a pass a zero that walks looks like neighbours that are alike. Whether it is the better
@@ -122,7 +129,7 @@ class Finder {
   Expected<State> started(std::vector<std::size_t> open, bool largest_first) const {
     State start = f_.bench->state({});
     while (!open.empty()) {
-      const VectorXd gains = f_.bench->gains(start);
+      const Workbench::Gains gains = f_.bench->gains(start);
       State best;
       std::size_t at = open.size();
       for (std::size_t k = 0; k < (largest_first ? open.size() : 1); ++k) {

@@ -18,7 +18,7 @@ using State = Workbench::State;
 // docs/dev/constants.md, M16.
 constexpr std::size_t side_by_side = 4;
 // docs/dev/constants.md, M17.
-constexpr int most_effects_added = 7;
+constexpr int most_effects_added = 7, most_in_space = 24;
 
 std::set<std::size_t> effects_of(const Workbench& bench, const State& s) {
   std::set<std::size_t> out;
@@ -31,7 +31,7 @@ std::vector<State> grown(const Workbench& bench, const std::vector<State>& level
   std::vector<State> next;
   std::set<std::set<std::size_t>> seen;
   for (const State& s : level) {
-    const VectorXd gains = bench.gains(s);
+    const Workbench::Gains gains = bench.gains(s);
     for (std::size_t e = 0; e < bench.instances().size(); ++e) {
       if (bench.holds(s, e)) continue;
       std::set<std::size_t> effects = effects_of(bench, s);
@@ -60,7 +60,7 @@ bool improve(const Workbench& bench, const State& start, State& best) {
       best = rest;
       return true;
     }
-    const VectorXd gains = bench.gains(rest);
+    const Workbench::Gains gains = bench.gains(rest);
     for (std::size_t other = 0; other < bench.instances().size(); ++other) {
       if (other == e || bench.holds(rest, other)) continue;
       State changed = bench.joined(rest, gains, other);
@@ -80,7 +80,8 @@ State best_explanation(const Workbench& bench, const State& start) {
   State best = start;
   std::vector<State> level{start};
   int without_gain = 0;
-  for (int depth = 0; depth < most_effects_added && without_gain < 2; ++depth) {
+  const int most = bench.in_space() ? most_in_space : most_effects_added;
+  for (int depth = 0; depth < most && without_gain < 2; ++depth) {
     level = grown(bench, level);
     if (level.empty()) break;
     std::stable_sort(level.begin(), level.end(),

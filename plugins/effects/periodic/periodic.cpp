@@ -13,6 +13,16 @@ namespace nonio::periodic {
 constexpr double usual_leads[] = {0.0025, 0.003, 0.004, 0.005, 0.006,  0.008, 0.010, 0.012,
                                   0.0127, 0.016, 0.020, 0.025, 0.0254, 0.032, 0.040};
 
+/// Targets of several lines that are the same but for their last digits are one.
+static std::vector<double> places_of(const AxisReadings& r) {
+  const double same = 1e-5 * r.length;
+  std::vector<double> places = targets_of(r);
+  places.erase(std::unique(places.begin(), places.end(),
+                           [same](double a, double b) { return b - a < same; }),
+               places.end());
+  return places;
+}
+
 /// The period of the manifest, or fewer periods than half the targets (evenly spaced ones), or than
 /// twice the targets (uneven ones show shorter periods too); three at least over the stretch. The
 /// step is a quarter of the width of a spectral line, coarser beyond 240 periods; on a circle, whose
@@ -25,7 +35,7 @@ static std::vector<double> grid(const Observations& o, const Axis& axis) {
   if (axis.screw_pitch) return {*axis.screw_pitch};
   const auto r = readings_of(o, axis);
   if (!r) return {};
-  const std::vector<double> targets = targets_of(*r);
+  const std::vector<double> targets = places_of(*r);
   if (targets.size() < fewest_targets) return {};
   const double intervals = static_cast<double>(targets.size() - 1);
   const double mean = r->length / intervals;

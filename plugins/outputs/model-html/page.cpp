@@ -144,6 +144,8 @@ void add_steps(View& view, const Source& source) {
 
 void add_pictures(View& view, const Source& source) {
   view.flag("circles", workbench::has_circles(source.in.campaign, source.fit));
+  const PictureWords fit = fit_words(source.fit, source.words);
+  view.set("fit_heading", fit.title).set("fit_none", fit.none).set("fit_says", fit.says);
   for (std::size_t i = 0; i < source.pictures.size(); ++i) {
     const PictureWords& p = source.pictures[i];
     View& picture = view.add("picture");

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The page of residuals. Its nine pictures have the same places whatever the data are, so that the
+// Readings with their model, and the page of residuals. Its nine pictures have the same places whatever the data are, so that the
 // eye learns where to look; one whose data are not there says so in its frame.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "nonio/reports/number.h"
@@ -22,6 +23,9 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
+/// Halfway to the paper.
+Colour pale(Colour c) { return {(1 + c.red) / 2, (1 + c.green) / 2, (1 + c.blue) / 2}; }
+
 class Pictures {
  public:
   Pictures(const Source& source, const ModelFit& fit)
@@ -30,7 +34,7 @@ class Pictures {
         fit_(fit),
         style_(source.look.style),
         deviation_(deviation_of(fit.angular)),
-        position_(position_of(fit.rotary)),
+        scale_(place_scale(fit)),
         per_si_(unit_of(deviation_).per_si),
         suspect_(fit.size(), 0),
         lanes_(lanes_of(fit)) {
@@ -84,14 +88,35 @@ class Pictures {
     return plot;
   }
 
-  std::string legend() const {
-    std::string text = words_.get("picture.legend");
-    text += " " + (fit_.floor
-                       ? words_.get(
-                             "picture.legend_floor",
-                             {{"s", printed_number(*fit_.floor, deviation_, 2, source_.language())},
-                              {"unit", unit_text(deviation_)}})
-                       : words_.get("picture.no_floor"));
+  /// Readings of each pass with the model, and what it leaves below, over the same places.
+  std::array<Plot, 2> with_model(const PictureWords& said, const PictureWords& left) const {
+    Plot above = frame(said), below = frame(left);
+    below.title.clear();
+    below.empty_text = said.none;
+    if (said.none.empty()) {
+      above.range.reset();
+      above.belts.clear();
+      above.lanes = lanes_.names;
+      readings(above);
+      position(below);
+    }
+    above.x_title.clear();
+    for (Plot* plot : {&above, &below}) plot->number_room = 26;
+    above.height = 1.15 * style_.plot_height;
+    below.height = 0.75 * style_.plot_height;
+    return {std::move(above), std::move(below)};
+  }
+
+  std::string legend() const { return words_.get("picture.legend") + " " + marks(); }
+
+  /// What the grey band and the rings are.
+  std::string marks() const {
+    std::string text =
+        fit_.floor
+            ? words_.get("picture.legend_floor",
+                         {{"s", printed_number(*fit_.floor, deviation_, 2, source_.language())},
+                          {"unit", unit_text(deviation_)}})
+            : words_.get("picture.no_floor");
     if (!fit_.suspects.empty())
       text += " " + words_.get("picture.legend_suspect",
                                {{"count", std::to_string(fit_.suspects.size())}});
@@ -162,7 +187,7 @@ class Pictures {
   /// Where targets of a measurement lie in a picture by position.
   std::vector<double> along(std::vector<double> targets, std::size_t measurement) const {
     for (double& t : targets)
-      t = lanes_.names.empty() ? t * unit_of(position_).per_si : lanes_.at(measurement, t);
+      t = lanes_.names.empty() ? (t - scale_.from) * scale_.per_si : lanes_.at(measurement, t);
     return targets;
   }
 
@@ -180,6 +205,58 @@ class Pictures {
     scatter(plot, places(), scaled(fit_.residual, per_si_));
     for (std::uint32_t m = 0; m < std::max<std::size_t>(fit_.measurements.size(), 1); ++m)
       mean_lines(plot, fit_.measurements.size() > 1 ? of_measurement(fit_, m) : fit_, m);
+  }
+
+  void readings(Plot& plot) const {
+    constexpr std::size_t most_lines = 60;  // of more passes the lines hide each other
+    constexpr std::size_t most_single = 5000;
+    const std::vector<double> x = places(), y = scaled(fit_.deviation, per_si_);
+    std::vector<double> model(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) model[i] = y[i] - fit_.residual[i] * per_si_;
+    const auto passes = passes_of(fit_);
+    const auto of = [](const std::vector<std::size_t>& rows, const std::vector<double>& values) {
+      std::vector<double> out;
+      for (const std::size_t i : rows) out.push_back(values[i]);
+      return out;
+    };
+    if (passes.size() <= most_lines)
+      for (const Pass& pass : passes)
+        if (pass.is_path) {
+          line(plot, of(pass.rows, x), of(pass.rows, y),
+               pale(pass.direction > 0   ? style_.plus
+                    : pass.direction < 0 ? style_.minus
+                                         : style_.accent));
+          if (!plot.curves.empty()) plot.curves.back().width = 0.4;
+        }
+    scatter(plot, x, y);
+    if (fit_.size() > most_single) return mean_model(plot);
+    for (const Pass& pass : passes) {
+      if (pass.is_path) {
+        line(plot, of(pass.rows, x), of(pass.rows, model), style_.text,
+             pass.direction < 0 ? Dash::dashed : Dash::solid);
+        continue;
+      }
+      Curve points;
+      points.kind = Curve::Kind::points;
+      points.x = of(pass.rows, x), points.y = of(pass.rows, model);
+      points.colour = style_.text, points.marker = Marker::dot, points.marker_size = 0.8;
+      plot.curves.push_back(std::move(points));
+    }
+  }
+
+  /// Of very many readings the mean of the model at each target.
+  void mean_model(Plot& plot) const {
+    ModelFit model = fit_;
+    for (std::size_t i = 0; i < model.size(); ++i)
+      model.residual[i] = fit_.deviation[i] - fit_.residual[i];
+    for (std::uint32_t m = 0; m < std::max<std::size_t>(fit_.measurements.size(), 1); ++m) {
+      const ModelFit of = fit_.measurements.size() > 1 ? of_measurement(model, m) : model;
+      for (const int d : {+1, -1, 0}) {
+        const Trace mean = mean_by_target(of, d);
+        line(plot, along(mean.x, m), scaled(mean.y, per_si_), style_.text,
+             d < 0 ? Dash::dashed : Dash::solid);
+      }
+    }
   }
 
   void mean_lines(Plot& plot, const ModelFit& fit, std::size_t measurement) const {
@@ -266,7 +343,8 @@ class Pictures {
   const Wording& words_;
   const ModelFit& fit_;
   const Style& style_;
-  Quantity deviation_, position_;
+  Quantity deviation_;
+  PlaceScale scale_;
   double per_si_;
   std::vector<char> suspect_;  ///< of each reading
   Lanes lanes_;
@@ -274,6 +352,21 @@ class Pictures {
 };
 
 }  // namespace
+
+void add_fit(const Source& source, const ModelFit& fit, Blocks& blocks) {
+  const std::string field = "readings and model of " + fit.part;
+  const Pictures pictures(source, fit);
+  const auto said = picture_words(fit, source.pictures);
+  const PictureWords words = fit_words(fit, source.pictures);
+  auto [above, below] = pictures.with_model(words, said.front());
+  const std::string legend = words.says + " " + pictures.marks();
+  Columns together;
+  together.parts = {{{std::move(above), field},
+                     {std::move(below), field},
+                     {Paragraph{legend, Paragraph::Look::muted}, field}}};
+  blocks.push_back({Spacer{4}});
+  blocks.push_back({std::move(together), field});
+}
 
 void add_pictures(const Source& source, const ModelFit& fit, Blocks& blocks) {
   constexpr std::size_t per_row = 3;

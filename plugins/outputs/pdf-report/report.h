@@ -51,6 +51,8 @@ std::string title_of(const Source&, const TableFinding&);
 
 /// How the models fit: verdict, parameters, the falling error.
 void add_models(const Source&, Blocks&);
+/// Readings with their model, and what it leaves.
+void add_fit(const Source&, const ModelFit&, Blocks&);
 /// A page of pictures for each model.
 void add_residuals(const Source&, Blocks&);
 /// Always the same nine, in the same places, together with their heading on one page.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nine pictures of residuals: the page from disk (model-html) and the live one draw with this code. The caller
-// brings the data, from the page itself or from the server, and says what is hidden and what is done with a reading.
+// The readings with their model, and the nine pictures of residuals: the page from disk (model-html) and the live one
+// draw with this code. The caller brings the data, from the page itself or from the server, and says what is hidden and what is done with a reading.
 "use strict";
-/// figure(k): the element of picture k; tip: what shows a reading; hidden: {d: directions, r: runs}, sets.
+/// figure(k): the element of picture k, "fit" of that with the model; tip: what shows a reading; hidden: {d: directions, r: runs}, sets.
 /// Where a caller wants them: elsewhere(k) where it draws picture k itself, pick(row) and brushed(rows) when a reading or
 /// a region is chosen, said(lines) when a key moves to a reading, drawn(k, frame) after each picture, inTurn() after all
 /// of them; with it those in view come first. Circles have two pictures more, "polar" and "rest" (polar.js).
@@ -19,9 +19,9 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   const finite = (v) => typeof v === "number" && isFinite(v);
   const counts = (i) => data.weight[i] >= 0.5;
 
-  function common_range() {
+  function common_range(of) {
     let low = 0, high = 0;
-    for (const values of [residual, data.left_out])
+    for (const values of [of, data.left_out])
       if (values)
         for (const i of shown)
           if (!wrong.has(i) && finite(values[i])) {
@@ -48,14 +48,16 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   const r1 = (v) => Math.round(v * 10) / 10;
 
   class Frame {
+    /// `options.from`, `to`: of the height, where another frame is in the same picture; `bare`: without a title below.
     constructor(k, xs, options) {
-      const holder = figure(k);
+      const holder = figure(options.in || k), {from = 0, to = 230, all = to, bare = false} = options;
       this.svg = holder.querySelector("svg");
-      this.svg.replaceChildren();
-      const width = printing ? 240 : Math.max(220, Math.round(holder.clientWidth) || 320), height = 230;
-      this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-      Object.assign(this, {k, x: 46, y: 6, w: width - 52, h: height - 44, points: []});
-      const said = data.pictures[k];
+      if (from === 0) this.svg.replaceChildren();
+      this.g = put(this.svg, "g", {});
+      const width = printing ? (options.in ? 740 : 240) : Math.max(220, Math.round(holder.clientWidth) || 320);
+      this.svg.setAttribute("viewBox", `0 0 ${width} ${all}`);
+      Object.assign(this, {k, x: 46, y: from + 6, w: width - 52, h: to - from - (bare ? 24 : 44), bare, band: options.band, named: options.in ? "" : named, points: []});
+      const said = options.said || data.pictures[k];
       let [low, high] = extremes(xs);
       this.empty = !(low <= high);
       if (this.empty) [low, high] = [0, 1];
@@ -71,7 +73,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     px(v) { return this.x + (this.w * (v - this.left)) / (this.right - this.left); }
     py(v) { return this.y + this.h * (1 - (v - this.low) / (this.high - this.low)); }
     axes(said, kind) {
-      const {svg, x, y, w, h} = this;
+      const {g: svg, x, y, w, h} = this;
       if (data.floor && !this.own_band())
         put(svg, "rect", {class: "band", x, y: r1(this.py(2 * data.floor)), width: w,
                           height: r1(this.py(-2 * data.floor) - this.py(2 * data.floor))});
@@ -91,15 +93,17 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
         put(svg, "text", {x: r1(at), y: y + h + 13, "text-anchor": "middle"}, t.label);
       }
       put(svg, "rect", {class: "frame", x, y, width: w, height: h});
-      put(svg, "text", {x: x + w / 2, y: y + h + 31, "text-anchor": "middle"}, said.x);
-      put(svg, "text", {transform: `translate(11 ${y + h / 2}) rotate(-90)`, "text-anchor": "middle"}, named && said.y === data.pictures[0].y ? named : said.y);
+      if (!this.bare) put(svg, "text", {x: x + w / 2, y: y + h + 31, "text-anchor": "middle"}, said.x);
+      put(svg, "text", {transform: `translate(11 ${y + h / 2}) rotate(-90)`, "text-anchor": "middle"}, this.named && said.y === data.pictures[0].y ? this.named : said.y);
       if (this.empty) put(svg, "text", {x: x + w / 2, y: y + h / 2 - 8, "text-anchor": "middle"}, this.k === 1 ? words.one_direction : words.no_readings);
     }
-    own_band() { return this.k === 1; }
+    own_band() { return this.k === 1 || this.band === false; }
     line(xs, ys, look) {
-      if (xs.length < 2) return;
-      const d = xs.map((v, i) => (i ? "L" : "M") + r1(this.px(v)) + " " + r1(this.py(ys[i]))).join("");
-      put(this.svg, "path", {class: "line " + look, d});
+      if (xs.length > 1) this.lines([[xs, ys]], look);
+    }
+    lines(all, look) {
+      const one = ([xs, ys]) => xs.map((v, i) => (i ? "L" : "M") + r1(this.px(v)) + " " + r1(this.py(ys[i]))).join("");
+      if (all.length) put(this.g, "path", {class: "line " + look, d: all.map(one).join("")});
     }
     /// Readings by direction; suspects that lie outside stand at the edge.
     /// On paper they are drawn: sharp at any size. On the screen very many are painted, which takes a tenth of the time.
@@ -119,8 +123,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       });
       if (painted) this.paint(dots);
       for (const look in path)
-        if (path[look]) put(this.svg, "path", {class: (many || look === "other" ? "dots " : "marks ") + look, d: path[look]});
-      for (const [cx, cy] of rings) put(this.svg, "circle", {class: "suspect", cx: r1(cx), cy: r1(cy), r: 6});
+        if (path[look]) put(this.g, "path", {class: (many || look === "other" ? "dots " : "marks ") + look, d: path[look]});
+      for (const [cx, cy] of rings) put(this.g, "circle", {class: "suspect", cx: r1(cx), cy: r1(cy), r: 6});
     }
     paint(dots) {
       const {x, y, w, h} = this, sharp = Math.min(3, window.devicePixelRatio || 1);
@@ -137,7 +141,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
         to.drawImage(one, 0, 0);
       }
       Object.assign(shown_.style, {width: w + "px", height: h + "px", display: "block"});
-      put(this.svg, "foreignObject", {class: "dots", x, y, width: w, height: h, "pointer-events": "none"}).append(shown_);
+      put(this.g, "foreignObject", {class: "dots", x, y, width: w, height: h, "pointer-events": "none"}).append(shown_);
     }
   }
 
@@ -208,6 +212,42 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     return frame;
   }
 
+  // ---- readings of each pass with the model, and below what it leaves ----
+  function with_model() {
+    const xs = shown.map((i) => place[i]), left = (i) => (named ? data.residual[i] : residual[i]), most_lines = 60;
+    const model = data.deviation.map((v, i) => v - left(i));
+    const [low, high] = extremes([0, ...extremes(shown.map((i) => data.deviation[i])), ...(looks ? [] : extremes(shown.map((i) => model[i])))]);
+    const edge = 0.06 * (high - low) || 1;
+    // All of it is seen on a low screen, too.
+    const is_low = !printing && window.innerHeight < 800, all_high = is_low ? 340 : 400, middle = is_low ? 190 : 232;
+    const both = {in: "fit", all: all_high, lanes: true};
+    const above = new Frame(0, xs, {...both, to: middle, bare: true, band: false, range: [low - edge, high + edge], said: data.fit});
+    const passes = new Map();
+    for (const i of shown) {
+      const key = [data.measurement[i], data.run[i], data.direction[i]].join(" ");
+      if (!passes.has(key)) passes.set(key, []);
+      passes.get(key).push(i);
+    }
+    const of = (rows, values) => [rows.map((i) => place[i]), rows.map((i) => values[i])];
+    const all = [...passes.values()];
+    for (const rows of all) {
+      rows.sort((a, b) => place[a] - place[b]);
+      rows.is_path = rows.every((i, j) => j === 0 || place[i] > place[rows[j - 1]]);
+    }
+    const paths = (d) => all.filter((rows) => rows.is_path && rows.length > 1 && Math.sign(data.direction[rows[0]]) === d);
+    const looks_of = [[1, "plus"], [-1, "minus"], [0, "other"]];
+    if (all.length <= most_lines) for (const [d, look] of looks_of) above.lines(paths(d).map((rows) => of(rows, data.deviation)), "pass " + look);
+    above.scatter(shown, xs, shown.map((i) => data.deviation[i]));
+    if (!looks) {
+      for (const [d] of looks_of) above.lines(paths(d).map((rows) => of(rows, model)), d < 0 ? "mean dashed" : "mean");
+      const single = all.filter((rows) => !rows.is_path).flat();
+      if (single.length) put(above.g, "path", {class: "dots model", d: single.map((i) => `M${r1(above.px(place[i]))} ${r1(above.py(model[i]))}h0`).join("")});
+    }
+    const below = new Frame(0, xs, {...both, from: middle, to: all_high, range: looks ? [-1, 1] : named ? common_range(data.residual) : range});
+    if (!looks) below.scatter(shown, xs, shown.map(left));
+    return [above, below];
+  }
+
   function by_reversal() {
     const of_lines = lines.map((m) => reversal_of(m));
     const all = (key) => of_lines.flatMap((line) => line[key]);
@@ -217,7 +257,7 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     if (lines.length > 1 && data.floor) {
       // One belt for all lines: bands would darken each other.
       const widest = Math.max(0, ...all("half"));
-      put(frame.svg, "rect", {class: "band", x: frame.x, y: r1(frame.py(widest)), width: frame.w,
+      put(frame.g, "rect", {class: "band", x: frame.x, y: r1(frame.py(widest)), width: frame.w,
                               height: r1(frame.py(-widest) - frame.py(widest))});
     }
     for (const line of of_lines) draw_reversal(frame, line);
@@ -242,11 +282,11 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     if (lines.length === 1 && data.floor && xs.length > 1) {
       const there = xs.map((v, j) => r1(frame.px(v)) + " " + r1(frame.py(half[j])));
       const back = xs.map((v, j) => r1(frame.px(v)) + " " + r1(frame.py(-half[j]))).reverse();
-      put(frame.svg, "path", {class: "band", d: "M" + there.concat(back).join("L") + "z"});
+      put(frame.g, "path", {class: "band", d: "M" + there.concat(back).join("L") + "z"});
     }
     frame.line(xs, ys, "other");
     xs.forEach((v, j) => {
-      put(frame.svg, "circle", {class: "dot", cx: r1(frame.px(v)), cy: r1(frame.py(ys[j])), r: 2.5});
+      put(frame.g, "circle", {class: "dot", cx: r1(frame.px(v)), cy: r1(frame.py(ys[j])), r: 2.5});
       frame.points.push([frame.px(v), frame.py(ys[j]), -1, [position(targets[j]), words.reversal + " " + number(ys[j], 2) + " " + data.unit]]);
     });
   }
@@ -335,13 +375,14 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     shown = [];
     for (let i = 0; i < n; i++)
       if (!hidden.d.has(data.direction[i]) && !hidden.r.has(data.run[i])) shown.push(i);
-    range = common_range();
+    range = common_range(residual);
     const says = data.deviation.map((v, i) => v - residual[i]);
     const drawers = [by_position, by_reversal, () => over(2, data.time), by_run, () => over(4, phases()),
                      () => over(5, data.temperature), () => over(6, says), by_normal, left_out];
     const columns = [place, null, data.time, data.run, null, data.temperature, says, null, place];
     if (ghost && !data.pictures[4].none) columns[4] = phases();
-    pictures = [];
+    pictures = figure("fit") && !data.fit.none ? with_model() : [];
+    if (pictures.length) ghost_in(pictures[1], 0, columns);
     const one = (k) => {
       const frame = drawers[k]();
       ghost_in(frame, k, columns);
@@ -394,22 +435,22 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   function mark(i) {
     marked = i;
     for (const frame of pictures) {
-      const old = frame.svg.querySelector(".chosen");
+      const old = frame.g.querySelector(".chosen");
       if (old) old.remove();
       const point = i >= 0 && frame.points.find((p) => p[2] === i);
-      if (point) put(frame.svg, "circle", {class: "chosen", cx: r1(point[0]), cy: r1(point[1]), r: 5});
+      if (point) put(frame.g, "circle", {class: "chosen", cx: r1(point[0]), cy: r1(point[1]), r: 5});
     }
   }
   /// The same readings in every picture; the others step back.
   function select(rows) {
     chosen = new Set(rows);
     for (const frame of pictures) {
-      const old = frame.svg.querySelector(".picked");
+      const old = frame.g.querySelector(".picked");
       if (old) old.remove();
-      frame.svg.classList.toggle("choosing", chosen.size > 0);
+      frame.g.classList.toggle("choosing", chosen.size > 0);
       if (chosen.size === 0) continue;
       const d = frame.points.filter((p) => chosen.has(p[2])).map((p) => `M${r1(p[0])} ${r1(p[1])}h0`).join("");
-      put(frame.svg, "path", {class: "picked", d});
+      put(frame.g, "path", {class: "picked", d});
     }
   }
   function show(lines, x, y) {
@@ -429,9 +470,10 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
   }
   function under(event, reach) {
     const svg = event.target.closest && event.target.closest("figure svg");
-    const frame = svg && pictures.find((f) => f.svg === svg);
-    if (!frame) return [null, null];
-    const [x, y] = inside(frame, event);
+    const frames = svg ? pictures.filter((f) => f.svg === svg) : [];
+    if (frames.length === 0) return [null, null];
+    const [x, y] = inside(frames[0], event);
+    const frame = frames.find((f) => y < f.y + f.h + 20) || frames[frames.length - 1];
     let best = null, least = reach * reach;
     for (const p of frame.points) {
       const d = (p[0] - x) * (p[0] - x) + (p[1] - y) * (p[1] - y);

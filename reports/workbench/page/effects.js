@@ -1,11 +1,15 @@
 // ---- the effects: in the model, would help, no sign of, cannot be judged; and all about the one that is chosen ----
 const effects = (() => {
-  const cardOf = (state, effect) => (state.catalogue || []).find((c) => c.effect === effect) || {effect, card: {}};
+  const cardOf = (state, effect) => (state.catalogue || []).find((c) => c.effect === nameOf(effect)) || {effect, card: {}};
   const ofPart = (state, shown) => (state.catalogue || []).filter((c) => c.part === shown.part).map((c) => c.effect);
+
+  /// "squareness:XY = 12.3 arcsec" is a held effect.
+  const nameOf = (entry) => entry.split(" = ")[0];
 
   /// The four groups. An effect stands in one of them only.
   function groups(state, shown) {
-    const own = ofPart(state, shown), inModel = state.model.filter((e) => own.includes(e) || shown.fitted.includes(e));
+    const taken = new Set(state.model.filter((e) => nameOf(e) !== e).map(nameOf));
+    const own = ofPart(state, shown).filter((e) => !taken.has(e)), inModel = state.model.filter((e) => own.includes(e) || shown.fitted.includes(e));
     const explain = shown.explain || {}, candidates = (explain.candidates || []).filter((c) => !inModel.includes(c.effect));
     const help = candidates.filter((c) => c.score > 0), none = candidates.filter((c) => !(c.score > 0));
     const unseen = (explain.unseen || []).filter((u) => !inModel.includes(u.effect));
@@ -37,7 +41,7 @@ const effects = (() => {
 
   function valuesOf(shown, effect) {
     const all = ((shown.fit || {}).compare || {model: {}}).model.parameters || [];
-    const own = all.filter((p) => p.effect === effect);
+    const own = all.filter((p) => p.effect === nameOf(effect));
     if (own.length > 4) return el("p", {class: "values"}, say("row.curve", {n: own.length}));
     return own.map((p) => {
       const [value, U] = withU(p.value, p.u), unit = shownUnit(p.unit || "");

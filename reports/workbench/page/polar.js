@@ -69,7 +69,7 @@ function nonioPolar({figure, data, rows, put, value, number, text}) {
     svg.setAttribute("aria-label", text(data.words[name + "_title"], places));
     svg.setAttribute("viewBox", `0 0 ${size} ${size * planes.length}`);
     svg.replaceChildren();
-    const frame = {svg, k: name, x: 0, y: 0, w: size, h: size * planes.length, points: []};
+    const frame = {svg, g: svg, k: name, x: 0, y: 0, w: size, h: size * planes.length, points: []};
     for (const [row, plane] of planes.entries()) {
       const top = row * size, y = top + middle;
       for (let k = 1; k <= 7; k++) put(svg, "circle", {class: k === 4 ? "zero" : "rule ring", cx: middle, cy: y, r: k * ring});

@@ -37,6 +37,7 @@ const view = (() => {
   function middle() {
     return el("div", {class: "middle"},
       el("div", {id: "teach", hidden: true}),
+      pictureFigure("fit"),
       section("places", "places.title", el("div", {id: "places-list"})),
       section("pictures-section", "pictures.title",
         el("div", {id: "drawn"}), el("p", {id: "legend", class: "muted"}), el("p", {id: "legend-ghost", class: "muted"}),

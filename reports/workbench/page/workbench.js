@@ -198,6 +198,10 @@
 
   // ---- drawing ----
   function legends() {
+    const fit = shown.fit.page.fit;
+    by("picture-fit-title").textContent = fit.title;
+    by("picture-fit-says").textContent = fit.says;
+    by("picture-fit").hidden = fit.none !== "";
     shown.fit.page.pictures.forEach((p, k) => {
       const figure = by("picture-" + k);
       by(`picture-${k}-title`).textContent = p.title || "";

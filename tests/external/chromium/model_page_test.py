@@ -28,9 +28,12 @@ def check(browser, page, widths):
     where = f"{page.parent.parent.name}/{page.parent.name}"
     data = json.loads(page.read_text().split('id="data">')[1].split("</script>")[0])
     browser.open(page.as_uri(), widths[0])
-    assert browser.value("document.querySelectorAll('figure').length") == 9, where
+    assert browser.value("document.querySelectorAll('figure').length") == 10, where
     drawn = browser.value("[...document.querySelectorAll('figure')].filter(f => f.querySelector('svg path, canvas')).length")
-    assert drawn == sum(not p["none"] for p in data["pictures"]), f"{where}: {drawn} drawn"
+    assert drawn == sum(not p["none"] for p in [data["fit"], *data["pictures"]]), f"{where}: {drawn} drawn"
+    if not data["fit"]["none"]:
+        modelled = browser.value("document.querySelectorAll('#picture-fit path.mean, #picture-fit path.model').length")
+        assert modelled > 0 and browser.value("document.querySelector('figure').id") == "picture-fit", f"{where}: no model is drawn first"
     for width in reversed(widths):
         browser.width(width)
         wide = browser.value("document.documentElement.scrollWidth")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """nonio compare: figures, places, suspects and their exclusion."""
+import csv
 import pathlib
 import shutil
 import statistics
@@ -36,6 +37,75 @@ class Compare(VerbTest):
         self.assertEqual(values["backlash:X", "b"]["unit"], "um")
         self.assertEqual(part["fails"], [])
         self.assertEqual(part["warnings"], [])
+
+    def test_a_held_value_is_known_and_the_others_are_fitted_beside_it(self):
+        """As if the effect had been taken off the readings by hand."""
+        data = readings(scale=20, backlash=-6)
+        self.campaign(manifest(["backlash:X = -5 um", "scale:X"]), x=data)
+        part = self.part()
+        self.assertEqual(part["model"]["effects"], ["scale:X", "backlash:X = -5 um"])
+        values = {p["effect"]: p for p in part["model"]["parameters"]}
+        self.assertEqual((values["backlash:X"]["value"], values["backlash:X"]["u"], values["backlash:X"]["held"]), (-5, 0, True))
+        shown = self.nonio("compare", self.folder).stdout
+        self.assertRegex(shown, r"backlash:X +b +-5 um  \(held\)")
+        off = []
+        for line in data.splitlines():
+            f = line.split(",")
+            if f[0].isdigit():
+                f[3] = f"{float(f[3]) + (2.5 if f[1] == '+' else -2.5):.4f}"
+            off.append(",".join(f))
+        self.campaign(manifest(["scale:X"]), x="\n".join(off) + "\n")
+        by_hand = self.part()
+        scale = by_hand["model"]["parameters"][0]
+        for name in ("value", "u"):
+            self.assertAlmostEqual(values["scale:X"][name], scale[name], 6)
+        self.assertAlmostEqual(part["rms_um"], by_hand["rms_um"], 6)
+        self.campaign(manifest(["backlash:X = -0.005 mm", "scale:X"]), x=data)
+        self.assertAlmostEqual(self.part()["rms_um"], part["rms_um"], 9)
+        explained = self.json_of("explain", self.folder)
+        self.assertNotIn("backlash:X", [c["effect"] for c in explained["candidates"]])
+        self.assertGreater(explained["lack_of_fit"]["F"], 1)
+
+    def test_only_a_single_value_can_be_held_and_in_its_unit(self):
+        for entry, says in (("backlash:X = -5 kg", "expected a number in um or mm"),
+                            ("backlash:X =", "expected a number in um or mm"),
+                            ("pitch-curve:X = 3 um", "only an effect with a single value can be held"),
+                            ("warm-up:X = 3 um", "only an effect with a single value can be held")):
+            self.campaign(manifest([entry]), x=readings())
+            self.assertIn(says, self.nonio("compare", self.folder, expect=2).stderr)
+        self.campaign(manifest(["backlash:X", "backlash:X = 3 um"]), x=readings())
+        self.assertIn('"backlash:X" is given twice', self.nonio("compare", self.folder, expect=2).stderr)
+
+    def test_a_held_value_is_added_and_dropped_by_name(self):
+        self.campaign(manifest(["scale:X"]), x=readings(scale=20, backlash=-6))
+        self.nonio("model", "add", self.folder, "backlash:X=-6um")
+        self.assertIn('effects = ["scale:X", "backlash:X = -6 um"]', self.text())
+        self.assertIn("in the model already", self.nonio("model", "add", self.folder, "backlash:X", expect=2).stderr)
+        self.nonio("model", "drop", self.folder, "backlash:X")
+        self.assertIn('effects = ["scale:X"]', self.text())
+
+    def test_every_reading_with_its_model(self):
+        text = manifest(["scale:X", "backlash:X = -6 um"], axes="XC").replace(
+            '[machine.axes.C]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm', '[machine.axes.C]\nkind = "rotary"\nactive_table = "none"\nactive_backlash_deg')
+        turn = readings(seed=3, axis="deg").replace("deviation_um", "deviation_arcsec")
+        self.campaign(text, x=readings(scale=20, backlash=-6), c=turn)
+        file = self.folder / "all.csv"
+        parts = self.json_of("compare", self.folder, "--csv", file)["parts"]
+        rows = list(csv.DictReader(file.open()))
+        self.assertEqual(list(rows[0]), ["part", "measurement", "file_line", "target_mm", "target_deg", "run", "direction", "time_s",
+                                         "reading_um", "reading_arcsec", "model_um", "model_arcsec", "residual_um", "residual_arcsec", "weight"])
+        for name, unit, target in (("X", "um", "mm"), ("C", "arcsec", "deg")):
+            read = {(f[0], f[1], float(f[2])): (float(f[3]), float(f[4]), line) for line, f in
+                    enumerate((l.split(",") for l in (self.folder / f"{name.lower()}.csv").read_text().splitlines()), 1) if f[0].isdigit()}
+            own = [r for r in rows if r["part"] == name]
+            self.assertEqual(len(own), len(read))
+            for r in own:
+                value, time, line = read[r["run"], r["direction"], float(r[f"target_{target}"])]
+                self.assertEqual((float(r[f"reading_{unit}"]), float(r["time_s"]), int(r["file_line"])), (value, time, line))
+                self.assertAlmostEqual(float(r[f"model_{unit}"]) + float(r[f"residual_{unit}"]), value, 5)
+            weight = [float(r["weight"]) for r in own]
+            rms = (sum(w * float(r[f"residual_{unit}"]) ** 2 for w, r in zip(weight, own)) / sum(weight)) ** 0.5
+            self.assertAlmostEqual(rms, next(p for p in parts if p["axis"] == name)[f"rms_{unit}"], 5)
 
     def test_what_a_table_would_leave_is_calculated_here_too(self):
         """E, A and R of ISO 230-2 of the readings less scale and backlash, from the file alone."""

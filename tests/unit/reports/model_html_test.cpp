@@ -48,10 +48,10 @@ TEST_F(ModelHtml, OneFileForEachPart) {
   EXPECT_TRUE(write().empty());
 }
 
-TEST_F(ModelHtml, AlwaysNineFramesAndThoseWithoutDataSayWhy) {
+TEST_F(ModelHtml, AlwaysTenFramesAndThoseWithoutDataSayWhy) {
   for (const char* language : {"de", "en", "it"})
     for (const MadeModel& data : {MadeModel{}, bare(), MadeModel{.rotary = true}})
-      EXPECT_EQ(occurrences(page(made_model(data), language), "<figure "), 9U) << language;
+      EXPECT_EQ(occurrences(page(made_model(data), language), "<figure "), 10U) << language;
   const std::string text = page(made_model(bare()));
   for (const char* why : {"Measured from one direction only.", "No times.", "No temperature.",
                           "Screw pitch not stated.", "A single run: none can be left out."})

@@ -142,6 +142,7 @@ struct Plot {
   bool only_legend = false;  ///< of plots that follow: neither title nor picture
   double height = 0;         ///< with title and legend; 0: the style's
   double top = 0;            ///< least height of title and legend: plots side by side are in line
+  double number_room = 0;    ///< least width of the numbers at the left: plots one below the other
   std::string empty_text{};  ///< what is said where there is nothing to draw
 };
 

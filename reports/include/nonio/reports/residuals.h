@@ -8,7 +8,8 @@
 #include "nonio/reports/wording.h"
 #include "nonio/sdk/results.h"
 
-/// The words and numbers behind the nine pictures of residuals. SI.
+/// The words and numbers behind the picture of readings with their model and the nine pictures of
+/// residuals. SI.
 namespace nonio::reports {
 
 /// The pictures in the order that never changes.
@@ -34,6 +35,18 @@ struct PictureWords {
 /// The words are those of templates/words/<language>/pictures.toml.
 std::array<PictureWords, 9> picture_words(const ModelFit&, const Wording&);
 
+/// Of the picture that comes before them: readings and model, residuals below.
+PictureWords fit_words(const ModelFit&, const Wording&);
+
+/// One run in one direction on one measurement.
+struct Pass {
+  std::uint32_t measurement = 0;
+  int direction = 0;
+  std::vector<std::size_t> rows;  ///< in the order of their places
+  bool is_path = true;            ///< no two readings have the same place
+};
+std::vector<Pass> passes_of(const ModelFit&);
+
 /// The period of the fifth picture: screw pitch, tooth, or a whole turn; 0 if it is not known.
 double period_of(const ModelFit&);
 
@@ -49,6 +62,14 @@ bool counts(const ModelFit&, std::size_t row);
 Trace mean_by_target(const ModelFit&, int direction);
 /// The readings of one measurement: means over those of several lines would mix their places.
 ModelFit of_measurement(const ModelFit&, std::uint32_t measurement);
+/// Displacements over time: places are times.
+bool over_time(const ModelFit&);
+/// A place of a reading as it is printed: less `from`, times `per_si`.
+struct PlaceScale {
+  double from = 0.0, per_si = 1.0;
+  std::string unit;
+};
+PlaceScale place_scale(const ModelFit&);
 /// Several axes: places are those on each line.
 bool in_space(const ModelFit&);
 

@@ -115,6 +115,7 @@ struct Explanation {
   Comparison comparison;
   std::vector<Candidate> candidates;  ///< best first
   std::vector<std::string> together;  ///< what the best explanation adds to the model
+  bool explains_all = false;          ///< it leaves nothing in any place
   double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
   /// Of the best explanation, and the readings that count in it: by it two searches of the same
   /// readings are compared, the smaller is the better.

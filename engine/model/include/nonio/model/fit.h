@@ -38,6 +38,8 @@ struct Term {
   bool differences = false;
   /// 2 ln of the odds against it before there are readings: rare causes need more evidence.
   double price = 0.0;
+  /// Its value is known: it has no unknowns, and what it says is not in the readings any more.
+  bool held = false;
   bool library = false;  ///< one of very many: a candidate only where there is evidence for it
 
   /// The effect without groups: "backlash:X".
@@ -54,6 +56,7 @@ struct Parameter {
   Quantity quantity = Quantity::number;
   bool shape = false;
   std::string group{};  ///< of a grouped term: "before"; also the end of its name
+  bool held = false;    ///< stated, not fitted; u = 0
 };
 
 /// How the noise of the readings hangs together, as far as their repeats and their order show it.
@@ -115,5 +118,9 @@ struct Fit {
 Expected<Fit> fit(const Observations& observations, std::vector<Term> terms,
                   std::vector<double> weight = {}, const Noise& noise = {},
                   const Observations* thin = nullptr);
+
+/// What a term with one parameter says of each reading, m or rad.
+Expected<std::vector<double>> said_by(const Observations& observations, const Term& term,
+                                      double value);
 
 }  // namespace nonio::model
