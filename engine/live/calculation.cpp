@@ -95,6 +95,7 @@ Json catalogue_json(const Bench& bench) {
   for (const PartModel& part : bench.parts) {
     for (const model::Term& term : part.catalogue)
       list.push_back({{"effect", term.name()},
+                      {"written", model::written_for(part.part, term.name())},
                       {"part", part.part.name},
                       {"card", card_of(words, term.name())},
                       {"compensable", term.effect->compensable},
@@ -102,6 +103,7 @@ Json catalogue_json(const Bench& bench) {
     for (const model::Candidate& c : part.left_out)
       list.push_back(
           {{"effect", c.term.name()},
+           {"written", model::written_for(part.part, c.term.name())},
            {"part", part.part.name},
            {"card", card_of(words, c.term.name())},
            {"compensable", c.term.effect->compensable},

@@ -263,7 +263,7 @@ PictureWords fit_words(const ModelFit& fit, const Wording& words) {
   PictureWords out = picture_words(fit, words).front();
   if (over_time(fit)) out.none.clear();
   out.title = words.get("picture.fit.title");
-  out.says = words.get("picture.fit.says");
+  out.says = words.get(over_time(fit) ? "picture.fit.says_over_time" : "picture.fit.says");
   out.y = words.get("picture.fit.y", {{"unit", unit_text(deviation_of(fit.angular))}});
   return out;
 }

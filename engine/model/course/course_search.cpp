@@ -380,7 +380,7 @@ class CourseExplanation {
           more == grown.end() ? 0.0
                               : search_.left_out(set_) -
                                     search_.left_out(CourseSearch::with(set_, more->second.first));
-      add(one.first, gain, further.p({gain, improved}));
+      add(one.first, {alone - one.second, gain}, further.p({gain, improved}));
     }
     std::stable_sort(out_.candidates.begin(), out_.candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
@@ -410,7 +410,7 @@ class CourseExplanation {
   void add_member(const Member& member, double all) {
     const std::size_t e = member.entry;
     const Set others = CourseSearch::without(set_, e);
-    add(e, std::max(member.loss, member.alone), member.p);
+    add(e, {member.alone, member.loss}, member.p);
     Candidate& c = out_.candidates.back();
     // What takes its place as well, cannot be separated from it.
     for (const auto& [term, one] : search_.best_with(others))
@@ -421,16 +421,23 @@ class CourseExplanation {
     if (member.p < named_p) certain_.emplace_back(member.predicts, c.term.name());
   }
 
-  void add(std::size_t e, double gain, double p) {
+  /// Evidence of an entry: as the only addition to the model, and within the best set.
+  struct Gain {
+    double alone, within;
+  };
+
+  void add(std::size_t e, const Gain& gain, double p) {
     Candidate c;
     c.term = search_.term_of(e);
     c.cv_rms = search_.left_out_with({e});
     c.p = p;
-    c.score = 2.0 * (gain - search_.penalty());
+    const bool member = std::find(set_.begin(), set_.end(), e) != set_.end();
+    c.alone = 2.0 * (gain.alone - search_.penalty());
+    c.within = 2.0 * (gain.within - search_.penalty());
+    c.score = member ? std::max(c.alone, c.within) : c.within;
     std::vector<Term> terms = model_;
     terms.push_back(c.term);
     terms.back().shape = search_.entry(e).shape;
-    const bool member = std::find(set_.begin(), set_.end(), e) != set_.end();
     if (member || set_.empty()) terms.back().shape.clear();
     if (const auto fit = fit_course(part_, terms)) {
       c.rms = fit->rms;

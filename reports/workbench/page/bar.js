@@ -86,7 +86,7 @@ const bar = (() => {
     for (const id of ["now", "effects-list"]) by(id).classList.toggle("old", Boolean(shown.fitIsOld));
     if (part) {
       const rms = field(part, "rms"), cv = field(part, "cv_rms") === undefined ? field(part.model, "cv_rms") : field(part, "cv_rms");
-      fill(by("now"), line("rms", say("bar.rms"), rms, most, floor, unit), finite(cv) ? line("left-out", say("bar.left_out"), cv, most, floor, unit) : null,
+      fill(by("now"), line("rms", say("bar.rms"), rms, most, floor, unit), finite(cv) ? line("left-out", say(shown.part.includes("/") ? "bar.left_out_in_time" : "bar.left_out"), cv, most, floor, unit) : null,
         el("p", {class: "muted"}, finite(floor.s) ? say("bar.floor", {s: withU(floor.s, floor.u)[0], U: withU(floor.s, floor.u)[1] || "\u2013", unit}) : say("bar.no_floor")));
     }
     const step = state.steps.find((s) => s.n === state.at) || {name: ""};

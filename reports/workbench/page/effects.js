@@ -3,14 +3,17 @@ const effects = (() => {
   const cardOf = (state, effect) => (state.catalogue || []).find((c) => c.effect === nameOf(effect)) || {effect, card: {}};
   const ofPart = (state, shown) => (state.catalogue || []).filter((c) => c.part === shown.part).map((c) => c.effect);
 
-  /// "squareness:XY = 12.3 arcsec" is a held effect.
-  const nameOf = (entry) => entry.split(" = ")[0];
+  /// "squareness:XY = 12.3 arcsec" is a held effect, "heat:t4/x1+x2" one of these displacements only.
+  const nameOf = (entry) => entry.split(" = ")[0].split("/")[0];
+  const isOf = (entry, part) => !entry.includes("/") || entry.split("/")[1].split("+").includes(part.split("/")[1]);
+  const writtenOf = (state, shown, effect) => ((state.catalogue || []).find((c) => c.part === shown.part && c.effect === effect) || {}).written || effect;
 
   /// The four groups. An effect stands in one of them only.
   function groups(state, shown) {
-    const taken = new Set(state.model.filter((e) => nameOf(e) !== e).map(nameOf));
-    const own = ofPart(state, shown).filter((e) => !taken.has(e)), inModel = state.model.filter((e) => own.includes(e) || shown.fitted.includes(e));
-    const explain = shown.explain || {}, candidates = (explain.candidates || []).filter((c) => !inModel.includes(c.effect));
+    const model = state.model.filter((e) => isOf(e, shown.part)), taken = new Set(model.filter((e) => nameOf(e) !== e).map(nameOf));
+    const own = ofPart(state, shown).filter((e) => !taken.has(e));
+    const inModel = model.filter((e) => own.includes(e) || shown.fitted.includes(e) || (e.includes("/") && shown.fitted.includes(nameOf(e))));
+    const explain = shown.explain || {}, candidates = (explain.candidates || []).filter((c) => !inModel.includes(c.effect) && !taken.has(c.effect));
     const help = candidates.filter((c) => c.score > 0), none = candidates.filter((c) => !(c.score > 0));
     const unseen = (explain.unseen || []).filter((u) => !inModel.includes(u.effect));
     const named = new Set([...inModel, ...candidates.map((c) => c.effect), ...unseen.map((u) => u.effect)]);
@@ -29,12 +32,12 @@ const effects = (() => {
     return picture;
   }
 
-  function tick(shown, effect, checked, act) {
-    return el("input", {type: "checkbox", "data-key": "tick-" + effect, "data-effect": effect, checked, onchange: () => act.toggle(effect, !checked)});
+  function tick(state, shown, effect, checked, act) {
+    return el("input", {type: "checkbox", "data-key": "tick-" + effect, "data-effect": effect, checked, onchange: () => act.toggle(checked ? effect : writtenOf(state, shown, effect), !checked)});
   }
   function row(state, shown, effect, checked, act, ...more) {
     const card = cardOf(state, effect), chosen = shown.effect === effect;
-    const label = el("label", {}, tick(shown, effect, checked, act), el("span", {class: "name"}, effect), card.card && card.card.title ? el("span", {class: "title"}, card.card.title) : null);
+    const label = el("label", {}, tick(state, shown, effect, checked, act), el("span", {class: "name"}, effect), card.card && card.card.title ? el("span", {class: "title"}, card.card.title) : null);
     const about = el("button", {type: "button", class: "about", "data-key": "about-" + effect, "aria-pressed": String(chosen), "aria-label": say("row.about", {effect}), onclick: () => act.choose(effect)}, say("row.about_sign"));
     return el("li", {class: chosen ? "effect chosen" : "effect", "data-row": effect, onpointerenter: () => act.preview(effect), onpointerleave: () => act.preview(null), onfocusin: () => act.preview(effect)}, el("div", {class: "head"}, label, about), ...more);
   }
@@ -53,7 +56,7 @@ const effects = (() => {
     const g = groups(state, shown), unit = shown.unit, rms = field((shown.fit || {}).compare, "rms");
     const list = (word, items, help) => items.length ? [el("h3", {}, say(word)), help ? el("p", {class: "muted"}, say(help)) : null, el("ul", {class: "effects-of", "data-group": word}, ...items)] : [];
     const inModel = g.inModel.map((effect) => {
-      const without = shown.fitIsOld || shown.of.without !== shown.fitOf ? null : (shown.without || []).find((w) => w.effect === effect);
+      const without = shown.fitIsOld || shown.of.without !== shown.fitOf ? null : (shown.without || []).find((w) => w.effect === nameOf(effect));
       return row(state, shown, effect, true, act, valuesOf(shown, effect), without ? el("p", {class: "muted", "data-without": field(without, "rms")}, say("row.without", {rms: short(field(without, "rms")), cv: short(field(without, "cv_rms")), unit})) : null);
     });
     const help = shown.learning ? [] : g.help.map((c) => {
