@@ -256,6 +256,8 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
   }
   if ((v.kind == Kind::nothing || v.kind == Kind::unknown) && !e.comparison.floor)
     f.id += "-without-floor";
+  if (v.kind == Kind::nothing && part.part.kind == model::Part::Kind::course && e.comparison.floor)
+    f.id += "-over-time";  // its noise floor is that of successive readings
   if (v.below_scatter) f.id = "verdict.unknown-below-scatter";
   if (v.kind == Kind::unknown && !e.certain.empty()) {
     f.id = "verdict.certain";
