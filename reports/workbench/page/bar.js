@@ -19,8 +19,8 @@ const bar = (() => {
       el("span", {class: "number", "data-value": finite(value) ? value : ""}, `${short(value)} ${unit}`));
   }
 
-  /// The word for a displacement over time where it has one of its own: its noise is that of successive readings.
-  const wordFor = (shown, word) => (shown.part.includes("/") && words[word + "_over_time"] ? word + "_over_time" : word);
+  /// A displacement over time: its noise is that of successive readings.
+  const overTime = (shown) => shown.part.includes("/");
   function verdictOf(shown) {
     const {explain, fit} = shown;
     if (shown.none) return ["nothing-here", shown.none];
@@ -33,7 +33,7 @@ const bar = (() => {
     if (verdict.kind === "missing" && found)
       return [verdict.kind, say(found.aliases.length ? "verdict.missing_or" : "verdict.missing", {effect, others: found.aliases.join(", "),
         from: short(field(explain.model, "rms")), to: short(field(found, "rms")), unit: shown.unit})];
-    return [verdict.kind, words["verdict." + verdict.kind] ? say(wordFor(shown, "verdict." + verdict.kind), {rms: short(field(explain.model, "rms")), floor: short(field(explain, "noise_floor")), unit: shown.unit}) : typeset(verdict.says || "")];
+    return [verdict.kind, words["verdict." + verdict.kind] ? say("verdict." + verdict.kind + (overTime(shown) && words["verdict." + verdict.kind + "_over_time"] ? "_over_time" : ""), {rms: short(field(explain.model, "rms")), floor: short(field(explain, "noise_floor")), unit: shown.unit}) : typeset(verdict.says || "")];
   }
 
   function limitsOf(shown) {
@@ -88,8 +88,8 @@ const bar = (() => {
     for (const id of ["now", "effects-list"]) by(id).classList.toggle("old", Boolean(shown.fitIsOld));
     if (part) {
       const rms = field(part, "rms"), cv = field(part, "cv_rms") === undefined ? field(part.model, "cv_rms") : field(part, "cv_rms");
-      fill(by("now"), line("rms", say("bar.rms"), rms, most, floor, unit), finite(cv) ? line("left-out", say(wordFor(shown, "bar.left_out")), cv, most, floor, unit) : null,
-        el("p", {class: "muted"}, finite(floor.s) ? say(wordFor(shown, "bar.floor"), {s: withU(floor.s, floor.u)[0], U: withU(floor.s, floor.u)[1] || "\u2013", unit}) : say("bar.no_floor")));
+      fill(by("now"), line("rms", say("bar.rms"), rms, most, floor, unit), finite(cv) ? line("left-out", say(overTime(shown) ? "bar.left_out_over_time" : "bar.left_out"), cv, most, floor, unit) : null,
+        el("p", {class: "muted"}, finite(floor.s) ? say(overTime(shown) ? "bar.floor_over_time" : "bar.floor", {s: withU(floor.s, floor.u)[0], U: withU(floor.s, floor.u)[1] || "\u2013", unit}) : say("bar.no_floor")));
     }
     const step = state.steps.find((s) => s.n === state.at) || {name: ""};
     const field_ = el("input", {id: "step-name", "data-key": "step-name", value: step.name || "", maxlength: 60, autocomplete: "off", onchange: (e) => name(state.at, e.target.value)});
