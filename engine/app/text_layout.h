@@ -27,7 +27,7 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t wid
 
 /// One text per row of a table, with a line feed: columns as wide as their content, ranged right, two
 /// blanks apart. Where that is wider than `width`, the last columns go on further lines below their
-/// row, behind the width of the first column. All rows have as many cells as the first.
+/// row, after the width of the first column. All rows have as many cells as the first.
 std::vector<std::string> table_rows(const std::vector<std::vector<std::string>>& rows,
                                     std::size_t width);
 

@@ -29,7 +29,7 @@ struct Piece {
   std::optional<SignatureFrame> signature{};
 };
 
-/// A block as strips; `repeated` is printed again at the top of each further page that begins behind
+/// A block as strips; `repeated` is printed again at the top of each further page that begins after
 /// the piece `rows_from`.
 struct Laid {
   std::vector<Piece> pieces;

@@ -2,8 +2,8 @@
 """predicted_rms_test.py NONIO [--campaigns N] [--seed SEED]
 
 `explain` predicts for each candidate the RMS with it in the model. The law: `model add` obtains it, within 2 %. Checked
-over random campaigns of several kinds (an axis, a rotary axis, two states of an axis, a gantry), beside empty models and
-beside those that `explain` has led to."""
+over random campaigns of several kinds (an axis, a rotary axis, two states of an axis, a gantry), in addition to empty
+models and to those that `explain` has led to."""
 import argparse
 import json
 import pathlib
@@ -44,7 +44,7 @@ def main():
                         unit = next(key for key in c if key in ("rms_um", "rms_arcsec"))
                         after = said(args.nonio, "model", "add", scratch, c["effect"]).get("after")
                         if not after:
-                            continue  # beside the model these readings cannot show it
+                            continue  # in addition to the model these readings cannot show it
                         said(args.nonio, "model", "drop", scratch, c["effect"])
                         compared[kind.__name__] = compared.get(kind.__name__, 0) + 1
                         off = abs(after[unit] / c[unit] - 1)
@@ -52,7 +52,7 @@ def main():
                         if off > WITHIN:
                             faults += 1
                             model = whole["model"]["effects"]
-                            print(f"{kind.__name__} {k}: {c['effect']} beside {model}: predicted {c[unit]}, obtained {after[unit]}")
+                            print(f"{kind.__name__} {k}: {c['effect']} in addition to {model}: predicted {c[unit]}, obtained {after[unit]}")
                     if not candidates:
                         break
                     said(args.nonio, "model", "add", scratch, candidates[0]["effect"])

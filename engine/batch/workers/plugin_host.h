@@ -15,7 +15,7 @@
 
 namespace nonio::batch {
 
-/// Folders of the libraries that plugins need, in addition to their own folders; `own_plugins`: beside the
+/// Folders of the libraries that plugins need, in addition to their own folders; `own_plugins`: next to the
 /// program.
 std::vector<std::filesystem::path> library_folders(const std::filesystem::path& own_plugins);
 
@@ -26,7 +26,7 @@ class PluginHost {
  public:
   struct Request {
     std::vector<std::filesystem::path> folders;  ///< of plugins
-    /// Where libraries of plugins lie besides.
+    /// Further folders that contain libraries of plugins.
     std::vector<std::filesystem::path> readable;
     /// Files that plugins must not read: the signing key and its password.
     std::vector<std::filesystem::path> secrets;

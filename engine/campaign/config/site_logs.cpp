@@ -59,7 +59,7 @@ bool takes_back(const Withdrawal& w, const Acknowledgement& a) {
          a.quantity == w.quantity;
 }
 
-/// A word that excuses something stands beside a name for years.
+/// A reason that excuses something is read next to a name for years.
 std::string reason_of(TableReader& reader) {
   std::string why = reader.text("why");
   if (!why.empty() && !has_content(why))

@@ -114,8 +114,8 @@ struct FormerKey {
   std::string former, name;  ///< "table_on", "active_table"
   std::uint64_t line = 0;    ///< 1-based
 };
-/// Renames keys with former names in `table` as `declaration` requires, so that nobody else sees
-/// them; in the order of the lines. Where a table has both names, the former one stays unknown.
+/// Renames keys with former names in `table` as `declaration` requires; all later code sees
+/// the present names. In the order of the lines. Where a table has both names, the former one stays unknown.
 std::vector<FormerKey> rename_former_keys(toml::table& table, const Key& declaration);
 /// A warning for each, without those of further headers of the same key.
 std::vector<Error> warnings_of(const std::vector<FormerKey>& keys, const std::string& file);

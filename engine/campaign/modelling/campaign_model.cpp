@@ -202,7 +202,7 @@ Expected<void> hold(PartModel& part, const Entry& entry, const Machine& machine,
   return {};
 }
 
-/// The held terms behind those of the fit.
+/// The held terms after those of the fit.
 void append_held(const PartModel& part, model::Fit& fit) {
   for (const PartModel::Held& h : part.held) {
     fit.terms.push_back(h.term);

@@ -26,7 +26,7 @@ struct PartModel {
   /// Causes of the library, where they are asked for: searched if the catalogue does not explain.
   std::vector<model::Term> library{};
   /// Effects whose value is stated. What they say is taken off the deviations of `part`, so that
-  /// everything else is fitted to the rest; a comparison has them behind its other terms.
+  /// everything else is fitted to the rest; a comparison has them after its other terms.
   struct Held {
     model::Term term;
     model::Parameter parameter;

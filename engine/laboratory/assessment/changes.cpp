@@ -55,7 +55,7 @@ struct Asked {
   Adjusted* adjusted = nullptr;
 };
 
-/// Over the tests of one run; what is no candidate counts with p = 1.
+/// Over the tests of one run; what is no candidate enters with p = 1.
 void adjust(const std::vector<Asked>& tests, std::size_t asked, double Adjusted::*which,
             std::vector<double> by(const std::vector<double>&)) {
   std::vector<double> p(std::max(asked, tests.size()), 1.0);

@@ -358,7 +358,7 @@ double Workbench::least_of(const Block& block) const {
   return instances_[block.effect].term.effect->description ? independent : shown_of_curve;
 }
 
-/// Of the diagonal of a factor: all of every column counts.
+/// Of the diagonal of a factor: every column is used in full.
 double Workbench::wholly_independent() const {
   return several_axes_ && reducible_ ? 3.0 * weakest_of_curve : std::sqrt(independent);
 }

@@ -268,10 +268,10 @@ class WhatWasOn(MachineTest):
             self.tables("siemens-840d")
             self.assertIn(value, self.file("siemens-840d-Z-backlash.ini"), day)
 
-    def test_what_was_on_is_wrong(self):
+    def test_a_wrong_active_compensation_is_refused(self):
         self.record(["X", "Y", "Z"])
         for said, complaint in (('active_table = "missing.ini"\n', "missing.ini"), ('active_table = "../../x.ini"\n', "leads outside"),
-                                ('active_table = "a.csv"\n', "what was on while axis Z was measured"),
+                                ('active_table = "a.csv"\n', "active while axis Z was measured"),
                                 ('active_backlash_mm = "no"\n', 'or "none"'), ('active_backlash_mm = 12\n', "-10 to 10")):
             self.measured("siemens-840d", machine='asset = "S-1"\n', of_axis=said)
             error = self.tables("siemens-840d", expect=1)[1]["errors"][0]

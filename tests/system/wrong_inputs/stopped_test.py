@@ -271,9 +271,9 @@ class Stopped(unittest.TestCase):
                 self.assertEqual(content["errors"], [])
                 self.assertIn("plausibility." + finding, self.doubts(name))
                 self.assertNotIn("table.withheld", json.dumps(content))
-                stands = [f["evidence"].get("accepted") for a in content["analyses"] for f in a["findings"]
-                          if f["id"] == "plausibility." + finding]
-                self.assertEqual(set(stands), {REASON})
+                accepted = [f["evidence"].get("accepted") for a in content["analyses"] for f in a["findings"]
+                            if f["id"] == "plausibility." + finding]
+                self.assertEqual(set(accepted), {REASON})
 
     def test_no_number_before_a_person_says_why(self):
         never = {"day-to-come", "calibrated-later", "unknown-axis", "readings-all-equal"}  # see below

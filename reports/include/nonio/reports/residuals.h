@@ -8,7 +8,7 @@
 #include "nonio/reports/wording.h"
 #include "nonio/sdk/results.h"
 
-/// The words and numbers behind the picture of readings with their model and the nine pictures of
+/// The words and numbers of the picture of readings with their model and the nine pictures of
 /// residuals. SI.
 namespace nonio::reports {
 
