@@ -45,9 +45,8 @@ struct Shown {
 /// What a search finds in copies of a remainder. Largest of many: a Gumbel distribution.
 struct InCopies {
   double at = 0.0, width = 0.0;
-  std::vector<double> found;
 
-  explicit InCopies(std::vector<double> falls) : found(std::move(falls)) {
+  explicit InCopies(const std::vector<double>& found) {
     const auto n = static_cast<double>(found.size());
     double mean = 0.0, squares = 0.0;
     for (const double x : found) mean += x / n;
@@ -57,9 +56,9 @@ struct InCopies {
     at = mean - euler * width;
   }
 
-  double p(double fall) const {
+  double p(double value) const {
     if (!(width > 0.0)) return 1.0;
-    return -std::expm1(-std::exp(-(fall - at) / width));
+    return -std::expm1(-std::exp(-(value - at) / width));
   }
 };
 
@@ -101,6 +100,7 @@ class CourseSearch {
 
   const Set& found() const { return set_; }
 
+  /// Ends with -1 if it has a column twice: then nothing can be fitted.
   std::vector<Index> columns_of(const Set& set) const {
     std::vector<Index> out = base_;
     for (const std::size_t e : set)
@@ -111,9 +111,13 @@ class CourseSearch {
     return out;
   }
 
+  static bool has_twice(const std::vector<Index>& columns) {
+    return !columns.empty() && columns.back() < 0;
+  }
+
   double level_of(const Set& set) const {
     const auto columns = columns_of(set);
-    if (!columns.empty() && columns.back() < 0) return std::numeric_limits<double>::infinity();
+    if (has_twice(columns)) return std::numeric_limits<double>::infinity();
     return pool_->cost(columns, *sides_).mean();
   }
 
@@ -186,8 +190,8 @@ class CourseSearch {
     return best[chosen].first;
   }
 
-  /// What one more term would seem to improve in addition to `set` if the remainder had nothing to do with
-  /// any of them.
+  /// What one more term would seem to improve in addition to `set` if the remainder had nothing to
+  /// do with any of them.
   SearchInCopies chance_with(const Set& set) const {
     const std::vector<Index> columns = columns_of(set);
     const CourseSides sides = sides_of_copies(columns);
@@ -197,7 +201,7 @@ class CourseSearch {
     for (std::size_t e = 0; e < entries_.size(); ++e) {
       if (has_term(set, entries_[e].term)) continue;
       const auto more = columns_of(with(set, e));
-      if (more.back() < 0) continue;
+      if (has_twice(more)) continue;
       const Eigen::RowVectorXd gain = before - pool_->cost(more, sides);
       for (std::size_t c = 0; c < copies; ++c)
         if (const double mean = gain.segment(first_of(c), together()).mean(); mean > gained[c])
@@ -206,7 +210,7 @@ class CourseSearch {
     std::vector<double> fell;
     for (std::size_t c = 0; c < copies; ++c)
       fell.push_back(left_out(columns, sides, first_of(c)) - left_out(best[c], sides, first_of(c)));
-    return {InCopies(std::move(gained)), InCopies(std::move(fell))};
+    return {InCopies(gained), InCopies(fell)};
   }
 
   /// ln(RMS) of blocks that are left out, in the mean over displacements that are searched together.
@@ -222,8 +226,7 @@ class CourseSearch {
       gained.push_back(shown.evidence);
       fell.push_back(shown.fall);
     }
-    return SearchInCopies{InCopies(std::move(gained)), InCopies(std::move(fell))}.p(
-        shown_one_by_one(*sides_, 0));
+    return SearchInCopies{InCopies(gained), InCopies(fell)}.p(shown_one_by_one(*sides_, 0));
   }
 
   static Set with(const Set& set, std::size_t e) {
@@ -241,7 +244,9 @@ class CourseSearch {
   const Entry& entry(std::size_t e) const { return entries_[e]; }
   /// Of this displacement alone, m.
   double left_out_with(const Set& set) const {
-    return pool_->left_out(columns_of(set), *sides_, 0);
+    const auto columns = columns_of(set);
+    return has_twice(columns) ? std::numeric_limits<double>::infinity()
+                              : pool_->left_out(columns, *sides_, 0);
   }
   double penalty() const { return pool_->penalty(); }
   /// Differences of evidence below this do not separate two explanations.
@@ -249,6 +254,7 @@ class CourseSearch {
 
  private:
   double left_out(const std::vector<Index>& columns, const CourseSides& sides, Index from) const {
+    if (has_twice(columns)) return std::numeric_limits<double>::infinity();
     double sum = 0.0;
     for (Index j = 0; j < together(); ++j)
       sum += std::log(pool_->left_out(columns, sides, from + j));
