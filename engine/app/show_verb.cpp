@@ -170,11 +170,22 @@ class Page {
         {thing.value("maker", ""), thing.value("model", ""), thing.value("serial", "")}, " ");
   }
 
+  /// Whether a result is above its tolerance: only that asks for an action, other findings warn.
+  static bool exceeded(const Json& results) {
+    for (const Json& analysis : results.value("analyses", Json::array()))
+      for (const Json& value : analysis.value("values", Json::object()))
+        if (rank_of(value) == 0) return true;
+    return false;
+  }
+
   void head(const Json& results) {
     const Json& c = results.at("campaign");
     const std::string status = results.at("status");
     const Json nothing = Json::object();
-    const std::string id = c.at("id"), verdict = say_.of("status", status);
+    const std::string id = c.at("id"),
+                      verdict = say_.of("status", status != "attention" || exceeded(results)
+                                                      ? status
+                                                      : "warnings");
     out_ << paint(id, Colour::bold) << "  " << paint(verdict, status_colour(status)) << "\n"
          << wrapped(joined_text({name_of(c.value("machine", nothing)), c.value("customer", ""),
                                  c.value("site", ""), c.value("date", "")},
