@@ -183,9 +183,9 @@ class Page {
     const std::string status = results.at("status");
     const Json nothing = Json::object();
     const std::string id = c.at("id"),
-                      verdict = say_.of("status", status != "attention" || exceeded(results)
-                                                      ? status
-                                                      : "warnings");
+                      verdict =
+                          say_.of("status",
+                                  status != "attention" || exceeded(results) ? status : "warnings");
     out_ << paint(id, Colour::bold) << "  " << paint(verdict, status_colour(status)) << "\n"
          << wrapped(joined_text({name_of(c.value("machine", nothing)), c.value("customer", ""),
                                  c.value("site", ""), c.value("date", "")},

@@ -55,7 +55,8 @@ std::string anything(const Law&) { return ""; }
 
 std::string signal_of(const Law& law, const std::string& channel) {
   for (const auto& c : law.channels)
-    if (c.name == channel) return "heat-" + lower(plain(channel)) + (c.is_temperature() ? "-c" : "");
+    if (c.name == channel)
+      return "heat-" + lower(plain(channel)) + (c.is_temperature() ? "-c" : "");
   return "";
 }
 
@@ -67,7 +68,8 @@ class Hal {
   std::string text() {
     std::string sum;
     for (std::size_t i = 0; i < law_.terms.size(); ++i) sum = one(law_.terms[i], i, sum);
-    const std::string counts = component("scale", "counts"), whole = component("conv_float_s32", "s32");
+    const std::string counts = component("scale", "counts"),
+                      whole = component("conv_float_s32", "s32");
     set(counts + ".gain", fixed_text(1.0 / 1e-4, 0));
     net("sum", sum + " => " + counts + ".in");
     net("counts", counts + ".out => " + whole + ".in");
@@ -104,7 +106,8 @@ class Hal {
   std::string lagged(const Term& term, std::size_t channel, const std::string& id) {
     std::string from;
     if (term.kind == Term::Kind::source) {
-      const std::string size = component("abs", id + "-abs"), part = component("scale", id + "-part");
+      const std::string size = component("abs", id + "-abs"),
+                        part = component("scale", id + "-part");
       from_channel(term.channels[channel], size + ".in");
       set(part + ".gain", short_text(1.0 / term.largest, 12));
       net(id + "-size", size + ".out => " + part + ".in");
@@ -116,8 +119,10 @@ class Hal {
       }
     }
     const std::string lag = component("lowpass", id);
-    if (from.empty()) from_channel(term.channels[channel], lag + ".in");
-    else net(id + "-in", from + " => " + lag + ".in");
+    if (from.empty())
+      from_channel(term.channels[channel], lag + ".in");
+    else
+      net(id + "-in", from + " => " + lag + ".in");
     set(lag + ".gain", short_text(term.tau > period_ ? -std::expm1(-period_ / term.tau) : 1.0, 12));
     lines_ += "net heat-" + axis_ + "-start => " + lag + ".load\n";
     return lag + ".out";
@@ -152,21 +157,24 @@ class Hal {
 std::vector<Artifact> linuxcnc(const OutputInput& in, const Law& law) {
   const double period = in.options.number("period_s", 0.001);
   std::vector<std::string> lines = heading(in, law);
-  lines.push_back("for a servo-thread of " + fixed_text(1e3 * period, 3) +
-                  " ms (option period_s) and LINEAR_UNITS = mm; run it after the motion module is loaded");
+  lines.push_back(
+      "for a servo-thread of " + fixed_text(1e3 * period, 3) +
+      " ms (option period_s) and LINEAR_UNITS = mm; run it after the motion module is loaded");
   lines.emplace_back("connect the sensors, in degC and as recorded, to:");
   for (const auto& c : law.channels)
-    lines.push_back("  net " + signal_of(law, c.name) + " <= (the pin of " + c.name + ", " + c.unit +
-                    ")");
+    lines.push_back("  net " + signal_of(law, c.name) + " <= (the pin of " + c.name + ", " +
+                    c.unit + ")");
   lines.push_back("set heat-" + lower(plain(law.axis)) +
                   "-start once when the sensors read and before the axis is homed: sets heat-" +
                   lower(plain(law.axis)) + "-start 1, then 0");
   lines.emplace_back("the axis needs OFFSET_AV_RATIO in its section of the INI file");
   lines.emplace_back(
-      "external offsets count from the moment when the machine is on and homed: what heat does while "
+      "external offsets count from the moment when the machine is on and homed: what heat does "
+      "while "
       "it is off is not compensated; home again then");
   const std::string start = "newsig heat-" + lower(plain(law.axis)) + "-start bit\n";
-  return {{file_of(law, "linuxcnc", ".hal"), comment(lines, "# ") + start + Hal(law, period).text()}};
+  return {
+      {file_of(law, "linuxcnc", ".hal"), comment(lines, "# ") + start + Hal(law, period).text()}};
 }
 
 // Klipper: [z_thermal_adjust]
@@ -180,10 +188,12 @@ std::string one_sensor_of_z(const Law& law) {
 std::vector<Artifact> klipper(const OutputInput& in, const Law& law) {
   const Term& term = law.terms.front();
   std::vector<std::string> lines = heading(in, law);
-  lines.push_back("sensor: " + term.channels[0] + "; add its sensor_type, sensor_pin, min_temp and "
+  lines.push_back("sensor: " + term.channels[0] +
+                  "; add its sensor_type, sensor_pin, min_temp and "
                   "max_temp to this section");
-  lines.emplace_back("the firmware takes the temperature at the end of homing Z as reference, and smooths "
-                     "from 0 degC when it starts: wait five times smooth_time before homing");
+  lines.emplace_back(
+      "the firmware takes the temperature at the end of homing Z as reference, and smooths "
+      "from 0 degC when it starts: wait five times smooth_time before homing");
   return {{file_of(law, "klipper", ".cfg"),
            comment(lines, "# ") + "[z_thermal_adjust]\ntemp_coeff: " + mm(term.gain) +
                "\nsmooth_time: " + fixed_text(std::max(term.tau, 1.0), 1) + "\n"}};
@@ -214,7 +224,8 @@ std::string input_of(const Term& term, std::size_t channel) {
   return term.power == 2 ? "(" + part + ") * (" + part + ")" : part;
 }
 
-std::string block(const OutputInput& in, const Law& law, const std::string& name, const Dialect& d) {
+std::string block(const OutputInput& in, const Law& law, const std::string& name,
+                  const Dialect& d) {
   std::string inputs, states, begin, step, sum;
   for (const auto& c : law.channels)
     inputs += "  " + variable(c.name) + " : " + d.number + ";  (* " + c.unit + " *)\n";
@@ -231,13 +242,16 @@ std::string block(const OutputInput& in, const Law& law, const std::string& name
       sum += (sum.empty() ? "" : " + ") + ("(" + mm(gain) + ")") + " * (" + y + " - " + r + ")";
     }
   const std::string of = d.number;
-  return comment(heading(in, law), "(* ", " *)") + "FUNCTION_BLOCK " + name + "\nVAR_INPUT\n  dt : " + of +
-         ";  (* s since the last call *)\n  reset : BOOL;  (* TRUE: begin from this state *)\n" + inputs +
-         "END_VAR\nVAR_OUTPUT\n  " + d.result + " : " + of + ";  (* mm *)\nEND_VAR\nVAR\n  started : BOOL;\n" +
-         "  elapsed : " + of + ";\n" + states + "END_VAR\n" + "IF NOT started OR reset THEN\n" + begin +
-         "  elapsed := 0.0;\n  started := TRUE;\nEND_IF;\nelapsed := elapsed + dt;\nIF elapsed >= " +
-         fixed_text(step_of(law), 3) + " THEN\n" + step + "  elapsed := 0.0;\nEND_IF;\n" + d.result +
-         " := " + sum + ";\nEND_FUNCTION_BLOCK\n";
+  return comment(heading(in, law), "(* ", " *)") + "FUNCTION_BLOCK " + name +
+         "\nVAR_INPUT\n  dt : " + of +
+         ";  (* s since the last call *)\n  reset : BOOL;  (* TRUE: begin from this state *)\n" +
+         inputs + "END_VAR\nVAR_OUTPUT\n  " + d.result + " : " + of +
+         ";  (* mm *)\nEND_VAR\nVAR\n  started : BOOL;\n" + "  elapsed : " + of + ";\n" + states +
+         "END_VAR\n" + "IF NOT started OR reset THEN\n" + begin +
+         "  elapsed := 0.0;\n  started := TRUE;\nEND_IF;\nelapsed := elapsed + dt;\nIF elapsed "
+         ">= " +
+         fixed_text(step_of(law), 3) + " THEN\n" + step + "  elapsed := 0.0;\nEND_IF;\n" +
+         d.result + " := " + sum + ";\nEND_FUNCTION_BLOCK\n";
 }
 
 std::vector<Artifact> twincat(const OutputInput& in, const Law& law) {
@@ -245,10 +259,12 @@ std::vector<Artifact> twincat(const OutputInput& in, const Law& law) {
   const std::vector<std::string> use{
       "use, with Position Correction enabled in the parameters of the axis:",
       "  heat" + axis + "(dt := cycle, reset := zeroing, ...);",
-      "  limiter" + axis + "(Axis := axis" + axis + ", Enable := TRUE, PositionCorrectionValue := heat" +
-          axis + ".correction_mm, CorrectionMode := POSITIONCORRECTION_MODE_FAST, Acceleration := 1.0);",
-      "limiter" + axis + ": MC_PositionCorrectionLimiter. It adds the value to the actual position, so that the "
-      "axis moves against it: the value is the error itself.",
+      "  limiter" + axis + "(Axis := axis" + axis +
+          ", Enable := TRUE, PositionCorrectionValue := heat" + axis +
+          ".correction_mm, CorrectionMode := POSITIONCORRECTION_MODE_FAST, Acceleration := 1.0);",
+      "limiter" + axis +
+          ": MC_PositionCorrectionLimiter. It adds the value to the actual position, so that the "
+          "axis moves against it: the value is the error itself.",
       "check the sign once: with PositionCorrectionValue 0.01 the axis must move by -0.01 mm"};
   return {{file_of(law, "twincat", ".st"),
            comment(use, "(* ", " *)") +

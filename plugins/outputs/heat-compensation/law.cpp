@@ -12,8 +12,7 @@ namespace {
 
 std::string trimmed(const std::string& s) {
   const std::size_t from = s.find_first_not_of(" \t");
-  return from == std::string::npos ? ""
-                                   : s.substr(from, s.find_last_not_of(" \t") - from + 1);
+  return from == std::string::npos ? "" : s.substr(from, s.find_last_not_of(" \t") - from + 1);
 }
 
 /// Axis of a displacement, with "-" in front where the sensor counts against it.
@@ -59,9 +58,12 @@ Values values_of(const ModelFit& fit, const std::string& effect) {
   Values v;
   for (const ModelFit::Parameter& p : fit.parameters) {
     if (p.effect != effect) continue;
-    if (p.name == "tau") v.tau = p.value;
-    else if (p.name == "m") v.power = p.value;
-    else v.gain = p.value, v.has_gain = true;
+    if (p.name == "tau")
+      v.tau = p.value;
+    else if (p.name == "m")
+      v.power = p.value;
+    else
+      v.gain = p.value, v.has_gain = true;
   }
   return v;
 }
@@ -164,8 +166,8 @@ Expected<std::vector<Law>> laws(const OutputInput& in, std::vector<Finding>& fin
       findings.push_back(about("heat-compensation.no-effect", displacement));
       continue;
     }
-    const auto other = std::find_if(out.begin(), out.end(),
-                                    [&](const Law& one) { return one.axis == law.axis; });
+    const auto other =
+        std::find_if(out.begin(), out.end(), [&](const Law& one) { return one.axis == law.axis; });
     if (other != out.end()) {
       Finding f = about("heat-compensation.two-displacements", displacement);
       f.texts.emplace_back("other", other->displacement);

@@ -27,8 +27,8 @@ struct Term {
 struct Law {
   std::string axis, displacement, measurement;
   std::vector<Term> terms;
-  std::vector<std::string> effects;   ///< as the model names them, one for each term
-  std::vector<std::string> left_out;  ///< effects of the model that no control can follow
+  std::vector<std::string> effects;             ///< as the model names them, one for each term
+  std::vector<std::string> left_out;            ///< effects of the model that no control can follow
   std::vector<Observations::Channel> channels;  ///< of the terms
   double before = 0.0, after = 0.0;             ///< RMS about the mean, m
 };

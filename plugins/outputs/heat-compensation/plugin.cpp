@@ -8,9 +8,10 @@ namespace nonio::heat_compensation {
 namespace {
 
 Finding refusal(std::string id, const Format& format, const Law& law) {
-  return {.id = std::move(id),
-          .attention = true,
-          .texts = {{"control", format.name}, {"axis", law.axis}, {"displacement", law.displacement}}};
+  return {
+      .id = std::move(id),
+      .attention = true,
+      .texts = {{"control", format.name}, {"axis", law.axis}, {"displacement", law.displacement}}};
 }
 
 void add(OutputResult& result, const OutputInput& in, const Format& format, const Law& law) {
