@@ -261,6 +261,28 @@ storage::Json unseen_json(const model::Candidate& c, const PartModel& part,
   return json;
 }
 
+storage::Json sensors_json(const model::Sensors& s, Quantity q) {
+  storage::Json json = {{"recorded", s.recorded}, {"smallest", s.smallest}};
+  storage::put(json, "cv_rms", s.rms, q);
+  storage::put(json, "cv_rms_smallest", s.rms_smallest, q);
+  storage::Json used = storage::Json::array();
+  for (const model::Sensors::One& one : s.used) {
+    storage::Json without = {{"channel", one.channel}};
+    storage::put(without, "cv_rms_without", one.rms_without, q);
+    used.push_back(std::move(without));
+  }
+  json["used"] = std::move(used);
+  if (!s.unseen.empty()) {
+    json["no_thermometer_for"] = s.unseen;
+    storage::put(json, "tau", s.unseen_tau, Quantity::time);
+  }
+  json["weakest"] = s.weakest;
+  storage::put(json, "relative_u", s.relative_u, Quantity::ratio);
+  storage::put(json, "measured", s.measured, Quantity::time);
+  storage::put(json, "wanted", s.wanted, Quantity::time);
+  return json;
+}
+
 storage::Json plans_json(const std::vector<model::Plan>& plans, const ModelWords& words) {
   storage::Json list = storage::Json::array();
   for (const model::Plan& plan : plans) {
@@ -401,6 +423,7 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
   json["verdict"] = verdict_json(e, words);
   json["plans"] = plans_json(x.plans, words);
   json["next"] = words.next(x, e.part);
+  if (x.sensors) json["sensors"] = sensors_json(*x.sensors, q);
   if (const std::string text = words.no_sign(x, e.part); !text.empty()) json["no_sign"] = text;
   if (x.verdict.trials > 0) {
     storage::put(json, "false_alarm_rate", x.verdict.false_alarms, Quantity::ratio);

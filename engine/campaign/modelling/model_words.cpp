@@ -113,6 +113,7 @@ namespace {
 
 // docs/dev/constants.md, M24.
 constexpr double told_apart = 4.0;         // standard deviations
+constexpr double most_longer = 10.0;       // times a test is measured longer
 constexpr std::size_t enough_targets = 9;  // a wave and a bend need as many columns as 5 targets
 
 class Next {
@@ -121,6 +122,7 @@ class Next {
 
   std::vector<Finding> all() {
     plan();
+    if (e_.sensors) sensors(*e_.sensors);
     if (e_.verdict.kind == Kind::unknown)
       for (const model::Place& place : e_.fails) at(place);
     return std::move(out_);
@@ -132,6 +134,28 @@ class Next {
     const std::string name = std::string("next.") + id;
     if (std::none_of(out_.begin(), out_.end(), [&](const Finding& f) { return f.id == name; }))
       out_.push_back({.id = name, .evidence = std::move(numbers), .texts = std::move(texts)});
+  }
+
+  static double rounded(double v) { return std::round(10.0 * v) / 10.0; }
+
+  void sensors(const model::Sensors& s) {
+    const auto q = part_.deviation();
+    const std::string needed = storage::listed(s.smallest);
+    if (s.recorded > s.smallest.size())
+      add("channels",
+          {{"recorded", static_cast<double>(s.recorded), Quantity::count},
+           {"rms", s.rms, q},
+           {"smallest", s.rms_smallest, q}},
+          {{"needed", needed}});
+    if (!s.unseen.empty())
+      add("thermometer", {{"tau_min", rounded(s.unseen_tau / 60.0), Quantity::number}},
+          {{"channel", s.unseen}});
+    if (s.wanted > s.measured)
+      add(s.wanted > most_longer * s.measured ? "not-determined" : "longer",
+          {{"percent", std::round(100.0 * s.relative_u), Quantity::count},
+           {"measured_h", rounded(s.measured / 3600.0), Quantity::number},
+           {"wanted_h", rounded(s.wanted / 3600.0), Quantity::number}},
+          {{"effect", s.weakest}});
   }
 
   /// The cheapest that tells them apart.

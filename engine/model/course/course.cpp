@@ -77,12 +77,40 @@ std::vector<std::size_t> classes_of(const std::vector<double>& values, std::size
   return out;
 }
 
-std::vector<Place> places_of(const Part& part, const std::vector<double>& residual) {
+/// How much fewer independent entries there are than entries: 1 + 2 sum of the correlations up to the
+/// first that is small, each pair of them.
+double fewer_than(const VectorXd& residual) {
+  const Index n = residual.size();
+  const VectorXd r = residual.array() - residual.mean();
+  const double squares = r.squaredNorm();
+  double sum = 1.0;
+  for (Index k = 1; 2 * k + 1 < n && k < n / 4; ++k) {
+    const double pair = (r.head(n - 2 * k + 1).dot(r.tail(n - 2 * k + 1)) +
+                         r.head(n - 2 * k).dot(r.tail(n - 2 * k))) /
+                        squares;
+    if (!(pair > 0.0)) break;  // Geyer 1992: the first pair that is not positive is noise
+    sum += 2.0 * pair;
+  }
+  return sum;
+}
+
+/// In the bins of the search: what is left within them is noise.
+std::vector<Place> places_of(const Part& part, const std::vector<double>& all) {
   constexpr std::size_t classes = 8;
+  const CourseData data(part);
+  const auto in_bins = [&](const std::vector<double>& column) {
+    const VectorXd means = data.means(column);
+    return std::vector<double>(means.begin(), means.end());
+  };
   const Observations& o = part.table;
-  const VectorXd r =
-      Eigen::Map<const VectorXd>(residual.data(), static_cast<Index>(residual.size()));
-  const double fewer = repetition(successive(r));
+  const std::vector<double> residual = in_bins(all);
+  const auto spread = [](const std::vector<double>& r) {
+    const auto v = Eigen::Map<const VectorXd>(r.data(), static_cast<Index>(r.size()));
+    return (v.array() - v.mean()).square().mean();
+  };
+  const double of_bins = spread(residual) / std::max(spread(all), 1e-30);
+  const double fewer =
+      fewer_than(Eigen::Map<const VectorXd>(residual.data(), static_cast<Index>(residual.size())));
   std::vector<Place> out;
   const auto add = [&](const std::vector<double>& values, Where where, const std::string& line,
                        Quantity quantity) {
@@ -90,14 +118,15 @@ std::vector<Place> places_of(const Part& part, const std::vector<double>& residu
     const auto of = classes_of(values, classes, low, width);
     auto place = place_of(where, residual, of, classes, fewer);
     if (!place) return;
+    place->share *= of_bins;
     place->at = low + (*place->at + 0.5) * width;
     place->at_quantity = quantity;
     place->line = line;
     out.push_back(std::move(*place));
   };
-  add(o.time, {Factor::time}, "", Quantity::time);
+  add(in_bins(o.time), {Factor::time}, "", Quantity::time);
   for (const auto& c : o.channels)
-    add(lagged(c, 0.0, o.time), {Factor::channel}, c.name, Quantity::number);
+    add(in_bins(lagged(c, 0.0, o.time)), {Factor::channel}, c.name, Quantity::number);
   for (Place& place : out) {
     place.p = std::min(1.0, place.p * static_cast<double>(out.size()));
     if (place.where == Where{Factor::channel}) place.at.reset();

@@ -59,26 +59,21 @@ double successive(const VectorXd& residual) {
   return squares > 0.0 ? r.head(n - 1).dot(r.tail(n - 1)) / squares : 0.0;
 }
 
-double repetition(double correlation) {
-  constexpr double largest = 0.999;
-  const double r = std::clamp(correlation, 0.0, largest);
-  return (1.0 + r) / (1.0 - r);
-}
-
 std::vector<Quantity> quantities_of(const Term& term) {
   std::vector<Quantity> out;
   for (const Effect::Parameter& p : term.effect->linear) out.push_back(p.quantity);
   return out;
 }
 
-std::vector<CourseColumns> columns_on_grid(const CourseData& data, const Term& term) {
-  std::vector<CourseColumns> out;
-  for (std::vector<double>& shape : shapes_of(data.part().table, term)) {
-    const auto columns = term.effect->columns(data.part().table, term.axis, shape);
+const std::vector<CourseColumns>& CourseData::on_grid(const Term& term) const {
+  const auto [place, first] = grids_.try_emplace({term.name(), term.shape});
+  if (!first) return place->second;
+  for (std::vector<double>& shape : shapes_of(part_.table, term)) {
+    const auto columns = term.effect->columns(part_.table, term.axis, shape);
     if (!columns || columns->empty()) continue;
-    out.push_back({std::move(shape), data.means(*columns)});
+    place->second.push_back({std::move(shape), means(*columns)});
   }
-  return out;
+  return place->second;
 }
 
 }  // namespace nonio::model

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "data/design.h"
@@ -8,6 +11,12 @@
 
 /// Displacements over time. What the fit and the search of a course have in common.
 namespace nonio::model {
+
+/// A shape of a term and its columns in the bins.
+struct CourseColumns {
+  std::vector<double> shape;
+  MatrixXd columns;
+};
 
 /// Rows of a course, averaged to at most `most_bins` of equal length (one more than a product of 2, 3
 /// and 5, for the Fourier transform of their changes), and blocks that follow each other in time.
@@ -29,29 +38,22 @@ class CourseData {
   /// Of this displacement, then of those that move with it: m.
   const MatrixXd& displacements() const { return displacements_; }
   const Part& part() const { return part_; }
+  /// For every shape on the grid of a term (`shapes_of`); those that an effect cannot make are left out.
+  /// Made once for each term.
+  const std::vector<CourseColumns>& on_grid(const Term& term) const;
 
  private:
   const Part& part_;
+  mutable std::map<std::pair<std::string, std::vector<double>>, std::vector<CourseColumns>> grids_;
   std::vector<std::size_t> first_;  ///< row of each bin, and the end
   MatrixXd displacements_;
   VectorXd time_;
 };
 
-/// How much fewer independent readings there are than readings: (1 + r)/(1 - r) with r the
-/// correlation of successive residuals; at least 1. Source: Bayley and Hammersley 1946.
-double repetition(double correlation);
 /// Correlation of successive entries.
 double successive(const VectorXd& residual);
 
 /// What the coefficients of a term are.
 std::vector<Quantity> quantities_of(const Term& term);
-
-/// A shape of a term and its columns in the bins.
-struct CourseColumns {
-  std::vector<double> shape;
-  MatrixXd columns;
-};
-/// For every shape on the grid of a term (`shapes_of`); those that an effect cannot make are left out.
-std::vector<CourseColumns> columns_on_grid(const CourseData& data, const Term& term);
 
 }  // namespace nonio::model

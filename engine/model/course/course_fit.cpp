@@ -18,18 +18,18 @@ namespace {
 
 class CourseFit {
  public:
-  CourseFit(const Part& part, std::vector<Term> terms)
-      : data_(part), terms_(std::move(terms)), noise_(noise_of_fit(data_)) {}
+  CourseFit(const CourseData& data, std::vector<Term> terms)
+      : data_(data), terms_(std::move(terms)), noise_(noise_of_fit(data_)) {}
 
   Expected<Fit> made() {
     for (Term& term : terms_) {
       searched_.push_back(term.shape.empty() && !term.effect->shapes.empty());
-      auto grid = columns_on_grid(data_, term);
+      const auto& grid = data_.on_grid(term);
       if (grid.empty())
         return fail("effect \"" + term.name() + "\": these readings cannot show it");
       chosen_.push_back(grid.front());
       term.shape = grid.front().shape;
-      grids_.push_back(std::move(grid));
+      grids_.push_back(&grid);
       of_.push_back(quantities_of(term));
     }
     search();
@@ -66,7 +66,7 @@ class CourseFit {
     places_.clear();
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       places_.emplace_back();
-      for (const CourseColumns& one : grids_[k])
+      for (const CourseColumns& one : *grids_[k])
         places_.back().push_back(pool_->add(one.columns, of_[k]));
     }
     pool_->finish();
@@ -77,12 +77,12 @@ class CourseFit {
       std::vector<std::size_t> at;
       for (std::size_t k = 0; k < terms_.size(); ++k)  // neighbours begin apart
         at.push_back(static_cast<std::size_t>((k % 2 == 0 ? share : 1.0 - share) *
-                                              static_cast<double>(grids_[k].size() - 1)));
+                                              static_cast<double>(grids_[k]->size() - 1)));
       const double cost = descend(at);
       if (best.empty() || cost < least) least = cost, best = at;
     }
     for (std::size_t k = 0; k < terms_.size(); ++k) {
-      chosen_[k] = grids_[k][best[k]];
+      chosen_[k] = (*grids_[k])[best[k]];
       terms_[k].shape = chosen_[k].shape;
     }
   }
@@ -93,7 +93,7 @@ class CourseFit {
     for (int round = 0; round < most_rounds; ++round) {
       bool changed = false;
       for (std::size_t k = 0; k < at.size(); ++k)
-        for (std::size_t g = 0; g < grids_[k].size(); ++g) {
+        for (std::size_t g = 0; g < grids_[k]->size(); ++g) {
           std::vector<std::size_t> other = at;
           other[k] = g;
           if (const double cost = cost_with(other); cost < least)
@@ -277,12 +277,12 @@ class CourseFit {
       }
   }
 
-  CourseData data_;
+  const CourseData& data_;
   std::vector<Term> terms_;
   CourseNoise noise_;
   std::vector<std::vector<Quantity>> of_;  ///< what the coefficients of each term are
   std::vector<char> searched_;
-  std::vector<std::vector<CourseColumns>> grids_;
+  std::vector<const std::vector<CourseColumns>*> grids_;
   std::vector<CourseColumns> chosen_;
   std::optional<CoursePool> pool_;
   std::vector<std::vector<std::vector<Index>>> places_;  ///< in the pool: of each term and shape
@@ -291,9 +291,13 @@ class CourseFit {
 
 }  // namespace
 
+Expected<Fit> fit_course(const CourseData& data, const std::vector<Term>& terms) {
+  if (data.part().table.size() == 0) return fail("there are no readings over time");
+  return CourseFit(data, terms).made();
+}
+
 Expected<Fit> fit_course(const Part& part, const std::vector<Term>& terms) {
-  if (part.table.size() == 0) return fail("there are no readings over time");
-  return CourseFit(part, terms).made();
+  return fit_course(CourseData(part), terms);
 }
 
 double left_out_rms(const Part& part, const std::vector<Term>& terms) {

@@ -76,15 +76,21 @@ void CoursePool::finish() {
   columns_.clear();
   white_ = whitening_.of(raw_);
   products_ = math::transposed_product(white_, white_);
-  for (Index b = 0; b < CourseData::blocks; ++b) {
-    const MatrixXd white = block_of(data_, white_, b), raw = centred_block(data_, raw_, b);
-    of_block_.push_back(math::transposed_product(white, white));
-    centred_.push_back(math::transposed_product(raw, raw));
-  }
   const CourseSides sides(*this, data_.displacements());
   ridge_ = std::max(first_ridge * sides.squares.mean() / bins(), 1e-300);
   if (white_.cols() > 0)
     ridge_ = std::max(greedy({}, sides, 0, sides.squares.size()).variance, 1e-300);
+}
+
+const CoursePool::Blocks& CoursePool::blocks() const {
+  if (blocks_) return *blocks_;
+  blocks_.emplace();
+  for (Index b = 0; b < CourseData::blocks; ++b) {
+    const MatrixXd white = block_of(data_, white_, b), raw = centred_block(data_, raw_, b);
+    blocks_->white.push_back(math::transposed_product(white, white));
+    blocks_->centred.push_back(math::transposed_product(raw, raw));
+  }
+  return *blocks_;
 }
 
 double CoursePool::penalty() const {
@@ -170,21 +176,23 @@ MatrixXd CoursePool::remainder(const std::vector<Index>& columns,
 double CoursePool::left_out(const std::vector<Index>& columns, const CourseSides& sides,
                             Index side) const {
   const auto p = static_cast<Index>(columns.size());
+  const Blocks& own_blocks = blocks();
+  const CourseSides::Blocks& of_sides = sides.blocks(*this);
   double squares = 0.0;
-  for (std::size_t b = 0; b < of_block_.size(); ++b) {
-    squares += sides.centred_squares[b](side);
+  for (std::size_t b = 0; b < own_blocks.white.size(); ++b) {
+    squares += of_sides.centred_squares[b](side);
     if (p == 0) continue;
     MatrixXd normal(p, p), own(p, p);
     for (Index i = 0; i < p; ++i) {
       const Index at = columns[static_cast<std::size_t>(i)];
-      normal.col(i) = picked(products_, at, columns) - picked(of_block_[b], at, columns);
-      own.col(i) = picked(centred_[b], at, columns);
+      normal.col(i) = picked(products_, at, columns) - picked(own_blocks.white[b], at, columns);
+      own.col(i) = picked(own_blocks.centred[b], at, columns);
     }
     normal.diagonal().array() += ridge_;
     const VectorXd x = math::solution(
         Eigen::LDLT<MatrixXd>(normal),
-        VectorXd(picked(sides.products, side, columns) - picked(sides.of_block[b], side, columns)));
-    squares += x.dot(math::times(own, x) - 2.0 * picked(sides.centred[b], side, columns));
+        VectorXd(picked(sides.products, side, columns) - picked(of_sides.white[b], side, columns)));
+    squares += x.dot(math::times(own, x) - 2.0 * picked(of_sides.centred[b], side, columns));
   }
   return std::sqrt(std::max(squares, 1e-300) / static_cast<double>(data_.size()));
 }
@@ -240,18 +248,24 @@ CoursePool::Greedy CoursePool::greedy(const std::vector<Index>& columns, const C
   return out;
 }
 
-CourseSides::CourseSides(const CoursePool& pool, const MatrixXd& displacements) {
-  const MatrixXd white = pool.whitening().of(displacements);
-  products = math::transposed_product(pool.white(), white);
-  squares = white.colwise().squaredNorm();
+CourseSides::CourseSides(const CoursePool& pool, MatrixXd displacements)
+    : displacements_(std::move(displacements)), white_(pool.whitening().of(displacements_)) {
+  products = math::transposed_product(pool.white(), white_);
+  squares = white_.colwise().squaredNorm();
+}
+
+const CourseSides::Blocks& CourseSides::blocks(const CoursePool& pool) const {
+  if (blocks_) return *blocks_;
+  blocks_.emplace();
   const CourseData& data = pool.data();
   for (Index b = 0; b < CourseData::blocks; ++b) {
-    const MatrixXd centred_rows = centred_block(data, displacements, b);
-    of_block.push_back(
-        math::transposed_product(block_of(data, pool.white(), b), block_of(data, white, b)));
-    centred.push_back(math::transposed_product(centred_block(data, pool.raw(), b), centred_rows));
-    centred_squares.push_back(centred_rows.colwise().squaredNorm());
+    const MatrixXd rows = centred_block(data, displacements_, b);
+    blocks_->white.push_back(
+        math::transposed_product(block_of(data, pool.white(), b), block_of(data, white_, b)));
+    blocks_->centred.push_back(math::transposed_product(centred_block(data, pool.raw(), b), rows));
+    blocks_->centred_squares.push_back(rows.colwise().squaredNorm());
   }
+  return *blocks_;
 }
 
 }  // namespace nonio::model

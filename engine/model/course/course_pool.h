@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -76,20 +77,31 @@ class CoursePool {
   std::vector<double> prior_;
   std::map<std::pair<double, double>, std::vector<Index>> places_;
   MatrixXd raw_, white_, products_;
-  std::vector<MatrixXd> of_block_;  ///< the same products in each block
-  std::vector<MatrixXd> centred_;  ///< products in each block of the columns less their means there
+  /// Products in each block: of the white columns, and of the columns less their means there.
+  struct Blocks {
+    std::vector<MatrixXd> white, centred;
+  };
+  const Blocks& blocks() const;
+  mutable std::optional<Blocks> blocks_;  ///< made when blocks are left out
   double sd_ = 0.0;                ///< of the displacements, m
   double ridge_ = 0.0;             ///< variance of the noise / variance of a coefficient, m^2
 };
 
 /// Products of a pool with displacements: the same for many displacements at once.
 struct CourseSides {
-  MatrixXd products;                                ///< pool x displacements
-  Eigen::RowVectorXd squares;                       ///< of each displacement, m^2
-  std::vector<MatrixXd> of_block, centred;          ///< as of the pool
-  std::vector<Eigen::RowVectorXd> centred_squares;  ///< of each block, m^2
+  MatrixXd products;           ///< pool x displacements
+  Eigen::RowVectorXd squares;  ///< of each displacement, m^2
+  struct Blocks {
+    std::vector<MatrixXd> white, centred;             ///< as of the pool
+    std::vector<Eigen::RowVectorXd> centred_squares;  ///< of each block, m^2
+  };
 
-  CourseSides(const CoursePool& pool, const MatrixXd& displacements);
+  CourseSides(const CoursePool& pool, MatrixXd displacements);
+  const Blocks& blocks(const CoursePool& pool) const;
+
+ private:
+  MatrixXd displacements_, white_;
+  mutable std::optional<Blocks> blocks_;  ///< made when blocks are left out
 };
 
 }  // namespace nonio::model

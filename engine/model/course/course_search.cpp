@@ -22,7 +22,7 @@ namespace {
 using Set = std::vector<std::size_t>;  // of entries, ascending
 
 // docs/dev/constants.md, M40.
-constexpr std::size_t most_terms = 6, kept_sets = 12, copies = 100;
+constexpr std::size_t most_terms = 6, kept_sets = 12, copies = 100, fitted_anew = 5;
 constexpr double same_rms = 1.05;  // noise of two explanations that cannot be separated
 constexpr double named_p = 0.01;
 constexpr double of_floor = 1.5;  // what noise explains
@@ -73,9 +73,9 @@ struct SearchInCopies {
 
 class CourseSearch {
  public:
-  CourseSearch(const Part& part, const Fit& model, const std::vector<Term>& catalogue,
+  CourseSearch(const CourseData& data, const Fit& model, const std::vector<Term>& catalogue,
                std::uint64_t seed)
-      : data_(part), model_(model.terms), catalogue_(catalogue), seed_(seed) {
+      : data_(data), model_(model.terms), catalogue_(catalogue), seed_(seed) {
     std::map<std::string, std::size_t> instances;
     for (const Term& term : catalogue) ++instances[term.effect->info.name];
     for (std::size_t t = 0; t < catalogue.size(); ++t) {
@@ -84,8 +84,8 @@ class CourseSearch {
                       [&](const Term& m) { return m.name() == term.name(); }) ||
           instances[term.effect->info.name] > most_instances)
         continue;
-      for (CourseColumns& one : columns_on_grid(data_, term))
-        entries_.push_back({t, std::move(one.shape), std::move(one.columns), {}});
+      for (const CourseColumns& one : data_.on_grid(term))
+        entries_.push_back({t, one.shape, one.columns, {}});
     }
     CourseNoise noise = noise_of_fit(data_);
     fill(noise);
@@ -339,7 +339,7 @@ class CourseSearch {
     return out;
   }
 
-  CourseData data_;
+  const CourseData& data_;
   std::vector<Term> model_;
   const std::vector<Term>& catalogue_;
   std::optional<CoursePool> pool_;
@@ -353,9 +353,9 @@ class CourseSearch {
 /// Candidates and verdict from the best set.
 class CourseExplanation {
  public:
-  CourseExplanation(const Part& part, const std::vector<Term>& model,
+  CourseExplanation(const CourseData& data, const std::vector<Term>& model,
                     const std::vector<Term>& catalogue, std::uint64_t seed, Comparison comparison)
-      : part_(part), model_(model), search_(part, comparison.fit, catalogue, seed) {
+      : data_(data), model_(model), search_(data, comparison.fit, catalogue, seed) {
     out_.comparison = std::move(comparison);
   }
 
@@ -390,6 +390,8 @@ class CourseExplanation {
     }
     std::stable_sort(out_.candidates.begin(), out_.candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    for (std::size_t i = 0; i < out_.candidates.size(); ++i)
+      fit(out_.candidates[i], i < fitted_anew || is_member(out_.candidates[i]));
     judge();
     return std::move(out_);
   }
@@ -441,11 +443,17 @@ class CourseExplanation {
     c.alone = 2.0 * (gain.alone - search_.penalty());
     c.within = 2.0 * (gain.within - search_.penalty());
     c.score = member ? std::max(c.alone, c.within) : c.within;
-    std::vector<Term> terms = model_;
+    c.term.shape = search_.entry(e).shape;
+    out_.candidates.push_back(std::move(c));
+  }
+
+  /// Fitted with the model: for the first ones, and those of the best set, with all shapes anew; for
+  /// the others the shapes stay as they were found.
+  void fit(Candidate& c, bool anew) {
+    std::vector<Term> terms = anew ? model_ : out_.comparison.fit.terms;
     terms.push_back(c.term);
-    terms.back().shape = search_.entry(e).shape;
-    if (member || set_.empty()) terms.back().shape.clear();
-    if (const auto fit = fit_course(part_, terms)) {
+    if (anew && (set_.empty() || is_member(c))) terms.back().shape.clear();
+    if (const auto fit = fit_course(data_, terms)) {
       c.rms = fit->rms;
       c.term.shape = fit->terms.back().shape;
       for (const Parameter& parameter : fit->parameters)
@@ -454,7 +462,12 @@ class CourseExplanation {
       c.visible = false;
       c.why = "aliased";
     }
-    out_.candidates.push_back(std::move(c));
+  }
+
+  bool is_member(const Candidate& c) const {
+    return std::any_of(set_.begin(), set_.end(), [&](std::size_t e) {
+      return search_.term_of(e).name() == c.term.name();
+    });
   }
 
   void judge() {
@@ -471,18 +484,21 @@ class CourseExplanation {
     v.trials = copies;
     v.false_alarms = named_p;
     if (!set_.empty()) {
-      if (const auto fit = fit_course(part_, terms))
+      if (const auto fit = fit_course(data_, terms)) {
         out_.best_rms = out_.significant_rms = fit->rms;
+        out_.sensors = sensors_of(data_.part(), *fit);
+      }
       v.kind = Verdict::Kind::missing;
       v.effect = certain_.empty() ? best_.second : out_.certain.front();
       return;
     }
+    out_.sensors = sensors_of(data_.part(), out_.comparison.fit);
     const auto& floor = out_.comparison.floor;
     v.kind = floor && out_.comparison.fit.rms <= of_floor * floor->s ? Verdict::Kind::nothing
                                                                      : Verdict::Kind::unknown;
   }
 
-  const Part& part_;
+  const CourseData& data_;
   const std::vector<Term>& model_;
   CourseSearch search_;
   Set set_;
@@ -496,9 +512,11 @@ class CourseExplanation {
 
 Expected<Explanation> explain_course(const Part& part, const std::vector<Term>& model,
                                      const std::vector<Term>& catalogue, std::uint64_t seed) {
-  auto comparison = compare_course(part, model);
-  if (!comparison) return fail(comparison.error());
-  return CourseExplanation(part, model, catalogue, seed, std::move(*comparison)).made();
+  const CourseData data(part);
+  auto fit = fit_course(data, model);
+  if (!fit) return fail(fit.error());
+  Comparison comparison = comparison_of_course(part, std::move(*fit));
+  return CourseExplanation(data, model, catalogue, seed, std::move(comparison)).made();
 }
 
 }  // namespace nonio::model

@@ -132,6 +132,24 @@ class Heat(VerbTest):
         wave = self.campaign("wave", rows)
         self.assertEqual(self.json("explain", wave)["verdict"]["kind"], "unknown")
 
+    def test_which_channels_matter_and_where_a_thermometer_is_missing(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            rows = record(seed, [3.0])
+            answer = self.json("explain", self.campaign("all", rows), "--auto")
+            sensors = answer["sensors"]
+            self.assertEqual(sensors["recorded"], 3)
+            self.assertLessEqual(set(sensors["smallest"]), {"bearing", "spindle"})
+            self.assertLessEqual(sensors["cv_rms_smallest_um"], 1.1 * sensors["cv_rms_um"] + 1e-12)
+            best = sensors["used"][0]
+            self.assertGreater(best["cv_rms_without_um"], 2 * sensors["cv_rms_um"])
+            # Without the thermometer the speed takes its place, and the thermometer is missed.
+            text = table([[t, z, hall, speed] for t, z, _, hall, speed in rows], ("z",)).replace("bearing_c,", "")
+            bare = self.write("bare", MANIFEST.format(id="bare", more=""), **{"warm.csv": text})
+            answer = self.json("explain", bare, "--auto")
+            self.assertEqual(answer["sensors"]["no_thermometer_for"], "spindle")
+            self.assertTrue(any("place one" in says for says in answer["next"]), answer["next"])
+
     def test_a_model_is_edited_and_its_mistakes_are_named(self):
         folder = self.campaign("edit", record(9, [2.0]))
         self.nonio("model", "add", folder, "heat:bearing")

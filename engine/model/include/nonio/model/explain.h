@@ -111,6 +111,25 @@ struct Statement {
   double p = 1.0;                ///< of reversals that of the least certain one, corrected
 };
 
+/// What recorded channels are worth to the model of a displacement over time and its best explanation.
+struct Sensors {
+  struct One {
+    std::string channel;
+    double rms_without = 0.0;  ///< of blocks that are left out, without its effects, m
+  };
+  std::size_t recorded = 0;           ///< channels in the file
+  std::vector<One> used;              ///< the most needed first
+  std::vector<std::string> smallest;  ///< with these it loses less than a tenth
+  double rms = 0.0, rms_smallest = 0.0;  ///< of blocks that are left out, with all and with these, m
+  /// A speed or load that acts through a part that no thermometer shows, and its time constant, s.
+  std::string unseen{};
+  double unseen_tau = 0.0;
+  /// The gain that is known worst: effect, u/|gain|, and the duration of a test as varied as this one
+  /// that would bring it to a tenth, s.
+  std::string weakest{};
+  double relative_u = 0.0, measured = 0.0, wanted = 0.0;
+};
+
 struct Explanation {
   Comparison comparison;
   std::vector<Candidate> candidates;  ///< best first
@@ -132,6 +151,7 @@ struct Explanation {
   std::vector<Statement> statements;      ///< unknown, of an axis
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
+  std::optional<Sensors> sensors{};  ///< over time, where effects of channels are in it
   Verdict verdict;
 };
 
