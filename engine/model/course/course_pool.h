@@ -83,8 +83,8 @@ class CoursePool {
   };
   const Blocks& blocks() const;
   mutable std::optional<Blocks> blocks_;  ///< made when blocks are left out
-  double sd_ = 0.0;                ///< of the displacements, m
-  double ridge_ = 0.0;             ///< variance of the noise / variance of a coefficient, m^2
+  double sd_ = 0.0;                       ///< of the displacements, m
+  double ridge_ = 0.0;  ///< variance of the noise / variance of a coefficient, m^2
 };
 
 /// Products of a pool with displacements: the same for many displacements at once.

@@ -465,9 +465,8 @@ class CourseExplanation {
   }
 
   bool is_member(const Candidate& c) const {
-    return std::any_of(set_.begin(), set_.end(), [&](std::size_t e) {
-      return search_.term_of(e).name() == c.term.name();
-    });
+    return std::any_of(set_.begin(), set_.end(),
+                       [&](std::size_t e) { return search_.term_of(e).name() == c.term.name(); });
   }
 
   void judge() {

@@ -120,7 +120,8 @@ struct Sensors {
   std::size_t recorded = 0;           ///< channels in the file
   std::vector<One> used;              ///< the most needed first
   std::vector<std::string> smallest;  ///< with these it loses less than a tenth
-  double rms = 0.0, rms_smallest = 0.0;  ///< of blocks that are left out, with all and with these, m
+  double rms = 0.0,
+         rms_smallest = 0.0;  ///< of blocks that are left out, with all and with these, m
   /// A speed or load that acts through a part that no thermometer shows, and its time constant, s.
   std::string unseen{};
   double unseen_tau = 0.0;
