@@ -236,7 +236,11 @@ class Page {
     const Json& results = a.at("values");
     if (measurement.empty() && (all_ || !results.empty())) out_ << "\n";
     if (all_ || !results.empty())
-      out_ << "  " << a.at("plugin").get<std::string>() << " " << a.value("version", "") << "\n";
+      out_ << "  "
+           << joined_text({a.at("plugin").get<std::string>(), a.value("version", ""),
+                           a.value("part", "")},
+                          " ")
+           << "\n";
     values(results);
     collect(a, measurement);
     if (!all_) return;
@@ -261,8 +265,11 @@ class Page {
   /// "4.82 ± 1.00 um"
   std::string result(const Json& v) const {
     const std::string U = number(v, "U"), unit = v.value("unit", "");
-    if (U.empty() && unit.empty() && v.at("value").is_number_float())
-      return local(short_text(v.at("value").get<double>(), 4));
+    if (U.empty() && unit.empty() && v.at("value").is_number_float()) {
+      const double plain = v.at("value");
+      return local(plain == std::floor(plain) && std::fabs(plain) < 1e9 ? fixed_text(plain, 0)
+                                                                        : short_text(plain, 4));
+    }
     return joined_text({number(v, "value"), U.empty() ? "" : "± " + U, unit}, " ");
   }
 

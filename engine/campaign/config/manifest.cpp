@@ -290,6 +290,10 @@ void read_common(TableReader& reader, Measurement& m) {
   read_tolerances(reader, m);
   m.exclude = reader.integers("exclude");
   m.exclude_reason = reader.text("exclude_reason");
+  for (TableReader& one : reader.tables("channel")) {
+    m.channels.push_back({one.text("name"), one.text("place"), one.text("role")});
+    one.finish();
+  }
   for (const auto& [axis, position] : reader.number_table("at", mm)) m.at[axis] = position;
   read_test(reader, m);
 }

@@ -220,6 +220,7 @@ void put_analysis(JsonWriter& json, const Results::Analysed& a,
   json.member("plugin", a.plugin);
   json.member("version", a.version);
   put_text(json, "measurement", a.measurement);
+  put_text(json, "part", a.part);
   for (const Remark& note : a.evaluation.notes)
     for (const Number& n : note.evidence)
       if (n.name == "edition") json.member("edition", static_cast<std::uint64_t>(n.value));

@@ -319,7 +319,8 @@ Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::
   ModelFits out;
   for (const PartModel& part : *parts) {
     Results::Analysed one{
-        reading::model_fit_name, context.version, part.part.measurements.front(), {}};
+        reading::model_fit_name, context.version, part.part.measurements.front(), {},
+        part.part.kind == model::Part::Kind::course ? part.part.name : ""};
     Evaluation& evaluation = one.evaluation;
     if (part.part.measurements.size() > 1)
       evaluation.notes.push_back({"model.joined",

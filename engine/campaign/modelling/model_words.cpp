@@ -140,7 +140,13 @@ class Next {
 
   void sensors(const model::Sensors& s) {
     const auto q = part_.deviation();
-    const std::string needed = storage::listed(s.smallest);
+    std::vector<std::string> names;
+    for (const std::string& name : s.smallest) {
+      const auto* channel = part_.part.table.channel(name);
+      names.push_back(channel == nullptr || channel->place.empty() ? name
+                                                                   : name + " (" + channel->place + ")");
+    }
+    const std::string needed = storage::listed(names);
     if (s.recorded > s.smallest.size())
       add("channels",
           {{"recorded", static_cast<double>(s.recorded), Quantity::count},

@@ -12,6 +12,7 @@
 #include "platform/process/guarded.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
+#include "platform/storage/nearest.h"
 
 namespace nonio::reading {
 
@@ -93,6 +94,26 @@ Expected<void> exclude(const CampaignSource& from, const ReadCampaign& out, cons
   return {};
 }
 
+/// What the manifest says of channels that were recorded.
+Expected<void> describe_channels(const CampaignSource& from, const ReadCampaign& out,
+                                 const Measurement& m, Observations& o) {
+  for (const Measurement::Channel& stated : m.channels) {
+    const auto known = std::find_if(o.channels.begin(), o.channels.end(),
+                                    [&](const auto& c) { return c.name == stated.name; });
+    if (known == o.channels.end()) {
+      std::vector<std::string> names;
+      for (const auto& c : o.channels) names.push_back(c.name);
+      return fail(key_error(from, out, "measurement." + m.id + ".channel",
+                            m.file + " has no channel \"" + stated.name + "\"" +
+                                (names.empty() ? "" : "; it has " + storage::listed(names)) +
+                                storage::suggestion(stated.name, names)));
+    }
+    known->place = stated.place;
+    known->role = stated.role;
+  }
+  return {};
+}
+
 std::optional<Settings> settle_reader(const CampaignSource& from, const Info& info,
                                       ReadCampaign& out) {
   auto options = config::settle_options(info, from.context.site.options, out.manifest->options);
@@ -155,6 +176,7 @@ Expected<void> read_one_measurement(const CampaignSource& from, const Measuremen
   }
   if (auto possible = possible_air(*observations, m.file); !possible) return possible;
   if (auto excluded = exclude(from, out, m, *observations); !excluded) return excluded;
+  if (auto known = describe_channels(from, out, m, *observations); !known) return known;
   note_oddities(m, bytes, *observations, out);
   into = std::move(*observations);
   for (Remark note : into.notes) {

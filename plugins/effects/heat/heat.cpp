@@ -52,10 +52,16 @@ std::vector<std::string> sources(const Observations& o) {
   return names(o, [](const Channel& c) { return is_source(c) && varies(c, 0.0); });
 }
 
+/// Of the structure, where the manifest says what a sensor measures.
+bool may_bend(const Channel& c) {
+  return c.is_temperature() && (c.role.empty() || c.role == "structure") &&
+         varies(c, least_range);
+}
+
 /// Every pair once; a name that is one of two has no "-" of its own.
 std::vector<std::string> differences(const Observations& o) {
   std::vector<std::string> out;
-  const std::vector<std::string> all = temperatures(o);
+  const std::vector<std::string> all = names(o, may_bend);
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = i + 1; j < all.size(); ++j)
       if (all[i].find('-') == std::string::npos && all[j].find('-') == std::string::npos)

@@ -8,6 +8,19 @@ namespace nonio::config::declared {
 
 inline constexpr Choice on_or_off[] = {{"on"}, {"off"}};
 inline constexpr Choice adjustments[] = {{"before"}, {"after"}};
+inline constexpr Choice roles_of_channel[] = {{"air"}, {"structure"}, {"source"}, {"coolant"}};
+inline constexpr Key channel_keys[] = {
+    {.name = "name",
+     .holds = text,
+     .help = "Its column in the file, without the unit: \"t4\" of t4_c.",
+     .required = true},
+    {.name = "place", .holds = text, .help = "Where the sensor is: \"front bearing\"."},
+    {.name = "role",
+     .holds = text,
+     .help = "What it measures. Only temperatures of the structure make it bend by their "
+             "difference.",
+     .choices = roles_of_channel},
+};
 inline constexpr Key measurement_keys[] = {
     {.name = "id",
      .holds = text,
@@ -82,6 +95,10 @@ inline constexpr Key measurement_keys[] = {
      .holds = text,
      .help = "Reason why the lines of exclude are excluded; without it no certificate is "
              "issued."},
+    {.name = "channel",
+     .holds = tables,
+     .help = "What is known of a channel that was recorded next to the deviations.",
+     .keys = channel_keys},
     {.name = "at",
      .holds = number_table,
      .help = "Positions of the axes at rest, { Y = 500 }: the line on which this axis was "

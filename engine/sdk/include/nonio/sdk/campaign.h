@@ -142,6 +142,11 @@ struct Measurement {
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m
   std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings do not count
   std::string exclude_reason{};            ///< why they do not; a certificate needs it
+  /// What the manifest says of a recorded channel; role: "air", "structure", "source", "coolant".
+  struct Channel {
+    std::string name, place, role;
+  };
+  std::vector<Channel> channels{};
   std::map<std::string, double> at{};      ///< where the axes that stood still were, m
   std::string adjustment{};                ///< "before" or "after" one; empty: not said
   /// Of the rows, where they have no times: "pendulum", "as-listed", "unknown"; empty: not said.

@@ -47,6 +47,7 @@ struct Observations {
     std::string unit;           ///< "degC", "rpm", "%", "kW", "A"
     std::vector<double> time;   ///< s, ascending
     std::vector<double> value;  ///< in this unit; finite
+    std::string place{}, role{};  ///< of the manifest (`Measurement::Channel`)
 
     bool is_temperature() const { return unit == "degC"; }
   };

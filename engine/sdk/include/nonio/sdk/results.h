@@ -276,6 +276,7 @@ struct Results {
   struct Analysed {
     std::string plugin, version, measurement;  ///< measurement: empty if of the campaign
     Evaluation evaluation;
+    std::string part{};  ///< of the model: "warm/z"; empty where the measurement says it
   };
   struct Written {
     std::string plugin, version;
