@@ -54,6 +54,7 @@ void add_curve(std::vector<ParameterRow>& rows, const std::string& effect,
 std::vector<CandidateRow> candidate_rows(const ModelFit& fit, const std::string& language) {
   const Quantity q = deviation_of(fit.angular);
   const auto with_unit = [&](double value) {
+    if (!std::isfinite(value)) return std::string("–");
     return localised(short_text(printed(value, q)), language) + " " + unit_text(q);
   };
   std::vector<CandidateRow> rows;

@@ -237,6 +237,14 @@ std::string data_of(const Drawn& source, const Kept& kept, bool titles) {
     put_without(json, fit, e.name, rows, per_si);
     json.end_object();
   });
+  put_list(json, "channels", fit.channels, [&](const ModelFit::Channel& c) {
+    json.begin_object();
+    json.member("name", c.name);
+    json.member("unit", c.unit == "degC" ? "°C" : c.unit);
+    json.member("used", c.used);
+    put_column(json, "values", c.values, rows);
+    json.end_object();
+  });
   std::map<std::size_t, std::size_t> place;
   for (std::size_t k = 0; k < rows.size(); ++k) place[rows[k]] = k;
   put_list(json, "suspects", fit.suspects, [&](const ModelFit::Suspect& s) {

@@ -10,6 +10,7 @@
 #include "campaign/modelling/model_json.h"
 #include "campaign/modelling/thermal_tests.h"
 #include "campaign/reading/names.h"
+#include "nonio/sdk/channels.h"
 
 namespace nonio::modelling {
 
@@ -105,9 +106,26 @@ Finding cannot_fit(const std::string& reason) {
   return {"model.cannot-fit", true, {}, {{"reason", reason}}};
 }
 
+bool follows(const PartModel& part, const std::string& channel) {
+  return std::any_of(part.terms.begin(), part.terms.end(), [&](const model::Term& term) {
+    const std::string& of = term.axis.name;
+    return of == channel || of.starts_with(channel + "-") || of.ends_with("-" + channel);
+  });
+}
+
+void put_channels(ModelFit& out, const PartModel& whole) {
+  const Observations& o = whole.part.table;
+  for (const Observations::Channel& c : o.channels) {
+    std::vector<double> values = lagged(c, 0.0, o.time);
+    for (double& v : values) v += c.value.front();
+    out.channels.push_back({c.name, c.unit, follows(whole, c.name), std::move(values)});
+  }
+}
+
 void put_readings(ModelFit& out, const PartModel& whole) {
   const model::Part& part = whole.part;
   const Observations& o = part.table;
+  if (part.kind == model::Part::Kind::course) put_channels(out, whole);
   out.measurement = part.measurement;
   out.source_line = o.source_line;
   out.run = o.run;
@@ -190,6 +208,8 @@ void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& wh
 void put_candidates(ModelFit& out, const PartModel& part, const model::Explanation& e) {
   for (const model::Candidate& c : e.candidates) {
     if (!is_ranked(c) || !(c.score > 0.0)) continue;
+    // Evidence of readings that hang together: what the search also finds without a cause is none.
+    if (part.part.kind == model::Part::Kind::course && !(c.p < e.verdict.false_alarms)) continue;
     const bool certain =
         std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end();
     out.candidates.push_back(
@@ -318,9 +338,11 @@ Expected<ModelFits> model_fit(const reading::ReadCampaign& read, const reading::
   if (!parts) return fail(parts.error());
   ModelFits out;
   for (const PartModel& part : *parts) {
-    Results::Analysed one{
-        reading::model_fit_name, context.version, part.part.measurements.front(), {},
-        part.part.kind == model::Part::Kind::course ? part.part.name : ""};
+    Results::Analysed one{reading::model_fit_name,
+                          context.version,
+                          part.part.measurements.front(),
+                          {},
+                          part.part.kind == model::Part::Kind::course ? part.part.name : ""};
     Evaluation& evaluation = one.evaluation;
     if (part.part.measurements.size() > 1)
       evaluation.notes.push_back({"model.joined",

@@ -438,6 +438,7 @@ class CourseExplanation {
     Candidate c;
     c.term = search_.term_of(e);
     c.cv_rms = search_.left_out_with({e});
+    c.minimal_detectable = std::numeric_limits<double>::quiet_NaN();  // not known over time
     c.p = p;
     const bool member = std::find(set_.begin(), set_.end(), e) != set_.end();
     c.alone = 2.0 * (gain.alone - search_.penalty());

@@ -107,6 +107,30 @@ class Pictures {
     return {std::move(above), std::move(below)};
   }
 
+  /// Temperatures, speeds and loads during the readings, a plot for each unit: those that the model
+  /// follows by name, the others thin.
+  std::vector<Plot> channels(const PictureWords& said) const {
+    std::vector<Plot> out;
+    std::vector<std::string> units;
+    for (const ModelFit::Channel& c : fit_.channels)
+      if (std::find(units.begin(), units.end(), c.unit) == units.end()) units.push_back(c.unit);
+    for (const std::string& unit : units) {
+      Plot plot = frame(said);
+      plot.title.clear(), plot.range.reset(), plot.belts.clear(), plot.x_title.clear();
+      plot.y_title = unit == "degC" ? "°C" : unit;
+      plot.zero_line = false;
+      plot.number_room = 26;
+      plot.height = 0.6 * style_.plot_height;
+      std::size_t number = 0;
+      for (const bool used : {false, true})
+        for (const ModelFit::Channel& c : fit_.channels)
+          if (c.unit == unit && c.used == used) channel(plot, c, used ? number++ : 0);
+      out.push_back(std::move(plot));
+    }
+    if (!out.empty()) out.back().x_title = said.x;
+    return out;
+  }
+
   std::string legend() const { return words_.get("picture.legend") + " " + marks(); }
 
   /// What the grey band and the rings are.
@@ -124,6 +148,21 @@ class Pictures {
   }
 
  private:
+  void channel(Plot& plot, const ModelFit::Channel& c, std::size_t number) const {
+    constexpr std::size_t most_points = 1500;
+    constexpr Dash dashes[] = {Dash::solid, Dash::dashed, Dash::dash_dot, Dash::dotted};
+    const Colour colours[] = {style_.text, style_.accent, style_.minus, style_.plus};
+    Curve line;
+    const std::size_t step = c.values.size() / most_points + 1;
+    for (std::size_t i = 0; i < c.values.size(); i += step)
+      line.x.push_back(fit_.target[i] * scale_.per_si), line.y.push_back(c.values[i]);
+    line.colour = c.used ? colours[number % std::size(colours)] : style_.muted;
+    line.dash = dashes[number % std::size(dashes)];
+    line.width = c.used ? 1.1 : 0.4;
+    if (c.used) line.legend = c.name;
+    plot.curves.push_back(std::move(line));
+  }
+
   Plot frame(const PictureWords& said) const {
     Plot plot;
     plot.title = said.title;
@@ -360,10 +399,14 @@ void add_fit(const Source& source, const ModelFit& fit, Blocks& blocks) {
   const PictureWords words = fit_words(fit, source.pictures);
   auto [above, below] = pictures.with_model(words, said.front());
   const std::string legend = words.says + " " + pictures.marks();
+  std::vector<Plot> recorded = pictures.channels(said.front());
+  if (!recorded.empty()) below.x_title.clear();
   Columns together;
-  together.parts = {{{std::move(above), field},
-                     {std::move(below), field},
-                     {Paragraph{legend, Paragraph::Look::muted}, field}}};
+  auto& parts = together.parts.emplace_back();
+  parts.push_back({std::move(above), field});
+  parts.push_back({std::move(below), field});
+  for (Plot& plot : recorded) parts.push_back({std::move(plot), field});
+  parts.push_back({Paragraph{legend, Paragraph::Look::muted}, field});
   blocks.push_back({Spacer{4}});
   blocks.push_back({std::move(together), field});
 }

@@ -220,7 +220,8 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
     const edge = 0.06 * (high - low) || 1;
     // All of it is seen on a low screen, too.
     const is_low = !printing && window.innerHeight < 800, all_high = is_low ? 340 : 400, middle = is_low ? 190 : 232;
-    const both = {in: "fit", all: all_high, lanes: true};
+    const units = [...new Set((data.channels || []).map((c) => c.unit))], each = is_low ? 72 : 96;
+    const both = {in: "fit", all: all_high + each * units.length, lanes: true};
     const above = new Frame(0, xs, {...both, to: middle, bare: true, band: false, range: [low - edge, high + edge], said: data.fit});
     const passes = new Map();
     for (const i of shown) {
@@ -243,9 +244,22 @@ function nonioPictures({figure, tip, hidden, inTurn, elsewhere, pick, brushed, s
       const single = all.filter((rows) => !rows.is_path).flat();
       if (single.length) put(above.g, "path", {class: "dots model", d: single.map((i) => `M${r1(above.px(place[i]))} ${r1(above.py(model[i]))}h0`).join("")});
     }
-    const below = new Frame(0, xs, {...both, from: middle, to: all_high, range: looks ? [-1, 1] : named ? common_range(data.residual) : range});
+    const below = new Frame(0, xs, {...both, from: middle, to: all_high, bare: units.length > 0, range: looks ? [-1, 1] : named ? common_range(data.residual) : range});
     if (!looks) below.scatter(shown, xs, shown.map(left));
-    return [above, below];
+    return [above, below, ...units.map((unit, k) => channels_of(unit, xs, {...both, from: all_high + each * k, to: all_high + each * (k + 1) + (k + 1 === units.length ? 0 : -6), bare: k + 1 < units.length}))];
+  }
+
+  /// Temperatures, speeds or loads during the readings: those of the model by name, the others grey.
+  function channels_of(unit, xs, options) {
+    const of = data.channels.filter((c) => c.unit === unit), used = of.filter((c) => c.used);
+    const [low, high] = extremes(of.flatMap((c) => shown.map((i) => c.values[i]))), edge = 0.06 * (high - low) || 1;
+    const frame = new Frame(0, xs, {...options, band: false, range: [low - edge, high + edge], said: {...data.fit, y: unit}});
+    const rows = [...shown].sort((a, b) => place[a] - place[b]), at = rows.map((i) => place[i]);
+    for (const c of of) if (!c.used) frame.line(at, rows.map((i) => c.values[i]), "pass other");
+    used.forEach((c, k) => frame.line(at, rows.map((i) => c.values[i]), "mean" + (k % 2 ? " dashed" : "")));
+    const names = (used.length ? used : of).map((c) => c.name);
+    put(frame.g, "text", {class: "names", x: frame.x + 6, y: frame.y + 12}, (names.length > 8 ? names.slice(0, 8).concat("\u2026") : names).join(", "));
+    return frame;
   }
 
   function by_reversal() {

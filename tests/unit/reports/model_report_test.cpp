@@ -80,7 +80,7 @@ TEST_F(ModelReport, APictureWithoutDataSaysWhy) {
 TEST_F(ModelReport, GivesParametersWithUAndNamesThoseThatGoTogether) {
   const std::string text = flat(read_pdf(pdf(made_model())).all());
   for (const char* what : {"-6.10", "0.12", "µm/h", "backlash:X b and periodic:X a (-0.95)",
-                           "+ zero-drift:X", "noise floor of repeated readings, 0.590 ± 0.060"})
+                           "+ zero-drift:X", "noise floor, 0.590 ± 0.060"})
     EXPECT_TRUE(has(text, what)) << what << "\n" << text;
 }
 

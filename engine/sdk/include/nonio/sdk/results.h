@@ -232,6 +232,12 @@ struct ModelFit {
     double rms = 0.0;
     std::optional<double> cv_rms{};  ///< of runs left out one at a time; absent with one run
   };
+  /// A temperature, speed or load that was recorded during the readings.
+  struct Channel {
+    std::string name, unit;      ///< "bearing", "degC"
+    bool used = false;           ///< by an effect of the model
+    std::vector<double> values;  ///< at each reading
+  };
   struct Suspect {
     std::size_t row = 0;
     double minimal_detectable = 0.0;  ///< an error here below this would not have been seen
@@ -267,6 +273,7 @@ struct ModelFit {
   /// Of the others, "No sign of A (would be seen from 1 um)", "B (2 um)", ...: one sentence.
   std::vector<Finding> no_sign{};
   std::vector<Finding> next{};  ///< what to measure next
+  std::vector<Channel> channels{};
 
   std::size_t size() const { return deviation.size(); }
 };
