@@ -150,6 +150,18 @@ class Heat(VerbTest):
             self.assertEqual(answer["sensors"]["no_thermometer_for"], "spindle")
             self.assertTrue(any("place one" in says for says in answer["next"]), answer["next"])
 
+    def test_what_is_known_of_channels(self):
+        rows, air = record(21, [2.0]), '[[measurement.channel]]\nname = "hall"\nrole = "air"\n'
+        names = lambda folder: {c["effect"] for c in self.json("explain", folder)["candidates"]}
+        self.assertIn("heat-difference:bearing-hall", names(self.campaign("open", rows)))
+        self.assertNotIn("heat-difference:bearing-hall", names(self.campaign("stated", rows, more=air)))
+        wrong = self.campaign("wrong", rows, more=air.replace("hall", "halle"))
+        self.assertIn('warm.csv has no channel "halle"; it has bearing, hall, spindle (nearest: "hall")',
+                      self.nonio("compare", wrong, expect=1).stderr)
+        place = self.campaign("place", rows, more='[[measurement.channel]]\nname = "bearing"\nplace = "front bearing"\n'
+                              '[model]\neffects = ["heat:bearing"]\n')
+        self.assertTrue(any("bearing (front bearing)" in says for says in self.json("explain", place)["next"]))
+
     def test_a_model_is_edited_and_its_mistakes_are_named(self):
         folder = self.campaign("edit", record(9, [2.0]))
         self.nonio("model", "add", folder, "heat:bearing")
