@@ -193,6 +193,11 @@ void append_run(Part& part, const Observations& listed, const Measurement& m) {
     to.angular = more.angular;
   }
   auto& axis = to.axes.front();
+  // Times of two measurements do not have one beginning: what lags is known within one only.
+  if (part.measurements.empty())
+    to.channels = more.channels;
+  else
+    to.channels.clear();
   axis.position.insert(axis.position.end(), from.position.begin(), from.position.end());
   axis.approach.insert(axis.approach.end(), from.approach.begin(), from.approach.end());
   part.along = axis.position;

@@ -218,9 +218,17 @@ std::string listed_groupings(const Part& part) {
   return out.empty() ? "two measurements of one axis" : out;
 }
 
+/// Effects of channels are of displacements over time, and of axis runs next to which channels were
+/// recorded; in the other parts there are none.
+bool can_be_in(const Part& part, const Effect& effect) {
+  if (!effect.of_channels) return part.kind != Part::Kind::course;
+  return part.kind == Part::Kind::course ||
+         (part.kind == Part::Kind::axis && !part.table.channels.empty());
+}
+
 /// The term of an effect in this part; none if it is not of anything here.
 std::optional<Term> term_of(const Part& part, const Effect& effect, const std::string& written) {
-  if (effect.of_channels != (part.kind == Part::Kind::course)) return std::nullopt;
+  if (!can_be_in(part, effect)) return std::nullopt;
   if (effect.instances) {
     std::string of = written;
     if (part.kind == Part::Kind::course) {
@@ -244,7 +252,7 @@ std::optional<Term> term_of(const Part& part, const Effect& effect, const std::s
 }
 
 std::vector<std::string> offered_by(const Part& part, const Effect& effect) {
-  if (effect.of_channels != (part.kind == Part::Kind::course)) return {};
+  if (!can_be_in(part, effect)) return {};
   if (effect.instances) return effect.instances(part.table);
   std::vector<std::string> names;
   for (const Axis& axis : part.axes)

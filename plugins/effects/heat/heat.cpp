@@ -54,8 +54,7 @@ std::vector<std::string> sources(const Observations& o) {
 
 /// Of the structure, where the manifest says what a sensor measures.
 bool may_bend(const Channel& c) {
-  return c.is_temperature() && (c.role.empty() || c.role == "structure") &&
-         varies(c, least_range);
+  return c.is_temperature() && (c.role.empty() || c.role == "structure") && varies(c, least_range);
 }
 
 /// Every pair once; a name that is one of two has no "-" of its own.
@@ -74,9 +73,22 @@ std::vector<std::string> of_time(const Observations& o) {
                                                    : std::vector<std::string>{};
 }
 
-bool applies(const Observations& o, const Axis&) {
+/// The axis that was moved between targets; none in a test over time.
+const Observations::AxisColumn* moved(const Observations& o) {
+  if (o.axes.size() != 1 || o.axes.front().position.size() != o.size()) return nullptr;
+  return o.axes.front().axis == "S" ? nullptr : &o.axes.front();
+}
+
+bool has_times(const Observations& o) {
   return o.time.size() == o.size() &&
          std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
+}
+
+/// Of axis runs: a displacement that follows a temperature, and growth with it, once each.
+bool applies(const Observations& o, const Axis&) { return has_times(o) && moved(o) == nullptr; }
+bool applies_to_all(const Observations& o, const Axis&) { return has_times(o); }
+bool applies_to_runs(const Observations& o, const Axis&) {
+  return has_times(o) && moved(o) != nullptr && !moved(o)->rotary;
 }
 
 Effect::Shape lag(const char* name, const char* help) {
@@ -122,6 +134,19 @@ Expected<Columns> heat(const Observations& o, const Axis& of, const std::vector<
   if (c == nullptr) return no_channel(of.name);
   if (shape.size() != 1) return fail("heat: expected a time constant");
   return Columns{lagged(*c, shape[0], o.time)};
+}
+
+Expected<Columns> growth(const Observations& o, const Axis& of, const std::vector<double>& shape) {
+  auto columns = heat(o, of, shape);
+  const auto* axis = moved(o);
+  if (!columns) return columns;
+  if (axis == nullptr) return fail("heat-growth: no axis was moved");
+  const auto [low, high] = std::minmax_element(axis->position.begin(), axis->position.end());
+  const double middle = 0.5 * (*low + *high);
+  std::vector<double> along = columns->front();
+  for (std::size_t i = 0; i < along.size(); ++i) along[i] *= axis->position[i] - middle;
+  columns->insert(columns->begin(), std::move(along));
+  return columns;
 }
 
 Expected<Columns> difference(const Observations& o, const Axis& of,
@@ -175,9 +200,17 @@ Effect effect(const char* name, const char* summary, std::vector<Effect::Paramet
 
 NONIO_PLUGIN(registry) {
   const Quantity per_kelvin = Quantity::deviation_per_kelvin;
-  registry.add(effect("heat", "A displacement follows a measured temperature with a lag",
-                      {{"g", "displacement per kelvin", per_kelvin}},
-                      {lag("tau", "time constant of the lag")}, temperatures, heat));
+  Effect follows = effect("heat", "A displacement follows a measured temperature with a lag",
+                          {{"g", "displacement per kelvin", per_kelvin}},
+                          {lag("tau", "time constant of the lag")}, temperatures, heat);
+  follows.applies = applies_to_all;
+  registry.add(std::move(follows));
+  Effect grows =
+      effect("heat-growth", "A screw, scale or bed grows with a measured temperature with a lag",
+             {{"w", "expansion", Quantity::expansion}, {"s", "shift of the middle", per_kelvin}},
+             {lag("tau", "time constant of the lag")}, temperatures, growth);
+  grows.applies = applies_to_runs;
+  registry.add(std::move(grows));
   registry.add(effect("heat-slow",
                       "A second, slower displacement follows a measured temperature too",
                       {{"g", "displacement per kelvin", per_kelvin}},

@@ -64,6 +64,9 @@ class Rows {
     bool taken = false;
     double extra[5] = {};  ///< time and what follows it in Role
   };
+  struct Sample {
+    double time, value;
+  };
   bool parse_field(std::size_t column, Row& row);
   bool parse(std::size_t column, Field& number);
   bool consistent_mark(const Field& number, std::size_t column);
@@ -80,7 +83,8 @@ class Rows {
     error.column = header_.names[column];
     return error;
   }
-  static bool extra(Role role) { return role >= Role::time; }
+  static bool extra(Role role) { return role >= Role::time && role != Role::channel; }
+  void put_channels();
   static std::size_t extra_index(Role role) {
     return static_cast<std::size_t>(role) - static_cast<std::size_t>(Role::time);
   }
@@ -93,6 +97,8 @@ class Rows {
   std::uint64_t first_point_ = 0, first_comma_ = 0;  ///< lines with that decimal mark; 0: none
   std::uint64_t empty_rows_ = 0;
   std::vector<Key> not_taken_;
+  std::vector<double> channel_;               ///< of the row, in the order of the columns
+  std::vector<std::vector<Sample>> samples_;  ///< of each channel
   PassOrder order_;
   Error error_;
 };
@@ -175,6 +181,8 @@ bool Rows::parse_field(std::size_t column, Row& row) {
     if (!taken) return refuse(at(column, "expected a target, found " + shown(text)));
     row.target = number.value;
     row.key.target = number.value / position_scale_;
+  } else if (role == Role::channel) {
+    channel_.push_back(taken ? number.value : std::numeric_limits<double>::quiet_NaN());
   } else {
     row.extra[extra_index(role)] = taken ? number.value : std::numeric_limits<double>::quiet_NaN();
   }
@@ -212,10 +220,39 @@ bool Rows::add(std::string_view line, std::uint64_t line_number) {
   }
   if (fields_.size() != header_.roles.size()) return refuse(wrong_count(line));
   Row row;
+  channel_.clear();
   for (std::size_t column = 0; column < fields_.size(); ++column)
     if (!parse_field(column, row)) return false;
   store(row);
+  samples_.resize(channel_.size());
+  for (std::size_t k = 0; k < channel_.size(); ++k)
+    if (std::isfinite(channel_[k]) && std::isfinite(row.extra[0]))
+      samples_[k].push_back({row.extra[0], channel_[k]});
   return true;
+}
+
+/// In the order of their times.
+void Rows::put_channels() {
+  std::size_t k = 0;
+  for (std::size_t column = 0; column < header_.roles.size(); ++column) {
+    if (header_.roles[column] != Role::channel || k >= samples_.size()) continue;
+    std::vector<Sample>& samples = samples_[k++];
+    std::stable_sort(samples.begin(), samples.end(),
+                     [](const Sample& a, const Sample& b) { return a.time < b.time; });
+    samples.erase(std::unique(samples.begin(), samples.end(),
+                              [](const Sample& a, const Sample& b) { return a.time == b.time; }),
+                  samples.end());
+    const std::string& name = header_.names[column];
+    for (const ChannelEnding& e : channel_endings) {
+      if (!name.ends_with(e.end) || samples.empty()) continue;
+      Observations::Channel channel{
+          name.substr(0, name.size() - e.end.size()), std::string(e.unit), {}, {}};
+      for (const Sample& s : samples)
+        channel.time.push_back(s.time), channel.value.push_back(s.value);
+      obs_.channels.push_back(std::move(channel));
+      break;
+    }
+  }
 }
 
 Expected<void> Rows::finish() {
@@ -223,6 +260,7 @@ Expected<void> Rows::finish() {
     return fail("expected readings, found only a header row");
   if (empty_rows_ > 0) obs_.notes.push_back({"csv.empty-rows", {count("rows", empty_rows_)}});
   obs_.missing = not_taken_.size();
+  put_channels();
   if (!order_.unique())
     if (auto ok = settle_duplicates(obs_, not_taken_); !ok) return ok;
   if (obs_.size() == 0)

@@ -49,6 +49,18 @@ tl::unexpected<Error> fail_at(std::string_view column, std::string message) {
   return fail(std::move(error));
 }
 
+/// A channel by its ending, with a name that is no slip of a known one.
+bool is_channel(std::string_view name) {
+  constexpr std::size_t slip = 2;
+  const auto ends = [&](const ChannelEnding& e) {
+    return name.size() > e.end.size() && name.ends_with(e.end);
+  };
+  if (std::none_of(std::begin(channel_endings), std::end(channel_endings), ends)) return false;
+  return std::none_of(known_columns.begin(), known_columns.end(), [&](const Known& k) {
+    return edit_distance(name, k.name) <= slip && k.name.size() > 5;
+  });
+}
+
 tl::unexpected<Error> unknown_column(std::string_view name, std::size_t number) {
   if (name.empty())
     return fail("column " + std::to_string(number) +
@@ -135,6 +147,14 @@ Expected<Header> parse_header(std::string_view row, const Expectation& e) {
     return fail("header row: unterminated quoted field, or text after the closing quote");
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Known* column = find(names[i]);
+    if (column == nullptr && is_channel(names[i])) {
+      const std::string name(names[i]);
+      if (std::find(header.names.begin(), header.names.end(), name) != header.names.end())
+        return twice(name, name);
+      header.roles.push_back(Role::channel);
+      header.names.push_back(name);
+      continue;
+    }
     if (column == nullptr) return unknown_column(names[i], i + 1);
     const auto same = std::find(header.roles.begin(), header.roles.end(), column->role);
     if (same != header.roles.end())
@@ -149,6 +169,12 @@ Expected<Header> parse_header(std::string_view row, const Expectation& e) {
     header.reading_is_position |= column->position;
   }
   if (auto error = missing_column(header, e)) return fail(std::move(*error));
+  if (header.has(Role::channel) && !header.has(Role::time)) {
+    const auto first = std::find(header.roles.begin(), header.roles.end(), Role::channel);
+    const std::string& name = header.names[static_cast<std::size_t>(first - header.roles.begin())];
+    return fail_at(name, "missing column: \"" + name +
+                             "\" was recorded over the time; expected \"time_s\" next to it");
+  }
   return header;
 }
 

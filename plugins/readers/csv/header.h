@@ -20,8 +20,16 @@ enum class Role : std::uint8_t {
   material,
   air,
   pressure,
-  humidity
+  humidity,
+  channel  ///< of any name: a temperature, speed or load next to the readings
 };
+
+/// What a channel holds, by the end of its column's name.
+struct ChannelEnding {
+  std::string_view end, unit;
+};
+inline constexpr ChannelEnding channel_endings[] = {
+    {"_c", "degC"}, {"_rpm", "rpm"}, {"_pct", "%"}, {"_kw", "kW"}, {"_a", "A"}};
 
 /// What the file is expected to hold.
 struct Expectation {

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "header.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
 #include "rows.h"
@@ -27,18 +28,12 @@ constexpr Sensor nest[] = {{"x_um", "X", 0}, {"x1_um", "X1", 0}, {"x2_um", "X2",
                            {"y_um", "Y", 1}, {"y1_um", "Y1", 1}, {"y2_um", "Y2", 1},
                            {"z_um", "Z", 2}};
 
-/// What a column holds, by its end.
-struct Ending {
-  std::string_view end, unit;
-};
-constexpr Ending channel_endings[] = {
-    {"_c", "degC"}, {"_rpm", "rpm"}, {"_pct", "%"}, {"_kw", "kW"}, {"_a", "A"}};
 constexpr std::string_view displacement_end = "_um";
 
 /// Any displacements, temperatures, speeds and loads of a test over time.
 std::vector<ColumnSpec> with_channels(std::vector<ColumnSpec> columns) {
   columns.push_back({"*" + std::string(displacement_end)});
-  for (const Ending& e : channel_endings) columns.push_back({"*" + std::string(e.end)});
+  for (const ChannelEnding& e : channel_endings) columns.push_back({"*" + std::string(e.end)});
   return columns;
 }
 
@@ -51,7 +46,7 @@ std::vector<Observations::Channel> channels_of(const Table& table) {
   std::vector<Observations::Channel> out;
   const auto& time = *table.column("time_s");
   for (const auto& [name, values] : table.numbers)
-    for (const Ending& e : channel_endings) {
+    for (const ChannelEnding& e : channel_endings) {
       if (!name.ends_with(e.end) || name == "humidity_pct") continue;
       Observations::Channel c{without(name, e.end), std::string(e.unit), {}, {}};
       for (std::size_t row = 0; row < time.size(); ++row) {

@@ -162,6 +162,42 @@ class Heat(VerbTest):
                               '[model]\neffects = ["heat:bearing"]\n')
         self.assertTrue(any("bearing (front bearing)" in says for says in self.json("explain", place)["next"]))
 
+    def axis(self, name, seed, growth, head="run,direction,target_mm,deviation_um,time_s,bed_c,screw_c,hall_c"):
+        """Runs of an axis whose screw grows 5 min after its thermometer, which wanders as two others do."""
+        rng, late, t, rows = random.Random(seed), None, 0, [head]
+        phase = [rng.uniform(0, 6) for _ in range(3)]
+        targets = [37.0 * i for i in range(11)]
+        for run in range(1, 6):
+            for direction in "+-":
+                for x in targets if direction == "+" else targets[::-1]:
+                    t += 30
+                    bed, screw, hall = (20 + 1.5 * math.sin(t / 900 * (0.5 + 0.4 * k) + phase[k])
+                                        + 0.7 * math.sin(t / 333 * (1 + 0.2 * k) + 2 * phase[k]) for k in range(3))
+                    late = screw if late is None else late + (screw - late) * -math.expm1(-30 / 300)
+                    value = growth * (x - 185) / 1000 * (late - 20) + (1 if direction == "+" else -1) + rng.gauss(0, 0.3)
+                    rows.append(f"{run},{direction},{x:g},{value:.4f},{t},{bed:.3f},{screw:.3f},{hall:.3f}")
+        text = ('format = 1\n[campaign]\nid = "%s"\n[machine.axes.X]\nkind = "linear"\nactive_table = "none"\nactive_backlash_mm = "none"\n'
+                '[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n' % name)
+        return self.write(name, text, **{"x.csv": "\n".join(rows) + "\n"})
+
+    def test_an_axis_follows_a_thermometer_that_was_recorded_next_to_it(self):
+        seed = random.randrange(10**6)
+        with self.subTest(seed=seed):
+            together = set(self.json("explain", self.axis("grows", seed, 8.0))["together"])
+            self.assertIn("heat-growth:screw", together)
+            self.assertIn("backlash:X", together)
+            still = self.json("explain", self.axis("still", seed, 0.0))["together"]
+            self.assertFalse([e for e in still if e.startswith("heat")], still)
+
+    def test_columns_of_channels_in_runs(self):
+        head = "run,direction,target_mm,deviation_um,time_s,bed_c,screw_c,hall_c"
+        self.nonio("compare", self.axis("good", 1, 8.0))
+        for name, columns, says in (
+                ("slip", head.replace("hall_c", "materal_c"), 'unknown column "materal_c"; did you mean "material_c"?'),
+                ("twice", head.replace("hall_c", "bed_c"), 'column "bed_c" occurs twice'),
+                ("untimed", head.replace("time_s", "run_c").replace("hall_c", "material_c"), 'expected "time_s" next to it')):
+            self.assertIn(says, self.nonio("compare", self.axis(name, 1, 8.0, columns), expect=1).stderr)
+
     def test_a_model_is_edited_and_its_mistakes_are_named(self):
         folder = self.campaign("edit", record(9, [2.0]))
         self.nonio("model", "add", folder, "heat:bearing")
