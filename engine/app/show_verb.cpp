@@ -237,9 +237,9 @@ class Page {
     if (measurement.empty() && (all_ || !results.empty())) out_ << "\n";
     if (all_ || !results.empty())
       out_ << "  "
-           << joined_text({a.at("plugin").get<std::string>(), a.value("version", ""),
-                           a.value("part", "")},
-                          " ")
+           << joined_text(
+                  {a.at("plugin").get<std::string>(), a.value("version", ""), a.value("part", "")},
+                  " ")
            << "\n";
     values(results);
     collect(a, measurement);

@@ -143,8 +143,8 @@ class Next {
     std::vector<std::string> names;
     for (const std::string& name : s.smallest) {
       const auto* channel = part_.part.table.channel(name);
-      names.push_back(channel == nullptr || channel->place.empty() ? name
-                                                                   : name + " (" + channel->place + ")");
+      names.push_back(
+          channel == nullptr || channel->place.empty() ? name : name + " (" + channel->place + ")");
     }
     const std::string needed = storage::listed(names);
     if (s.recorded > s.smallest.size())

@@ -56,6 +56,8 @@ bool is_channel(std::string_view name) {
     return name.size() > e.end.size() && name.ends_with(e.end);
   };
   if (std::none_of(std::begin(channel_endings), std::end(channel_endings), ends)) return false;
+  // A name that cannot be shown as it is is none.
+  if (shown(name) != "\"" + std::string(name) + "\"") return false;
   return std::none_of(known_columns.begin(), known_columns.end(), [&](const Known& k) {
     return edit_distance(name, k.name) <= slip && k.name.size() > 5;
   });

@@ -147,8 +147,8 @@ struct Measurement {
     std::string name, place, role;
   };
   std::vector<Channel> channels{};
-  std::map<std::string, double> at{};      ///< where the axes that stood still were, m
-  std::string adjustment{};                ///< "before" or "after" one; empty: not said
+  std::map<std::string, double> at{};  ///< where the axes that stood still were, m
+  std::string adjustment{};            ///< "before" or "after" one; empty: not said
   /// Of the rows, where they have no times: "pendulum", "as-listed", "unknown"; empty: not said.
   std::string order{};
 

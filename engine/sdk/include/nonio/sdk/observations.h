@@ -43,10 +43,10 @@ struct Observations {
   /// What was recorded next to the deviations: a temperature at some place, a speed, a load. With
   /// times of its own: it may begin before the first reading and end after the last one.
   struct Channel {
-    std::string name;           ///< of its column without the unit: "t4", "speed"
-    std::string unit;           ///< "degC", "rpm", "%", "kW", "A"
-    std::vector<double> time;   ///< s, ascending
-    std::vector<double> value;  ///< in this unit; finite
+    std::string name;             ///< of its column without the unit: "t4", "speed"
+    std::string unit;             ///< "degC", "rpm", "%", "kW", "A"
+    std::vector<double> time;     ///< s, ascending
+    std::vector<double> value;    ///< in this unit; finite
     std::string place{}, role{};  ///< of the manifest (`Measurement::Channel`)
 
     bool is_temperature() const { return unit == "degC"; }
