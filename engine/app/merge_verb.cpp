@@ -7,6 +7,7 @@
 #include "axis_argument.h"
 #include "campaign/planning/plan.h"
 #include "platform/storage/files.h"
+#include "state_record.h"
 #include "table_common.h"
 #include "verbs.h"
 
@@ -15,7 +16,7 @@ namespace nonio::app {
 namespace {
 
 struct MergeWish {
-  std::string backup, folder, control, axis, out;
+  std::string backup, folder, control, axis, out, loaded;
   std::vector<std::string> settings;
 };
 
@@ -35,8 +36,45 @@ Expected<std::string> merged_axis(const MergeWish& w, const Campaign& campaign) 
                                : "expected --axis, one of " + list);
 }
 
+/// That the day of loading is not before that of the measurement.
+Expected<void> check_day(const MergeWish& w, const std::string& day) {
+  if (w.loaded.empty()) return {};
+  if (day.empty())
+    return fail(
+        "--loaded: campaign.toml does not state date in [campaign], so the order of "
+        "measurement and loading is not known");
+  if (w.loaded < day)
+    return fail("--loaded " + w.loaded + " is before the measurement of " + day +
+                ": expected the day on which the new table was loaded");
+  return {};
+}
+
+/// What the control had while the axis was measured, where only the backup states it, and what is
+/// loaded now.
+Expected<std::string> record(const tables::MergedTables& merged, const Loaded& present,
+                             const Settings& options, const std::string& axis, const MergeWish& w,
+                             const OpenCampaign& open) {
+  if (w.loaded.empty()) return std::string();
+  const std::string& day = open.campaign().date;
+  std::vector<NewState> states;
+  if (merged.with.from_backup)
+    states.push_back({day, "backup",
+                      merged.with.files.empty() ? std::vector<Artifact>{} : present.files,
+                      merged.with.backlash, merged.with.tables});
+  NewState next{w.loaded, "nonio", merged.whole, merged.with.backlash, merged.next};
+  const NumberTables axes = options.tables("axes");
+  if (const auto of = axes.find(axis); of != axes.end())
+    for (const char* key : {"reference_mm", "reference_deg"})
+      if (const auto at = of->second.find(key); at != of->second.end()) next.reference = at->second;
+  for (const LoadedTable& t : merged.next)
+    if (t.backlash) next.backlash = t.backlash;
+  states.push_back(std::move(next));
+  return add_states(open, axis, states);
+}
+
 int tell_merged(const tables::MergedTables& merged, const Loaded& present, const std::string& axis,
-                const MergeWish& w, const OpenCampaign& open, const Common& common) {
+                const MergeWish& w, const std::string& recorded, const OpenCampaign& open,
+                const Common& common) {
   std::vector<std::string> written;
   if (!w.out.empty())
     for (const Artifact& f : merged.files)
@@ -48,21 +86,31 @@ int tell_merged(const tables::MergedTables& merged, const Loaded& present, const
                       {"axis", axis},
                       {"tables", TableJson::array()}};
     for (const auto& d : merged.differences) json["tables"].push_back(difference_json(d));
+    json["predictions"] = TableJson::array();
+    for (const auto& f : merged.forecast) json["predictions"].push_back(forecast_json(f));
+    json["measured_with"] = merged.with.files.empty() ? "none" : merged.with.files;
     json["files"] = written;
+    if (!recorded.empty()) json["recorded"] = recorded;
     print_json(json);
     return exit_done;
   }
   for (const auto& d : merged.differences) print_difference(d);
+  for (const auto& f : merged.forecast) print_forecast(f);
   for (const std::string& file : written) std::cout << file << "\n";
+  if (!recorded.empty()) std::cout << recorded << "\n";
   return exit_done;
 }
 
 int merge(const MergeWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
+  if (!w.loaded.empty() && !is_day(w.loaded))
+    return complain("--loaded: expected a day as YYYY-MM-DD, found \"" + w.loaded + "\"");
   const auto opened = open_campaign(w.folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;
+  if (const auto day = check_day(w, open.campaign().date); !day)
+    return complain(text_of(day.error()));
   const auto axis = merged_axis(w, open.campaign());
   if (!axis) return complain(axis.error().message);
   const auto options = [&](const Info& info) { return campaign_options(open, info, *settings); };
@@ -78,7 +126,9 @@ int merge(const MergeWish& w, const Common& common) {
   if (!w.out.empty())
     if (auto done = storage::publish(std::filesystem::absolute(w.out), merged->files); !done)
       return complain(text_of(done.error()), exit_failed);
-  return tell_merged(*merged, *present, *axis, w, open, common);
+  const auto recorded = record(*merged, *present, *options(present->control->info), *axis, w, open);
+  if (!recorded) return complain(text_of(recorded.error()), exit_failed);
+  return tell_merged(*merged, *present, *axis, w, *recorded, open, common);
 }
 
 }  // namespace
@@ -97,15 +147,27 @@ Verb insert_verb(Common& common) {
            {"--axis", &w->axis, "The axis (default: the measured axis, if there is only one)"},
            takes(Takes::folder, {"--out", &w->out,
                                  "Folder for the changed files (default: only print the changes)"}),
+           {"--loaded", &w->loaded,
+            "YYYY-MM-DD: the new table was loaded on this day. Records it in "
+            "machines/<asset>.toml, "
+            "and what was active during the measurement"},
            {"--control", &w->control, "The control of the files (`nonio table controls`)"},
            settings_argument(w->settings,
                              "NAME=VALUE: an option of that control; may be given several times")},
           common_arguments(common)),
       .footer =
-          "For files with several axes: FANUC's parameters and pitch data, SINUMERIK's archives, "
-          "HEIDENHAIN's CONFIG.CMA. The new table gets the numbers that the axis has in the "
-          "backup, or free ones. Every other byte stays unchanged. If the control would read a "
-          "different table for another axis, nothing is written.\n\nExit status: 0 merged; 1 "
+          "BACKUP is the state of the control during the measurement, unless the campaign "
+          "(active_table) or the record of the machine states another one. Its table is removed "
+          "from the readings, so that the new table is complete. If the table of the backup was "
+          "made "
+          "from this campaign or from a later one, or contradicts the record, the command ends "
+          "with "
+          "an error. It prints the differences, and E, B and M as measured and with all files "
+          "loaded.\n\nFiles with several axes (FANUC's parameters and pitch data, SINUMERIK's "
+          "archives, HEIDENHAIN's CONFIG.CMA, lists of TwinCAT, Aerotech) keep every other byte; "
+          "the new table gets the numbers that the axis has in the backup, or free ones. If the "
+          "control would read a different table for another axis, nothing is written. For other "
+          "controls the files of the axis are written again.\n\nExit status: 0 inserted; 1 "
           "refused; 2 usage or configuration.",
       .examples =
           {"nonio table insert backup/CNCPARAM.TXT --with site/2026-11-rossi --axis Z --out load"},

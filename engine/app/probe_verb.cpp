@@ -13,6 +13,7 @@
 #include "campaign_verb.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/files.h"
+#include "table_common.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -42,6 +43,33 @@ bool runs_gcode(const std::string& control, const loader::Plugins& plugins) {
   for (const Controller& c : plugins.controllers())
     if (c.info.name == control) return c.table.runs_gcode;
   return true;
+}
+
+/// The readings without the tables that were active. An error where it is not known whether there
+/// were any: what the probe shows without a table would be wrong by them.
+Expected<std::vector<Observations>> raw_readings(const OpenCampaign& open) {
+  const Campaign& campaign = open.campaign();
+  for (const Measurement& m : campaign.measurements) {
+    const Axis* const axis = campaign.machine.axis(control_axis(campaign.machine, m));
+    if (m.kind != "axis" || m.compensation == "off" || (axis != nullptr && axis->active_table))
+      continue;
+    return fail("axis " + m.axis +
+                ": which table was active during the measurement is not known; "
+                "state active_table in [machine.axes." +
+                m.axis + "] of campaign.toml, its file or \"none\"");
+  }
+  if (open.read.active_tables.empty()) return open.read.observations;
+  for (const Controller& c : open.place->plugins.controllers()) {
+    if (c.info.name != campaign.machine.control) continue;
+    const auto options = campaign_options(open, c.info, {});
+    if (!options) return fail(options.error().front());
+    const auto on = tables::active_compensation(open.read, c, *options);
+    if (!on) return fail(on.error());
+    return *on ? (*on)->readings : open.read.observations;
+  }
+  return fail(
+      "the campaign states an active table and not of which control it is: state control "
+      "in [machine] of campaign.toml");
 }
 
 /// What options and the record of the machine say of its axes.
@@ -122,6 +150,7 @@ Json probe_json(const tables::SignProbe& p, const std::string& file) {
                {name("from", at), printed(p.from, at)},
                {name("to", at), printed(p.to, at)},
                {name("without_table", q), printed(p.difference, q)},
+               {name("as_measured", q), printed(p.as_measured, q)},
                {name("right_sign", q), 0.0},
                {name("wrong_sign", q), printed(2.0 * p.difference, q)},
                {name("scatter", q), printed(p.scatter, q)},
@@ -139,6 +168,9 @@ void print_probe(const tables::SignProbe& p, const std::string& file) {
             << "    " << with_unit(p.difference, q) << "  no table is active\n"
             << "    " << with_unit(0.0, q) << "  the table has the right sign\n"
             << "    " << with_unit(2.0 * p.difference, q) << "  the table has the wrong sign\n";
+  if (std::fabs(p.as_measured - p.difference) > 1e-12)
+    std::cout << "    " << with_unit(p.as_measured, q)
+              << "  the table of the measurement is still active\n";
   if (!p.shows())
     std::cout << "  too little to show a sign: readings scatter by " << with_unit(p.scatter, q)
               << "\n";
@@ -156,6 +188,8 @@ int probe(const ProbeWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
   const Settings said = said_of_axes(open);
+  const auto raw = raw_readings(open);
+  if (!raw) return complain(text_of(raw.error()));
   Json all = Json::array();
   std::vector<Artifact> files;
   bool good = true, measured = false;
@@ -165,7 +199,7 @@ int probe(const ProbeWish& w, const Common& common) {
         (!w.axis.empty() && m.axis != w.axis))
       continue;
     measured = true;
-    const auto p = tables::sign_probe(m, open.read.observations[i]);
+    const auto p = tables::sign_probe(m, (*raw)[i], open.read.observations[i]);
     if (!p) {
       good = false;
       complain(p.error().message);

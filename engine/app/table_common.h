@@ -21,6 +21,9 @@ void put(TableJson& json, const std::string& name, double si, Quantity q);
 TableJson difference_json(const tables::TableDifference& d);
 void print_difference(const tables::TableDifference& d);
 
+TableJson forecast_json(const tables::TableForecast& f);
+void print_forecast(const tables::TableForecast& f);
+
 /// Files, the control that they are of, and what it makes of them.
 struct Loaded {
   const Controller* control = nullptr;

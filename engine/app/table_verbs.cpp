@@ -30,27 +30,6 @@ struct TableWish {
   bool active = false;
 };
 
-Json forecast_json(const tables::TableForecast& f) {
-  Json json = {{"measurement", f.measurement}, {"axis", f.axis}};
-  const Quantity q = deviation_of(f.rotary);
-  for (const auto& [when, k] : {std::pair{"before", 0}, {"after", 1}}) {
-    json[when] = Json::object();
-    put(json[when], "E", f.E[k], q);
-    put(json[when], "B", f.B[k], q);
-    put(json[when], "M", f.M[k], q);
-  }
-  return json;
-}
-
-void print_forecast(const tables::TableForecast& f) {
-  const Quantity q = deviation_of(f.rotary);
-  std::cout << "axis " << f.axis << ", measurement " << f.measurement << ":";
-  for (const auto& [name, v] : {std::pair{"E", f.E}, {"B", f.B}, {"M", f.M}})
-    if (std::isfinite(v[0]) && std::isfinite(v[1]))
-      std::cout << "  " << name << " " << with_unit(v[0], q) << " -> " << with_unit(v[1], q);
-  std::cout << (f.worse() ? "  WORSE\n" : "\n");
-}
-
 /// The axes of the machine in the order of their numbers.
 Campaign machine_of(const std::vector<std::string>& axes) {
   Campaign campaign;

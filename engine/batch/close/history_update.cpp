@@ -24,16 +24,18 @@ std::vector<config::Event> events_of(const config::MachineRecords& records) {
   for (const config::RecordFile& file : records) {
     if (!file.record) continue;  // its campaigns fail, and say why
     for (const auto& [axis, recorded] : file.record->axes) {
-      if (recorded.since.empty()) continue;
-      std::string text = !recorded.table ? "" : recorded.table->empty() ? "none" : *recorded.table;
-      const auto line = file.record->lines.find("axes." + axis + ".since");
-      events.push_back({recorded.since,
-                        file.asset,
-                        axis,
-                        "compensation",
-                        std::move(text),
-                        {},
-                        line == file.record->lines.end() ? 0 : line->second});
+      for (const config::ControlState& state : recorded.states) {
+        if (state.source == "backup") continue;  // nothing was loaded on that day
+        events.push_back({state.since,
+                          file.asset,
+                          axis,
+                          "compensation",
+                          !state.table           ? ""
+                          : state.table->empty() ? "none"
+                                                 : *state.table,
+                          {},
+                          state.line_of_since});
+      }
     }
   }
   return events;

@@ -50,6 +50,22 @@ void read_settings(TableReader& reader, RecordedAxis& axis) {
   axis.settings[axis.rotary ? "to_deg" : "to_mm"] = travel->second;
 }
 
+ControlState read_state(TableReader& reader, bool rotary, const std::string& key) {
+  ControlState state;
+  state.key = key;
+  state.line_of_table = reader.line_of("table"), state.line_of_since = reader.line_of("since");
+  if (const std::string table = reader.text("table"); !table.empty())
+    state.table = table == "none" ? std::string() : table;
+  state.backlash = rotary ? reader.number_or_none("backlash_deg", 1.0 / deg_per_rad)
+                          : reader.number_or_none("backlash_mm", 1e-3);
+  state.since = reader.date("since");
+  if ((state.table || state.backlash) && state.since.empty())
+    reader.error("since",
+                 "is missing: the day on which table and backlash came into the control; they "
+                 "count for measurements of later days only");
+  return state;
+}
+
 RecordedAxis read_recorded_axis(const std::string& name, TableReader& reader) {
   RecordedAxis axis{.rotary = rotary_by_name(name)};
   if (const std::string kind = reader.text("kind"); !kind.empty()) axis.rotary = kind == "rotary";
@@ -57,15 +73,28 @@ RecordedAxis read_recorded_axis(const std::string& name, TableReader& reader) {
   axis.name = reader.text("name");
   reader.text("gear");  // for people
   read_settings(reader, axis);
-  if (const std::string table = reader.text("table"); !table.empty())
-    axis.table = table == "none" ? std::string() : table;
-  axis.backlash = axis.rotary ? reader.number_or_none("backlash_deg", 1.0 / deg_per_rad)
-                              : reader.number_or_none("backlash_mm", 1e-3);
-  axis.since = reader.date("since");
-  if ((axis.table || axis.backlash) && axis.since.empty())
-    reader.error("since",
-                 "is missing: the day on which table and backlash came into the control; they "
-                 "count for measurements of later days only");
+  const std::string place = "axes." + name;
+  if (ControlState present = read_state(reader, axis.rotary, place); !present.since.empty()) {
+    if (present.table) present.files = name;
+    axis.states.push_back(std::move(present));
+  }
+  for (TableReader& one : reader.tables("state")) {
+    const char* const other = axis.rotary ? "backlash_mm" : "backlash_deg";
+    if (one.number_or_none(other))
+      one.error(other, std::string("axis ") + name + " is " + (axis.rotary ? "rotary" : "linear") +
+                           ": expected " + (axis.rotary ? "backlash_deg" : "backlash_mm"));
+    ControlState state = read_state(one, axis.rotary, place + ".state");
+    if (const std::string source = one.text("source"); !source.empty()) state.source = source;
+    state.sha256 = one.text("sha256");
+    one.span("grid");  // for people, as the two that follow
+    one.integer("points");
+    one.number("reference");
+    one.finish();
+    if (state.table) state.files = name + " " + *state.table;
+    axis.states.push_back(std::move(state));
+  }
+  std::stable_sort(axis.states.begin(), axis.states.end(),
+                   [](const ControlState& a, const ControlState& b) { return a.since < b.since; });
   reader.finish();
   return axis;
 }
@@ -85,18 +114,21 @@ void same_number_twice(const MachineRecord& record, TableReader& top) {
 Expected<std::map<std::string, std::vector<Artifact>>> tables_of(const MachineRecord& record,
                                                                  const fs::path& site) {
   std::map<std::string, std::vector<Artifact>> tables;
-  for (const auto& [name, axis] : record.axes) {
-    if (!axis.table || axis.table->empty()) continue;
-    auto files = read_table_files(*axis.table, site);
-    if (!files) {
-      Error error{"axes." + name + ".table: " + files.error().message, record.file};
-      if (const auto line = record.lines.find("axes." + name + ".table");
-          line != record.lines.end())
-        error.line = line->second;
-      return fail(std::move(error));
+  for (const auto& [name, axis] : record.axes)
+    for (const ControlState& state : axis.states) {
+      if (!state.table || state.table->empty()) continue;
+      const auto wrong = [&](const std::string& key, const std::string& message) {
+        return fail(
+            Error{state.key + "." + key + ": " + message, record.file, state.line_of_table});
+      };
+      auto files = read_table_files(*state.table, site);
+      if (!files) return wrong("table", files.error().message);
+      if (!state.sha256.empty() && table_sha256(*files) != state.sha256)
+        return wrong("sha256", *state.table +
+                                   " has changed since it was recorded: restore these files, or "
+                                   "record what is in the control as another state");
+      tables[state.files] = std::move(*files);
     }
-    tables[name] = std::move(*files);
-  }
   return tables;
 }
 
@@ -135,6 +167,22 @@ RecordFile read_record(const fs::path& site, const std::string& asset) {
 }
 
 }  // namespace
+
+const ControlState* RecordedAxis::state_on(const std::string& day) const {
+  const ControlState* last = nullptr;
+  for (const ControlState& s : states)
+    if (s.counts_on(day)) last = &s;
+  return last;
+}
+
+std::string table_sha256(const std::vector<Artifact>& files) {
+  std::vector<std::string> digests;
+  for (const Artifact& f : files) digests.push_back(storage::sha256(f.bytes));
+  std::sort(digests.begin(), digests.end());
+  std::string all;
+  for (const std::string& one : digests) all += one + "\n";
+  return storage::sha256(all);
+}
 
 Checked<MachineRecord> parse_machine(std::string_view text, const std::string& file,
                                      const std::string& asset) {

@@ -15,15 +15,34 @@ namespace nonio::config {
 
 inline constexpr const char* machines_folder = "machines";
 
+/// What was in the control for one axis, from one day on.
+struct ControlState {
+  std::string since{};                 ///< YYYY-MM-DD
+  std::optional<std::string> table{};  ///< files below the site; empty: there was none
+  std::optional<double> backlash{};    ///< m or rad; 0: there was none
+  std::string source = "stated";       ///< stated by a person, backup, nonio
+  std::string sha256{};                ///< of the files; empty: not stated
+  std::string files{};                 ///< of the table: a name in RecordFile::tables
+  std::string key{};                   ///< axes.X, or axes.X.state
+  std::uint64_t line_of_table = 0, line_of_since = 0;
+
+  /// What was loaded on a day counts for later days, because the time of the day is not known. What
+  /// a backup of that day contains was in the control while the machine was measured.
+  bool counts_on(const std::string& day) const {
+    return source == "backup" ? day >= since : day > since;
+  }
+};
+
 struct RecordedAxis {
   bool rotary = false;
   std::string name{};  ///< in the control, where it is called otherwise
   /// As option `axes` of the controls has them: number, reference_mm, from_mm, to_mm,
   /// resolution_um, largest_um, slope_um_per_m, and the same of rotary axes.
   std::map<std::string, double> settings{};
-  std::optional<std::string> table{};  ///< files below the site; empty: there is none
-  std::optional<double> backlash{};    ///< m or rad; 0: there is none
-  std::string since{};                 ///< YYYY-MM-DD; of table and backlash
+  std::vector<ControlState> states{};  ///< by day
+
+  /// What was in the control on this day; null: not known.
+  const ControlState* state_on(const std::string& day) const;
 };
 
 struct MachineRecord {
@@ -33,6 +52,9 @@ struct MachineRecord {
   std::map<std::string, RecordedAxis> axes{};
   KeyLines lines{};
 };
+
+/// SHA-256 of the files of a table, whatever their names and their order.
+std::string table_sha256(const std::vector<Artifact>& files);
 
 /// All that is wrong with the file at once, each with its line. `asset`: what the file is called.
 Checked<MachineRecord> parse_machine(std::string_view text, const std::string& file,
@@ -46,7 +68,7 @@ struct RecordFile {
   std::string sha256;  ///< of it and of the tables that it names
   Checked<MachineRecord> record;
   std::map<std::string, std::vector<Artifact>>
-      tables{};                   ///< by axis: those that are in the control
+      tables{};                   ///< those that are or were in the control, by ControlState::files
   std::string maker{}, serial{};  ///< of a record that is wrong: as it was when it was right last
 };
 using MachineRecords = std::vector<RecordFile>;

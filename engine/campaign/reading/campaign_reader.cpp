@@ -70,14 +70,14 @@ bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
 void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign& out) {
   const auto found = file.record->axes.find(axis.name);
   if (found == file.record->axes.end()) return;
-  const config::RecordedAxis& recorded = found->second;
-  if (recorded.since.empty() || !(campaign_in(out).date > recorded.since)) return;
-  if (!axis.active_table && recorded.table) {
-    axis.active_table = recorded.table;
-    if (const auto files = file.tables.find(axis.name); files != file.tables.end())
+  const config::ControlState* const state = found->second.state_on(campaign_in(out).date);
+  if (state == nullptr) return;
+  if (!axis.active_table && state->table) {
+    axis.active_table = state->table;
+    if (const auto files = file.tables.find(state->files); files != file.tables.end())
       out.active_tables[axis.name] = files->second;
   }
-  if (!axis.active_backlash) axis.active_backlash = recorded.backlash;
+  if (!axis.active_backlash) axis.active_backlash = state->backlash;
 }
 
 /// What the site's record of the machine says counts where the manifest says nothing.
@@ -100,7 +100,7 @@ void look_up_machine(const CampaignSource& from, ReadCampaign& out) {
     return;
   }
   for (Error& e : config::contradictions(*out.manifest, *file.record)) report_in(out, std::move(e));
-  out.machine = *file.record;
+  out.machine = *file.record, out.state_files = file.tables;
   if (machine.control.empty()) machine.control = file.record->control;
   for (Axis& axis : machine.axes) take_present_state(file, axis, out);
 }

@@ -24,6 +24,8 @@ struct ReadCampaign {
       machine{};  ///< what the site knows of the campaign's machine
   /// Of each axis: files of the table that was on while it was measured, where it was one.
   std::map<std::string, std::vector<Artifact>> active_tables{};
+  /// Files of the states that `machine` has, by ControlState::files.
+  std::map<std::string, std::vector<Artifact>> state_files{};
   std::vector<Observations> observations;  ///< of each measurement; empty where none could be read
   std::vector<Effect> effects;             ///< of the plugins, the campaign and the library
   std::vector<config::Cause> causes{};     ///< the library

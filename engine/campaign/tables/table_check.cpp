@@ -313,6 +313,15 @@ std::vector<TableForecast> forecast(const reading::ReadCampaign& read, const Tab
   return out;
 }
 
+TableForecast forecast_of_axis(const Measurement& m, const std::string& axis,
+                               const Observations& measured, const Observations& raw,
+                               const Tables& loaded, const Settings& options) {
+  const auto test = math::AxisTest::arrange(measured);
+  return forecast_of(m.id, axis, math::error_curve(test),
+                     math::error_curve(math::AxisTest::arrange(raw)), test.rotary, loaded,
+                     present_backlash(options, axis, test.rotary));
+}
+
 Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controller& controller,
                               Settings options, const Tables& present) {
   Campaign campaign = read.manifest->campaign;
@@ -347,9 +356,11 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controlle
   return out;
 }
 
-Expected<SignProbe> sign_probe(const Measurement& m, const Observations& o) {
-  const auto test = math::AxisTest::arrange(o);
+Expected<SignProbe> sign_probe(const Measurement& m, const Observations& raw,
+                               const Observations& measured) {
+  const auto test = math::AxisTest::arrange(raw);
   const auto curve = math::error_curve(test);
+  const auto with = math::error_curve(math::AxisTest::arrange(measured));
   const auto& e = curve.plus;
   if (e.size() < 3)
     return fail("measurement " + m.id +
@@ -361,6 +372,7 @@ Expected<SignProbe> sign_probe(const Measurement& m, const Observations& o) {
     for (std::size_t k = i + 1; k < e.size(); ++k)
       if (std::fabs(e[k] - e[i]) > std::fabs(probe.difference)) {
         probe.difference = e[k] - e[i];
+        probe.as_measured = with.plus[k] - with.plus[i];
         probe.from = curve.position[i];
         probe.to = curve.position[k];
       }

@@ -83,6 +83,11 @@ std::vector<TableForecast> forecast(const reading::ReadCampaign&, const std::vec
                                     const Settings& options,
                                     const std::optional<Underlay>& on = std::nullopt);
 
+/// Of one measurement, as measured and without what was active.
+TableForecast forecast_of_axis(const Measurement&, const std::string& axis,
+                               const Observations& measured, const Observations& raw,
+                               const std::vector<LoadedTable>& loaded, const Settings& options);
+
 /// What the plugin would write for the campaign if these tables were in force while it was
 /// measured: they are taken off the readings first, so that the new table is the whole of what is
 /// needed.
@@ -104,29 +109,45 @@ struct CampaignTables {
 Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign&, const Controller&,
                                             const Settings& options);
 
+/// What an axis was measured with.
+struct MeasuredWith {
+  std::vector<LoadedTable> tables;   ///< empty: none
+  std::string files;                 ///< names; empty: none
+  std::optional<double> backlash{};  ///< m or rad
+  bool from_backup = false;          ///< nothing else states it
+};
+
 /// A control's backup with the table of one axis renewed.
 struct MergedTables {
   std::vector<Artifact> files;  ///< that changed, whole; none: the table was refused
+  std::vector<Artifact> whole;  ///< all files that then state the table
   std::vector<TableDifference> differences;
+  std::vector<TableForecast> forecast;  ///< with everything loaded
+  MeasuredWith with;
+  std::vector<LoadedTable> next;  ///< of the axis
   std::vector<Finding> findings;
   std::vector<Remark> notes;
 };
-/// An error where the plugin cannot merge, or where what the control reads of another axis would
-/// change.
+/// A control with one axis per file gets new files. An error where it is not known what was active
+/// (`measured_with`), or where what the control reads of another axis would change.
 Expected<MergedTables> merge_tables(const reading::ReadCampaign&, const Controller&,
                                     const Settings& options, const std::vector<Artifact>& backup,
                                     const std::string& axis);
 
-/// Two positions of an axis, reached from below, between which its error differs most. With the
-/// table the instrument shows `left` of that, or twice the difference if the sign is wrong.
+/// Two positions of an axis, reached from below, between which its error without any table differs
+/// most. With the table the instrument shows nothing of that, or twice the difference if the sign is
+/// wrong.
 struct SignProbe {
   std::string measurement, axis;
   bool rotary = false;
   double start = 0.0, from = 0.0, to = 0.0;  ///< the first target; the two stops; m or rad
   double difference = 0.0;                   ///< of the error, without a table
-  double scatter = 0.0;  ///< standard deviation of a reading about its mean; 0 with one run
+  double as_measured = 0.0;  ///< the same difference with what was active during the measurement
+  double scatter = 0.0;      ///< standard deviation of a reading about its mean; 0 with one run
   bool shows() const { return difference * difference > 36.0 * scatter * scatter; }
 };
-Expected<SignProbe> sign_probe(const Measurement&, const Observations&);
+/// `raw`: without what was active; `measured`: with it.
+Expected<SignProbe> sign_probe(const Measurement&, const Observations& raw,
+                               const Observations& measured);
 
 }  // namespace nonio::tables

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "campaign/tables/control_state.h"
 #include "campaign/tables/table_check.h"
 #include "nonio/sdk/format.h"
 #include "platform/process/guarded.h"
@@ -14,14 +15,14 @@ bool is_own(const TableDifference& d, const std::string& axis) {
   return d.output == axis && d.input == std::vector{axis};
 }
 
-/// The readings of this axis by themselves, as `on` leaves them.
+/// One axis by itself.
 struct OneAxis {
   Campaign campaign;
-  std::vector<Observations> readings, measured;
+  std::vector<Observations> readings;  ///< without what was active
+  std::vector<Observations> measured;
 };
 
-Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string& axis,
-                           const std::optional<Underlay>& on) {
+Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string& axis) {
   const Campaign& campaign = read.manifest->campaign;
   OneAxis one{campaign, {}, {}};
   one.campaign.measurements.clear();
@@ -34,7 +35,7 @@ Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string&
       continue;
     }
     one.campaign = with_one(campaign, m);
-    one.readings.push_back(on ? on->readings[i] : read.observations[i]);
+    one.readings.push_back(read.observations[i]);
     one.measured.push_back(read.observations[i]);
   }
   if (one.readings.size() == 1) return one;  // the campaign has this one measurement
@@ -46,46 +47,16 @@ Expected<OneAxis> one_axis(const reading::ReadCampaign& read, const std::string&
   return fail("no measurement of axis " + axis + "; there are " + (list.empty() ? "none" : list));
 }
 
-/// The backup contains the table that was active while the axis was measured, unless the campaign
-/// states another one: it is removed from the readings, so that the new table is complete.
-Expected<void> take_active_of_backup(OneAxis& one, const Controller& controller,
-                                     const std::vector<Artifact>& backup, const std::string& axis,
-                                     Settings& options, std::vector<Finding>& findings) {
-  auto& axes = one.campaign.machine.axes;
-  const auto of_campaign =
-      std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == axis; });
-  if (of_campaign == axes.end() || of_campaign->active_table ||
-      one.campaign.measurements.front().compensation == "off")
-    return {};
-  const auto present = tables_in(controller, backup, one.campaign, options);
-  if (!present) return fail(present.error());
-  std::string files;
-  for (const Artifact& f : backup) files += (files.empty() ? "" : ", ") + f.name;
-  std::optional<double> backlash = of_campaign->active_backlash;
-  bool corrected = false;
-  for (const LoadedTable& t : *present) {
-    if (t.output != axis || t.input != std::vector{axis}) continue;
-    corrected = true;
-    if (t.backlash) backlash = t.backlash;
+/// Removes what was active from the readings, so that the new table is complete.
+void take_active(OneAxis& one, const MeasuredWith& with, const std::string& axis,
+                 Settings& options) {
+  for (Axis& a : one.campaign.machine.axes) {
+    if (a.name != axis) continue;
+    a.active_table = with.files;
+    a.active_backlash = with.backlash;
+    if (with.backlash) state_backlash(options, axis, a.rotary, *with.backlash);
   }
-  if (!backlash) backlash = stated_backlash(options, axis, of_campaign->rotary);
-  if (!backlash && !controller.table.backlash.empty())
-    return fail(files + " does not contain the value of " + controller.table.backlash +
-                " of axis " + axis +
-                ", which was active during the measurement: give its file too, or state " +
-                (of_campaign->rotary ? "active_backlash_deg" : "active_backlash_mm") +
-                " in [machine.axes." + axis + "]");
-  one.readings = without_tables(one.campaign, one.readings, *present);
-  of_campaign->active_table = corrected ? files : std::string();
-  of_campaign->active_backlash = backlash.value_or(0.0);
-  state_backlash(options, axis, of_campaign->rotary, *of_campaign->active_backlash);
-  findings.push_back({"table.active-from-backup",
-                      true,
-                      {},
-                      {{"axis", axis}, {"files", files}},
-                      one.campaign.measurements.front().id,
-                      {}});
-  return {};
+  one.readings = without_tables(one.campaign, one.measured, with.tables);
 }
 
 /// What the control would have after the merge, held against what it has and what is new.
@@ -96,7 +67,9 @@ Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh
     if (is_own(d, axis)) continue;
     if (!d.present || !d.next || d.largest > nothing || d.present->backlash != d.next->backlash)
       return fail("the table of " + d.output + " by " + d.input.front() +
-                  " would change too; nothing was written");
+                  " would change too; nothing was written: give only files that contain the table "
+                  "of " +
+                  axis);
   }
   bool there = false;
   for (const TableDifference& d : differences(fresh, next)) {
@@ -104,7 +77,9 @@ Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh
     there = d.present && d.next;
     if (!there || d.largest > nothing)
       return fail("the control would not read the new table of " + axis +
-                  " back from the merged file; nothing was written");
+                  " back from the merged file, because another table of " + axis +
+                  " remains in the backup; nothing was written: delete that table in the control "
+                  "and save the backup again");
     if (d.present->backlash && d.next->backlash != d.present->backlash)
       return fail("the files of the backup hold another backlash value of " + axis +
                   " than the new table needs; nothing was written");
@@ -137,32 +112,40 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
                                     const Settings& given, const std::vector<Artifact>& backup,
                                     const std::string& axis) {
   const std::string who = "controller " + controller.info.name;
-  if (controller.merge == nullptr)
-    return fail(controller.info.name +
-                " does not merge: load the new file of the axis as it is, in place of the old one");
-  const auto on = active_compensation(read, controller, given);
-  if (!on) return fail(on.error());
-  Settings options = *on ? (*on)->options : given;
-  auto one = one_axis(read, axis, *on);
+  auto one = one_axis(read, axis);
   if (!one) return fail(one.error());
+  Settings options = given;
   std::vector<Finding> findings;
-  if (auto taken = take_active_of_backup(*one, controller, backup, axis, options, findings); !taken)
-    return fail(taken.error());
+  const auto with = measured_with(read, controller, backup, axis, options, findings);
+  if (!with) return fail(with.error());
+  take_active(*one, *with, axis, options);
   const Results none;
   auto written = process::guarded(who, [&] {
     return controller.write({one->campaign, one->readings, none, options});
   });
   if (!written) return fail(written.error());
-  MergedTables out{
-      .files = {}, .differences = {}, .findings = written->findings, .notes = written->notes};
+  MergedTables out{.files = {},
+                   .whole = {},
+                   .differences = {},
+                   .forecast = {},
+                   .with = *with,
+                   .next = {},
+                   .findings = written->findings,
+                   .notes = written->notes};
   out.findings.insert(out.findings.begin(), findings.begin(), findings.end());
   if (written->artifacts.empty()) return out;  // refused; the findings say why
   const Campaign& campaign = read.manifest->campaign;
-  auto changed = process::guarded(who, [&] {
-    return controller.merge({backup, written->artifacts, axis, campaign, options});
-  });
+  // Files that contain one axis only are replaced as they are.
+  const bool merges = controller.merge != nullptr;
+  auto changed =
+      merges ? process::guarded(
+                   who,
+                   [&] {
+                     return controller.merge({backup, written->artifacts, axis, campaign, options});
+                   })
+             : written->artifacts;
   if (!changed) return fail(changed.error());
-  std::vector<Artifact> whole = backup;
+  std::vector<Artifact> whole = merges ? backup : std::vector<Artifact>{};
   for (const Artifact& f : *changed) {
     const auto same = std::find_if(whole.begin(), whole.end(),
                                    [&](const Artifact& a) { return a.name == f.name; });
@@ -178,7 +161,12 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
     if (!*tables) return fail(tables->error());
   if (auto only = only_this_axis(*present, *fresh, *next, axis); !only) return fail(only.error());
   out.files = std::move(*changed);
+  out.whole = std::move(whole);
   out.differences = differences(*present, *next);
+  out.next = own_tables(*next, axis);
+  out.forecast.push_back(forecast_of_axis(one->campaign.measurements.front(), axis,
+                                          one->measured.front(), one->readings.front(), *next,
+                                          options));
   return out;
 }
 

@@ -562,12 +562,22 @@ class Merge(MachineTest):
         alone = self.nonio("table", "insert", self.site / "X.lis", "--with", self.folder, expect=1).stderr
         self.assertIn("no list of axis 3 (kopf.achs_nr)", alone)
 
-    def test_a_control_whose_files_hold_one_axis_is_refused_by_name(self):
+    def test_a_control_whose_files_contain_one_axis_gets_these_files(self):
         self.record(["X", "Y", "Z"], from_zero=True)
-        self.measured("linuxcnc", machine='asset = "S-1"\n')
+        self.measured("linuxcnc", machine='asset = "S-1"\n', of_axis="")
         path = self.site / "linuxcnc-Z.comp"
         path.write_text("0 0 0\n100 100 100\n")
-        self.assertIn("linuxcnc does not merge", self.nonio("table", "insert", path, "--with", self.folder, expect=1).stderr)
+        out = self.site / "load"
+        self.json_of("table", "insert", path, "--with", self.folder, "--out", out)
+        self.measured("linuxcnc", machine='asset = "S-1"\n')
+        self.tables("linuxcnc")
+        self.assertEqual((out / path.name).read_text(), self.file(path.name))
+        # The file of another axis would be lost.
+        other = self.site / "linuxcnc-X.comp"
+        other.write_text("0 0.001 0.001\n100 100 100\n")
+        said = self.nonio("table", "insert", "%s,%s" % (path, other), "--with", self.folder, expect=1).stderr
+        self.assertIn("the table of X by X would change too", said)
+        self.assertIn("give only files that contain the table of Z", said)
 
     def test_diff_of_the_control_and_a_campaign(self):
         self.record(["X", "Y", "Z"])

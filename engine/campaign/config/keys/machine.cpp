@@ -7,6 +7,61 @@ namespace declared {
 constexpr Words a_limit = "expected a limit above 0";
 constexpr Words a_position = "expected a position of at most 1000000 in size";
 constexpr Words taken_numbers = "expected numbers or ranges of them, [\"0\", \"100-227\"]";
+constexpr Choice state_sources[] = {{"stated"}, {"backup"}, {"nonio"}};
+constexpr Key table_in_control = {
+    .name = "table",
+    .holds = text,
+    .help =
+        "The table in the control: its file below the site, further files of the same "
+        "table separated by commas; or \"none\"."};
+constexpr Key state_keys[] = {
+    {.name = "since",
+     .holds = date,
+     .help = "The day on which table and backlash value were loaded; they apply to measurements of "
+             "later days. With source = \"backup\": the first day on which they are known to have "
+             "been in the control.",
+     .required = true},
+    table_in_control,
+    {.name = "backlash_mm",
+     .holds = number_or_none,
+     .help = "Value of the control's backlash parameter of a linear axis, or \"none\".",
+     .unit = "mm",
+     .wanted = some_backlash,
+     .least = -most_backlash,
+     .most = most_backlash},
+    {.name = "backlash_deg",
+     .holds = number_or_none,
+     .help = "Value of the control's backlash parameter of a rotary axis, or \"none\".",
+     .unit = "deg",
+     .wanted = some_backlash,
+     .least = -most_backlash,
+     .most = most_backlash},
+    {.name = "source",
+     .holds = text,
+     .help = "How the state is known: stated by a person, read from a backup, written by Nonio.",
+     .otherwise = "stated",
+     .choices = state_sources},
+    {.name = "sha256",
+     .holds = text,
+     .help = "Digest of the files of the table; if they change, the record is refused."},
+    {.name = "grid",
+     .holds = span,
+     .help = "First and last position of the table (information only).",
+     .unit = "mm or deg",
+     .wanted = two_numbers,
+     .least = -most_mm,
+     .most = most_mm},
+    {.name = "points",
+     .holds = whole,
+     .help = "Number of positions of the table (information only)."},
+    {.name = "reference",
+     .holds = number,
+     .help = "Position at which the table is zero (information only).",
+     .unit = "mm or deg",
+     .wanted = a_position,
+     .least = -most_mm,
+     .most = most_mm},
+};
 constexpr Key recorded_axis_keys[] = {
     {.name = "kind",
      .holds = text,
@@ -93,10 +148,7 @@ constexpr Key recorded_axis_keys[] = {
      .wanted = a_limit,
      .least = 0.0,
      .above = true},
-    {.name = "table",
-     .holds = text,
-     .help = "The table in the control: its file below the site, further files of the same "
-             "table separated by commas; or \"none\"."},
+    table_in_control,
     {.name = "backlash_mm",
      .holds = number_or_none,
      .help = "Value of the control's backlash parameter, or \"none\".",
@@ -117,6 +169,12 @@ constexpr Key recorded_axis_keys[] = {
      .holds = date,
      .help = "The day on which table and backlash value were loaded. They apply only to "
              "measurements of later days."},
+    {.name = "state",
+     .holds = tables,
+     .help = "Table and backlash value from one day on, [[axes.X.state]]: the history of the "
+             "control. `nonio table insert --loaded` adds to it. Each campaign is evaluated with "
+             "the last state before its day.",
+     .keys = state_keys},
 };
 
 constexpr Key machine_file_keys[] = {

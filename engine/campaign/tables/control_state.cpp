@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "campaign/tables/control_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/math/loaded_table.h"
+#include "nonio/sdk/format.h"
+
+namespace nonio::tables {
+namespace {
+
+constexpr double same_within_um = 0.06;
+
+bool is_own(const LoadedTable& t, const std::string& axis) {
+  return t.output == axis && t.input == std::vector{axis};
+}
+
+std::string names_of(const std::vector<Artifact>& files) {
+  std::string out;
+  for (const Artifact& f : files) out += (out.empty() ? "" : ", ") + f.name;
+  return out;
+}
+
+std::string_view between(std::string_view line, std::string_view from, std::string_view to) {
+  const std::size_t at = line.find(from);
+  if (at == std::string_view::npos) return {};
+  line.remove_prefix(at + from.size());
+  return line.substr(0, line.find(to));
+}
+
+std::string_view without_end(std::string_view text) {
+  while (!text.empty() && (text.back() == ')' || text.back() == '\r' || text.back() == ' '))
+    text.remove_suffix(1);
+  return text;
+}
+
+/// The statements of the campaign, of which a message names the place.
+class Stated {
+ public:
+  Stated(const reading::ReadCampaign& read, const Axis& axis) : read_(read), axis_(axis) {}
+
+  bool in_manifest(const char* key) const {
+    return read_.manifest->lines.contains("machine.axes." + axis_.name + "." + key);
+  }
+  std::string key() const { return "active_table in [machine.axes." + axis_.name + "]"; }
+  std::string backlash_key() const {
+    return std::string(axis_.rotary ? "active_backlash_deg" : "active_backlash_mm") +
+           " in [machine.axes." + axis_.name + "] of campaign.toml";
+  }
+  std::string place() const {
+    if (!in_manifest("active_table")) return read_.machine ? read_.machine->file : "campaign.toml";
+    return "campaign.toml:" +
+           std::to_string(read_.manifest->lines.at("machine.axes." + axis_.name + ".active_table"));
+  }
+  std::string text() const {
+    return axis_.active_table->empty() ? "\"none\"" : "\"" + *axis_.active_table + "\"";
+  }
+
+ private:
+  const reading::ReadCampaign& read_;
+  const Axis& axis_;
+};
+
+/// Whether the record has this table from a later day on.
+bool is_loaded_later(const reading::ReadCampaign& read, const Controller& controller,
+                     const std::vector<LoadedTable>& backup, const std::string& axis,
+                     const Settings& options) {
+  if (!read.machine) return false;
+  const auto recorded = read.machine->axes.find(axis);
+  if (recorded == read.machine->axes.end()) return false;
+  const Campaign& campaign = read.manifest->campaign;
+  return std::any_of(recorded->second.states.begin(), recorded->second.states.end(),
+                     [&](const config::ControlState& s) {
+                       if (s.since < campaign.date || s.counts_on(campaign.date) || !s.table)
+                         return false;
+                       if (s.table->empty()) return backup.empty();
+                       const auto files = read.state_files.find(s.files);
+                       if (files == read.state_files.end()) return false;
+                       const auto tables = tables_in(controller, files->second, campaign, options);
+                       return tables && same_correction(own_tables(*tables, axis), backup, axis);
+                     });
+}
+
+}  // namespace
+
+std::vector<LoadedTable> own_tables(const std::vector<LoadedTable>& tables,
+                                    const std::string& axis) {
+  std::vector<LoadedTable> own;
+  for (const LoadedTable& t : tables)
+    if (is_own(t, axis)) own.push_back(t);
+  return own;
+}
+
+bool same_correction(const std::vector<LoadedTable>& a, const std::vector<LoadedTable>& b,
+                     const std::string& axis) {
+  for (const TableDifference& d : differences(own_tables(a, axis), own_tables(b, axis)))
+    if (d.range > same_within_um * (d.rotary ? 1.0 / arcsec_per_rad : 1e-6)) return false;
+  return true;
+}
+
+std::optional<Origin> origin_of(const std::vector<Artifact>& files, const std::string& axis) {
+  for (const Artifact& f : files) {
+    std::string serial;
+    std::uint64_t number = 0;
+    for (std::size_t at = 0; at < f.bytes.size();) {
+      const std::size_t end = std::min(f.bytes.find('\n', at), f.bytes.size());
+      const std::string_view line = std::string_view(f.bytes).substr(at, end - at);
+      at = end + 1;
+      ++number;
+      if (const auto of = between(line, ", serial ", "\n");
+          !of.empty() && line.find("machine: ") != std::string_view::npos)
+        serial = without_end(of);
+      if (line.find("axis " + axis + ", measurement ") == std::string_view::npos) continue;
+      const auto campaign = without_end(between(line, ", campaign ", "\n"));
+      if (campaign.empty()) continue;
+      const std::string_view before = line.substr(0, line.find(", campaign "));
+      const std::string_view day = before.substr(before.rfind(' ') + 1);
+      return Origin{f.name, number, std::string(day), std::string(campaign), serial};
+    }
+  }
+  return std::nullopt;
+}
+
+Expected<MeasuredWith> measured_with(const reading::ReadCampaign& read,
+                                     const Controller& controller,
+                                     const std::vector<Artifact>& backup, const std::string& name,
+                                     const Settings& options, std::vector<Finding>& findings) {
+  const Campaign& campaign = read.manifest->campaign;
+  const Axis* const axis = campaign.machine.axis(name);
+  if (axis == nullptr) return fail("the campaign has no axis " + name);
+  const Stated stated(read, *axis);
+  auto all = tables_in(controller, backup, campaign, options);
+  if (!all) return fail(names_of(backup) + ": " + all.error().message);
+  const auto in_backup = own_tables(*all, name);
+  std::optional<double> backlash_in_backup;
+  for (const LoadedTable& t : in_backup)
+    if (t.backlash) backlash_in_backup = t.backlash;
+  const auto origin = origin_of(backup, name);
+  const std::string& serial = campaign.machine.serial;
+  if (origin && !serial.empty() && !origin->serial.empty() && origin->serial != serial)
+    return fail(origin->place() + ": the table of " + name + " is of the machine with serial " +
+                origin->serial + ", the campaign is of " + serial +
+                ": give the backup of this machine, or correct serial in [machine]");
+  const bool off = std::any_of(
+      campaign.measurements.begin(), campaign.measurements.end(), [&](const Measurement& m) {
+        return m.kind == "axis" && control_axis(campaign.machine, m) == name &&
+               m.compensation == "off";
+      });
+  const std::string by_hand = "state " + stated.key() +
+                              " of campaign.toml: the file of the table that was active while it "
+                              "was measured, or \"none\"";
+  const bool is_later =
+      origin &&
+      (origin->campaign == campaign.id ||
+       (!campaign.date.empty() && origin->date >= campaign.date && origin->date != "date"));
+  MeasuredWith out{{}, {}, axis->active_backlash, false};
+  if (!out.backlash) out.backlash = stated_backlash(options, name, axis->rotary);
+  if (axis->active_table || off) {
+    if (const auto files = read.active_tables.find(name); files != read.active_tables.end()) {
+      auto tables = tables_in(controller, files->second, campaign, options);
+      if (!tables) return fail(*axis->active_table + ": " + tables.error().message);
+      out.tables = own_tables(*tables, name), out.files = names_of(files->second);
+    }
+    if (same_correction(out.tables, in_backup, name)) {
+      if (!out.backlash) out.backlash = backlash_in_backup;
+      return out;
+    }
+    if (off || is_later || is_loaded_later(read, controller, in_backup, name, options)) return out;
+    if (!stated.in_manifest("active_table"))
+      return fail(stated.place() + " states that the table of " + name + " was " + stated.text() +
+                  " on " + campaign.date + ", but " + names_of(backup) +
+                  (in_backup.empty() ? " contains none" : " contains another one") +
+                  ": add the state of the backup to [[axes." + name + ".state]] there, or " +
+                  by_hand);
+    findings.push_back({"table.backup-differs",
+                        true,
+                        {},
+                        {{"axis", name},
+                         {"files", names_of(backup)},
+                         {"place", stated.place()},
+                         {"stated", axis->active_table->empty() ? "none" : *axis->active_table}},
+                        {},
+                        {}});
+    return out;
+  }
+  if (is_later)
+    return fail(origin->place() + ": the table of " + name + " was made from campaign " +
+                origin->campaign + " of " + origin->date +
+                ", so it was loaded after this campaign was measured: " + by_hand);
+  if (!backlash_in_backup && !out.backlash && !controller.table.backlash.empty())
+    return fail(names_of(backup) + " does not contain the value of " + controller.table.backlash +
+                " of axis " + name +
+                ", which was active during the measurement: give its file too, or state " +
+                stated.backlash_key());
+  out.tables = in_backup;
+  out.from_backup = true;
+  if (!in_backup.empty()) out.files = names_of(backup);
+  if (backlash_in_backup) out.backlash = backlash_in_backup;
+  findings.push_back({"table.active-from-backup",
+                      true,
+                      {},
+                      {{"axis", name}, {"files", names_of(backup)}},
+                      {},
+                      {}});
+  return out;
+}
+
+}  // namespace nonio::tables
