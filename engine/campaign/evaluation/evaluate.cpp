@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "campaign/evaluation/control_tables.h"
 #include "campaign/evaluation/evaluation.h"
 #include "campaign/modelling/model_fit.h"
 #include "campaign/reading/names.h"
@@ -108,6 +109,7 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
   results.conformity = held_against_tolerances(work.campaign(), results.analyses);
   WantedPlugins wanted = wanted_plugins(work, results.notes);
   write_tables(work, wanted.controllers, doubts, results);
+  out.evaluated.control_tables = control_tables(out.read, results, wanted.controllers);
   out.documents = std::move(wanted.outputs);
   if (!out.documents.empty()) out.number = number_request(work, out.documents, results);
   return out;

@@ -40,6 +40,25 @@ struct ShownHistory {
   std::vector<std::pair<std::string, std::string>> campaigns{};  ///< id, digest of their results
 };
 
+/// What a table adds along one axis, at its points; no points: nothing. SI.
+struct AxisCorrection {
+  std::vector<double> position{}, plus{}, minus{};
+  std::optional<double> backlash{};  ///< m or rad, where it is known
+};
+
+/// Mean errors of one measurement of an axis, the compensation that was active, and what was written
+/// for the control. SI.
+struct ControlTables {
+  std::string measurement, axis, state;  ///< as-found, as-left
+  bool rotary = false;
+  std::vector<double> position{}, plus{}, minus{};  ///< a direction that was not measured is empty
+  double u = 0.0;                                   ///< standard, of a mean, of its scatter
+  std::optional<AxisCorrection> active{};           ///< none: not known
+  std::optional<AxisCorrection> written{};
+  /// What the record of the machine states, by day.
+  std::vector<std::pair<std::string, AxisCorrection>> recorded{};
+};
+
 struct Evaluated {
   Campaign campaign;
   Results results;
@@ -48,6 +67,7 @@ struct Evaluated {
   std::optional<Certificate> certificate{};
   bool retry = false;  ///< it failed for a reason that does not lie in its files
   std::vector<FollowedGroup> followed{};
+  std::vector<ControlTables> control_tables{};
   std::string purpose{};                  ///< as the manifest says it
   std::optional<ShownHistory> history{};  ///< none: no document asks for it
 };

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <utility>
 
+#include "campaign/evaluation/control_tables.h"
 #include "campaign/evaluation/followed.h"
 #include "campaign/evaluation/issue_json.h"
 #include "nonio/sdk/format.h"
@@ -350,6 +351,7 @@ std::string results_json(const Evaluated& e, const reading::Context& context,
   json.end_array();
   put_conformity(json, e.results.conformity);
   put_followed(json, e.followed);
+  put_control_tables(json, e.control_tables);
   if (e.certificate) put_certificate(json, *e.certificate);
   put_files(json, e.results.outputs, files);
   put_tables(json, e.results.outputs, context.templates);

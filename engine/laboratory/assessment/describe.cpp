@@ -14,6 +14,7 @@
 #include "laboratory/assessment/days.h"
 #include "laboratory/assessment/lines.h"
 #include "laboratory/assessment/open_values.h"
+#include "laboratory/assessment/table_changes.h"
 #include "laboratory/assessment/tables_kept.h"
 #include "laboratory/statistics/forecast.h"
 #include "nonio/sdk/units.h"
@@ -359,6 +360,18 @@ std::optional<FollowedLimit> limit_of(const AssessedMachine& machine,
   return of_B ? of_B : own;
 }
 
+bool is_at(const reports::TableLoaded& t, const std::string& axis,
+           const reports::HistoryChange& c) {
+  return t.axis == axis && c.after <= t.before && c.before >= t.after &&
+         (c.after < t.before || c.before == t.before) && (c.before > t.after || c.after == t.after);
+}
+
+static void name_cause(const reports::TableLoaded& t, reports::HistoryChange& c) {
+  c.cause = "table";
+  c.event = "table-" + t.kind + (t.table.empty() ? "" : ": " + t.table);
+  if (t.kind == "offset") c.event += (t.points > 0 ? ", +" : ", ") + std::to_string(t.points);
+}
+
 reports::MachineHistory describe(const AssessedMachine& machine, const fs::path& out,
                                  const std::string& due, const std::string& why,
                                  const std::string& today) {
@@ -378,6 +391,11 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
   const Describing describing(machine, out, due, today);
   for (const FollowedSeries& s : machine.followed) m.series.push_back(describing.of(s));
   for (const ShownSeries& s : machine.shown) m.series.push_back(describing.of(s));
+  m.tables_loaded = tables_loaded(machine);
+  for (const reports::TableLoaded& t : m.tables_loaded)
+    for (HistorySeries& s : m.series)
+      for (reports::HistoryChange& c : s.changes)
+        if (is_at(t, s.axis, c)) name_cause(t, c);
   return m;
 }
 

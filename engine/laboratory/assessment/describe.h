@@ -48,6 +48,10 @@ std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const Foll
 /// What pages and programs show of a machine. `due`: day of the next calibration by a rule, `why`
 /// in words; empty: there is none, and forecasts look one usual interval ahead. A forecast for a day
 /// before `today` is overdue.
+/// Whether a change of a quantity of this axis lies where a table was loaded.
+bool is_at(const reports::TableLoaded& table, const std::string& axis,
+           const reports::HistoryChange& change);
+
 reports::MachineHistory describe(const AssessedMachine& machine, const std::filesystem::path& out,
                                  const std::string& due, const std::string& why,
                                  const std::string& today = {});

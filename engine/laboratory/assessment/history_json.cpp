@@ -76,6 +76,23 @@ class HistoryWriter {
     json_.end_object();
   }
 
+  void put(const std::string& machine, const reports::TableLoaded& t) {
+    unit_ = t.unit;
+    json_.begin_object();
+    json_.member("machine", machine);
+    json_.member("axis", t.axis);
+    json_.member("kind", t.kind);
+    if (!t.table.empty()) json_.member("table", t.table);
+    if (t.kind == "offset") json_.member("points", static_cast<std::int64_t>(t.points));
+    json_.member("after", t.after_campaign);
+    json_.member("before", t.before_campaign);
+    json_.member("unit", unit_of(t.unit).symbol);
+    number("rms", t.rms);
+    number("left", t.left);
+    json_.member("stated", t.is_stated);
+    json_.end_object();
+  }
+
  private:
   template <class T, class Put>
   void list(std::string_view name, const std::vector<T>& all, Put put_one) {
@@ -194,6 +211,14 @@ std::string history_json(const reports::SiteHistory& site, const Tonight& tonigh
   json.begin_array();
   for (const reports::MachineHistory& m : site.machines) put_machine(json, m, templates);
   json.end_array();
+  if (std::any_of(site.machines.begin(), site.machines.end(),
+                  [](const auto& m) { return !m.tables_loaded.empty(); })) {
+    json.key("tables_loaded");
+    json.begin_array();
+    for (const reports::MachineHistory& m : site.machines)
+      for (const reports::TableLoaded& t : m.tables_loaded) writer.put(m.id, t);
+    json.end_array();
+  }
   json.key("vanished");
   json.begin_array();
   for (const Tonight::Vanished& v : tonight.vanished) {

@@ -48,6 +48,7 @@ class OfMachine {
     for (const auto& [axis, all] : causes_)
       for (const AxisChange& cause : all)
         if (!cause.told) add(changed(axis, cause));
+    loaded();
     tables();
     held_back();
     soon();
@@ -80,9 +81,9 @@ class OfMachine {
     for (const HistorySeries& s : d_.series) {
       std::string mended;
       for (const HistoryChange& c : s.changes)
-        if (is_mended(c)) mended = std::max(mended, c.before);
+        if (is_mended(c) && !is_fault(s.axis, c)) mended = std::max(mended, c.before);
       for (const HistoryChange& c : s.changes)
-        if (c.cause != "instrument" && !is_mended(c) && c.before > mended &&
+        if (c.cause != "instrument" && !is_mended(c) && !is_fault(s.axis, c) && c.before > mended &&
             !is_repaired(s.axis, c.before))
           put_change(axis_of(s.axis, s.quantity), s, c);
     }
@@ -90,6 +91,13 @@ class OfMachine {
       for (AxisChange& cause : all)
         std::stable_sort(cause.seen.begin(), cause.seen.end(),
                          [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  }
+
+  /// A table that was not loaded as it should be: it has a line of its own.
+  bool is_fault(const std::string& axis, const HistoryChange& c) const {
+    return std::any_of(d_.tables_loaded.begin(), d_.tables_loaded.end(), [&](const auto& t) {
+      return t.kind != "loaded" && t.kind != "removed" && is_at(t, axis, c);
+    });
   }
 
   /// An event states that this axis was repaired or compensated after that campaign. A plan
@@ -312,11 +320,53 @@ class OfMachine {
     return l;
   }
 
+  // ---- how a table was loaded
+
+  /// Of each axis the last table, unless somebody states that it was loaded.
+  void loaded() {
+    std::map<std::string, const reports::TableLoaded*> last;
+    for (const reports::TableLoaded& t : d_.tables_loaded) last[t.axis] = &t;
+    for (const auto& [axis, t] : last) {
+      const bool is_right = t->kind == "loaded" || t->kind == "removed";
+      if ((is_right && (t->is_stated || is_declared(*t))) || is_repaired(axis, t->before)) continue;
+      MorningLine l = line(Kind::changed, ("morning.table-" + t->kind).c_str(), "");
+      l.id = l.finding.id + ":" + d_.id + ":" + axis + ":" + t->before;
+      l.axis = axis, l.unit = t->unit;
+      l.campaign = t->before_campaign, l.since = t->before;
+      l.finding.evidence = {{"rms", t->rms, t->unit}, {"left", t->left, t->unit}};
+      put_text(l, "axis", axis);
+      put_text(l, "table", t->table);
+      put_text(l, "after", t->after);
+      put_text(l, "before", t->before);
+      put_text(l, "points", (t->points > 0 ? "+" : "") + std::to_string(t->points));
+      add(std::move(l));
+    }
+  }
+
+  /// An event of these days, or readings as found and as left.
+  bool is_declared(const reports::TableLoaded& t) const {
+    return std::any_of(m_.events.begin(), m_.events.end(),
+                       [&](const config::Event& e) {
+                         return e.kind == "compensation" && e.date >= t.after &&
+                                e.date <= t.before && (e.axis.empty() || e.axis == t.axis);
+                       }) ||
+           std::any_of(m_.stored.results.begin(), m_.stored.results.end(), [&](const auto& r) {
+             return r.axis == t.axis && r.state == "as-left" &&
+                    m_.stored.campaigns[r.campaign].id == t.before_campaign;
+           });
+  }
+
+  bool has_loading_line(const std::string& axis) const {
+    return std::any_of(out_.begin(), out_.end(), [&](const MorningLine& l) {
+      return l.axis == axis && l.finding.id.starts_with("morning.table-");
+    });
+  }
+
   // ---- what a table promised
 
   void tables() {
     for (const reports::TableKept& t : d_.tables) {
-      if (t.good || is_measured_since(t.axis, t.date)) continue;
+      if (t.good || is_measured_since(t.axis, t.date) || has_loading_line(t.axis)) continue;
       MorningLine l = line(Kind::changed, "morning.table", t.axis + ":" + t.campaign);
       l.axis = t.axis;
       l.quantity = t.quantity;

@@ -69,6 +69,9 @@ class EntryReader {
         entry_.without_value.push_back({text_at(c, "measurement"), text_at(c, "axis"),
                                         text_at(c, "name"), text_at(c, "unit"), c["tolerance"]});
     }
+    for (const dom::element t : list_at(json_, "control_tables"))
+      entry_.control_tables.push_back(
+          {text_at(t, "measurement"), text_at(t, "axis"), simdjson::minify(t)});
     for (const dom::object a : list_at(json_, "analyses")) read_analysis(a);
     for (const dom::object t : list_at(json_, "tables")) {
       for (const dom::object p : list_at(t, "predictions"))
@@ -275,6 +278,7 @@ std::string canonical_of(const Entry& e) {
   }
   put(e.findings.size());
   for (const FindingRow& f : e.findings) put(f.measurement)(f.source)(f.id)(f.severity);
+  for (const ControlTableRow& t : e.control_tables) put(t.measurement)(t.axis)(t.state);
   for (const LimitRow& l : e.without_value)
     put(l.measurement)(l.axis)(l.quantity)(l.unit)(l.tolerance);
   return put.take();

@@ -57,6 +57,12 @@ struct LimitRow {
   double tolerance = 0.0;
 };
 
+/// What a measurement of an axis states of the control's tables.
+struct ControlTableRow {
+  std::string measurement, axis;
+  std::string state;  ///< JSON: the member of `control_tables` of results.json
+};
+
 struct MachineAsStated {
   std::string asset, maker, model, serial;
 };
@@ -79,6 +85,7 @@ struct Entry {
   std::vector<CovarianceRow> covariance;
   std::vector<FindingRow> findings;
   std::vector<LimitRow> without_value;
+  std::vector<ControlTableRow> control_tables;
   std::optional<CertificateRow> certificate;  ///< issued, no draft; not part of the digest
 };
 

@@ -167,6 +167,10 @@ void read_findings(Database& database, std::size_t campaign, std::int64_t evalua
            {evaluation}))
     to.without_value.push_back({campaign, std::move(r[0]), std::move(r[1]), std::move(r[2]),
                                 std::move(r[3]), real_of(r[4])});
+  for (Database::Row& r : database.rows(
+           "SELECT measurement, axis, state FROM control_table WHERE evaluation = ? ORDER BY item",
+           {evaluation}))
+    to.tables.push_back({campaign, std::move(r[0]), std::move(r[1]), std::move(r[2])});
 }
 
 }  // namespace

@@ -51,6 +51,13 @@ struct LimitWithoutValue {
   double tolerance = 0.0;
 };
 
+/// What a measurement of an axis states of the control's tables.
+struct StoredTables {
+  std::size_t campaign = 0;  ///< index into StoredMachine::campaigns
+  std::string measurement, axis;
+  std::string json{};  ///< the member of `control_tables` of results.json
+};
+
 /// A finding with which an analysis gives no result: "diagonals.refused-place", "-yaw-needed".
 bool is_refusal(std::string_view finding);
 
@@ -67,6 +74,7 @@ struct StoredMachine {
   /// attention, and refusals of analyses.
   std::vector<std::vector<FindingRow>> asked{};
   std::vector<LimitWithoutValue> without_value{};
+  std::vector<StoredTables> tables{};  ///< in the order of their campaigns
   struct Later {
     std::string campaign, day;
   };

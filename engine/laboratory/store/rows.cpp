@@ -89,6 +89,11 @@ void insert(Database& database, std::int64_t evaluation, const Known& known, con
     database.put("INSERT INTO limit_without_value VALUES (?, ?, ?, ?, ?, ?, ?)",
                  {evaluation, number(i), l.measurement, l.axis, l.quantity, l.unit, l.tolerance});
   }
+  for (std::size_t i = 0; i < e.control_tables.size(); ++i) {
+    const ControlTableRow& t = e.control_tables[i];
+    database.put("INSERT INTO control_table VALUES (?, ?, ?, ?, ?)",
+                 {evaluation, number(i), t.measurement, t.axis, t.state});
+  }
   for (std::size_t i = 0; i < e.findings.size(); ++i) {
     const FindingRow& f = e.findings[i];
     database.put("INSERT INTO finding VALUES (?, ?, ?, ?, ?, ?)",

@@ -44,6 +44,9 @@ CREATE TABLE finding (
 CREATE TABLE limit_without_value (
   evaluation BIGINT NOT NULL, item BIGINT NOT NULL, measurement TEXT NOT NULL, axis TEXT NOT NULL,
   quantity TEXT NOT NULL, unit TEXT NOT NULL, tolerance DOUBLE PRECISION NOT NULL, PRIMARY KEY (evaluation, item));
+CREATE TABLE control_table (
+  evaluation BIGINT NOT NULL, item BIGINT NOT NULL, measurement TEXT NOT NULL, axis TEXT NOT NULL,
+  state TEXT NOT NULL, PRIMARY KEY (evaluation, item));
 CREATE TABLE certificate (
   number TEXT PRIMARY KEY, campaign TEXT NOT NULL, campaign_sha256 TEXT NOT NULL, day TEXT NOT NULL,
   replaces TEXT NOT NULL);
@@ -82,14 +85,14 @@ CREATE TABLE covariance (
 
 /// What campaigns say; the others are copies of the site's files as they are now.
 constexpr const char* append_only[] = {
-    "machine",    "campaign", "evaluation",          "result",     "common_part",
-    "covariance", "finding",  "limit_without_value", "certificate"};
+    "machine",    "campaign", "evaluation",          "result",        "common_part",
+    "covariance", "finding",  "limit_without_value", "control_table", "certificate"};
 /// Children first.
 constexpr const char* all_tables[] = {
-    "common_part",   "covariance",  "finding",         "limit_without_value",
-    "result",        "certificate", "evaluation",      "campaign",
-    "machine",       "event",       "acknowledgement", "forgotten",
-    "machine_alias", "store",       "due_rule"};
+    "common_part",   "covariance",    "finding",     "limit_without_value",
+    "control_table", "result",        "certificate", "evaluation",
+    "campaign",      "machine",       "event",       "acknowledgement",
+    "forgotten",     "machine_alias", "store",       "due_rule"};
 
 /// For a statement, so that TRUNCATE is refused too.
 std::string server_triggers() {

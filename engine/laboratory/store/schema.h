@@ -11,7 +11,7 @@ namespace nonio::store {
 
 /// Of the tables below. A store of an older version is made again from the results; one of a newer
 /// version is refused.
-inline constexpr std::int64_t schema_version = 6;
+inline constexpr std::int64_t schema_version = 7;
 
 bool has_table(storage::Database& database, std::string_view name);
 

@@ -92,8 +92,11 @@ def mitsubishi(files, axis=None):
 
 
 def twincat_ptp(files, axis=None):
+    text = one(files, ".st")
+    said = re.search(r"MC_BacklashCompensation\.Backlash = (\S+) mm", text)
     return Table([(float(x), 1e3 * float(c)) for x, c in
-                  re.findall(r"Position := ([-\d.]+), Compensation := ([-\d.]+)", one(files, ".st"))])
+                  re.findall(r"Position := ([-\d.]+), Compensation := ([-\d.]+)", text)],
+                 backlash=1e3 * float(said[1]) if said else 0.0)
 
 
 def twincat_cnc(files, axis=None):
@@ -143,4 +146,4 @@ OPTIONS = {"fagor-8055": 'sign = "error"\n', "haas-classic": 'sign = "error"\n',
 # um: half a step of the table and, of increments, of the backlash value.
 STEP = {"fanuc": 1.0, "mitsubishi": 0.5, "haas-classic": 2.54, "fagor-8055": 0.1, "heidenhain-tnc": 0.1, "twincat-cnc": 0.1,
         "pmac": 0.04}
-HAS_BACKLASH = {"siemens-840d", "heidenhain-tnc", "fanuc", "twincat-cnc", "pmac"}
+HAS_BACKLASH = {"siemens-840d", "heidenhain-tnc", "fanuc", "twincat-cnc", "twincat-nc-ptp", "pmac"}

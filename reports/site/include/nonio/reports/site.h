@@ -80,11 +80,25 @@ struct TableKept {
   bool good = true;
 };
 
+/// A change between two campaigns of an axis that is a table.
+struct TableLoaded {
+  std::string axis;
+  std::string kind;   ///< loaded, removed, wrong-sign, twice, in-addition, offset
+  std::string table;  ///< day of the campaign from which it was made, or of its state in the record
+  int points = 0;     ///< of an offset
+  std::string after, before;  ///< days
+  std::string after_campaign, before_campaign;
+  Quantity unit = Quantity::deviation;
+  double rms = 0.0, left = 0.0;  ///< of the change, and of what the table does not explain; SI
+  bool is_stated = false;        ///< the campaigns or the record state it
+};
+
 struct MachineHistory {
   std::string id, maker, model, serial, customer, place, control;
   std::vector<MachineEvent> events;
   std::vector<HistorySeries> series;
-  std::vector<ErrorCurve> curves;   ///< by day
+  std::vector<ErrorCurve> curves;  ///< by day
+  std::vector<TableLoaded> tables_loaded{};
   std::vector<TableKept> tables{};  ///< the last one of each axis, where it can be told
   std::string due{}, why_due{};     ///< next calibration; which rule says so
   IntervalProposal proposal{};      ///< of an interval

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "laboratory/assessment/table_changes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "laboratory/statistics/table_change.h"
+#include "platform/storage/json_values.h"
+
+namespace nonio::assessment {
+
+namespace kernel = nonio::statistics;
+using storage::Json;
+using store::StoredTables;
+
+namespace {
+
+/// Machines change their scale between campaigns by this much without any cause that is worth a
+/// name, um/m or arcsec/deg.
+constexpr double usual_scale_change_um_per_m = 0.5, usual_scale_change_arcsec_per_deg = 0.002;
+/// What two campaigns of an instrument repeat, um or arcsec.
+constexpr double resolution = 0.1;
+/// The last tables of an axis; older ones are not loaded again.
+constexpr std::size_t most_known = 8;
+
+std::vector<double> numbers(const Json& of, const char* name, bool rotary, bool position) {
+  const std::string key =
+      std::string(name) + (position ? (rotary ? "_deg" : "_mm") : (rotary ? "_arcsec" : "_um"));
+  std::vector<double> out;
+  if (const auto found = of.find(key); found != of.end() && found->is_array())
+    for (const Json& one : *found)
+      if (one.is_number()) out.push_back(one.get<double>());
+  return out;
+}
+
+kernel::TableCurve table_of(const Json& of, bool rotary) {
+  kernel::TableCurve t{numbers(of, "position", rotary, true), numbers(of, "plus", rotary, false),
+                       numbers(of, "minus", rotary, false)};
+  const std::size_t n = t.position.size();
+  if (t.plus.size() != n || (!t.minus.empty() && t.minus.size() != n)) return {};
+  return t;
+}
+
+struct Known {
+  std::string day;
+  kernel::TableCurve table;
+};
+
+/// One measurement of an axis with what its campaign knows.
+struct Taken {
+  std::size_t campaign = 0;
+  std::string state, measurement;
+  bool rotary = false;
+  kernel::MeasuredCurve curve;
+  std::optional<kernel::TableCurve> active, written;
+  std::vector<Known> recorded;
+  double u_slope = 0.0;  ///< um/mm or arcsec/deg
+};
+
+std::optional<Taken> taken(const AssessedMachine& m, const StoredTables& stored) {
+  const Json json = Json::parse(stored.json, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  Taken out;
+  out.campaign = stored.campaign, out.measurement = stored.measurement;
+  out.state = json.value("state", std::string());
+  out.rotary = json.contains("position_deg");
+  const bool rotary = out.rotary;
+  out.curve = {numbers(json, "position", rotary, true), numbers(json, "plus", rotary, false),
+               numbers(json, "minus", rotary, false),
+               json.value(rotary ? "u_arcsec" : "u_um", 0.0)};
+  const std::size_t n = out.curve.position.size();
+  for (const auto* of : {&out.curve.plus, &out.curve.minus})
+    if (!of->empty() && of->size() != n) return std::nullopt;
+  if (n < 3) return std::nullopt;
+  if (const auto found = json.find("active"); found != json.end())
+    out.active = table_of(*found, rotary);
+  if (const auto found = json.find("written"); found != json.end())
+    out.written = table_of(*found, rotary);
+  if (const auto found = json.find("recorded"); found != json.end() && found->is_array())
+    for (const Json& one : *found)
+      out.recorded.push_back({one.value("since", std::string()), table_of(one, rotary)});
+  for (const store::StoredResult& r : m.stored.results) {
+    if (!r.followed || r.campaign != stored.campaign || r.measurement != stored.measurement ||
+        r.quantity != "scale")
+      continue;
+    double variance = r.u_repeat.value_or(0.0) * r.u_repeat.value_or(0.0);
+    for (const store::CommonPart& c : r.common)
+      if (!c.source.starts_with("instrument")) variance += c.u * c.u;
+    out.u_slope = std::sqrt(variance) * (rotary ? 1.0 : 1e-3);
+  }
+  return out;
+}
+
+bool is_same(const kernel::TableCurve& a, const kernel::TableCurve& b) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const auto* t : {&a, &b})
+    for (const double x : t->position)
+      for (const int direction : {1, -1}) {
+        const double d = a.at(x, direction) - b.at(x, direction);
+        low = std::min(low, d), high = std::max(high, d);
+      }
+  return high - low < resolution;
+}
+
+const char* name_of(kernel::Loading loading) {
+  switch (loading) {
+    case kernel::Loading::loaded:
+      return "loaded";
+    case kernel::Loading::removed:
+      return "removed";
+    case kernel::Loading::wrong_sign:
+      return "wrong-sign";
+    case kernel::Loading::twice:
+      return "twice";
+    case kernel::Loading::in_addition:
+      return "in-addition";
+    case kernel::Loading::offset:
+      break;
+  }
+  return "offset";
+}
+
+class LoadedOnAxis {
+ public:
+  LoadedOnAxis(const AssessedMachine& m, std::string axis, std::vector<Taken> all)
+      : m_(m), axis_(std::move(axis)), all_(std::move(all)) {
+    std::stable_sort(all_.begin(), all_.end(),
+                     [&](const Taken& a, const Taken& b) { return key(a) < key(b); });
+  }
+
+  std::vector<reports::TableLoaded> find() const {
+    std::vector<reports::TableLoaded> out;
+    for (std::size_t i = 0; i + 1 < all_.size(); ++i)
+      if (auto one = between(all_[i], all_[i + 1], i)) out.push_back(std::move(*one));
+    return out;
+  }
+
+ private:
+  const std::string& day(const Taken& t) const { return m_.stored.campaigns[t.campaign].day; }
+  std::tuple<const std::string&, bool, std::size_t> key(const Taken& t) const {
+    return {day(t), t.state == "as-left", t.campaign};
+  }
+
+  static void add(std::vector<Known>& known, const std::string& day,
+                  const std::optional<kernel::TableCurve>& table) {
+    if (!table || table->empty()) return;
+    for (const Known& k : known)
+      if (is_same(k.table, *table)) return;
+    known.push_back({day, *table});
+  }
+
+  /// Written before the later campaign, then recorded up to its day.
+  std::vector<Known> known(std::size_t last, const Taken& after) const {
+    std::vector<Known> out;
+    for (std::size_t k = 0; k <= last; ++k) add(out, day(all_[k]), all_[k].written);
+    for (const Taken& t : all_)
+      for (const Known& k : t.recorded)
+        if (k.day <= day(after)) add(out, k.day, k.table);
+    for (std::size_t k = 0; k <= last; ++k)
+      if (all_[k].active) add(out, day(all_[k]), all_[k].active);
+    if (out.size() > most_known)
+      out.erase(out.begin(), out.end() - static_cast<std::ptrdiff_t>(most_known));
+    return out;
+  }
+
+  std::optional<reports::TableLoaded> between(const Taken& before, const Taken& after,
+                                              std::size_t last) const {
+    if (before.rotary != after.rotary) return std::nullopt;
+    const std::vector<Known> all_known = known(last, after);
+    if (all_known.empty()) return std::nullopt;
+    std::vector<kernel::TableCurve> curves;
+    for (const Known& k : all_known) curves.push_back(k.table);
+    const double usual =
+        before.rotary ? usual_scale_change_arcsec_per_deg : usual_scale_change_um_per_m * 1e-3;
+    const auto found =
+        kernel::recognize(before.curve, after.curve, before.active, curves,
+                          std::hypot(before.u_slope, after.u_slope, usual), resolution);
+    if (!found) return std::nullopt;
+    reports::TableLoaded out;
+    out.axis = axis_, out.kind = name_of(found->loading), out.points = found->points;
+    out.after = day(before), out.before = day(after);
+    out.after_campaign = m_.stored.campaigns[before.campaign].id;
+    out.before_campaign = m_.stored.campaigns[after.campaign].id;
+    out.unit = before.rotary ? Quantity::angular_deviation : Quantity::deviation;
+    const double per = unit_of(out.unit).per_si;
+    out.rms = found->rms / per, out.left = found->left / per;
+    if (found->loading != kernel::Loading::removed) out.table = all_known[found->table].day;
+    out.is_stated = found->loading == kernel::Loading::loaded && after.active &&
+                    is_same(*after.active, curves[found->table]);
+    if (found->loading == kernel::Loading::removed)
+      out.is_stated = after.active && after.active->empty();
+    return out;
+  }
+
+  const AssessedMachine& m_;
+  std::string axis_;
+  std::vector<Taken> all_;
+};
+
+}  // namespace
+
+std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& m) {
+  std::map<std::string, std::vector<Taken>> by_axis;
+  for (const StoredTables& s : m.stored.tables)
+    if (auto one = taken(m, s)) by_axis[s.axis].push_back(std::move(*one));
+  std::vector<reports::TableLoaded> out;
+  for (auto& [axis, all] : by_axis)
+    for (reports::TableLoaded& one : LoadedOnAxis(m, axis, std::move(all)).find())
+      out.push_back(std::move(one));
+  return out;
+}
+
+}  // namespace nonio::assessment

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "laboratory/statistics/table_change.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "nonio/math/distributions.h"
+
+namespace nonio::statistics {
+namespace {
+
+constexpr double least_p = 1e-3;          // of a rest that is noise
+constexpr double most_left = 0.1;         // of h, where the shape of the table is significant
+constexpr double clear = 25.0;            // of chi2, against what is no table
+constexpr double distinct = 9.0;          // of chi2, against another name
+constexpr double slope_seen = 8.0;        // slope of h over u_slope, where it has no shape
+constexpr int most_points = 5;            // of an offset
+constexpr std::size_t fewest_places = 4;  // that both campaigns have
+
+/// The value between the points of a curve, and the variance of its interpolation.
+struct Between {
+  double value = 0.0, variance = 0.0;
+};
+
+Between between(const std::vector<double>& position, const std::vector<double>& value, double x) {
+  const auto above = std::lower_bound(position.begin(), position.end(), x);
+  auto i = static_cast<std::size_t>(above - position.begin());
+  const double near = 1e-6 * (position.back() - position.front());
+  if (i < position.size() && position[i] - x <= near) return {value[i], 0.0};
+  if (i > 0 && x - position[i - 1] <= near) return {value[i - 1], 0.0};
+  i = std::clamp<std::size_t>(i, 1, position.size() - 1);
+  const double part = (x - position[i - 1]) / (position[i] - position[i - 1]);
+  double bend = 0.0;  // of the curve beside the interval
+  for (const std::size_t k : {i - 1, i})
+    if (k > 0 && k + 1 < position.size()) {
+      const double left = (value[k] - value[k - 1]) / (position[k] - position[k - 1]),
+                   right = (value[k + 1] - value[k]) / (position[k + 1] - position[k]);
+      bend = std::max(bend, std::fabs(right - left) / 2.0 * (position[i] - position[i - 1]));
+    }
+  const double wrong = bend * part * (1.0 - part);
+  return {value[i - 1] + part * (value[i] - value[i - 1]), wrong * wrong};
+}
+
+/// Standard uncertainty of a mean; of a single run by how the reversal scatters along the axis, or
+/// by the second differences of the one direction. Both are too large rather than too small.
+double u_of(const MeasuredCurve& c) {
+  if (c.u > 0.0) return c.u;
+  const auto& one = c.plus.empty() ? c.minus : c.plus;
+  double sum = 0.0, squares = 0.0, n = 0.0;
+  if (!c.plus.empty() && !c.minus.empty()) {
+    for (std::size_t i = 0; i < c.position.size(); ++i) {
+      const double B = c.plus[i] - c.minus[i];
+      sum += B, squares += B * B, n += 1.0;
+    }
+    return n < 3.0 ? 0.0 : std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1.0)) / 2.0);
+  }
+  for (std::size_t i = 1; i + 1 < one.size(); ++i) {
+    const double part =
+        (c.position[i] - c.position[i - 1]) / (c.position[i + 1] - c.position[i - 1]);
+    const double bend = one[i] - one[i - 1] - part * (one[i + 1] - one[i - 1]);
+    squares += bend * bend / (1.0 + part * part + (1.0 - part) * (1.0 - part)), n += 1.0;
+  }
+  return n > 0.0 ? std::sqrt(squares / n) : 0.0;
+}
+
+/// The change at the targets of the later campaign.
+struct CurveChange {
+  std::vector<double> x, value, variance;
+  std::vector<int> direction;
+  double middle = 0.0, length = 0.0;
+};
+
+CurveChange change_of(const MeasuredCurve& before, const MeasuredCurve& after, double resolution) {
+  CurveChange d;
+  const double near = 1e-6 * (before.position.back() - before.position.front());
+  const double u_before = u_of(before), u_after = u_of(after);
+  const double u2 = std::max(u_before * u_before + u_after * u_after, resolution * resolution);
+  for (const int direction : {1, -1}) {
+    const auto& was = direction > 0 ? before.plus : before.minus;
+    const auto& is = direction > 0 ? after.plus : after.minus;
+    if (was.empty() || is.empty()) continue;
+    for (std::size_t i = 0; i < after.position.size(); ++i) {
+      const double x = after.position[i];
+      if (x < before.position.front() - near || x > before.position.back() + near) continue;
+      const Between b = between(before.position, was, x);
+      d.x.push_back(x), d.direction.push_back(direction);
+      d.value.push_back(is[i] - b.value), d.variance.push_back(u2 + b.variance);
+    }
+  }
+  if (d.x.empty()) return d;
+  const auto [low, high] = std::minmax_element(d.x.begin(), d.x.end());
+  d.middle = (*low + *high) / 2.0, d.length = *high - *low;
+  return d;
+}
+
+/// Constants of both directions and a slope, by weighted least squares.
+struct Rest {
+  double chi2 = 0.0;
+  double rms = 0.0;    ///< without constants and slope
+  double slope = 0.0;  ///< of a fit in which it is free
+  double whole = 0.0;  ///< rms without the constants alone
+};
+
+using Three = std::array<double, 3>;
+
+Three solved(std::array<Three, 3> a, Three b) {
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = k + 1; i < 3; ++i) {
+      if (a[k][k] == 0.0) continue;
+      const double f = a[i][k] / a[k][k];
+      for (std::size_t j = k; j < 3; ++j) a[i][j] -= f * a[k][j];
+      b[i] -= f * b[k];
+    }
+  Three x{};
+  for (std::size_t k = 3; k-- > 0;) {
+    double sum = b[k];
+    for (std::size_t j = k + 1; j < 3; ++j) sum -= a[k][j] * x[j];
+    x[k] = a[k][k] == 0.0 ? 0.0 : sum / a[k][k];
+  }
+  return x;
+}
+
+/// `u_slope`: 0: the slope is held at 0; infinite: it is free.
+Three fitted(const CurveChange& d, const std::vector<double>& r, double u_slope) {
+  std::array<Three, 3> a{};
+  Three b{};
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const double w = 1.0 / d.variance[i], x = u_slope == 0.0 ? 0.0 : d.x[i] - d.middle;
+    const Three row{d.direction[i] > 0 ? 1.0 : 0.0, d.direction[i] < 0 ? 1.0 : 0.0, x};
+    for (std::size_t j = 0; j < 3; ++j) {
+      b[j] += w * row[j] * r[i];
+      for (std::size_t k = 0; k < 3; ++k) a[j][k] += w * row[j] * row[k];
+    }
+  }
+  if (std::isfinite(u_slope) && u_slope > 0.0) a[2][2] += 1.0 / (u_slope * u_slope);
+  return solved(a, b);
+}
+
+double after_fit(const CurveChange& d, const std::vector<double>& r, const Three& p,
+                 std::size_t i) {
+  return r[i] - (d.direction[i] > 0 ? p[0] : p[1]) - p[2] * (d.x[i] - d.middle);
+}
+
+double chi2_of(const CurveChange& d, const std::vector<double>& r, double u_slope) {
+  const Three p = fitted(d, r, u_slope);
+  double chi2 = std::isfinite(u_slope) && u_slope > 0.0 ? p[2] * p[2] / (u_slope * u_slope) : 0.0;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const double e = after_fit(d, r, p, i);
+    chi2 += e * e / d.variance[i];
+  }
+  return chi2;
+}
+
+double rms_of(const CurveChange& d, const std::vector<double>& r, double u_slope) {
+  const Three p = fitted(d, r, u_slope);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const double e = after_fit(d, r, p, i);
+    sum += e * e / static_cast<double>(r.size());
+  }
+  return std::sqrt(sum);
+}
+
+/// One h at the places of the change.
+struct Candidate {
+  Loading loading;
+  std::size_t table;
+  int points;
+  std::vector<double> h;
+  double chi2 = 0.0;
+  bool same_name(const Candidate& o) const {
+    return loading == o.loading && points == o.points &&
+           (table == o.table || loading == Loading::removed);
+  }
+};
+
+class Recognizing {
+ public:
+  Recognizing(const CurveChange& d, const std::vector<TableCurve>& known, double u_slope)
+      : d_(d), known_(known), u_slope_(u_slope) {}
+
+  void with_base(const TableCurve& S) {
+    const std::vector<double> s = values(S);
+    if (!S.empty()) add(Loading::removed, 0, 0, s, -1.0, s, 0.0);
+    for (std::size_t k = 0; k < known_.size(); ++k) {
+      const std::vector<double> t = values(known_[k]);
+      add(Loading::loaded, k, 0, t, 1.0, s, -1.0);
+      add(Loading::wrong_sign, k, 0, t, -1.0, s, -1.0);
+      add(Loading::twice, k, 0, t, 2.0, s, -1.0);
+      if (!S.empty()) {
+        add(Loading::wrong_sign, k, 0, t, -1.0, s, 1.0);
+        add(Loading::twice, k, 0, t, 2.0, s, -2.0);
+        add(Loading::in_addition, k, 0, t, 1.0, s, 0.0);
+      }
+      for (int n = -most_points; n <= most_points; ++n)
+        if (n != 0 && std::abs(n) + 1 < static_cast<int>(known_[k].position.size()))
+          add(Loading::offset, k, n, values(known_[k].shifted(n)), 1.0, s, -1.0);
+    }
+  }
+
+  std::optional<TableChange> best() const {
+    if (all_.empty()) return std::nullopt;
+    const Candidate* best = &all_.front();
+    for (const Candidate& c : all_)
+      if (c.chi2 < best->chi2) best = &c;
+    // What cannot be distinguished from the table as it is does no harm.
+    for (const Candidate& c : all_)
+      if (c.loading == Loading::loaded && best->loading == Loading::offset &&
+          c.table == best->table && c.chi2 - best->chi2 < distinct)
+        best = &c;
+    const auto dof = static_cast<double>(d_.x.size() - constants());
+    const double p = math::chi2_upper(best->chi2, dof);
+    const double scale = std::max(1.0, best->chi2 / dof);
+    std::vector<double> left = d_.value;
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] -= best->h[i];
+    const double inf = HUGE_VAL;
+    const auto beyond_noise = [&](double rms) {
+      return std::sqrt(std::max(0.0, rms * rms - mean_variance()));
+    };
+    const bool small =
+        beyond_noise(rms_of(d_, left, inf)) <= most_left * rms_of(d_, best->h, inf) &&
+        beyond_noise(rms_of(d_, left, 0.0)) <= most_left * rms_of(d_, best->h, 0.0);
+    const bool is_noise = p > least_p;
+    if (!is_noise && !small) return std::nullopt;
+    // A change of scale explains a table without a shape of its own, unless it has its very size.
+    const bool by_shape = chi2_of(d_, d_.value, inf) - best->chi2 > clear * scale;
+    const bool by_size = is_noise && chi2_of(d_, d_.value, u_slope_) - best->chi2 > clear &&
+                         std::fabs(fitted(d_, best->h, inf)[2]) > slope_seen * u_slope_;
+    if (!by_shape && !by_size) return std::nullopt;
+    for (const Candidate& c : all_)
+      if (!c.same_name(*best) && !(c.chi2 - best->chi2 > distinct * scale) && !is_alike(c, *best))
+        return std::nullopt;
+    return TableChange{best->loading,         best->table,
+                       best->points,          rms_of(d_, d_.value, 0.0),
+                       rms_of(d_, left, 0.0), p};
+  }
+
+ private:
+  std::vector<double> values(const TableCurve& t) const {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < d_.x.size(); ++i) out.push_back(t.at(d_.x[i], d_.direction[i]));
+    return out;
+  }
+
+  void add(Loading loading, std::size_t table, int points, const std::vector<double>& t,
+           double of_t, const std::vector<double>& s, double of_s) {
+    Candidate c{loading, table, points, {}, 0.0};
+    std::vector<double> r = d_.value;
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      c.h.push_back(of_t * t[i] + of_s * s[i]);
+      r[i] -= c.h[i];
+    }
+    if (rms_of(d_, c.h, 0.0) < 2.0 * std::sqrt(mean_variance())) return;  // it changes nothing
+    c.chi2 = chi2_of(d_, r, u_slope_);
+    all_.push_back(std::move(c));
+  }
+
+  /// Two offsets by neighbouring numbers of points, or a table and its offset, where the readings do
+  /// not distinguish them: the better one is named.
+  static bool is_alike(const Candidate& a, const Candidate& b) {
+    const auto is_offset = [](const Candidate& c) {
+      return c.loading == Loading::offset || c.loading == Loading::loaded;
+    };
+    return is_offset(a) && is_offset(b) && a.table == b.table &&
+           (b.loading == Loading::loaded || std::abs(a.points - b.points) <= 1);
+  }
+
+  double mean_variance() const {
+    double sum = 0.0;
+    for (const double v : d_.variance) sum += v / static_cast<double>(d_.variance.size());
+    return sum;
+  }
+
+  std::size_t constants() const {
+    return static_cast<std::size_t>(std::count(d_.direction.begin(), d_.direction.end(), 1) > 0) +
+           static_cast<std::size_t>(std::count(d_.direction.begin(), d_.direction.end(), -1) > 0);
+  }
+
+  const CurveChange& d_;
+  const std::vector<TableCurve>& known_;
+  double u_slope_ = 0.0;
+  std::vector<Candidate> all_{};
+};
+
+}  // namespace
+
+double TableCurve::at(double x, int direction) const {
+  if (position.empty()) return 0.0;
+  const auto& v = direction < 0 && !minus.empty() ? minus : plus;
+  if (x <= position.front()) return v.front();
+  if (x >= position.back()) return v.back();
+  const auto i = static_cast<std::size_t>(std::upper_bound(position.begin(), position.end(), x) -
+                                          position.begin());
+  const double part = (x - position[i - 1]) / (position[i] - position[i - 1]);
+  return v[i - 1] + part * (v[i] - v[i - 1]);
+}
+
+TableCurve TableCurve::shifted(int points) const {
+  TableCurve out = *this;
+  const auto n = static_cast<int>(position.size());
+  for (int i = 0; i < n; ++i) {
+    const auto from = static_cast<std::size_t>(std::clamp(i - points, 0, n - 1));
+    const auto to = static_cast<std::size_t>(i);
+    out.plus[to] = plus[from];
+    if (!minus.empty()) out.minus[to] = minus[from];
+  }
+  return out;
+}
+
+std::optional<TableChange> recognize(const MeasuredCurve& before, const MeasuredCurve& after,
+                                     const std::optional<TableCurve>& active,
+                                     const std::vector<TableCurve>& known, double u_slope,
+                                     double resolution) {
+  if (before.position.size() < 2 || after.position.size() < 2) return std::nullopt;
+  const CurveChange d = change_of(before, after, resolution);
+  if (d.x.size() < fewest_places) return std::nullopt;
+  if (!(d.length > 0.5 * (after.position.back() - after.position.front()))) return std::nullopt;
+  Recognizing all(d, known, u_slope);
+  if (active) {
+    all.with_base(*active);
+  } else {
+    all.with_base({});
+    for (const TableCurve& one : known) all.with_base(one);
+  }
+  return all.best();
+}
+
+}  // namespace nonio::statistics
