@@ -11,6 +11,7 @@ namespace nonio::statistics {
 namespace {
 
 constexpr double least_p = 1e-3;          // of a rest that is noise
+constexpr double most_noise = 0.4;        // of the change, of a rest that is noise
 constexpr double most_left = 0.1;         // of h, where the shape of the table is significant
 constexpr double clear = 25.0;            // of chi2, against what is no table
 constexpr double distinct = 9.0;          // of chi2, against another name
@@ -69,12 +70,15 @@ struct CurveChange {
   std::vector<double> x, value, variance;
   std::vector<int> direction;
   double middle = 0.0, length = 0.0;
+  double dof_of_noise = 0.0;  ///< 0: the noise is known from repeats
 };
 
 CurveChange change_of(const MeasuredCurve& before, const MeasuredCurve& after, double resolution) {
   CurveChange d;
   const double near = 1e-6 * (before.position.back() - before.position.front());
   const double u_before = u_of(before), u_after = u_of(after);
+  if (!(before.u > 0.0) || !(after.u > 0.0))
+    d.dof_of_noise = static_cast<double>(after.position.size()) - 1.0;
   const double u2 = std::max(u_before * u_before + u_after * u_after, resolution * resolution);
   for (const int direction : {1, -1}) {
     const auto& was = direction > 0 ? before.plus : before.minus;
@@ -210,7 +214,9 @@ class Recognizing {
           c.table == best->table && c.chi2 - best->chi2 < distinct)
         best = &c;
     const auto dof = static_cast<double>(d_.x.size() - constants());
-    const double p = math::chi2_upper(best->chi2, dof);
+    // The noise of single runs is itself an estimate, of as many values as there are targets.
+    const double p = d_.dof_of_noise > 0.0 ? math::f_upper(best->chi2 / dof, dof, d_.dof_of_noise)
+                                           : math::chi2_upper(best->chi2, dof);
     const double scale = std::max(1.0, best->chi2 / dof);
     std::vector<double> left = d_.value;
     for (std::size_t i = 0; i < left.size(); ++i) left[i] -= best->h[i];
@@ -221,7 +227,8 @@ class Recognizing {
     const bool small =
         beyond_noise(rms_of(d_, left, inf)) <= most_left * rms_of(d_, best->h, inf) &&
         beyond_noise(rms_of(d_, left, 0.0)) <= most_left * rms_of(d_, best->h, 0.0);
-    const bool is_noise = p > least_p;
+    const bool is_noise =
+        p > least_p && rms_of(d_, left, 0.0) < most_noise * rms_of(d_, d_.value, 0.0);
     if (!is_noise && !small) return std::nullopt;
     // A change of scale explains a table without a shape of its own, unless it has its very size.
     const bool by_shape = chi2_of(d_, d_.value, inf) - best->chi2 > clear * scale;

@@ -184,7 +184,20 @@ class Loaded(unittest.TestCase):
         found = {t["machine"]: t for t in history.get("tables_loaded", []) if t["before"].endswith("-3")}
         if os.environ.get("KEEP"):
             shutil.copytree(site.site.parent, os.environ["KEEP"], dirs_exist_ok=True)
+        self.check_worklist(json.loads((site.out / "summary.json").read_text())["lines"], found)
         self.score([m for m in machines if m.table is not None], found)
+
+    def check_worklist(self, lines, found):
+        """One line of the table with its action, and none that sends somebody to the scale."""
+        of = {}
+        for line in lines:
+            if line.get("machine") and line["id"].startswith(("morning.table-", "morning.changed", "morning.out")):
+                of.setdefault(line["machine"], []).append(line)
+        for name, t in found.items():
+            mine = of.get(name, [])
+            self.assertEqual([l["id"] for l in mine], ["morning.table-%s:%s:X:2021-03-01" % (t["kind"], name)], name)
+            self.assertTrue(mine[0]["advice"])
+            self.assertNotIn("scale and temperature", mine[0]["says"] + mine[0]["advice"])
 
     def is_right(self, m, t):
         kind, wanted = t["kind"], m.kind

@@ -133,7 +133,7 @@ def pmac(files, axis=None, counts_per_mm=2000.0):
     step = int(words[2]) / int(words[1]) / counts_per_mm
     values = [int(w) / 16.0 / counts_per_mm * 1e3 for w in words[3].split()]
     said = [re.search(r"Ix86 \(Ixx86\) = (\S+) mm", t) for t in files.values()]
-    return Table([(0.0, 0.0)] + [((k + 1) * step, v) for k, v in enumerate(values[:-1])],
+    return Table([(0.0, 0.0)] + [((k + 1) * step, v) for k, v in enumerate(values)],
                  backlash=sum(1e3 * float(s[1]) for s in said if s))
 
 
