@@ -211,7 +211,8 @@ Expected<OutputResult> write(const ControllerInput& in) {
                                    .keys = {"number:", "step", "backlash"},
                                    .files = files,
                                    .parse = parse,
-                                   .turn_end = controllers::TurnEnd::closed};
+                                   .turn_end = controllers::TurnEnd::closed,
+                                   .holds_documented = true};
   const auto jobs = controllers::write_axes(in, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   const Campaign campaign = controllers::with_axes_of(in, *jobs);

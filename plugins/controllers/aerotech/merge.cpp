@@ -34,21 +34,26 @@ bool has_tables(const std::string& text) { return text.find(":START") != std::st
 }  // namespace
 
 Expected<std::vector<Artifact>> merge(const MergeInput& in) {
-  std::string fresh;
+  std::string fresh, words;
   std::int64_t axis = 0;
   Blocks blocks;
   for (const Artifact& f : in.table)
-    for (const std::string_view line : controllers::lines_of(f.bytes))
+    for (const std::string_view line : controllers::lines_of(f.bytes)) {
       if (const std::int64_t of = blocks.axis_of(line); of != 0) {
         axis = of;
-        fresh += std::string(line) + "\n";
+        fresh += words + std::string(line) + "\n";
+        words.clear();
+      } else if (line.starts_with(';')) {
+        words += std::string(line) + "\n";
       }
+    }
   if (axis == 0) return fail("no new table of axis " + in.axis);
   std::vector<Artifact> out;
   for (const Artifact& f : in.backup) {
     Blocks of_file;
     auto text = controllers::with_lines(
-        f.bytes, [&](std::string_view line) { return of_file.axis_of(line) == axis; }, fresh, {});
+        controllers::without_origin(f.bytes, ";", in.axis, [](std::string_view) { return true; }),
+        [&](std::string_view line) { return of_file.axis_of(line) == axis; }, fresh, {});
     if (!text) continue;
     if (!out.empty())
       return fail("two files of the backup hold tables of axis " + std::to_string(axis) +

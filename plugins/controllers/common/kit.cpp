@@ -223,7 +223,8 @@ Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table,
           .plus = {},
           .minus = {},
           .plus_steps = {},
-          .minus_steps = {}};
+          .minus_steps = {},
+          .holds_documented = w.holds_documented};
   if (auto ok = set_reference(s, result); !ok) return tl::unexpected<Error>(ok.error());
   if (auto placed = place_points(s, w); !placed) return tl::unexpected<Error>(placed.error());
   if (!anchored(table))
@@ -346,7 +347,14 @@ std::vector<std::string> Sheet::zero_and_size() const {
   }
   return {"zero at " + with_unit(job, reference, 4) +
               (job.position_setting("reference") ? "" : ", taken as reference point"),
-          size_words(job, size)};
+          outside_words(), size_words(job, size)};
+}
+
+std::string Sheet::outside_words() const {
+  if (job.turn) return "the table repeats after each turn";
+  return "below " + with_unit(job, position.front(), 4) + " and above " +
+         with_unit(job, position.back(), 4) + " the value of that end holds" +
+         (holds_documented ? "" : " (assumed: not documented)");
 }
 
 std::string Sheet::entry(double si) const { return in_steps(si, value_step(), value_unit()); }

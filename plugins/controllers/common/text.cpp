@@ -80,6 +80,41 @@ std::optional<std::string> with_lines(const std::string& text,
   return out.insert(*place, fresh);
 }
 
+std::string without_origin(const std::string& text, std::string_view mark, std::string_view axis,
+                           const std::function<bool(std::string_view)>& follows) {
+  std::string out;
+  std::vector<std::string_view> block;
+  const std::string origin = "axis " + plain(axis) + ", measurement ";
+  const auto flush = [&](bool is_of_table) {
+    std::size_t from = block.size();
+    for (std::size_t i = 0; is_of_table && i < block.size() && from == block.size(); ++i)
+      if (block[i].find(origin) != std::string_view::npos &&
+          block[i].find(", campaign ") != std::string_view::npos)
+        from = i;
+    const auto is_ours = [&](std::string_view line) {
+      return line.find("machine: ") != std::string_view::npos ||
+             line.find("WARNING: the axis drifted while ") != std::string_view::npos ||
+             line.find("WARNING: the table contains suspect ") != std::string_view::npos;
+    };
+    while (from > 0 && from < block.size() && is_ours(block[from - 1])) --from;
+    for (std::size_t i = 0; i < from; ++i) out += block[i];
+    block.clear();
+  };
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t next = std::min(text.find('\n', at), text.size() - 1) + 1;
+    const std::string_view one = std::string_view(text).substr(at, next - at);
+    at = next;
+    if (trimmed(one).starts_with(mark)) {
+      block.push_back(one);
+      continue;
+    }
+    if (!block.empty()) flush(follows(one));
+    out += one;
+  }
+  flush(false);
+  return out;
+}
+
 std::optional<double> real(std::string_view text) {
   const auto value = number<double>(text);
   return value && std::isfinite(*value) ? value : std::nullopt;

@@ -58,8 +58,12 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
 }
 
 Expected<OutputResult> write(const ControllerInput& in) {
-  return controllers::write_tables(
-      in, {"ecmc", table_of(in.options), {"step", "first", "reference", "backlash"}, files, parse});
+  return controllers::write_tables(in, {.name = "ecmc",
+                                        .table = table_of(in.options),
+                                        .keys = {"step", "first", "reference", "backlash"},
+                                        .files = files,
+                                        .parse = parse,
+                                        .holds_documented = true});
 }
 
 }  // namespace

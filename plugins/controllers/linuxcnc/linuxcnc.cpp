@@ -215,7 +215,8 @@ Expected<OutputResult> write(const ControllerInput& input) {
                                    .files = files,
                                    .parse = parse,
                                    .directions = controllers::Directions::always_without_backlash,
-                                   .turn_end = controllers::TurnEnd::closed};
+                                   .turn_end = controllers::TurnEnd::closed,
+                                   .holds_documented = true};
   return controllers::write_tables(input, writer);
 }
 

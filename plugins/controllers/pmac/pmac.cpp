@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -41,19 +42,60 @@ Expected<ControlTable> in_counts(const controllers::AxisSettings& settings, cons
   return t;
 }
 
+/// Entries that hold the value of an end outside of the readings: as far as the travel goes, or a
+/// tenth of the table where it is not stated. Without them the table goes on at its other end.
+struct Held {
+  std::size_t below = 0, above = 0;
+};
+
+Held held_of(const Sheet& s) {
+  const Axis* const axis = s.input.campaign.machine.axis(s.job.axis);
+  const double first = s.grid.first, last = s.grid.last();
+  double low = first - 0.1 * (last - first), high = last + 0.1 * (last - first);
+  if (axis != nullptr && axis->travel)
+    low = std::min(axis->travel->first, axis->travel->second),
+    high = std::max(axis->travel->first, axis->travel->second);
+  const auto steps = [&](double way) {
+    return static_cast<std::size_t>(std::max(0.0, std::ceil(way / s.grid.step - 1e-6)));
+  };
+  Held held{steps(first - low), steps(high - last)};
+  const std::size_t room =
+      s.table.points > s.plus_steps.size() ? s.table.points - s.plus_steps.size() : 0;
+  if (held.below + held.above > room) held = {};
+  return held;
+}
+
 Expected<std::vector<Artifact>> files(const Sheet& s) {
   const auto& q = s.plus_steps;
   const auto below = static_cast<std::size_t>(std::llround(-s.grid.first / s.grid.step));
   const bool turn = s.job.turn.has_value();
-  const std::size_t entries = q.size() - (turn ? 1 : 0);  // the end of a turn is its beginning
+  const Held held = turn ? Held{} : held_of(s);
+  std::vector<std::int64_t> circle;  // from motor zero upwards; what lies below it comes last
+  for (std::size_t i = below + 1; i < q.size() - (turn ? 1 : 0); ++i) circle.push_back(q[i]);
+  circle.insert(circle.end(), held.above, q.back());
+  circle.insert(circle.end(), held.below, q.front());
+  for (std::size_t i = 0; i < below; ++i) circle.push_back(q[i]);
+  circle.push_back(0);
+  const std::size_t entries = circle.size();
   const auto spacing = std::llround(s.grid.step / s.position_unit());
   std::string out = "#" + std::to_string(s.job.number) + " DEFINE COMP " + std::to_string(entries) +
                     "," + std::to_string(static_cast<std::int64_t>(entries) * spacing) + "\n";
-  for (std::size_t k = 1; k <= entries; ++k) {
-    const std::size_t i = (below + k) % entries;  // what lies below zero comes behind the end
-    out += std::to_string(k == entries ? 0 : q[i]) + (k % 8 == 0 || k == entries ? "\n" : " ");
-  }
+  for (std::size_t k = 1; k <= entries; ++k)
+    out += std::to_string(circle[k - 1]) + (k % 8 == 0 || k == entries ? "\n" : " ");
   std::vector<std::string> words = s.words();
+  for (std::string& line : words) {
+    if (line.starts_with(controllers::points_said))
+      line = "entries in this table: " + std::to_string(entries);
+    if (!turn && line == s.outside_words())
+      line = "from " +
+             controllers::with_unit(
+                 s.job, s.grid.first - s.grid.step * static_cast<double>(held.below), 4) +
+             " to " +
+             controllers::with_unit(
+                 s.job, s.grid.last() + s.grid.step * static_cast<double>(held.above), 4) +
+             " the value of the nearest end holds; outside of it the table goes on at its other "
+             "end";
+  }
   words.push_back("Ix86 in 1/16 count: " +
                   std::to_string(std::llround(s.backlash() / s.value_unit())));
   words.emplace_back("define the tables of motors with larger numbers first; I51 = 1 enables");

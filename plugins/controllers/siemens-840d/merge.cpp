@@ -37,33 +37,15 @@ using IsOwn = std::function<bool(const Line&)>;
 
 bool is_comment(std::string_view line) { return controllers::trimmed(line).starts_with(';'); }
 
-/// The text without the comments that Nonio wrote above its own lines: they describe the table that
-/// is replaced, and would be read as the origin of the new one. Comments of others are kept.
-std::string without_origin(const std::string& text, const IsOwn& is_own) {
-  std::string out, block;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t next = std::min(text.find('\n', at), text.size() - 1) + 1;
-    const std::string_view one = std::string_view(text).substr(at, next - at);
-    at = next;
-    if (is_comment(one)) {
-      block += one;
-      continue;
-    }
-    const auto line = line_of(one);
-    const bool origin = block.find(", measurement ") != std::string::npos &&
-                        block.find(", campaign ") != std::string::npos;
-    if (!(line && is_own(*line) && origin)) out += block;
-    block.clear();
-    out += one;
-  }
-  return out + block;
-}
-
 /// The text with new lines in the place of its own ones (else before M17). Nothing where it has
 /// none and is not to get any.
 std::optional<std::string> replaced(const std::string& before, const IsOwn& is_own,
-                                    const std::string& lines, bool add) {
-  const std::string text = without_origin(before, is_own);
+                                    const std::string& axis, const std::string& lines, bool add) {
+  const std::string text =
+      controllers::without_origin(before, ";", axis, [&](std::string_view one) {
+        const auto line = line_of(one);
+        return line && is_own(*line);
+      });
   std::optional<std::size_t> end;
   for (const std::string_view one : controllers::lines_of(text))
     if (add && controllers::trimmed(one) == "M17")
@@ -219,7 +201,7 @@ class Merger {
     for (const bool add : {false, true})
       for (std::size_t i = 0; i < files_.size(); ++i) {
         if (add && files_[i].bytes.find("$" + kind) == std::string::npos) continue;
-        auto text = replaced(files_[i].bytes, is_own, lines, add);
+        auto text = replaced(files_[i].bytes, is_own, in_.axis, lines, add);
         if (!text) continue;
         changed_[i] = *text != files_[i].bytes;
         files_[i].bytes = std::move(*text);

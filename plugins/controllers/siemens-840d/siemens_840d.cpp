@@ -57,12 +57,13 @@ std::string encoder_table(const Sheet& s) {
   const std::string system = std::to_string(s.input.options.integer("measuring_system"));
   const std::string axis = axis_name(s);
   std::string out = "%_N_" + axis + "_EEC_INI\nCHANDATA(1)\n";
-  out += remarks(
-      s, {sign_is, sign_does,
-          "zero at the reference position " + controllers::with_unit(s.job, s.reference, 4),
-          s.zero_and_size().back(), controllers::reversal_words(s.job, controllers::Columns::mean),
-          "MD38000[" + system + "] >= " + std::to_string(s.grid.points) + "; load with MD32700[" +
-              system + "] = 0, then 1, power on, reference"});
+  out +=
+      remarks(s, {sign_is, sign_does,
+                  "zero at the reference position " + controllers::with_unit(s.job, s.reference, 4),
+                  s.outside_words(), s.zero_and_size().back(),
+                  controllers::reversal_words(s.job, controllers::Columns::mean),
+                  "MD38000[" + system + "] >= " + std::to_string(s.grid.points) +
+                      "; load with MD32700[" + system + "] = 0, then 1, power on, reference"});
   for (std::size_t i = 0; i < s.plus.size(); ++i)
     out += "$AA_ENC_COMP[" + system + "," + std::to_string(i) + "," + axis +
            "]=" + s.entry(s.plus[i]) + "\n";
@@ -90,7 +91,8 @@ std::string direction_tables(const Sheet& s) {
   out += remarks(
       s, {sign_is, sign_does,
           "mean of both directions zero at " + controllers::with_unit(s.job, s.reference, 4),
-          s.zero_and_size().back(), controllers::reversal_words(s.job, controllers::Columns::both),
+          s.outside_words(), s.zero_and_size().back(),
+          controllers::reversal_words(s.job, controllers::Columns::both),
           chosen_words(first_table(s), 2),
           "MD18342[t] >= " + std::to_string(s.grid.points) +
               "; enable MD32710 of the axis and SD41300[t]"});
@@ -122,8 +124,12 @@ Expected<OutputResult> write(const ControllerInput& input) {
   OutputResult result;
   auto table = controllers::chosen(declared(), input.options);
   if (!input.options.flag("directions")) table->facts.pop_back();
-  const controllers::Writer writer{
-      "siemens-840d", *table, {"number:", "step", "first", "reference", "backlash"}, files, parse};
+  const controllers::Writer writer{.name = "siemens-840d",
+                                   .table = *table,
+                                   .keys = {"number:", "step", "first", "reference", "backlash"},
+                                   .files = files,
+                                   .parse = parse,
+                                   .holds_documented = true};
   const auto jobs = controllers::write_axes(input, writer, result);
   if (!jobs) return tl::unexpected<Error>(jobs.error());
   for (const AxisJob& job : *jobs)

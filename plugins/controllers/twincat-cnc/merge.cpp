@@ -47,16 +47,18 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
   std::string fresh, value;
   for (const std::string_view line : controllers::lines_of(table->bytes)) {
     if (is_word(line)) value = lose_of(line);
-    if (is_word(line) || is_table(line)) fresh += std::string(line) + "\n";
+    if (line.starts_with('#') || is_table(line)) fresh += std::string(line) + "\n";
   }
   std::vector<Artifact> out;
   for (const Artifact& f : in.backup) {
     if (number_of(f.bytes) != number) continue;
     if (!out.empty())
       return fail("two files of the backup are lists of axis " + std::to_string(*number));
+    const std::string kept =
+        controllers::without_origin(f.bytes, "#", in.axis, [](std::string_view) { return true; });
     auto text = *controllers::with_lines(
-        f.bytes, [](std::string_view line) { return is_table(line) || is_word(line); }, fresh,
-        f.bytes.size());
+        kept, [](std::string_view line) { return is_table(line) || is_word(line); }, fresh,
+        kept.size());
     if (!value.empty())  // the parameter itself, where the list has it
       if (auto with_value = controllers::with_lines(
               text, [](std::string_view line) { return first_word(line) == lose; },

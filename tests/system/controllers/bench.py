@@ -44,11 +44,11 @@ class BenchTest(unittest.TestCase):
     def tearDown(self):
         self._folder.cleanup()
 
-    active_stated, active_backlash = True, '"none"'
+    active_stated, active_backlash, travel = True, '"none"', ""
 
     def none_active(self, name, kind):
         """No table was active while this axis was measured, and this backlash value; or nothing is stated."""
-        text = '[machine.axes.%s]\nkind = "%s"\n' % (name, kind)
+        text = '[machine.axes.%s]\nkind = "%s"\n%s' % (name, kind, self.travel)
         unit = "deg" if kind == "rotary" else "mm"
         return text + ('active_table = "none"\nactive_backlash_%s = %s\n' % (unit, self.active_backlash) if self.active_stated else "")
 

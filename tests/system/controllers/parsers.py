@@ -14,8 +14,11 @@ class Table:
 
     def __init__(self, plus, minus=None, backlash=0.0):
         self.plus, self.minus, self.backlash = sorted(plus), sorted(minus or plus), backlash
+        self.span = None  # of a table that goes on at its other end
 
     def added(self, x, direction="+"):
+        if self.span:
+            x -= self.span * (x // self.span)
         half = self.backlash / 2.0
         return (interpolate(self.plus, x) + half if direction == "+" else interpolate(self.minus, x) - half)
 
@@ -133,8 +136,10 @@ def pmac(files, axis=None, counts_per_mm=2000.0):
     step = int(words[2]) / int(words[1]) / counts_per_mm
     values = [int(w) / 16.0 / counts_per_mm * 1e3 for w in words[3].split()]
     said = [re.search(r"Ix86 \(Ixx86\) = (\S+) mm", t) for t in files.values()]
-    return Table([(0.0, 0.0)] + [((k + 1) * step, v) for k, v in enumerate(values)],
-                 backlash=sum(1e3 * float(s[1]) for s in said if s))
+    table = Table([(0.0, 0.0)] + [((k + 1) * step, v) for k, v in enumerate(values)],
+                  backlash=sum(1e3 * float(s[1]) for s in said if s))
+    table.span = int(words[2]) / counts_per_mm
+    return table
 
 
 # Where the sign is not documented, the option in CONTROLS states it.

@@ -173,6 +173,7 @@ class Axis(BenchTest):
         # The maker's example: the load stands at these counts where the motor is at 500, 1000, ...
         load = [0, 510, 995, 1492.5, 1994, 2497.5, 3003.5, 3500.5]
         e = {0.5 * i: load[i] - 500.0 * i for i in range(8)}  # counts = um at 1000 counts/mm
+        self.travel = "travel = [0.0, 3.5]\n"  # no entries that hold the ends
         text = self.write("pmac", "pmac-X.pmc", '[options.pmac]\naxes = ["X number=3 counts_per_mm=1000"]\n',
                           [0.5 * i for i in range(8)], lambda x: e[x])
         self.assertEqual(self.pmac(text), (3, 4000, [-160, 80, 120, 96, 40, -56, -8, 0]))
@@ -180,6 +181,7 @@ class Axis(BenchTest):
 
     def test_pmac_rolls_over(self):
         targets = [-100.0 + 25.0 * i for i in range(13)]
+        self.travel = "travel = [-100.0, 200.0]\n"
         motor, span, values = self.pmac(self.write(
             "pmac", "pmac-X.pmc", '[options.pmac]\naxes = ["X counts_per_mm=2000"]\n', targets))
         self.assertEqual((motor, span, len(values)), (1, 13 * 50000, 13))
@@ -187,6 +189,17 @@ class Axis(BenchTest):
         for x in targets:  # entry k is that of (k + 1) spacings, negative positions from above
             index = (round(x / 25.0) - 1) % 13
             self.assertAlmostEqual(values[index] / 16.0 / 2.0, -(wave(x) - wave(0.0)), delta=0.032)
+
+    def test_pmac_holds_its_ends_over_the_travel(self):
+        targets = [-100.0 + 25.0 * i for i in range(13)]
+        self.travel = "travel = [-160.0, 230.0]\n"
+        motor, span, values = self.pmac(self.write(
+            "pmac", "pmac-X.pmc", '[options.pmac]\naxes = ["X counts_per_mm=2000"]\n', targets))
+        self.assertEqual((span, len(values)), (18 * 50000, 18))  # 2 points above, 3 below
+        at = lambda x: values[(round(x / 25.0) - 1) % 18] / 16.0 / 2.0
+        for x, end in ((225.0, 200.0), (250.0, 200.0), (-125.0, -100.0), (-175.0, -100.0)):
+            self.assertEqual(at(x), at(end))
+        self.assertIn("from -175.0 mm to 250.0 mm the value of the nearest end holds", self.file("pmac-X.txt"))
 
     def test_turns_close(self):
         targets = [15.0 * i for i in range(24)]

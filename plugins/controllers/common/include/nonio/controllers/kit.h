@@ -39,6 +39,7 @@ struct Sheet {
   /// The same in steps of the table: rounded as absolute values, then differences of these where
   /// the entries are increments. So their sum is never off by more than half a step.
   std::vector<std::int64_t> plus_steps, minus_steps;
+  bool holds_documented = false;  ///< see Writer
   /// Of increments: what `minus_steps` begin with, minus less plus at the reference, in steps.
   std::int64_t minus_start() const;
   std::vector<std::string> warning{};
@@ -52,8 +53,11 @@ struct Sheet {
   /// an entry.
   std::string at(std::size_t i) const;
   std::string entry(double si) const;
-  /// Where the table is zero, and how large and steep it is: two lines that every file has.
+  /// Where the table is zero, what the control does outside of it, and how large and steep it is:
+  /// lines that every file has; the last one is the size.
   std::vector<std::string> zero_and_size() const;
+  /// What the control does outside of the table.
+  std::string outside_words() const;
   /// Machine, axis, date, warnings, sign and reversal, for comments or a file of their own.
   std::vector<std::string> words() const;
 };
@@ -88,6 +92,9 @@ struct Writer {
   ZeroOf zero_of = ZeroOf::mean;
   bool power_of_two = false;  ///< the step of linear axes
   double fixed_step = 0.0;    ///< of a control whose points nobody chooses
+  /// Whether the maker states that the value of an end holds outside of the table; else the file
+  /// calls it an assumption.
+  bool holds_documented = false;
   /// The declaration for one axis, where its units are of the axis.
   std::function<Expected<ControlTable>(const AxisJob&, ControlTable)> of_axis{};
   /// Where the points are wanted; else at the targets.
