@@ -26,7 +26,7 @@ struct ControlState {
   std::string key{};                   ///< axes.X, or axes.X.state
   std::uint64_t line_of_table = 0, line_of_since = 0;
 
-  /// What was loaded on a day counts for later days, because the time of the day is not known. What
+  /// What was loaded on a day applies to later days, because the time of the day is not known. What
   /// a backup of that day contains was in the control while the machine was measured.
   bool counts_on(const std::string& day) const {
     return source == "backup" ? day >= since : day > since;

@@ -92,7 +92,7 @@ class OfCampaign {
     return out;
   }
 
-  /// Of an axis that was measured twice nobody knows which of the tables is loaded.
+  /// Of an axis that was measured twice it is not known which of the tables is loaded.
   std::optional<AxisCorrection> written(const std::string& axis, const Measurement& m) const {
     const Campaign& campaign = read_.manifest->campaign;
     const auto many = std::count_if(

@@ -29,7 +29,7 @@ struct Origin {
 };
 std::optional<Origin> origin_of(const std::vector<Artifact>& files, const std::string& axis);
 
-/// Settles what was active while `axis` was measured. The manifest counts first, then the record of
+/// Settles what was active while `axis` was measured. The manifest applies first, then the record of
 /// the machine, then the backup. An error, which names the key or the file that ends it, where they
 /// contradict each other, or where the table of the backup was made from this campaign or from a
 /// later one, so that it was loaded after the measurement.

@@ -48,7 +48,7 @@ std::optional<FollowedLimit> limit_of(const AssessedMachine& machine, const Foll
 /// What pages and programs show of a machine. `due`: day of the next calibration by a rule, `why`
 /// in words; empty: there is none, and forecasts look one usual interval ahead. A forecast for a day
 /// before `today` is overdue.
-/// Whether a change of a quantity of this axis lies where a table was loaded.
+/// Whether a change of a quantity of this axis is between the same campaigns.
 bool is_at(const reports::TableLoaded& table, const std::string& axis,
            const reports::HistoryChange& change);
 

@@ -322,7 +322,7 @@ class OfMachine {
 
   // ---- how a table was loaded
 
-  /// Of each axis the last table, unless somebody states that it was loaded.
+  /// Of each axis the last table, unless it is stated that it was loaded.
   void loaded() {
     std::map<std::string, const reports::TableLoaded*> last;
     for (const reports::TableLoaded& t : d_.tables_loaded) last[t.axis] = &t;

@@ -49,7 +49,7 @@ struct Known {
   kernel::TableCurve table;
 };
 
-/// One measurement of an axis with what its campaign knows.
+/// One measurement of an axis with what its campaign states.
 struct Taken {
   std::size_t campaign = 0;
   std::string state, measurement;

@@ -13,7 +13,7 @@ namespace {
 constexpr double least_p = 1e-3;          // of a rest that is noise
 constexpr double most_noise = 0.4;        // of the change, of a rest that is noise
 constexpr double most_left = 0.1;         // of h, where the shape of the table is significant
-constexpr double clear = 25.0;            // of chi2, against what is no table
+constexpr double clear = 25.0;            // of chi2, against a change without a table
 constexpr double distinct = 9.0;          // of chi2, against another name
 constexpr double slope_seen = 8.0;        // slope of h over u_slope, where it has no shape
 constexpr int most_points = 5;            // of an offset
@@ -32,7 +32,7 @@ Between between(const std::vector<double>& position, const std::vector<double>& 
   if (i > 0 && x - position[i - 1] <= near) return {value[i - 1], 0.0};
   i = std::clamp<std::size_t>(i, 1, position.size() - 1);
   const double part = (x - position[i - 1]) / (position[i] - position[i - 1]);
-  double bend = 0.0;  // of the curve beside the interval
+  double bend = 0.0;  // of the curve at both ends of the interval
   for (const std::size_t k : {i - 1, i})
     if (k > 0 && k + 1 < position.size()) {
       const double left = (value[k] - value[k - 1]) / (position[k] - position[k - 1]),

@@ -45,7 +45,7 @@ struct TableChange {
 ///     T         loaded in addition to S
 ///     T(x - k spacings) - S   loaded with an offset of k points, |k| <= 5
 ///
-/// The best h by chi2 counts if the rest is noise (p > 1e-3, and less than 0.4 of the change) or a tenth of h, if no
+/// The best h by chi2 is named if the rest is noise (p > 1e-3, and less than 0.4 of the change) or a tenth of h, if no
 /// change, a change of scale or of reversal does not explain it (chi2 larger by 25), and if no h of
 /// another name is as good (chi2 larger by 9); an offset that cannot be distinguished from none is
 /// `loaded`. `resolution`: smallest standard uncertainty of a difference that is believed.

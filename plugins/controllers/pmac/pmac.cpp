@@ -70,7 +70,7 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
   const auto below = static_cast<std::size_t>(std::llround(-s.grid.first / s.grid.step));
   const bool turn = s.job.turn.has_value();
   const Held held = turn ? Held{} : held_of(s);
-  std::vector<std::int64_t> circle;  // from motor zero upwards; what lies below it comes last
+  std::vector<std::int64_t> circle;  // from motor zero upwards; negative positions come last
   for (std::size_t i = below + 1; i < q.size() - (turn ? 1 : 0); ++i) circle.push_back(q[i]);
   circle.insert(circle.end(), held.above, q.back());
   circle.insert(circle.end(), held.below, q.front());

@@ -14,7 +14,7 @@ URL = os.environ["NONIO_TEST_DATABASE"]
 CTL = os.environ["NONIO_TEST_PG_CTL"]
 KILLS = int(os.environ.get("NONIO_KILLS", "4"))
 SEED = int(os.environ.get("NONIO_SEED", "22"))
-TABLES = ("machine", "campaign", "evaluation", "result", "common_part", "covariance", "finding", "certificate",
+TABLES = ("machine", "campaign", "evaluation", "result", "common_part", "covariance", "finding", "control_table", "certificate",
           "machine_alias", "event", "acknowledgement", "forgotten", "due_rule", "store")
 
 

@@ -8,7 +8,7 @@ import unittest
 
 from nightly import NONIO, NightTest
 
-TABLES = ("machine", "campaign", "evaluation", "result", "common_part", "covariance", "finding", "certificate",
+TABLES = ("machine", "campaign", "evaluation", "result", "common_part", "covariance", "finding", "control_table", "certificate",
           "machine_alias", "event", "acknowledgement", "forgotten", "due_rule", "store")
 KILLS = int(os.environ.get("NONIO_KILLS", "8"))
 SEED = int(os.environ.get("NONIO_SEED", "19"))

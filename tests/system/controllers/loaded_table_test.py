@@ -188,7 +188,7 @@ class Loaded(unittest.TestCase):
         self.score([m for m in machines if m.table is not None], found)
 
     def check_worklist(self, lines, found):
-        """One line of the table with its action, and none that sends somebody to the scale."""
+        """One line of the table with its action, and none that blames the scale."""
         of = {}
         for line in lines:
             if line.get("machine") and line["id"].startswith(("morning.table-", "morning.changed", "morning.out")):

@@ -65,7 +65,7 @@ class State(StateBench):
                 loaded += "," + ",".join(f for f in backup.split(",") if f.endswith("CONFIG.CMA"))
             said = self.nonio("table", "insert", loaded, "--with", later).stderr
             self.assertNotIn("were active during the measurement", said)
-            # The probe knows it too: without a table the axis errs by its whole error.
+            # The probe uses it too: without a table the axis errs by its whole error.
             probe = self.json_of("table", "probe", later)["probes"][0]
             whole = truth.e[2](probe["to_mm"]) - truth.e[2](probe["from_mm"])
             self.assertAlmostEqual(probe["without_table_um"], whole, delta=1.0 + STEP.get(control, 0.0))

@@ -81,11 +81,41 @@ TEST(Machines, ARecordIsRead) {
   const config::MachineRecord r = record_from(whole_record);
   EXPECT_EQ(r.control, "fanuc");
   EXPECT_EQ(r.axes.at("Z").settings.at("number"), 3.0);
-  EXPECT_EQ(r.axes.at("Z").table, "");
-  EXPECT_DOUBLE_EQ(*r.axes.at("Z").backlash, 12e-6);
+  ASSERT_EQ(r.axes.at("Z").states.size(), 1U);
+  EXPECT_EQ(r.axes.at("Z").states[0].table, "");
+  EXPECT_DOUBLE_EQ(*r.axes.at("Z").states[0].backlash, 12e-6);
   EXPECT_TRUE(r.axes.at("C").rotary);
-  EXPECT_EQ(r.axes.at("C").backlash, 0.0);
-  EXPECT_FALSE(r.axes.at("C").table);
+  EXPECT_EQ(r.axes.at("C").states.at(0).backlash, 0.0);
+  EXPECT_FALSE(r.axes.at("C").states.at(0).table);
+}
+
+TEST(Machines, EachDayHasItsState) {
+  const config::MachineRecord r = record_from(
+      "format = 1\nasset = \"S-1\"\n[axes.X]\ntable = \"c.ini\"\nsince = 2026-05-01\n"
+      "[[axes.X.state]]\nsince = 2024-01-10\ntable = \"a.ini\"\nbacklash_mm = 0.01\n"
+      "source = \"backup\"\n"
+      "[[axes.X.state]]\nsince = 2025-01-10\ntable = \"none\"\nbacklash_mm = \"none\"\n");
+  const config::RecordedAxis& x = r.axes.at("X");
+  const auto table_on = [&](const char* day) {
+    const config::ControlState* s = x.state_on(day);
+    return s == nullptr ? "unknown" : *s->table;
+  };
+  EXPECT_EQ(table_on("2024-01-09"), "unknown");
+  EXPECT_EQ(table_on("2024-01-10"), "a.ini");  // it was read from the control on that day
+  EXPECT_EQ(table_on("2025-01-10"), "a.ini");  // loaded on that day: before or after it?
+  EXPECT_EQ(table_on("2025-01-11"), "");
+  EXPECT_EQ(table_on("2026-05-01"), "");
+  EXPECT_EQ(table_on("2026-05-02"), "c.ini");
+  EXPECT_EQ(x.states.front().line_of_table, 8U);
+  const auto wrong = [](const std::string& text) {
+    return errors_of(config::parse_machine("format = 1\nasset = \"S-1\"\n[[axes.X.state]]\n" + text,
+                                           "machines/S-1.toml", "S-1"));
+  };
+  EXPECT_NE(wrong("table = \"a\"").find("since: is missing"), std::string::npos)
+      << wrong("table = \"a\"");
+  EXPECT_NE(wrong("since = 2024-01-01\nsource = \"me\"").find("source"), std::string::npos);
+  EXPECT_NE(wrong("since = 2024-01-01\nbacklash_deg = 0.1").find("axis X is linear"),
+            std::string::npos);
 }
 
 TEST(Machines, MistakesAreNamedWithTheirLine) {
@@ -268,6 +298,26 @@ TEST_F(MachinesFolder, AMachineIsFoundByAssetElseByMakerAndSerial) {
   const auto two = config::read_machines(site_);
   EXPECT_FALSE(config::record_of(*two, m));
   EXPECT_NE(config::machine_digest(*two, config::machine_input(m)), (*all)[1].sha256);
+}
+
+TEST_F(MachinesFolder, AFileThatChangesIsNoLongerTheStateThatWasRecorded) {
+  write("x.ini", "a");
+  const std::string sha = config::table_sha256({{"any", "a"}});
+  write("machines/S-1.toml",
+        "format = 1\nasset = \"S-1\"\n[[axes.X.state]]\nsince = 2026-01-01\n"
+        "table = \"x.ini\"\nsha256 = \"" +
+            sha + "\"\n");
+  auto all = config::read_machines(site_);
+  ASSERT_TRUE((*all)[0].record) << errors_of((*all)[0].record);
+  EXPECT_EQ((*all)[0].tables.at("X x.ini").at(0).bytes, "a");
+  const auto back = config::unpacked_record(config::packed((*all)[0]));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->sha256, (*all)[0].sha256);
+  write("x.ini", "b");
+  all = config::read_machines(site_);
+  EXPECT_NE(errors_of((*all)[0].record).find("S-1.toml:5: axes.X.state.sha256: x.ini has changed"),
+            std::string::npos)
+      << errors_of((*all)[0].record);
 }
 
 TEST_F(MachinesFolder, NothingIsReadFromOutsideOfTheSite) {

@@ -32,7 +32,7 @@ std::optional<std::string> with_lines(const std::string& text,
                                       std::optional<std::size_t> otherwise);
 /// The text without the comments that Nonio wrote of a table of this axis: they describe the one that
 /// is replaced. Comments of others above them stay. A line of comment begins with `mark`; `follows`
-/// sees the line behind the comments.
+/// sees the line after the comments.
 std::string without_origin(const std::string& text, std::string_view mark, std::string_view axis,
                            const std::function<bool(std::string_view)>& follows);
 /// The whole text as a finite number, with or without its sign.
