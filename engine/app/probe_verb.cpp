@@ -49,15 +49,8 @@ bool runs_gcode(const std::string& control, const loader::Plugins& plugins) {
 /// were any: what the probe shows without a table would be wrong by them.
 Expected<std::vector<Observations>> raw_readings(const OpenCampaign& open) {
   const Campaign& campaign = open.campaign();
-  for (const Measurement& m : campaign.measurements) {
-    const Axis* const axis = campaign.machine.axis(control_axis(campaign.machine, m));
-    if (m.kind != "axis" || m.compensation == "off" || (axis != nullptr && axis->active_table))
-      continue;
-    return fail("axis " + m.axis +
-                ": which table was active during the measurement is not known; "
-                "state active_table in [machine.axes." +
-                m.axis + "] of campaign.toml, its file or \"none\"");
-  }
+  for (const Measurement& m : campaign.measurements)
+    if (auto known = knows_active(campaign, m); !known) return fail(known.error());
   if (open.read.active_tables.empty()) return open.read.observations;
   for (const Controller& c : open.place->plugins.controllers()) {
     if (c.info.name != campaign.machine.control) continue;

@@ -72,6 +72,7 @@ TableJson forecast_json(const tables::TableForecast& f) {
     put(json[when], "B", f.B[k], q);
     put(json[when], "M", f.M[k], q);
   }
+  if (f.scatter > 0.0) put(json["after"], "scatter", f.scatter, q);
   return json;
 }
 
@@ -81,6 +82,9 @@ void print_forecast(const tables::TableForecast& f) {
   for (const auto& [name, v] : {std::pair{"E", f.E}, {"B", f.B}, {"M", f.M}})
     if (std::isfinite(v[0]) && std::isfinite(v[1]))
       std::cout << "  " << name << " " << with_unit(v[0], q) << " -> " << with_unit(v[1], q);
+  if (f.scatter > 0.0)
+    std::cout << "; E up to " << with_unit(f.E[1] + f.scatter, q)
+              << " because the readings scatter (95 %)";
   std::cout << (f.worse() ? "  WORSE\n" : "\n");
 }
 
@@ -115,6 +119,16 @@ config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info&
     settled->values[name] = std::move(axes);
   }
   return settled;
+}
+
+Expected<void> knows_active(const Campaign& campaign, const Measurement& m) {
+  const Axis* const axis = campaign.machine.axis(control_axis(campaign.machine, m));
+  if (m.kind != "axis" || m.compensation == "off" || (axis != nullptr && axis->active_table))
+    return {};
+  return fail("axis " + m.axis +
+              ": which table was active during the measurement is not known; state active_table in "
+              "[machine.axes." +
+              m.axis + "] of campaign.toml, its file or \"none\"");
 }
 
 void tell_findings(const OpenCampaign& open, const std::vector<Finding>& findings) {

@@ -39,6 +39,10 @@ Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,
 config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
                                            const Texts& settings);
 
+/// An error, which names the key, where it is not known which table was active while an axis was
+/// measured.
+Expected<void> knows_active(const Campaign& campaign, const Measurement& m);
+
 /// What a control's tables of a campaign are: the words of a refusal stand on stderr.
 void tell_findings(const OpenCampaign& open, const std::vector<Finding>& findings);
 

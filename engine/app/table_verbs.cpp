@@ -230,6 +230,13 @@ int apply(const TableWish& w, const Common& common) {
   Settings settled = *options(table->control->info);
   Applied a;
   if (!w.active) {
+    for (const Measurement& m : open.campaign().measurements)
+      if (std::any_of(table->tables.begin(), table->tables.end(), [&](const LoadedTable& t) {
+            return t.output == control_axis(open.campaign().machine, m);
+          }))
+        if (auto known = knows_active(open.campaign(), m); !known)
+          return complain(known.error().message + "; or pass --active-table if " + w.table +
+                          " was active");
     const auto on = tables::active_compensation(open.read, *table->control, settled);
     if (!on) return complain(text_of(on.error()));
     a.forecast = tables::forecast(open.read, table->tables, settled, *on);

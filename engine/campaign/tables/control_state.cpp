@@ -62,6 +62,13 @@ class Stated {
   const Axis& axis_;
 };
 
+std::vector<LoadedTable> opposite(std::vector<LoadedTable> tables) {
+  for (LoadedTable& t : tables)
+    for (auto* values : {&t.plus, &t.minus})
+      for (double& v : *values) v = -v;
+  return tables;
+}
+
 /// Whether the record has this table from a later day on.
 bool is_loaded_later(const reading::ReadCampaign& read, const Controller& controller,
                      const std::vector<LoadedTable>& backup, const std::string& axis,
@@ -170,7 +177,10 @@ Expected<MeasuredWith> measured_with(const reading::ReadCampaign& read,
     if (!stated.in_manifest("active_table"))
       return fail(stated.place() + " states that the table of " + name + " was " + stated.text() +
                   " on " + campaign.date + ", but " + names_of(backup) +
-                  (in_backup.empty() ? " contains none" : " contains another one") +
+                  (in_backup.empty() ? " contains none"
+                   : same_correction(out.tables, opposite(in_backup), name)
+                       ? " contains it with the opposite sign"
+                       : " contains another one") +
                   ": add the state of the backup to [[axes." + name + ".state]] there, or " +
                   by_hand);
     findings.push_back({"table.backup-differs",
@@ -188,6 +198,9 @@ Expected<MeasuredWith> measured_with(const reading::ReadCampaign& read,
     return fail(origin->place() + ": the table of " + name + " was made from campaign " +
                 origin->campaign + " of " + origin->date +
                 ", so it was loaded after this campaign was measured: " + by_hand);
+  if (in_backup.empty())
+    return fail(names_of(backup) + " contains no table of axis " + name +
+                ": give the file that contains it, or " + by_hand);
   if (!backlash_in_backup && !out.backlash && !controller.table.backlash.empty())
     return fail(names_of(backup) + " does not contain the value of " + controller.table.backlash +
                 " of axis " + name +
@@ -195,7 +208,7 @@ Expected<MeasuredWith> measured_with(const reading::ReadCampaign& read,
                 stated.backlash_key());
   out.tables = in_backup;
   out.from_backup = true;
-  if (!in_backup.empty()) out.files = names_of(backup);
+  out.files = names_of(backup);
   if (backlash_in_backup) out.backlash = backlash_in_backup;
   findings.push_back({"table.active-from-backup",
                       true,

@@ -49,6 +49,8 @@ struct TableForecast {
   std::string measurement, axis;
   bool rotary = false;
   double E[2]{}, B[2]{}, M[2]{};  ///< before, after
+  /// By how much E after loading may be larger because the readings scatter (95 %); 0 with one run.
+  double scatter = 0.0;
   bool worse() const { return !(E[1] <= E[0]); }
 };
 

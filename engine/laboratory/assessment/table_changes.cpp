@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -178,13 +179,9 @@ class LoadedOnAxis {
     const auto found =
         kernel::recognize(before.curve, after.curve, before.active, curves,
                           std::hypot(before.u_slope, after.u_slope, usual), resolution);
-    if (!found) return std::nullopt;
-    reports::TableLoaded out;
-    out.axis = axis_, out.kind = name_of(found->loading), out.points = found->points;
-    out.after = day(before), out.before = day(after);
-    out.after_campaign = m_.stored.campaigns[before.campaign].id;
-    out.before_campaign = m_.stored.campaigns[after.campaign].id;
-    out.unit = before.rotary ? Quantity::angular_deviation : Quantity::deviation;
+    if (!found) return stated(before, after, all_known);
+    reports::TableLoaded out = of_pair(before, after);
+    out.kind = name_of(found->loading), out.points = found->points;
     const double per = unit_of(out.unit).per_si;
     out.rms = found->rms / per, out.left = found->left / per;
     if (found->loading != kernel::Loading::removed) out.table = all_known[found->table].day;
@@ -192,6 +189,31 @@ class LoadedOnAxis {
                     is_same(*after.active, curves[found->table]);
     if (found->loading == kernel::Loading::removed)
       out.is_stated = after.active && after.active->empty();
+    return out;
+  }
+
+  /// Both campaigns state what was active, and it differs: the change has this cause at least, and
+  /// its other causes cannot be separated by its shape.
+  std::optional<reports::TableLoaded> stated(const Taken& before, const Taken& after,
+                                             const std::vector<Known>& all_known) const {
+    if (!before.active || !after.active || is_same(*before.active, *after.active))
+      return std::nullopt;
+    reports::TableLoaded out = of_pair(before, after);
+    out.kind = after.active->empty() ? "removed" : "loaded";
+    for (const Known& k : all_known)
+      if (is_same(k.table, *after.active)) out.table = k.day;
+    out.rms = out.left = std::numeric_limits<double>::quiet_NaN();
+    out.is_stated = true;
+    return out;
+  }
+
+  reports::TableLoaded of_pair(const Taken& before, const Taken& after) const {
+    reports::TableLoaded out;
+    out.axis = axis_;
+    out.after = day(before), out.before = day(after);
+    out.after_campaign = m_.stored.campaigns[before.campaign].id;
+    out.before_campaign = m_.stored.campaigns[after.campaign].id;
+    out.unit = before.rotary ? Quantity::angular_deviation : Quantity::deviation;
     return out;
   }
 
