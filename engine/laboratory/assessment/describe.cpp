@@ -391,7 +391,7 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
   const Describing describing(machine, out, due, today);
   for (const FollowedSeries& s : machine.followed) m.series.push_back(describing.of(s));
   for (const ShownSeries& s : machine.shown) m.series.push_back(describing.of(s));
-  m.tables_loaded = tables_loaded(machine);
+  m.tables_loaded = tables_loaded(machine), m.tables_unstated = tables_unstated(machine);
   for (const reports::TableLoaded& t : m.tables_loaded)
     for (HistorySeries& s : m.series)
       for (reports::HistoryChange& c : s.changes)

@@ -154,10 +154,29 @@ class OfMachine {
                        [](const AxisChange::Seen& s) { return !s.change->event.empty(); });
   }
 
+  /// Whether a table may be the cause: a campaign does not state what was active.
+  const reports::TableLoaded* unstated(const std::string& axis, const AxisChange& cause) const {
+    for (const reports::TableLoaded& t : d_.tables_unstated)
+      if (t.axis == axis && !has_event(cause) && cause.after <= t.before && cause.before >= t.after)
+        return &t;
+    return nullptr;
+  }
+
+  static void put_table(MorningLine& l, const reports::TableLoaded& t) {
+    put_text(l, "table", t.table);
+    put_text(l, "campaign", t.before_campaign);
+    put_text(l, "axis", t.axis);
+  }
+
   MorningLine changed(const std::string& axis, const AxisChange& cause) const {
     const AxisChange::Seen& first = cause.seen.front();
-    MorningLine l =
-        line(Kind::changed, has_event(cause) ? "morning.changed-event" : "morning.changed", "");
+    const reports::TableLoaded* const table = unstated(axis, cause);
+    MorningLine l = line(Kind::changed,
+                         table != nullptr   ? "morning.changed-table-unknown"
+                         : has_event(cause) ? "morning.changed-event"
+                                            : "morning.changed",
+                         "");
+    if (table != nullptr) put_table(l, *table);
     l.id = "morning.changed:" + d_.id + ":" + axis + ":" + cause.before;
     l.axis = axis;
     l.quantity = first.series->quantity;
@@ -314,7 +333,11 @@ class OfMachine {
         explains = &cause;
     }
     if (explains != nullptr) {
-      l.finding.id = has_event(*explains) ? "morning.out-changed-event" : "morning.out-changed";
+      const reports::TableLoaded* const table = unstated(axis, *explains);
+      l.finding.id = table != nullptr       ? "morning.out-changed-table-unknown"
+                     : has_event(*explains) ? "morning.out-changed-event"
+                                            : "morning.out-changed";
+      if (table != nullptr) put_table(l, *table);
       describe(l, *explains);
     }
     return l;

@@ -139,6 +139,20 @@ class LoadedOnAxis {
     return out;
   }
 
+  std::vector<reports::TableLoaded> unstated() const {
+    std::vector<reports::TableLoaded> out;
+    for (std::size_t i = 0; i + 1 < all_.size(); ++i) {
+      const Taken &before = all_[i], &after = all_[i + 1];
+      const std::vector<Known> those = known(i, after);
+      if ((before.active && after.active) || those.empty()) continue;
+      out.push_back(of_pair(before, after));
+      out.back().kind = "unknown", out.back().table = those.back().day;
+      const Taken& open = after.active ? before : after;
+      out.back().before_campaign = m_.stored.campaigns[open.campaign].id;
+    }
+    return out;
+  }
+
  private:
   const std::string& day(const Taken& t) const { return m_.stored.campaigns[t.campaign].day; }
   std::tuple<const std::string&, bool, std::size_t> key(const Taken& t) const {
@@ -222,15 +236,27 @@ class LoadedOnAxis {
   std::vector<Taken> all_;
 };
 
+std::map<std::string, std::vector<Taken>> by_axis(const AssessedMachine& m) {
+  std::map<std::string, std::vector<Taken>> out;
+  for (const StoredTables& s : m.stored.tables)
+    if (auto one = taken(m, s)) out[s.axis].push_back(std::move(*one));
+  return out;
+}
+
 }  // namespace
 
 std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& m) {
-  std::map<std::string, std::vector<Taken>> by_axis;
-  for (const StoredTables& s : m.stored.tables)
-    if (auto one = taken(m, s)) by_axis[s.axis].push_back(std::move(*one));
   std::vector<reports::TableLoaded> out;
-  for (auto& [axis, all] : by_axis)
+  for (auto& [axis, all] : by_axis(m))
     for (reports::TableLoaded& one : LoadedOnAxis(m, axis, std::move(all)).find())
+      out.push_back(std::move(one));
+  return out;
+}
+
+std::vector<reports::TableLoaded> tables_unstated(const AssessedMachine& m) {
+  std::vector<reports::TableLoaded> out;
+  for (auto& [axis, all] : by_axis(m))
+    for (reports::TableLoaded& one : LoadedOnAxis(m, axis, std::move(all)).unstated())
       out.push_back(std::move(one));
   return out;
 }

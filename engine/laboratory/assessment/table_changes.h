@@ -12,5 +12,7 @@ namespace nonio::assessment {
 /// results.json has `control_tables`. Known tables are those that the campaigns before the later one
 /// wrote, and those of the record of the machine.
 std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& machine);
+/// The pairs of which a campaign does not state what was active, though there is a table.
+std::vector<reports::TableLoaded> tables_unstated(const AssessedMachine& machine);
 
 }  // namespace nonio::assessment

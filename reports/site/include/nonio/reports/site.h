@@ -99,6 +99,9 @@ struct MachineHistory {
   std::vector<HistorySeries> series;
   std::vector<ErrorCurve> curves;  ///< by day
   std::vector<TableLoaded> tables_loaded{};
+  /// Between which campaigns a table may have been loaded, because one of them (`before_campaign`)
+  /// does not state what was active; kind "unknown".
+  std::vector<TableLoaded> tables_unstated{};
   std::vector<TableKept> tables{};  ///< the last one of each axis, where it can be told
   std::string due{}, why_due{};     ///< next calibration; which rule says so
   IntervalProposal proposal{};      ///< of an interval
