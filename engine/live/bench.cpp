@@ -25,7 +25,7 @@
 
 #include "platform/process/child.h"
 #include "platform/process/confine.h"
-#include "platform/process/watched.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::live {
 using storage::Json;
@@ -199,9 +199,8 @@ class Loop {
   static constexpr std::size_t most_running = 8, most_slow = 2, most_waiting = 64;
 
   void tell(std::uint64_t number, const char* state, std::string_view text) {
-    process::Parcel parcel;
-    parcel.add(number).add(state).add(text);
-    if (!process::write_text(channel_.get(), parcel.bytes())) gone_ = true;
+    if (!process::write_text(channel_.get(), storage::pack(number, std::string_view(state), text)))
+      gone_ = true;
   }
 
   /// Slow work begins when the picture that a person waits for is ready, or takes long itself.
@@ -313,11 +312,11 @@ class Loop {
       gone_ = true;
       return;
     }
-    process::Parcel parcel(std::move(bytes));
-    const std::string what = parcel.text();
-    const std::uint64_t number = parcel.number();
+    std::string what, text;
+    std::uint64_t number = 0;
+    if (!storage::unpack(bytes, what, number, text)) return;
     if (what == "cancel") return cancel(number);
-    Job job{number, Json::parse(parcel.text()), "", "", ""};
+    Job job{number, Json::parse(text), "", "", ""};
     job.kind = job.request.value("kind", "");
     job.part = job.request.value("part", "");
     job.key = trial_key(job.request);
@@ -398,9 +397,9 @@ void run_bench(const BenchWish& wish, process::Handle channel) {
   try {
     auto bench = open_bench(wish);
     if (!bench) {
-      process::Parcel parcel;
-      parcel.add(std::uint64_t{0}).add(job_state::failed).add(words_of(bench.error()));
-      process::write_text(channel.get(), parcel.bytes());
+      process::write_text(channel.get(),
+                          storage::pack(std::uint64_t{0}, std::string_view(job_state::failed),
+                                        words_of(bench.error())));
       ::_exit(1);
     }
     Loop(std::move(*bench), std::move(channel)).run();

@@ -15,7 +15,7 @@
 #include "nonio/reports/wording.h"
 #include "nonio/workbench/data.h"
 #include "platform/process/keep_apart.h"
-#include "platform/process/watched.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::live {
 using modelling::PartModel;
@@ -259,18 +259,14 @@ Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> r
   const auto begin = [&](const model::Comparison& c) {
     const auto page = page_of(c);
     if (!page || !first) return;
-    process::Parcel parcel;
-    parcel.add(head_of(bench, one->part(), c, modelling::Extent::first)).add(*page);
-    first(parcel.bytes());
+    first(storage::pack(head_of(bench, one->part(), c, modelling::Extent::first), *page));
     is_begun = true;
   };
   const auto compared = modelling::compare_part(one->part(), groundwork_of(bench, *one), begin);
   if (!compared) return fail(compared.error());
   auto page = is_begun ? Expected<std::string>("") : page_of(*compared);
   if (!page) return page;
-  process::Parcel parcel;
-  parcel.add(head_of(bench, one->part(), *compared, modelling::Extent::whole)).add(*page);
-  return parcel.bytes();
+  return storage::pack(head_of(bench, one->part(), *compared, modelling::Extent::whole), *page);
 }
 
 /// The readings as they were measured: what the page draws until there is a fit.

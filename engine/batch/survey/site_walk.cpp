@@ -16,6 +16,7 @@
 #include "campaign/config/manifest.h"
 #include "platform/process/watched.h"
 #include "platform/storage/files.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::batch {
 namespace fs = std::filesystem;
@@ -87,7 +88,7 @@ class Walker {
   }
 
   void tell(Seen what, std::string_view folder = {}, std::string_view why = {}) {
-    send_(process::Parcel().add(static_cast<std::uint64_t>(what)).add(folder).add(why));
+    send_(storage::pack(what, folder, why));
   }
   void unlisted(const std::string& folder, int code) {
     tell(Seen::unlisted, folder,
@@ -198,16 +199,17 @@ class Walker {
 };
 
 /// Takes what came; true once the walk is whole.
-bool take_over(std::vector<process::Parcel> parcels, SiteWalk& walk) {
-  for (process::Parcel& parcel : parcels) {
-    const auto what = static_cast<Seen>(parcel.number());
-    std::string folder = parcel.text();
+bool take_over(const std::vector<std::string>& pieces, SiteWalk& walk) {
+  for (const std::string& piece : pieces) {
+    Seen what{};
+    std::string folder, why;
+    if (!storage::unpack(piece, what, folder, why)) continue;
     switch (what) {
       case Seen::campaign:
         walk.campaigns.emplace_back(folder);
         break;
       case Seen::unlisted:
-        walk.unlisted.push_back({std::move(folder), parcel.text()});
+        walk.unlisted.push_back({std::move(folder), std::move(why)});
         break;
       case Seen::note:
         walk.notes.push_back(std::move(folder));
@@ -235,7 +237,7 @@ Expected<std::optional<SiteWalk>> try_walk(const fs::path& site, const fs::path&
   process::Watched& walker = children.front();
   SiteWalk walk;
   while (!stopped()) {
-    process::wait_for_parcels(children);
+    process::wait_for_any(children);
     if (take_over(walker.take(), walk)) return walk;
     const std::string place = walker.signs().reads_from();
     if (walker.ended())

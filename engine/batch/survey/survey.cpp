@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "batch/state/wire.h"
 #include "batch/survey/earlier_results.h"
 #include "batch/survey/site_walk.h"
 #include "batch/survey/survey_look.h"
@@ -36,61 +37,30 @@ Error unknown_number(const std::string& number, const std::filesystem::path& out
                " states was issued: restore the register, or numbers would be used twice"};
 }
 
-void pack(process::Parcel& parcel, const std::vector<Error>& errors) {
-  parcel.add(errors.size());
-  for (const Error& e : errors) parcel.add(e.message).add(e.file).add(e.line).add(e.column);
-}
-
-/// After those that `known` holds already.
-std::vector<Error> unpack_errors(process::Parcel& parcel, std::vector<Error> known) {
-  for (std::uint64_t n = parcel.number(); n-- > 0;) {
-    Error error{parcel.text()};
-    error.file = parcel.text();
-    error.line = parcel.number();
-    error.column = parcel.text();
-    known.push_back(std::move(error));
-  }
-  return known;
-}
-
-process::Parcel packed(const CampaignState& state, const std::string& unknown) {
-  process::Parcel parcel;
-  parcel.add(state.id.view()).add(std::uint64_t{state.named_by_folder});
-  parcel.add(static_cast<std::uint64_t>(state.action)).add(state.reason.view());
-  parcel.add(static_cast<std::uint64_t>(state.status));
-  parcel.add(unknown);
-  pack(parcel, state.errors());
-  pack(parcel, state.warnings());
-  const std::vector<std::uint64_t> readings = state.readings();
-  parcel.add(readings.size());
-  for (const std::uint64_t digest : readings) parcel.add(digest);
-  parcel.add(state.twins_before().size());
-  for (const auto& [digest, id] : state.twins_before()) parcel.add(digest).add(id);
-  parcel.add(std::uint64_t{state.shows_history}).add(state.history.view());
-  return parcel;
+std::string packed(const CampaignState& state, const std::string& unknown) {
+  return storage::pack(state.id.view(), state.named_by_folder, state.action, state.reason.view(),
+                       state.status, unknown, state.errors(), state.warnings(), state.readings(),
+                       state.twins_before(), state.shows_history, state.history.view());
 }
 
 /// Into a state that knows its folder; a number that the register does not know.
-std::string unpack(process::Parcel& parcel, CampaignState& state) {
-  state.id = parcel.text();
-  state.named_by_folder = parcel.number() != 0;
-  state.action = static_cast<CampaignState::Action>(parcel.number());
-  state.reason = KeptText::shared(parcel.text());
-  state.status = static_cast<evaluation::Status>(parcel.number());
-  std::string unknown = parcel.text();
-  state.set_errors(unpack_errors(parcel, state.errors()));
-  state.set_warnings(unpack_errors(parcel, {}));
+std::string unpack(const std::string& bytes, CampaignState& state) {
+  std::string id, reason, unknown, history;
+  std::vector<Error> errors = state.errors(), found, warnings;
   std::vector<std::uint64_t> readings;
-  for (std::uint64_t n = parcel.number(); n-- > 0;) readings.push_back(parcel.number());
-  state.set_readings(readings);
   std::vector<CampaignState::TwinBefore> twins_before;
-  for (std::uint64_t n = parcel.number(); n-- > 0;) {
-    const std::uint64_t digest = parcel.number();
-    twins_before.emplace_back(digest, parcel.text());
-  }
+  if (!storage::unpack(bytes, id, state.named_by_folder, state.action, reason, state.status,
+                       unknown, found, warnings, readings, twins_before, state.shows_history,
+                       history))
+    found.push_back(Error{"the process that looked at it sent no whole answer"});
+  errors.insert(errors.end(), found.begin(), found.end());
+  state.id = id;
+  state.reason = KeptText::shared(reason);
+  state.set_errors(std::move(errors));
+  state.set_warnings(std::move(warnings));
+  state.set_readings(readings);
   state.set_twins_before(std::move(twins_before));
-  state.shows_history = parcel.number() != 0;
-  state.history = parcel.text();
+  state.history = history;
   return unknown;
 }
 
@@ -119,7 +89,7 @@ class Pool {
         }
         if (auto started = start(); !started) return started;
       }
-      process::wait_for_parcels(children_);
+      process::wait_for_any(children_);
       for (std::size_t i = children_.size(); i-- > 0;) serve(i);
     }
     if (!unknown_.empty()) return fail(unknown_number(unknown_, in_.out));
@@ -149,9 +119,9 @@ class Pool {
   void serve(std::size_t i) {
     process::Watched& child = children_[i];
     Batch& batch = batches_[i];
-    for (process::Parcel& parcel : child.take())
+    for (const std::string& piece : child.take())
       if (batch.received < batch.campaigns.size())
-        if (auto unknown = unpack(parcel, states_[batch.campaigns[batch.received++]]);
+        if (auto unknown = unpack(piece, states_[batch.campaigns[batch.received++]]);
             !unknown.empty())
           unknown_ = std::move(unknown);
     const double seconds = in_.context.site.limits.disk_seconds;

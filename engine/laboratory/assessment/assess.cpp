@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "laboratory/assessment/bytes.h"
 #include "laboratory/assessment/changes.h"
 #include "laboratory/assessment/days.h"
 #include "laboratory/assessment/describe.h"
@@ -19,6 +18,7 @@
 #include "laboratory/store/query.h"
 #include "laboratory/store/reader.h"
 #include "platform/storage/digest.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::assessment {
 namespace fs = std::filesystem;
@@ -91,7 +91,7 @@ class Assessment::State {
   std::string page_key(std::size_t i, const std::string& templates) const {
     const Assessed& m = machines_[i];
     const auto lines = lines_.find(m.state.machine.name);
-    ByteWriter w;
+    storage::ValueWriter w;
     // The page is written again when the date of a forecast has passed.
     w(m.kept.stood, m.kept.standing.until, templates,
       lines == lines_.end() ? std::string() : bytes_of(lines->second),
@@ -191,7 +191,7 @@ class Assessment::State {
     note_unknown(*states, events);
     const auto add = [&](Assessed m, const std::vector<const store::StoredEvaluation*>& all) {
       alive_();
-      ByteWriter rows;
+      storage::ValueWriter rows;
       rows(learned_from_);
       put_identity(rows, m);
       for (const store::StoredEvaluation* e : all) {
@@ -248,7 +248,7 @@ class Assessment::State {
     unknown_.push_back(machine + " (" + file + ":" + std::to_string(line) + ")");
   }
 
-  static void put_identity(ByteWriter& rows, const Assessed& m) {
+  static void put_identity(storage::ValueWriter& rows, const Assessed& m) {
     const store::NamedMachine& named = m.state.machine;
     rows(named.name, named.stated.asset, named.stated.maker, named.stated.model,
          named.stated.serial);
@@ -258,7 +258,7 @@ class Assessment::State {
 
   /// The tests of a run are counted once.
   Expected<void> count_tests(const std::vector<store::StoredEvaluation>& evaluations) {
-    std::map<std::uint64_t, ByteWriter> of_night;
+    std::map<std::uint64_t, storage::ValueWriter> of_night;
     for (const store::StoredEvaluation& e : evaluations)
       of_night[e.night](e.machine, e.campaign, e.sha256);
     std::map<std::uint64_t, KeptMachines::Night> nights;
@@ -370,7 +370,7 @@ class Assessment::State {
   }
 
   std::string standing_key(const Assessed& m) const {
-    ByteWriter w;
+    storage::ValueWriter w;
     w(m.kept.rows);
     for (std::size_t k = 0; k < m.kept.series.size(); ++k) {
       const KeptMachine::Series& s = m.kept.series[k];
