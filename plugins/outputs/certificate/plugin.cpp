@@ -178,7 +178,7 @@ Expected<Document> document_of(const OutputInput& in, const pages::Look& look, c
     if (const auto complete = words.complete(); !complete) return fail(complete.error());
   }
   Document document = std::move(documents.front());
-  if (documents.size() == 2) document = pages::side_by_side(std::move(document), documents.back());
+  if (documents.size() == 2) document = side_by_side(std::move(document), documents.back());
   if (auto marked = mark_customer_data(in, document); !marked) return fail(marked.error());
   return document;
 }

@@ -15,6 +15,16 @@ namespace nonio::programs {
 
 namespace {
 
+/// Printable ASCII on one line, without what ends a comment.
+std::string plain(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const bool ends_comment = c == '(' || c == ')' || c == ';' || c == '%' || c == '"';
+    out += c < 0x20 || c > 0x7e ? '?' : ends_comment ? ' ' : c;
+  }
+  return out;
+}
+
 using math::MeasuringPath;
 using math::MeasuringRequest;
 
@@ -333,16 +343,6 @@ class Requests {
   MeasuringRequest wish_;
   std::vector<Program> programs_;
 };
-
-/// Printable ASCII on one line, without what ends a comment.
-std::string plain(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const bool ends_comment = c == '(' || c == ')' || c == ';' || c == '%' || c == '"';
-    out += c < 0x20 || c > 0x7e ? '?' : ends_comment ? ' ' : c;
-  }
-  return out;
-}
 
 /// What the options ask for, made into paths.
 Expected<std::vector<Program>> requested(const OutputInput& in) { return Requests(in).all(); }

@@ -17,7 +17,6 @@
 
 namespace nonio::wide_table {
 using namespace readers;
-using Role = Column::Role;
 
 namespace {
 
@@ -28,6 +27,8 @@ struct Column {
   Way way = Way::none;
   std::uint32_t run = 0;  ///< of a reading
 };
+
+using Role = Column::Role;
 
 /// Everything that a table does not say of itself and that nobody guesses.
 struct Map : TableMap {
