@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
-#include <array>
 #include <charconv>
-#include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>

@@ -34,10 +34,10 @@ void print_night_plan(const batch::Night& night, const config::TerminalWords& wo
   for (const batch::CampaignState& c : night.campaigns) {
     const bool collides =
         c.action == batch::CampaignState::Action::todo && c.status == evaluation::Status::failed;
-    const std::string reason = collides ? c.errors().front().message : c.reason;
+    const std::string reason = collides ? c.errors.front().message : c.reason;
     if (json)
       print_json(Json{{"id", c.id},
-                      {"folder", storage::path_text(c.folder.view())},
+                      {"folder", storage::path_text(c.folder)},
                       {"action", collides ? "refused" : to_text(c.action)},
                       {"reason", reason}},
                  -1);

@@ -34,9 +34,8 @@ class Upgrade {
       return complain(folder.string() + " contains neither site.toml nor a campaign");
     if (is_site) file(folder / config::site_name, config::site_file());
     for (const auto& [name, why] : walk->unlisted) failed({why, name});
-    for (const batch::KeptText& one : walk->campaigns)
-      file((folder / one.view() / config::manifest_name).lexically_normal(),
-           config::campaign_file());
+    for (const std::string& one : walk->campaigns)
+      file((folder / one / config::manifest_name).lexically_normal(), config::campaign_file());
     return end();
   }
 

@@ -194,10 +194,10 @@ void report_former_keys(const Night& night, const RunEvents& events) {
   constexpr std::size_t most = 20;
   std::size_t count = 0;
   for (const CampaignState& c : night.campaigns)
-    for (const Error& w : c.warnings())
+    for (const Error& w : c.warnings)
       if (++count <= most)
-        events.note(storage::path_text(c.folder.view()) + "/" + w.file + ":" +
-                    std::to_string(w.line) + ": " + w.message);
+        events.note(storage::path_text(c.folder) + "/" + w.file + ":" + std::to_string(w.line) +
+                    ": " + w.message);
   if (count > most)
     events.note("and " + std::to_string(count - most) +
                 " more keys with former names: `nonio check` lists them");

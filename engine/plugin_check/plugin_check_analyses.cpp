@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 
 #include "nonio/sdk/format.h"
 #include "platform/storage/digest.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <mutex>
-#include <optional>
 
 #include "font_reader.h"
 #include "font_subset.h"

@@ -5,7 +5,6 @@
 
 #include <png.h>
 
-#include <algorithm>
 #include <mutex>
 #include <vector>
 

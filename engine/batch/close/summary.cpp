@@ -56,12 +56,12 @@ struct List {
 
 storage::Json entry_json(const CampaignState& c, const std::string& reason) {
   storage::Json json = {{"id", c.id},
-                        {"folder", storage::path_text(c.folder.view())},
+                        {"folder", storage::path_text(c.folder)},
                         {"status", to_text(c.status)},
                         {"reason", reason}};
-  if (!c.errors().empty()) {
+  if (!c.errors.empty()) {
     storage::Json errors = storage::Json::array();
-    for (const Error& e : c.errors()) errors.push_back(storage::to_json(e));
+    for (const Error& e : c.errors) errors.push_back(storage::to_json(e));
     json["errors"] = std::move(errors);
   }
   return json;
@@ -350,9 +350,9 @@ std::string reason_in(const std::string& text, const config::TerminalWords& word
 }
 
 std::string first_error(const CampaignState& c, const config::TerminalWords& words) {
-  if (c.errors().empty()) return c.reason;
-  const std::size_t more = c.errors().size() - 1;
-  return where(c.errors().front()) +
+  if (c.errors.empty()) return c.reason;
+  const std::size_t more = c.errors.size() - 1;
+  return where(c.errors.front()) +
          (more == 0 ? "" : " " + words("more", {{"count", std::to_string(more)}}));
 }
 

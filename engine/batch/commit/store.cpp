@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <functional>
 #include <set>
 #include <utility>
@@ -12,7 +11,6 @@
 #include "campaign/evaluation/results_files.h"
 #include "campaign/evaluation/results_json.h"
 #include "laboratory/store/earlier.h"
-#include "nonio/sdk/format.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 

@@ -261,23 +261,22 @@ class Releaser {
     if (!opened) return fail_with(opened.error().message);
     auto last = opened->last_number(id_);
     if (!last || !*last || (*last)->number == last_number_)
-      return fail_with(campaigns.front().errors().empty()
-                           ? "nothing was issued"
-                           : campaigns.front().errors().front().message);
+      return fail_with(campaigns.front().errors.empty() ? "nothing was issued"
+                                                        : campaigns.front().errors.front().message);
     // Another person may have approved it first.
     const auto first = opened->approval_of((*last)->number);
     if (!first) return fail_with(first.error().message);
     if (!*first || (*first)->by != approval.by || (*first)->at != approval.at ||
         (*first)->reasons != approval.reasons)
-      return fail_with(campaigns.front().errors().empty()
+      return fail_with(campaigns.front().errors.empty()
                            ? (*last)->number + " was issued first by another person"
-                           : campaigns.front().errors().front().message);
+                           : campaigns.front().errors.front().message);
     out_.entry = std::move(**last);
     out_.state = Released::State::issued;
     if (const auto files = opened->files(out_.entry.number))
       for (const evaluation::IssuedFile& f : *files)
         out_.files.push_back(storage::own_folder(options_.out, id_) / f.name);
-    if (!campaigns.front().errors().empty()) out_.why = campaigns.front().errors().front().message;
+    if (!campaigns.front().errors.empty()) out_.why = campaigns.front().errors.front().message;
     return std::move(out_);
   }
 

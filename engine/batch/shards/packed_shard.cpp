@@ -33,8 +33,8 @@ Expected<PackedShard> PackedShard::begin(const RunOptions& options,
   }
   for (const CampaignState& c : campaigns) {
     if (c.action != CampaignState::Action::todo) continue;
-    const auto copied = evaluation::copy_results(storage::results_folder(options.out, c.id),
-                                                 folder->path() / c.id.view());
+    const auto copied =
+        evaluation::copy_results(storage::results_folder(options.out, c.id), folder->path() / c.id);
     if (!copied) return fail(c.id + ": its last results cannot be read: " + copied.error().message);
   }
   // What is forked from now on has no packs of others open.

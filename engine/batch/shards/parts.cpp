@@ -65,7 +65,7 @@ std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site
   for (std::size_t i = 0; i < own; ++i)
     for (const auto& [digest, id] : listed[i].twins) {
       const std::uint32_t other = at(id);
-      states[i].add_twin({digest, other});
+      states[i].twins.emplace_back(digest, other);
     }
   if (whole_site) states.resize(own);
   return states;
@@ -77,8 +77,8 @@ bool take_stored(const fs::path& out, std::uint64_t night, CampaignState& c) {
   if (!record || record->night != night) return false;
   c.action = Action::done;
   c.status = record->status;
-  c.set_errors(record->errors);
-  c.reason = KeptText::shared(record->reason);
+  c.errors = record->errors;
+  c.reason = record->reason;
   c.shows_history = record->history.has_value();
   c.history = record->history ? record->history->sha256 : "";
   return true;
@@ -92,7 +92,7 @@ ShardRecord record_of(const fs::path& out, std::uint64_t night,
     results.push_back({c.id, c.status});
     if (c.action == Action::todo) results.back().status = evaluation::Status::none;
     if (c.status != evaluation::Status::failed) continue;
-    results.back().errors = c.errors();
+    results.back().errors = c.errors;
     CampaignState stored = c;
     results.back().stored = take_stored(out, night, stored);
   }
@@ -127,7 +127,7 @@ void take_reported(const ShardRecord& record, std::vector<CampaignState>& campai
     if (r.status == evaluation::Status::none) continue;
     campaigns[i].action = Action::done;
     campaigns[i].status = r.status;
-    campaigns[i].set_errors(r.errors);
+    campaigns[i].errors = r.errors;
   }
 }
 
@@ -330,7 +330,7 @@ void take_results(const fs::path& out, const NightPlan& plan, std::uint64_t shar
     if (result.stored) missing.push_back(c.id + " (shard " + std::to_string(shard) + ")");
     c.action = Action::done;
     c.status = result.status;
-    c.set_errors(result.errors);
+    c.errors = result.errors;
   }
 }
 
@@ -376,7 +376,7 @@ Expected<void> note_failures(const RunOptions& options, const reading::Context& 
   std::vector<const CampaignState*> failed;
   for (const CampaignState& c : night.campaigns)
     if (c.action == Action::done && c.is_campaign && c.status == evaluation::Status::failed &&
-        !c.errors().empty())
+        !c.errors.empty())
       failed.push_back(&c);
   if (failed.empty()) return {};
   const auto noted = read_apart<bool>(
@@ -385,7 +385,7 @@ Expected<void> note_failures(const RunOptions& options, const reading::Context& 
         const certificates::Numbers numbers({options.site, options.out, night.night.date, can_sign},
                                             context, nullptr);
         for (const CampaignState* c : failed) {
-          numbers.note_failure(c->id, c->errors().front().message);
+          numbers.note_failure(c->id, c->errors.front().message);
           signs.beat();
         }
         return Expected<bool>(true);

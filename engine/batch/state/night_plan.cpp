@@ -78,16 +78,15 @@ std::string hex_of(std::uint64_t value) {
 
 /// One line. What is as usual is left out.
 std::string line_of(const CampaignState& c, const std::vector<CampaignState>& all) {
-  Json json = {
-      {"id", c.id.view()}, {"folder", exact(c.folder.str())}, {"reason", exact(c.reason.str())}};
+  Json json = {{"id", c.id}, {"folder", exact(c.folder)}, {"reason", exact(c.reason)}};
   if (c.action != Action::todo) json["action"] = actions.at(static_cast<std::size_t>(c.action));
   if (c.status != evaluation::Status::none) json["status"] = to_text(c.status);
   if (c.named_by_folder) json["named_by_folder"] = true;
   if (!c.is_campaign) json["is_campaign"] = false;
-  if (!c.errors().empty()) json["errors"] = errors_json(c.errors());
-  for (const auto& [digest, other] : c.twins())
-    json["twins"].push_back({hex_of(digest), all[other].id.view()});
-  if (c.shows_history) json["history"] = c.history.view();
+  if (!c.errors.empty()) json["errors"] = errors_json(c.errors);
+  for (const auto& [digest, other] : c.twins)
+    json["twins"].push_back({hex_of(digest), all[other].id});
+  if (c.shows_history) json["history"] = c.history;
   return storage::dump_line(json) + "\n";
 }
 
@@ -96,7 +95,7 @@ Listed listed_in(const Json& json) {
   CampaignState& c = listed.campaign;
   c.id = json.at("id").get<std::string>();
   c.folder = exact(json.at("folder"));
-  c.reason = KeptText::shared(exact(json.at("reason")));
+  c.reason = exact(json.at("reason"));
   const std::string action = json.value("action", "todo");
   const auto at = std::find(actions.begin(), actions.end(), action);
   if (at == actions.end()) throw std::runtime_error("unknown action " + action);
@@ -104,7 +103,7 @@ Listed listed_in(const Json& json) {
   if (json.contains("status")) c.status = status_in(json["status"]);
   c.named_by_folder = json.value("named_by_folder", false);
   c.is_campaign = json.value("is_campaign", true);
-  if (json.contains("errors")) c.set_errors(errors_in(json["errors"]));
+  if (json.contains("errors")) c.errors = errors_in(json["errors"]);
   if (json.contains("twins"))
     for (const Json& twin : json["twins"])
       listed.twins.emplace_back(std::stoull(twin.at(0).get<std::string>(), nullptr, 16),

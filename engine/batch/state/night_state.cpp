@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
-#include <utility>
 
 #include "batch/state/night_plan.h"
 #include "batch/state/output_lock.h"

@@ -47,7 +47,7 @@ bool is_nearly_manifest(const std::string& name) {
 }
 
 struct FolderNames {
-  std::deque<KeptText> folders;  // there may be millions
+  std::deque<std::string> folders;  // there may be millions
   std::vector<std::string> links, nearly;
   bool has_manifest = false;
 };
@@ -63,7 +63,7 @@ class Walker {
   }
 
   void run() {
-    std::deque<KeptText> todo{KeptText(".")};
+    std::deque<std::string> todo{"."};
     while (!todo.empty()) {
       const std::string folder = todo.back();
       todo.pop_back();
@@ -71,7 +71,7 @@ class Walker {
       FolderNames names = list(folder);
       for (; !names.folders.empty(); names.folders.pop_front())
         todo.push_back(folder == "." ? names.folders.front()
-                                     : KeptText(below(folder, names.folders.front())));
+                                     : below(folder, names.folders.front()));
       tell(folder, names);
     }
     if (remarks_ > most_remarks)

@@ -20,6 +20,10 @@
 #include "platform/process/watched.h"
 #include "platform/storage/files.h"
 
+namespace nonio::storage {
+NONIO_MEMBERS(batch::CampaignState, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+}  // namespace nonio::storage
+
 namespace nonio::batch {
 namespace fs = std::filesystem;
 
@@ -35,33 +39,6 @@ Error unknown_number(const std::string& number, const std::filesystem::path& out
   return Error{"the register of certificates does not know the number " + number + ", which " +
                out.string() +
                " states was issued: restore the register, or numbers would be used twice"};
-}
-
-std::string packed(const CampaignState& state, const std::string& unknown) {
-  return storage::pack(state.id.view(), state.named_by_folder, state.action, state.reason.view(),
-                       state.status, unknown, state.errors(), state.warnings(), state.readings(),
-                       state.twins_before(), state.shows_history, state.history.view());
-}
-
-/// Into a state that knows its folder; a number that the register does not know.
-std::string unpack(const std::string& bytes, CampaignState& state) {
-  std::string id, reason, unknown, history;
-  std::vector<Error> errors = state.errors(), found, warnings;
-  std::vector<std::uint64_t> readings;
-  std::vector<CampaignState::TwinBefore> twins_before;
-  if (!storage::unpack(bytes, id, state.named_by_folder, state.action, reason, state.status,
-                       unknown, found, warnings, readings, twins_before, state.shows_history,
-                       history))
-    found.push_back(Error{"the process that looked at it sent no whole answer"});
-  errors.insert(errors.end(), found.begin(), found.end());
-  state.id = id;
-  state.reason = KeptText::shared(reason);
-  state.set_errors(std::move(errors));
-  state.set_warnings(std::move(warnings));
-  state.set_readings(readings);
-  state.set_twins_before(std::move(twins_before));
-  state.history = history;
-  return unknown;
 }
 
 struct Batch {
@@ -106,7 +83,7 @@ class Pool {
           for (std::size_t i = 0; i < batch.campaigns.size(); ++i) {
             signs.index = i;
             const CampaignState state = look.at(states_[batch.campaigns[i]], batch.rough);
-            send(packed(state, look.unknown_number()));
+            send(storage::pack(state, look.unknown_number()));
           }
         },
         in_.context.site.limits.memory_MB);
@@ -120,10 +97,11 @@ class Pool {
     process::Watched& child = children_[i];
     Batch& batch = batches_[i];
     for (const std::string& piece : child.take())
-      if (batch.received < batch.campaigns.size())
-        if (auto unknown = unpack(piece, states_[batch.campaigns[batch.received++]]);
-            !unknown.empty())
-          unknown_ = std::move(unknown);
+      if (batch.received < batch.campaigns.size()) {
+        std::string unknown;
+        storage::unpack(piece, states_[batch.campaigns[batch.received++]], unknown);
+        if (!unknown.empty()) unknown_ = std::move(unknown);
+      }
     const double seconds = in_.context.site.limits.disk_seconds;
     const double patience = hung_ < most_patience ? seconds : std::min(seconds, 1.0);
     const bool silent = !child.ended() && child.is_silent(patience);
@@ -160,7 +138,7 @@ class Pool {
     state.named_by_folder = true;
     state.status = evaluation::Status::failed;
     state.reason = "not evaluated";
-    state.set_errors({std::move(why)});
+    state.errors = {std::move(why)};
   }
 
   const SurveyInput& in_;
@@ -206,7 +184,7 @@ void name_by_folder(std::vector<CampaignState>& states, const std::vector<Earlie
   }
   for (CampaignState& s : states) {
     if (!s.named_by_folder) continue;
-    if (const auto at = known.find(storage::path_text(s.folder.view())); at != known.end()) {
+    if (const auto at = known.find(storage::path_text(s.folder)); at != known.end()) {
       s.id = at->second;
       known.erase(at);
       continue;
@@ -233,15 +211,15 @@ void fail_collisions(std::vector<CampaignState>& states) {
         folders += (k == i         ? ""
                     : k + 1 == end ? " and "
                                    : ", ") +
-                   storage::path_text(states[k].folder.view());
+                   storage::path_text(states[k].folder);
       if (named < end) folders += " and " + std::to_string(end - named) + " more folders";
       for (std::size_t k = i; k < end; ++k) {
         states[k].action = CampaignState::Action::todo;
         states[k].status = evaluation::Status::failed;
         states[k].reason = "no result: its id is not unique";
-        states[k].set_errors({Error{"campaign.id \"" + states[k].id.str() + "\" is used by " +
-                                        folders + "; expected one id for one campaign",
-                                    config::manifest_name}});
+        states[k].errors = {Error{"campaign.id \"" + states[k].id + "\" is used by " + folders +
+                                      "; expected one id for one campaign",
+                                  config::manifest_name}};
       }
     }
     i = end;
@@ -255,21 +233,21 @@ CampaignState failed_folder(const SiteWalk::Unlisted& unlisted) {
   state.is_campaign = false;
   state.status = evaluation::Status::failed;
   state.reason = "the folder cannot be listed";
-  state.set_errors({Error{"the folder " + storage::path_text(unlisted.folder) +
-                          " cannot be listed, so its content is not known: " + unlisted.why}});
+  state.errors = {Error{"the folder " + storage::path_text(unlisted.folder) +
+                        " cannot be listed, so its content is not known: " + unlisted.why}};
   return state;
 }
 
 /// Whether other campaigns share readings as they did when the record was written.
 void compare_twins(CampaignState& state, const std::vector<CampaignState>& all) {
-  const reading::Twins before = state.twins_before();
-  state.set_twins_before({});
+  const reading::Twins before = state.twins_before;
+  state.twins_before = {};
   if (state.action == CampaignState::Action::todo) return;
   const reading::Twins now = twins_of(state, all);
   if (now == before) return;
   state.action = CampaignState::Action::todo;
   state.status = evaluation::Status::none;
-  state.set_errors({});
+  state.errors = {};
   state.reason = now.empty() ? "no other campaign has its readings any more"
                              : "campaign " + now.front().second + " has the same readings";
 }
@@ -295,11 +273,11 @@ Expected<Surveyed> survey(const SurveyInput& input) {
   if (!walk) return fail(walk.error());
   for (std::string& note : walk->notes) input.notes.push_back(std::move(note));
   states.reserve(walk->campaigns.size() + walk->unlisted.size());
-  for (const KeptText& folder : walk->campaigns) {
+  for (const std::string& folder : walk->campaigns) {
     states.emplace_back();
     states.back().folder = folder;
   }
-  std::vector<KeptText>().swap(walk->campaigns);
+  walk->campaigns = std::vector<std::string>();
   {
     std::vector<std::uint32_t> each(states.size());
     std::iota(each.begin(), each.end(), std::uint32_t{0});

@@ -106,7 +106,7 @@ Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const Regi
 Expected<evaluation::Evaluated> certified(const SiteWork& site, const RegisterState& state,
                                           const CampaignState& c, process::SharedStatus& stage,
                                           bool& locked, Evaluator& evaluator) {
-  const fs::path folder = site.options.site / c.folder.view();
+  const fs::path folder = site.options.site / c.folder;
   certificates::CampaignFiles files(folder);
   auto evaluation = evaluated_apart(site, state, c, folder, files, false, locked, evaluator);
   if (evaluation && site.numbers.held_up(*evaluation))

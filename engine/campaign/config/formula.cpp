@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "campaign/config/formula_expression.h"
 #include "campaign/config/formula_units.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/config/site_files.h"
 
-#include <algorithm>
-
 #include "campaign/config/causes.h"
 #include "campaign/config/machines.h"
 #include "platform/storage/digest.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/evaluation/results_files.h"
 
-#include <algorithm>
 #include <set>
 
 #include "platform/storage/digest.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/modelling/model_prediction.h"
 
-#include <algorithm>
-
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 

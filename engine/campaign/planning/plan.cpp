@@ -2,7 +2,6 @@
 #include "campaign/planning/plan.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "nonio/sdk/format.h"

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <optional>
 
 #include "campaign/config/secret_files.h"
 #include "campaign/config/site_files.h"
 #include "campaign/config/template_files.h"
 #include "campaign/reading/campaign_reader.h"
 #include "platform/process/apart.h"
-#include "platform/storage/files.h"
 
 namespace nonio::reading {
 namespace fs = std::filesystem;

@@ -2,7 +2,6 @@
 #include "laboratory/assessment/fits.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "platform/storage/digest.h"
 #include "platform/storage/serialise.h"

@@ -2,7 +2,6 @@
 #include "lines.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>

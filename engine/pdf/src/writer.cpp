@@ -8,7 +8,6 @@
 #include <hpdf_pages.h>
 #include <hpdf_streams.h>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>

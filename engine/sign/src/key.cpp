@@ -4,7 +4,6 @@
 #include <openssl/err.h>
 #include <openssl/pkcs12.h>
 
-#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <utility>

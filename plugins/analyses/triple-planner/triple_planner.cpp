@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "nonio/math/triples.h"
-#include "nonio/sdk/format.h"
 #include "nonio/sdk/plugin.h"
 
 namespace nonio::triple_planner {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"

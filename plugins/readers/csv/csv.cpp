@@ -2,7 +2,6 @@
 #include "csv.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
