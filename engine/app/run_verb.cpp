@@ -62,8 +62,7 @@ std::string take_shard(RunWish& wish) {
   if (options.force || options.verify_results || options.dry_run || !options.date.empty() ||
       !options.only.empty())
     return "--shard goes with --jobs and --pack alone: whether and when campaigns are done is "
-           "planned "
-           "(nonio run plan --help)";
+           "planned (nonio run plan --help)";
   const char* const end = wish.shard.data() + wish.shard.size();
   const auto number = std::from_chars(wish.shard.data(), end, options.shard);
   const bool is_number = number.ec == std::errc() && number.ptr != end && *number.ptr == '/';

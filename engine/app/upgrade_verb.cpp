@@ -99,9 +99,7 @@ Verb upgrade_verb(Common& common) {
   auto folder = std::make_shared<std::string>();
   return {
       .name = "upgrade",
-      .summary =
-          "Gives keys with former names in site.toml and campaign.toml their present "
-          "names",
+      .summary = "Gives keys with former names in site.toml and campaign.toml their present names",
       .arguments = joined(
           {required(existing(Argument::Takes::folder, {"SITE|CAMPAIGN", folder.get(),
                                                        "Folder of a site or of one campaign"}))},

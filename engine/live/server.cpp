@@ -441,24 +441,22 @@ sigset_t block_signals() {
 }
 
 Expected<void> serve_here(const LiveWish& wish) {
-  auto token = wish.token_file.empty() ? new_token() : token_in(wish.token_file);
-  if (!token) return fail(token.error());
-  auto front = Front::open(wish.port);
-  if (!front) return fail(front.error());
+  NONIO_TRY(auto token, wish.token_file.empty() ? new_token() : token_in(wish.token_file));
+  NONIO_TRY(auto front, Front::open(wish.port));
   auto service = service_of(wish);  // makes processes: before the first thread
   if (!service) return fail(service.error());
   const sigset_t ends = block_signals();
-  const Post post{front->port(), *token, wish.hosts, false, wish.edit};
+  const Post post{front.port(), token, wish.hosts, false, wish.edit};
   if (auto begun = (*service)->begin(); !begun) return fail(begun.error());
   House house{post, **service};
   {
     Pool pool(house);
     std::thread taker([&] {
-      front->serve(
+      front.serve(
           [&](process::Handle socket, int refused) { pool.take(std::move(socket), refused); },
           [&] { return house.over.load(); });
     });
-    std::cout << address_of(post) << "#t=" << *token << std::endl;
+    std::cout << address_of(post) << "#t=" << token << std::endl;
     if (!wish.quiet)
       std::cerr << "nonio live: open the address above in a browser on this computer; it is the "
                    "key, do not pass it on. End with Ctrl-C.\n";

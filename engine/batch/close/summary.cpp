@@ -125,11 +125,10 @@ struct Lists {
     (is_done ? done : unchanged)
         .add(is_done ? c.id + ": " + reason_in(c.reason, words) : c.id, entry_json(c, c.reason));
     if (!is_done && c.status == evaluation::Status::ok) return {};
-    const auto record = evaluation::read_record(storage::results_folder(out, c.id));
-    if (!record) return fail(record.error());
+    NONIO_TRY(const auto record, evaluation::read_record(storage::results_folder(out, c.id)));
     if (c.status == evaluation::Status::attention) {
       std::string said, english;
-      for (const evaluation::KnownFinding& f : record->findings) {
+      for (const evaluation::KnownFinding& f : record.findings) {
         if (!f.attention) continue;
         const std::string of = f.measurement.empty() ? "" : f.measurement + ": ";
         said += (said.empty() ? "" : "; ") + of + f.heading();
@@ -142,8 +141,8 @@ struct Lists {
       attention.add(c.id + ": " + said, entry_json(c, english));
     }
     if (!is_done) return {};
-    for (const evaluation::KnownFinding& f : record->findings)
-      if (std::none_of(record->previous.begin(), record->previous.end(),
+    for (const evaluation::KnownFinding& f : record.findings)
+      if (std::none_of(record.previous.begin(), record.previous.end(),
                        [&](const evaluation::KnownFinding& p) { return p.same(f); }))
         add_fresh(c, f);
     return {};

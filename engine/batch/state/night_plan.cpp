@@ -119,16 +119,15 @@ Error damaged(const fs::path& path, const std::string& why) {
 }
 
 Expected<std::vector<Listed>> read_list(const fs::path& path, const NightPlan::List& list) {
-  const auto text = storage::read_file(path);
-  if (!text) return fail(text.error());
-  if (storage::sha256(*text) != list.sha256) return fail(damaged(path, "another digest"));
+  NONIO_TRY(const auto text, storage::read_file(path));
+  if (storage::sha256(text) != list.sha256) return fail(damaged(path, "another digest"));
   std::vector<Listed> all;
   all.reserve(list.campaigns);
   try {
-    for (std::size_t from = 0; from < text->size();) {
-      const std::size_t to = std::min(text->find('\n', from), text->size());
-      all.push_back(listed_in(Json::parse(text->begin() + static_cast<std::ptrdiff_t>(from),
-                                          text->begin() + static_cast<std::ptrdiff_t>(to))));
+    for (std::size_t from = 0; from < text.size();) {
+      const std::size_t to = std::min(text.find('\n', from), text.size());
+      all.push_back(listed_in(Json::parse(text.begin() + static_cast<std::ptrdiff_t>(from),
+                                          text.begin() + static_cast<std::ptrdiff_t>(to))));
       from = to + 1;
     }
   } catch (const std::exception& e) {
@@ -157,9 +156,8 @@ Expected<void> write_list(const fs::path& folder, const std::string& name,
       return fail("cannot write " + path.string() + ": " + flushed.error().message);
   }
   list.sha256 = digest.hex();
-  const auto same = storage::disk_gives_back(path, size, list.sha256);
-  if (!same) return fail(same.error());
-  if (!*same)
+  NONIO_TRY(const auto same, storage::disk_gives_back(path, size, list.sha256));
+  if (!same)
     return fail("the disk does not give back what was written to it: " + (folder / name).string());
   return {};
 }
@@ -313,22 +311,19 @@ Expected<void> write_plan(const fs::path& out, NightPlan& plan,
 
 Expected<std::optional<NightPlan>> find_plan(const fs::path& out) {
   const fs::path path = out / state_folder / plan_folder / plan_name;
-  const auto there = storage::is_there(path);
-  if (!there) return fail(there.error());
-  if (!*there) return std::nullopt;
-  const auto text = storage::read_file(path);
-  if (!text) return fail(text.error());
+  NONIO_TRY(const auto there, storage::is_there(path));
+  if (!there) return std::nullopt;
+  NONIO_TRY(const auto text, storage::read_file(path));
   try {
-    return plan_in(Json::parse(*text));
+    return plan_in(Json::parse(text));
   } catch (const std::exception& e) {
     return fail(damaged(path, e.what()));
   }
 }
 
 Expected<NightPlan> read_plan(const fs::path& out) {
-  auto plan = find_plan(out);
-  if (!plan) return fail(plan.error());
-  if (*plan) return std::move(**plan);
+  NONIO_TRY(auto plan, find_plan(out));
+  if (plan) return std::move(*plan);
   return fail("no run is planned in " + out.string() +
               "; expected `nonio run plan SITE --out OUT --shards S` before");
 }

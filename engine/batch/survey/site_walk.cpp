@@ -258,21 +258,20 @@ Expected<SiteWalk> walk_site(const fs::path& site, const fs::path& out, double s
   Passed passed;
   while (passed.size() < most_hung) {
     const double patience = passed.size() < patient_for ? seconds : std::min(seconds, 1.0);
-    auto walk = try_walk(site, out, patience, stopped, passed);
-    if (!walk) return fail(walk.error());
-    if (!*walk) continue;
-    const auto root = std::find_if((*walk)->unlisted.begin(), (*walk)->unlisted.end(),
+    NONIO_TRY(auto walk, try_walk(site, out, patience, stopped, passed));
+    if (!walk) continue;
+    const auto root = std::find_if(walk->unlisted.begin(), walk->unlisted.end(),
                                    [](const auto& u) { return u.folder == "."; });
-    if (root != (*walk)->unlisted.end())
+    if (root != walk->unlisted.end())
       return fail("cannot read the site " + site.string() + ": " + root->why);
-    std::sort((*walk)->campaigns.begin(), (*walk)->campaigns.end());
-    std::sort((*walk)->unlisted.begin(), (*walk)->unlisted.end(),
+    std::sort(walk->campaigns.begin(), walk->campaigns.end());
+    std::sort(walk->unlisted.begin(), walk->unlisted.end(),
               [](const auto& a, const auto& b) { return a.folder < b.folder; });
     const auto same =
-        std::unique((*walk)->unlisted.begin(), (*walk)->unlisted.end(),
+        std::unique(walk->unlisted.begin(), walk->unlisted.end(),
                     [](const auto& a, const auto& b) { return a.folder == b.folder; });
-    (*walk)->unlisted.erase(same, (*walk)->unlisted.end());
-    return std::move(**walk);
+    walk->unlisted.erase(same, walk->unlisted.end());
+    return std::move(*walk);
   }
   return fail("cannot read the site " + site.string() + ": " + std::to_string(most_hung) +
               " of its folders give no answer");

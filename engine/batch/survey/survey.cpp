@@ -288,15 +288,14 @@ Expected<Surveyed> survey(const SurveyInput& input) {
   for (const SiteWalk::Unlisted& u : walk->unlisted) states.push_back(failed_folder(u));
   {
     const ClaimedIds claimed(states);
-    const auto earlier = unclaimed_results(input.out, claimed);
-    if (!earlier) return fail(earlier.error());
-    name_by_folder(states, *earlier, claimed);
+    NONIO_TRY(const auto earlier, unclaimed_results(input.out, claimed));
+    name_by_folder(states, earlier, claimed);
     std::vector<std::uint32_t> which;
     for (std::size_t i = 0; i < states.size(); ++i)
       if (states[i].named_by_folder && states[i].status == evaluation::Status::none)
         which.push_back(static_cast<std::uint32_t>(i));
     if (auto looked = look_at_all(input, which, states); !looked) return fail(looked.error());
-    all.vanished = vanished_of(*earlier, states, walked, walk->unlisted, input.out, input.notes);
+    all.vanished = vanished_of(earlier, states, walked, walk->unlisted, input.out, input.notes);
   }
   set_in_order(states);
   return all;

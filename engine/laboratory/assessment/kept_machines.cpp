@@ -53,8 +53,7 @@ constexpr double patience = 5.0;  // s; without the file a run takes longer
 constexpr const char* tables =
     "CREATE TABLE version(of TEXT PRIMARY KEY, is_ TEXT NOT NULL);"
     "CREATE TABLE machine(name TEXT PRIMARY KEY, found BLOB NOT NULL, trends BLOB NOT NULL) "
-    "WITHOUT ROWID;"
-    "CREATE TABLE night(found BLOB NOT NULL)";
+    "WITHOUT ROWID;CREATE TABLE night(found BLOB NOT NULL)";
 
 std::string signed_bytes(std::string body) { return storage::sha256(body) + body; }
 

@@ -186,11 +186,10 @@ class Filling {
 
   /// Everything, into empty tables.
   Expected<void> all() {
-    auto places = all_places();
-    if (!places) return fail(places.error());
+    NONIO_TRY(auto places, all_places());
     std::int64_t number = 0;
     std::map<std::string, Before> last;  // of campaigns with more than one evaluation
-    for (const Place& place : *places) {
+    for (const Place& place : places) {
       alive_();
       const auto history =
           history_of(storage::results_folder(out_, place.campaign), place.campaign);
@@ -357,9 +356,8 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
                         const Told& told, const std::function<void()>& alive) {
   const auto place = place_of(out);
   if (!place) return fail(place.error());
-  auto opened = open_or_replace(out, *place);
-  if (!opened) return fail(opened.error());
-  Database& database = *opened;
+  NONIO_TRY(auto opened, open_or_replace(out, *place));
+  Database& database = opened;
   Updated updated;
   Database::Transaction transaction(database);
   const auto version = version_of(database);
@@ -372,9 +370,8 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
   if (!again && place->server) again = last_number(database) != place->evaluations;
   Filling filling(out, database, alive, updated);
   if (!again) {
-    const auto added = filling.some(campaigns);
-    if (!added) return fail(added.error());
-    again = !*added;
+    NONIO_TRY(const auto added, filling.some(campaigns));
+    again = !added;
   }
   if (again) {
     updated = {0, true, {}};
@@ -405,14 +402,12 @@ Expected<Updated> rebuild(const fs::path& out, const Told& told,
 
 Expected<std::optional<std::uint64_t>> known_night(const fs::path& out) {
   const fs::path path = out / known_folder / known_name;
-  const auto there = storage::is_there(path);
-  if (!there) return fail(there.error());
-  if (!*there) return std::nullopt;
-  const auto text = storage::read_small_file(path);
-  if (!text) return fail(text.error());
+  NONIO_TRY(const auto there, storage::is_there(path));
+  if (!there) return std::nullopt;
+  NONIO_TRY(const auto text, storage::read_small_file(path));
   std::uint64_t night = 0;
-  const char* const end = text->data() + text->size();
-  const auto [at, error] = std::from_chars(text->data(), end, night);
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, night);
   if (error != std::errc() || std::string_view(at, end) != "\n") return std::nullopt;
   return night;
 }

@@ -344,13 +344,12 @@ Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                          ground.thin ? *ground.of_thin : ground.whole);
   if (!out) return out;
   // The model is compared as `compare` does it: one model has one RMS.
-  auto comparison = compare(part, model, known);
-  if (!comparison) return fail(comparison.error());
+  NONIO_TRY(auto comparison, compare(part, model, known));
   if (ground.thin)
     judge_on_all(part, model, catalogue, ground, *out);
   else
-    add_suspects(out->comparison.suspects, *comparison);
-  out->comparison = std::move(*comparison);
+    add_suspects(out->comparison.suspects, comparison);
+  out->comparison = std::move(comparison);
   return out;
 }
 

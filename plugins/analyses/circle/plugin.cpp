@@ -373,10 +373,9 @@ math::CircleModel model_of(const Work& w) {
 }
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
-  auto circle = circle_of(in.measurement, in.observations);
-  if (!circle) return fail(circle.error());
+  NONIO_TRY(auto circle, circle_of(in.measurement, in.observations));
   Work w{in,
-         std::move(*circle),
+         std::move(circle),
          in.options.text("centre") != "least-squares",
          in.options.flag("calibrated_length"),
          {},

@@ -397,10 +397,9 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
       math::reading_model(in.campaign, limits.environment, budget_lines(*collected, in.campaign));
   e.findings.insert(e.findings.end(), limits.findings.begin(), limits.findings.end());
   if (!model.missing.empty()) e.findings.push_back(math::missing_finding(model.missing));
-  auto solved = math::solve_diagonals(collected->readings, &model);
-  if (!solved) return fail(solved.error());
-  if (collected->mirrored) turn_back(*collected, *solved);
-  Report(in, *collected, *solved, model, *set, e).fill(set == &sets.front());
+  NONIO_TRY(auto solved, math::solve_diagonals(collected->readings, &model));
+  if (collected->mirrored) turn_back(*collected, solved);
+  Report(in, *collected, solved, model, *set, e).fill(set == &sets.front());
   return e;
 }
 

@@ -335,8 +335,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
     return e;
   }
   const Points& p = *points;
-  const auto lines = lines_of(p);
-  if (!lines) return fail(lines.error());
+  NONIO_TRY(const auto lines, lines_of(p));
   e.uses = p.uses;
   const math::HeldLimits limits = math::limits_held(in.campaign, observations_of(in, p));
   const math::ReadingModel model = math::reading_model(in.campaign, limits.environment, p.lines);
@@ -344,18 +343,17 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   if (!model.missing.empty()) e.findings.push_back(math::missing_finding(model.missing));
   if (p.dof == 0.0) e.findings.push_back({.id = "straightness.no-uncertainty", .attention = true});
   Report report(p, model, e);
-  report.value("straightness_MZ", lines->minimum_zone.width, Quantity::deviation,
-               lines->minimum_zone.width_by);
-  report.value("straightness_LSQ", lines->least_squares.width, Quantity::deviation,
-               lines->least_squares.width_by);
-  report.value("straightness_ends", lines->end_points.width, Quantity::deviation,
-               lines->end_points.width_by);
-  report.value("slope", lines->least_squares.b, Quantity::small_angle,
-               lines->least_squares.slope_by);
-  report.series(lines->least_squares, in.measurement.axis);
+  report.value("straightness_MZ", lines.minimum_zone.width, Quantity::deviation,
+               lines.minimum_zone.width_by);
+  report.value("straightness_LSQ", lines.least_squares.width, Quantity::deviation,
+               lines.least_squares.width_by);
+  report.value("straightness_ends", lines.end_points.width, Quantity::deviation,
+               lines.end_points.width_by);
+  report.value("slope", lines.least_squares.b, Quantity::small_angle, lines.least_squares.slope_by);
+  report.series(lines.least_squares, in.measurement.axis);
   report.close();
-  e.points = table(p, *lines);
-  judge_noise(p, *lines, e);
+  e.points = table(p, lines);
+  judge_noise(p, lines, e);
   e.notes.push_back({p.integrated         ? "method.straightness-angles"
                      : p.artefact.empty() ? "method.straightness"
                                           : "method.straightness-reversal",

@@ -254,24 +254,22 @@ void pass(Evaluation& e, const AxisStatistics& statistics, const Rules& rules) {
 }
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
-  const auto rules = asked_rules(in.options);
-  if (!rules) return fail(rules.error());
-  auto begun = begin_axis_analysis(in);
-  if (!begun) return fail(begun.error());
-  const AxisStatistics statistics = axis_statistics(begun->test);
+  NONIO_TRY(const auto rules, asked_rules(in.options));
+  NONIO_TRY(auto begun, begin_axis_analysis(in));
+  const AxisStatistics statistics = axis_statistics(begun.test);
   const Offset offset = offset_option(in.options);
   Evaluation e;
-  const std::string absent = add_values(e, *begun, statistics, *rules, offset);
-  add_slopes(e, *begun, statistics);
-  e.points = table(*begun, statistics);
-  e.findings = std::move(begun->findings);
+  const std::string absent = add_values(e, begun, statistics, rules, offset);
+  add_slopes(e, begun, statistics);
+  e.points = table(begun, statistics);
+  e.findings = std::move(begun.findings);
   name_absent(e.findings, absent);
-  plan(e, *begun, *rules);
-  pass(e, statistics, *rules);
+  plan(e, begun, rules);
+  pass(e, statistics, rules);
   for (Finding& f : e.findings) f.measurement = in.measurement.id;
   e.notes = remarks_on(
-      *rules, {offset_of(statistics, offset), begun->deviation, in.options.text("nmtba_offset")},
-      begun->budget.has_value());
+      rules, {offset_of(statistics, offset), begun.deviation, in.options.text("nmtba_offset")},
+      begun.budget.has_value());
   return e;
 }
 

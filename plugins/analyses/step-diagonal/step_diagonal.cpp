@@ -262,26 +262,25 @@ Evaluation finished(Work& w) {
 }
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
-  const auto passes = passes_of(in);
-  if (!passes) return fail(passes.error());
-  Work w{in, *passes, {}, {}, {}, in.options.text("method") == "averaging", {}};
-  w.out.findings = passes->refusal;
-  if (!passes->refusal.empty() || refuse_mirror(w)) return finished(w);
-  w.lengths = w.averaging ? Lengths{} : lengths_of(in, *passes);
+  NONIO_TRY(const auto passes, passes_of(in));
+  Work w{in, passes, {}, {}, {}, in.options.text("method") == "averaging", {}};
+  w.out.findings = passes.refusal;
+  if (!passes.refusal.empty() || refuse_mirror(w)) return finished(w);
+  w.lengths = w.averaging ? Lengths{} : lengths_of(in, passes);
   w.out.uses = w.lengths.ids;
   for (const Finding& f : w.lengths.findings) w.out.findings.push_back(f);
   w.choices = {in.options.flag("set_up_square"), in.options.text("beam") == "off-diagonal",
                in.options.number("u_reading_um") * um};
-  w.checks = check_step_diagonals(passes->readings);
+  w.checks = check_step_diagonals(passes.readings);
   judge_checks(w);
   const HeldLimits limits = limits_of(w);
   ReadingModel model =
-      reading_model(in.campaign, limits.environment, budget_lines(*passes, w.lengths, in.campaign));
+      reading_model(in.campaign, limits.environment, budget_lines(passes, w.lengths, in.campaign));
   if (const double angle = in.options.number("angle_urad"); angle > 0.0)
-    model.inputs.push_back(angles_input(*passes, model, angle * urad));
+    model.inputs.push_back(angles_input(passes, model, angle * urad));
   const auto solution =
-      w.averaging ? average_step_diagonals(passes->readings, w.choices, &model)
-                  : solve_step_diagonals(passes->readings, w.lengths.series, w.choices, &model);
+      w.averaging ? average_step_diagonals(passes.readings, w.choices, &model)
+                  : solve_step_diagonals(passes.readings, w.lengths.series, w.choices, &model);
   if (!solution) {
     w.out.findings.push_back(attention(
         "step-diagonal.incomplete",

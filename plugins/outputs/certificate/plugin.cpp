@@ -194,20 +194,16 @@ std::string dcc_of(const OutputInput& in, const pages::Look& look, const Fonts& 
 
 Expected<OutputResult> write(const OutputInput& in) {
   if (in.issue == nullptr) return fail("a certificate needs a number, and none was drawn");
-  const auto look = look_of(in.templates, in.campaign.certificate.form);
-  if (!look) return fail(look.error());
-  const auto fonts = pages::fonts_of(in.templates, *look);
-  if (!fonts) return fail(fonts.error());
-  if (const auto sound = pages::check_texts(in.campaign, **fonts); !sound)
+  NONIO_TRY(const auto look, look_of(in.templates, in.campaign.certificate.form));
+  NONIO_TRY(const auto fonts, pages::fonts_of(in.templates, look));
+  if (const auto sound = pages::check_texts(in.campaign, *fonts); !sound)
     return fail(sound.error());
-  const auto document = document_of(in, *look, **fonts);
-  if (!document) return fail(document.error());
-  auto bytes = pdf_bytes(*document, **fonts);
-  if (!bytes) return fail(bytes.error());
+  NONIO_TRY(const auto document, document_of(in, look, *fonts));
+  NONIO_TRY(auto bytes, pdf_bytes(document, *fonts));
   OutputResult result;
-  result.artifacts.push_back({"certificate.pdf", std::move(*bytes), true});
+  result.artifacts.push_back({"certificate.pdf", std::move(bytes), true});
   if (!in.issue->is_draft())
-    result.artifacts.push_back({"certificate.xml", dcc_of(in, *look, **fonts), true});
+    result.artifacts.push_back({"certificate.xml", dcc_of(in, look, *fonts), true});
   return result;
 }
 

@@ -254,13 +254,12 @@ class Requests {
     const double unit = o_.number("resolution_mm") * mm;
     std::string how = std::to_string(v.n) + " steps of";
     for (const std::string& name : v.axes) {
-      const auto a = axis(name);
-      if (!a) return fail(a.error());
-      const double usable = (*a)->travel->second - (*a)->travel->first - 2.0 * over_travel(false);
+      NONIO_TRY(const auto a, axis(name));
+      const double usable = a->travel->second - a->travel->first - 2.0 * over_travel(false);
       const double step = std::floor(usable / v.n / unit + slack) * unit;
       if (!(step > 0.0))
         return wrong("steps", "axis " + name + ": no room for " + std::to_string(v.n) + " steps");
-      v.from.push_back(start(**a));
+      v.from.push_back(start(*a));
       v.step.push_back(step);
       how += " " + name + " " + number(step / mm) + " mm";
     }
@@ -419,13 +418,12 @@ std::vector<Option> options(std::vector<Option> own) {
 }
 
 Expected<OutputResult> written(const OutputInput& in, const Dialect& dialect) {
-  const auto programs = requested(in);
-  if (!programs) return fail(programs.error());
+  NONIO_TRY(const auto programs, requested(in));
   OutputResult result;
-  for (const Program& p : *programs)
+  for (const Program& p : programs)
     for (const std::string& axis : p.path.axes)
       if (auto named = check_name(axis, dialect); !named) return fail(named.error());
-  for (const Program& p : *programs)
+  for (const Program& p : programs)
     result.artifacts.push_back(
         {std::string(dialect.output) + "-" + file_part(p.path.name) + std::string(dialect.ending),
          dialect.format(p, in.options)});

@@ -221,9 +221,8 @@ Expected<OutputResult> write(const OutputInput& in) {
   const reports::Wording words(in.templates, in.options.text("language", "en"), {"pictures"});
   OutputResult result;
   for (const ModelFit& fit : in.results.models) {
-    auto bytes = page_of({in, fit, words, reports::picture_words(fit, words)});
-    if (!bytes) return fail(bytes.error());
-    result.artifacts.push_back({file_name(fit.part), std::move(*bytes)});
+    NONIO_TRY(auto bytes, page_of({in, fit, words, reports::picture_words(fit, words)}));
+    result.artifacts.push_back({file_name(fit.part), std::move(bytes)});
   }
   if (const auto complete = words.complete(); !complete) return fail(complete.error());
   return result;

@@ -375,20 +375,18 @@ Expected<std::string> program(const Wish& w, const Machine& machine, double heig
 
 Expected<OutputResult> write(const OutputInput& in) {
   const Machine& machine = in.campaign.machine;
-  const auto w = wish_of(in.options, machine);
-  if (!w) return fail(w.error());
+  NONIO_TRY(const auto w, wish_of(in.options, machine));
   OutputResult result;
-  const char* ending = w->dialect == "siemens" ? ".mpf" : ".ngc";
-  for (std::size_t i = 0; i < w->heights.size(); ++i) {
-    const std::string name = (w->ball.carrier ? w->ball.carrier->axis : std::string()) +
-                             w->ball.table.axis +
-                             (w->heights.size() > 1 ? std::to_string(i + 1) : std::string());
-    auto text = program(*w, machine, w->heights[i], name);
-    if (!text) return fail(text.error());
-    result.artifacts.push_back({"program-probing-" + name + ending, std::move(*text)});
+  const char* ending = w.dialect == "siemens" ? ".mpf" : ".ngc";
+  for (std::size_t i = 0; i < w.heights.size(); ++i) {
+    const std::string name = (w.ball.carrier ? w.ball.carrier->axis : std::string()) +
+                             w.ball.table.axis +
+                             (w.heights.size() > 1 ? std::to_string(i + 1) : std::string());
+    NONIO_TRY(auto text, program(w, machine, w.heights[i], name));
+    result.artifacts.push_back({"program-probing-" + name + ending, std::move(text)});
   }
   result.notes.push_back({.id = "program.dry-run"});
-  if (w->dialect != "linuxcnc")
+  if (w.dialect != "linuxcnc")
     result.notes.push_back({.id = "program.no-control", .texts = {{"output", "program-probing"}}});
   return result;
 }

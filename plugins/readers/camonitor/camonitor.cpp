@@ -186,15 +186,15 @@ class Sampler {
  private:
   Expected<void> take(const Entry& e) {
     const bool test = e.pv == wiring_.test;
-    const auto value = numbers_.reading(e.value, e.line, test ? "a test number" : "a position");
-    if (!value) return fail(value.error());
-    if (e.pv == wiring_.target) target_ = *value;
+    NONIO_TRY(const auto value,
+              numbers_.reading(e.value, e.line, test ? "a test number" : "a position"));
+    if (e.pv == wiring_.target) target_ = value;
     if (e.pv == wiring_.reference) {
-      reference_ = *value;
+      reference_ = value;
       reference_line_ = e.line;
       reference_time_ = e.time;
     }
-    return test ? change(e, *value) : Expected<void>{};
+    return test ? change(e, value) : Expected<void>{};
   }
 
   Expected<void> change(const Entry& e, double value) {
@@ -266,11 +266,10 @@ Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, O
                   "the reference runs against the targets (gain " + short_text(line.slope, 6) +
                       "); if the sensor was mounted the other way round, state a negative one"));
   if (std::fabs(line.slope - 1.0) > 0.1)
-    return fail(of_option("reference_gain",
-                          "expected a reference that goes as far as the targets, "
-                          "found " +
-                              short_text(line.slope, 6) +
-                              " times as far; is reference_unit right?"));
+    return fail(
+        of_option("reference_gain", "expected a reference that goes as far as the targets, found " +
+                                        short_text(line.slope, 6) +
+                                        " times as far; is reference_unit right?"));
   obs.notes.push_back({"camonitor.line",
                        {{"scale", line.slope - 1.0, slope_of(rotary)},
                         {"offset", line.offset, position_of(rotary)},
@@ -281,40 +280,30 @@ Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, O
 Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   const auto wiring = wiring_of(input, axis.rotary);
   if (!wiring) return fail(wiring.error());
-  const auto entries = entries_of(input.bytes, {wiring->target, wiring->reference, wiring->test});
-  if (!entries) return fail(entries.error());
-  const auto samples = Sampler(*wiring).samples(*entries);
-  if (!samples) return fail(samples.error());
-  if (samples->empty())
+  NONIO_TRY(const auto entries,
+            entries_of(input.bytes, {wiring->target, wiring->reference, wiring->test}));
+  NONIO_TRY(const auto samples, Sampler(*wiring).samples(entries));
+  if (samples.empty())
     return fail("expected test numbers (1101 ...) of PV " + wiring->test + ", found none");
-  const auto targets = targets_of(*samples);
-  if (!targets) return fail(targets.error());
-  if (auto ok = whole(*samples, targets->size()); !ok) return fail(ok.error());
+  NONIO_TRY(const auto targets, targets_of(samples));
+  if (auto ok = whole(samples, targets.size()); !ok) return fail(ok.error());
   std::vector<double> listed;
-  for (const auto& [position, target] : *targets) listed.push_back(target);
+  for (const auto& [position, target] : targets) listed.push_back(target);
   const int sense = sense_of(listed);
   if (sense == 0) return fail("expected two targets or more that only rise or only fall");
   Runs runs(input, axis, axis.rotary);
-  if (auto ok = check_line(*samples, *wiring, runs.observations(), axis.rotary); !ok)
+  if (auto ok = check_line(samples, *wiring, runs.observations(), axis.rotary); !ok)
     return fail(ok.error());
-  for (const Sample& s : *samples) {
+  for (const Sample& s : samples) {
     const double target = s.target * wiring->target_unit;
     const double deviation = wiring->gain * s.reference * wiring->reference_unit - target;
-    const double seconds = 1e-6 * static_cast<double>(s.time - samples->front().time);
+    const double seconds = 1e-6 * static_cast<double>(s.time - samples.front().time);
     if (auto ok = runs.add({s.step.cycle, static_cast<std::int8_t>(s.step.direction * sense),
                             target, deviation, s.line, seconds});
         !ok)
       return fail(ok.error());
   }
   return runs.finish();
-}
-
-Expected<Observations> read(const ReadInput& input) {
-  const auto axis = axis_of(input);
-  if (!axis) return fail(axis.error());
-  auto obs = read_file(input, **axis);
-  if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
-  return obs;
 }
 
 /// Some first lines are all of this form.
@@ -349,7 +338,7 @@ Reader reader() {
         "Factor of the reference; negative where the sensor was mounted the other way round."}}};
   r.recognises = recognises;
   r.reads = [](std::string_view kind) { return kind == "axis"; };
-  r.read = read;
+  r.read = [](const ReadInput& input) { return read_of_axis(input, read_file); };
   return r;
 }
 

@@ -110,19 +110,18 @@ Expected<Observations> in_file(Expected<Observations> result, const ReadInput& i
 }
 
 Expected<Observations> read_rtl(const ReadInput& input) {
-  const auto axis = axis_of(input);
-  if (!axis) return fail(axis.error());
-  if ((*axis)->rotary)
+  NONIO_TRY(const auto axis, axis_of(input));
+  if (axis->rotary)
     return fail("expected a linear axis for linear measurements, found the rotary axis \"" +
-                (*axis)->name + "\"");
+                axis->name + "\"");
   const auto file = parse_run_file(input.bytes, "rtl", "Linear");
   if (!file) return in_file(fail(file.error()), input);
-  Runs runs(input, **axis, false);
+  Runs runs(input, *axis, false);
   if (auto ok = add_runs(*file, Units{}, runs); !ok) return in_file(fail(ok.error()), input);
   auto obs = runs.finish();
   if (!obs) return in_file(std::move(obs), input);
   if (auto ok = add_user_text(*file, input, *obs); !ok) return in_file(fail(ok.error()), input);
-  if (file->environment) add_environment(*file->environment, **axis, *obs);
+  if (file->environment) add_environment(*file->environment, *axis, *obs);
   return obs;
 }
 

@@ -79,14 +79,12 @@ Expected<std::vector<Column>> columns_of(const std::vector<std::string>& texts) 
   std::set<std::tuple<Role, Way, std::uint32_t>> seen;
   bool readings = false, means = false;
   for (const std::string& text : texts) {
-    const auto column = column_of(text);
-    if (!column) return fail(column.error());
-    if (column->role != Role::ignore &&
-        !seen.insert({column->role, column->way, column->run}).second)
+    NONIO_TRY(const auto column, column_of(text));
+    if (column.role != Role::ignore && !seen.insert({column.role, column.way, column.run}).second)
       return fail(of_option("columns", "expected \"" + text + "\" once, found it twice"));
-    readings = readings || column->role == Role::reading;
-    means = means || column->role == Role::mean;
-    columns.push_back(*column);
+    readings = readings || column.role == Role::reading;
+    means = means || column.role == Role::mean;
+    columns.push_back(column);
   }
   if (!seen.contains({Role::target, Way::none, 0}))
     return fail(of_option("columns", "expected one \"target\", found none"));
@@ -128,12 +126,10 @@ Map Map::of(const RowRange& table) const {
 
 Expected<Map> map_of(const Settings& options, bool rotary) {
   Map map;
-  auto columns = columns_of(options.texts("columns"));
-  if (!columns) return fail(columns.error());
-  auto table = table_map_of(options, rotary);
-  if (!table) return fail(table.error());
-  static_cast<TableMap&>(map) = std::move(*table);
-  map.columns = std::move(*columns);
+  NONIO_TRY(auto columns, columns_of(options.texts("columns")));
+  NONIO_TRY(auto table, table_map_of(options, rotary));
+  static_cast<TableMap&>(map) = std::move(table);
+  map.columns = std::move(columns);
   if (map.positions && map.means())
     return fail(of_option("values", "expected deviations in a table of means, found positions"));
   if (auto ok = check_ways(map); !ok) return fail(ok.error());
@@ -195,12 +191,11 @@ class TableReader {
       const bool target = role == Role::target;
       const std::string what =
           (target ? "a target in column " : "a number in column ") + std::to_string(k + 1);
-      const auto value = target ? numbers_.number(fields[k], number, what)
-                                : numbers_.reading(fields[k], number, what);
-      if (!value) return fail(value.error());
-      if (target) table_.targets.push_back(*value);
+      NONIO_TRY(const auto value, target ? numbers_.number(fields[k], number, what)
+                                         : numbers_.reading(fields[k], number, what));
+      if (target) table_.targets.push_back(value);
       if (!target) table_.decimals = std::max(table_.decimals, decimals_of(fields[k]));
-      values.push_back(*value);
+      values.push_back(value);
     }
     table_.rows.push_back(std::move(values));
     table_.lines.push_back(number);
@@ -312,28 +307,19 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   Table last;
   for (const RowRange& rows : all->tables) {
     const Map map = all->of(rows);
-    auto table = TableReader(map, numbers).read(input.bytes);
-    if (!table) return fail(table.error());
-    const int sense = sense_of(table->targets);
+    NONIO_TRY(auto table, TableReader(map, numbers).read(input.bytes));
+    const int sense = sense_of(table.targets);
     if (sense == 0)
-      return fail(at_line(table->lines.front(), "expected targets that only rise or only fall"));
+      return fail(at_line(table.lines.front(), "expected targets that only rise or only fall"));
     if (listed == 0) listed = sense;
-    if (auto ok = map.means() ? check_print(map, *table, listed) : no_average(map, *table, listed);
+    if (auto ok = map.means() ? check_print(map, table, listed) : no_average(map, table, listed);
         !ok)
       return fail(ok.error());
-    if (auto ok = add_rows(map, *table, listed, runs); !ok) return fail(ok.error());
-    last = std::move(*table);
+    if (auto ok = add_rows(map, table, listed, runs); !ok) return fail(ok.error());
+    last = std::move(table);
   }
   auto obs = runs.finish();
   if (obs && all->means()) note_means(*all, last, axis.rotary, *obs);
-  return obs;
-}
-
-Expected<Observations> read(const ReadInput& input) {
-  const auto axis = axis_of(input);
-  if (!axis) return fail(axis.error());
-  auto obs = read_file(input, **axis);
-  if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
   return obs;
 }
 
@@ -353,7 +339,7 @@ Reader reader() {
   // Nobody could tell it from any other table.
   r.recognises = [](std::string_view) { return false; };
   r.reads = [](std::string_view kind) { return kind == "axis"; };
-  r.read = read;
+  r.read = [](const ReadInput& input) { return read_of_axis(input, read_file); };
   return r;
 }
 
