@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "platform/storage/digest.h"
-#include "platform/storage/serialise.h"
 
 namespace nonio::storage {
 

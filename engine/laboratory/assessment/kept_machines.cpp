@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "laboratory/assessment/kept_machines.h"
 
+#include "laboratory/assessment/fits.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/serialise.h"
 
@@ -22,7 +23,6 @@ void members(Archive& archive, T& m) {
 NONIO_MEMBERS(reports::MonthOfMachine, a, b, c, d, e)
 NONIO_MEMBERS(reports::InstrumentUse::On, a, b, c, d, e)
 NONIO_MEMBERS(reports::InstrumentUse, a, b, c, d)
-NONIO_MEMBERS(statistics::Slope, a, b)
 NONIO_MEMBERS(assessment::Lesson, a, b, c, d)
 NONIO_MEMBERS(assessment::Manner, a, b, c)
 NONIO_MEMBERS(assessment::SeriesTests::Of, a, b, c)
