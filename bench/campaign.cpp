@@ -58,7 +58,7 @@ std::vector<fs::path> campaigns_in(const fs::path& site) {
 /// To the worker, as between two processes.
 evaluation::Evaluated sent(const evaluation::Evaluated& evaluated) {
   evaluation::Evaluated received;
-  if (!batch::wire::unpack(batch::wire::pack(evaluated), received)) std::abort();
+  if (!storage::unpack(storage::pack(evaluated), received)) std::abort();
   return received;
 }
 

@@ -19,7 +19,7 @@
 #include "platform/storage/digest.h"
 
 using namespace nonio;
-using batch::CampaignState, batch::KeptText;
+using batch::CampaignState;
 
 namespace {
 
@@ -55,17 +55,17 @@ int main(int argc, char** argv) {
   const std::size_t digits = argc == 5 ? std::strtoull(argv[4], nullptr, 10) - 1 : 7;
   const double before = peak();
   tell("nothing", before, count);
-  std::vector<KeptText> walked;
+  std::vector<std::string> walked;
   for (std::size_t i = 0; i < count; ++i)  // as bench/scale.py makes them
     walked.emplace_back(padded(i / 1000, 5) + "/c" + padded(i, digits));
   tell("folders found", before, count);
   std::vector<CampaignState> campaigns;
   campaigns.reserve(walked.size());
-  for (const KeptText& folder : walked) {
+  for (const std::string& folder : walked) {
     campaigns.emplace_back();
     campaigns.back().folder = folder;
   }
-  std::vector<KeptText>().swap(walked);
+  std::vector<std::string>().swap(walked);
   {
     std::vector<std::uint32_t> which(count);
     std::iota(which.begin(), which.end(), std::uint32_t{0});
@@ -73,9 +73,9 @@ int main(int argc, char** argv) {
       CampaignState& c = campaigns[i];
       // Not in the order of the folders.
       c.id = "c" + padded((i * 7919ULL + 13) % count, digits);
-      c.reason = KeptText::shared("no earlier result");
-      const std::uint64_t digest = storage::short_digest(storage::sha256(c.folder.view()));
-      c.set_readings({&digest, 1});
+      c.reason = "no earlier result";
+      const std::uint64_t digest = storage::short_digest(storage::sha256(c.folder));
+      c.readings = {digest};
     }
   }
   tell("campaigns looked at", before, count);

@@ -26,6 +26,17 @@ tl::expected<OpenCampaign, int> open_campaign(const std::string& folder, const C
   return tl::unexpected(exit_failed);
 }
 
+std::vector<modelling::Compared> compare_parts(std::vector<modelling::PartModel> parts,
+                                               std::vector<Error>& errors) {
+  std::vector<modelling::Compared> all;
+  for (modelling::PartModel& part : parts)
+    if (auto comparison = modelling::compare_part(part))
+      all.push_back({std::move(part), std::move(*comparison)});
+    else
+      complain(text_of(errors.emplace_back(comparison.error())));
+  return all;
+}
+
 modelling::ModelWords words_for(const OpenCampaign& open, const Common& common) {
   const reading::Context& context = open.place->context;
   return {context.templates, common.json ? "en" : context.site.language};

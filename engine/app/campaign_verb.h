@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "campaign/modelling/campaign_model.h"
+#include "campaign/modelling/model_change.h"
 #include "campaign/modelling/model_words.h"
 #include "common.h"
 
@@ -26,6 +27,10 @@ struct OpenCampaign {
 tl::expected<OpenCampaign, int> open_campaign(
     const std::string& folder, const Common& common,
     reading::TemplatesFor what = reading::TemplatesFor::documents);
+
+/// The fit of each part. The error of a part that cannot be fitted is printed and added to `errors`.
+std::vector<modelling::Compared> compare_parts(std::vector<modelling::PartModel> parts,
+                                               std::vector<Error>& errors);
 
 /// Sentences in the language of the site, or English for JSON.
 modelling::ModelWords words_for(const OpenCampaign& open, const Common& common);

@@ -40,7 +40,7 @@ class Check {
     site(folder);
     for (const std::string& note : walk->notes) complain(note);
     for (const auto& [name, why] : walk->unlisted) found({why, name}, "");
-    for (const batch::KeptText& one : walk->campaigns) campaign(folder / one.view());
+    for (const std::string& one : walk->campaigns) campaign(folder / one);
     if (walk->campaigns.empty())
       return complain(folder.string() + " contains no campaign (no folder with a campaign.toml)");
     return end();

@@ -136,8 +136,7 @@ void write_bash(const Program& program, std::ostream& out) {
   out << "      esac ;;\n  esac\n"
          "  case \"$offer\" in\n"
          "    -d | -f) compopt -o filenames 2> /dev/null;  mapfile -t COMPREPLY < <(compgen $offer "
-         "-- \"$cur\") "
-         ";;\n"
+         "-- \"$cur\") ;;\n"
          "    *) mapfile -t COMPREPLY < <(eval \"compgen $offer\" -- '\"$cur\"') ;;\n"
          "  esac\n}\ncomplete -F _"
       << name << " " << name << "\n";

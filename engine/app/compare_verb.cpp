@@ -39,18 +39,9 @@ int compare(const std::string& folder, const std::string& csv, const Common& com
   for (const std::string& effect : modelling::unmeasured(open.campaign().model, *parts))
     warnings.push_back(words.unmeasured(effect));
   std::vector<Error> errors = open.read.errors;
-  std::vector<modelling::Compared> all;
-  for (modelling::PartModel& part : *parts) {
-    auto comparison = modelling::compare_part(part);
-    if (comparison) {
-      all.push_back({std::move(part), std::move(*comparison)});
-    } else {
-      complain(text_of(comparison.error()));
-      errors.push_back(comparison.error());
-    }
-  }
-  if (parts->empty())
-    complain(text_of(errors.emplace_back(modelling::nothing_to_compare(open.read))));
+  const bool is_empty = parts->empty();
+  const auto all = compare_parts(std::move(*parts), errors);
+  if (is_empty) complain(text_of(errors.emplace_back(modelling::nothing_to_compare(open.read))));
   for (const std::string& warning : warnings) complain(warning);
   if (!csv.empty() && !all.empty())
     if (const std::string why = write_csv(csv, all); !why.empty())
@@ -106,8 +97,7 @@ Verb compare_verb(Common& common) {
            one_of({"free", "kept"},
                   {.name = "--zero",
                    .target = &options->zero,
-                   .help = "With --model-of: the zero is a new unknown, or that of "
-                           "the model",
+                   .help = "With --model-of: the zero is a new unknown, or that of the model",
                    .shows_default = true})}),
       .footer =
           "Shows for each axis the residuals (RMS, largest residual, cross-validated RMS), "

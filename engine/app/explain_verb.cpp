@@ -147,8 +147,7 @@ Verb explain_verb(Common& common) {
           {{"--all", &options->all, "Every candidate, and why an effect could not be tested"},
            {"--library", &options->library,
             "Also tries the causes of the library where no effect explains: it names more causes, "
-            "and "
-            "more wrong ones"},
+            "and more wrong ones"},
            {"--what-if", &options->what_if,
             "Also predicts what one more run, in each order of directions, would do to the "
             "uncertainties and to the evidence"},

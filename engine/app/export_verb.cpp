@@ -86,12 +86,10 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
   const std::string below = std::string(evaluation::last_good_name) + "/";
   std::vector<Artifact> good, own;
   for (const auto& f : files) {
-    auto bytes = evaluation::read_result(from, f);
-    if (!bytes) return fail(bytes.error());
+    NONIO_TRY(auto bytes, evaluation::read_result(from, f));
     const fs::path path = to / f.name;
-    const auto there = storage::is_there(path);
-    if (!there) return fail(there.error());
-    if (*there) {
+    NONIO_TRY(const auto there, storage::is_there(path));
+    if (there) {
       const auto now = storage::sha256_of_file(path);
       if (!now || *now != f.sha256)
         return fail(path.string() +
@@ -101,7 +99,7 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
     }
     const bool is_good = f.name.starts_with(below);
     (is_good ? good : own)
-        .push_back({is_good ? f.name.substr(below.size()) : f.name, std::move(*bytes)});
+        .push_back({is_good ? f.name.substr(below.size()) : f.name, std::move(bytes)});
   }
   if (auto put = storage::publish(to / evaluation::last_good_name, good); !put)
     return fail(put.error());

@@ -110,8 +110,7 @@ void print(const importing::ImportReport& report) {
   print("Not imported:", report.unmatched);
   if (!report.campaigns.empty())
     std::cout << "Axes are taken from the file names and signs from the files: verify both on the "
-                 "machine "
-                 "before a table is loaded.\n";
+                 "machine before a table is loaded.\n";
 }
 
 int import_files(const ImportArguments& arguments, const Common& common) {

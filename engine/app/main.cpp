@@ -173,8 +173,7 @@ int main(int argc, char** argv) try {
           "findings, reports, certificates and compensation tables.",
       .footer =
           "Also: nonio version, nonio completion SHELL, nonio schema FILE, nonio upgrade SITE. "
-          "`nonio help COMMAND` "
-          "describes a command.\n\n"
+          "`nonio help COMMAND` describes a command.\n\n"
           "Exit status: 0 done; 1 done, but some campaign or check failed; 2 usage or "
           "configuration error; 130 interrupted.",
       .aliases = former_names(),

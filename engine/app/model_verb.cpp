@@ -27,17 +27,8 @@ int show_model(const ModelOptions& options, const Common& common) {
   const auto history = modelling::read_history(open.folder);
   if (!history) return complain(text_of(history.error()), exit_failed);
   const modelling::ModelWords words = words_for(open, common);
-  std::vector<modelling::Compared> all;
   std::vector<Error> errors = open.read.errors;
-  for (modelling::PartModel& part : *parts) {
-    auto comparison = modelling::compare_part(part);
-    if (comparison) {
-      all.push_back({std::move(part), std::move(*comparison)});
-    } else {
-      complain(text_of(comparison.error()));
-      errors.push_back(comparison.error());
-    }
-  }
+  const auto all = compare_parts(std::move(*parts), errors);
   if (common.json) {
     std::cout << modelling::compare_json(all, open.campaign(), words, {}, errors);
   } else {

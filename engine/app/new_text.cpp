@@ -270,8 +270,7 @@ std::string campaign_text(const NewCampaign& c) {
   std::string text;
   if (example)
     text +=
-        "# EXAMPLE READINGS, not measured. Replace the CSV files named below by your own, "
-        "then\n"
+        "# EXAMPLE READINGS, not measured. Replace the CSV files named below by your own, then\n"
         "# remove the words \"EXAMPLE, NOT MEASURED\" from customer and model.\n";
   text += "# One campaign. All keys: docs/manifest.md.\nformat = 1\n\n[campaign]\n";
   text += text_line("id", c.id, "", "unique in the site: a-z 0-9 . _ -");

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <ctime>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -123,11 +122,10 @@ Expected<void> one_line(const char* option, const std::string& text) {
 Expected<std::vector<NewAxis>> axes_of(const std::vector<std::string>& texts) {
   std::vector<NewAxis> axes;
   for (const std::string& text : texts) {
-    const auto axis = axis_of(text);
-    if (!axis) return fail(axis.error());
+    NONIO_TRY(const auto axis, axis_of(text));
     for (const NewAxis& other : axes)
-      if (other.axis.name == axis->name) return fail("--axis: " + axis->name + " is given twice");
-    axes.push_back({.axis = *axis, .file = {}, .bytes = {}});
+      if (other.axis.name == axis.name) return fail("--axis: " + axis.name + " is given twice");
+    axes.push_back({.axis = axis, .file = {}, .bytes = {}});
   }
   return axes;
 }
@@ -152,13 +150,12 @@ Expected<void> take_file(const std::string& text, std::vector<NewAxis>& axes) {
   if (it == axes.end())
     it = axes.insert(axes.end(), {.axis = axis_named(name), .file = {}, .bytes = {}});
   if (!it->file.empty()) return fail("--file: axis " + name + " has two files");
-  auto bytes = storage::read_file(path);
-  if (!bytes) return fail(bytes.error());
-  if (bytes->empty()) return fail("--file: " + path.string() + " is empty");
+  NONIO_TRY(auto bytes, storage::read_file(path));
+  if (bytes.empty()) return fail("--file: " + path.string() + " is empty");
   it->file = path.filename().string();
   if (!storage::is_artifact_name(it->file) || it->file == config::manifest_name)
     return fail("--file: expected a plain file name, found \"" + it->file + "\"");
-  it->bytes = std::move(*bytes);
+  it->bytes = std::move(bytes);
   return {};
 }
 
@@ -312,9 +309,8 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
                 .control = wish.control,
                 .instrument = wish.instrument,
                 .axes = {}};
-  auto id = id_of(wish, folder, ask);
-  if (!id) return fail(id.error());
-  c.id = std::move(*id);
+  NONIO_TRY(auto id, id_of(wish, folder, ask));
+  c.id = std::move(id);
   for (const auto& [option, question, to, otherwise] :
        {std::tuple{"--customer", "Customer", &c.customer, std::string()},
         {"--operator", "Operator", &c.operator_name, std::string()},
@@ -331,9 +327,8 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
   if (auto done = one_line("--control", c.control); !done) return fail(done.error());
   if (!is_date(c.date))
     return fail("--date: expected a day such as 2026-11-03, found \"" + c.date + "\"");
-  auto axes = axes_with_files(wish, ask);
-  if (!axes) return fail(axes.error());
-  c.axes = std::move(*axes);
+  NONIO_TRY(auto axes, axes_with_files(wish, ask));
+  c.axes = std::move(axes);
   return c;
 }
 
@@ -402,18 +397,16 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
 Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
                                   const std::optional<fs::path>& site, Questions& ask,
                                   bool& example, const Common& common) {
-  const auto campaign = settled(wish, folder, ask);
-  if (!campaign) return fail(campaign.error());
-  example = campaign->example();
-  auto values = settings_of(wish.settings);
-  if (!values) return fail(values.error());
+  NONIO_TRY(const auto campaign, settled(wish, folder, ask));
+  example = campaign.example();
+  NONIO_TRY(auto values, settings_of(wish.settings));
   if (site)
-    if (auto done = ask_for_certificate(*campaign, *site, *values, ask); !done)
+    if (auto done = ask_for_certificate(campaign, *site, values, ask); !done)
       return fail(done.error());
-  std::string text = campaign_text(*campaign);
-  if (auto done = set_all(*values, text); !done) return fail(done.error());
-  NewFiles out{folder, files_of(*campaign, std::move(text))};
-  if (const auto wrong = mistakes(out.files, campaign->id, site, common); !wrong.empty())
+  std::string text = campaign_text(campaign);
+  if (auto done = set_all(values, text); !done) return fail(done.error());
+  NewFiles out{folder, files_of(campaign, std::move(text))};
+  if (const auto wrong = mistakes(out.files, campaign.id, site, common); !wrong.empty())
     return fail(text_of(wrong.front()) + "; nothing was written");
   return out;
 }
@@ -562,8 +555,7 @@ Verb new_verb(Common& common) {
           "marked: every report prints EXAMPLE, NOT MEASURED next to the customer and the machine. "
           "Existing files are never overwritten.",
       .examples = {"nonio new site lab",
-                   "nonio new machine site/machines/S-0042.toml --axis X=0:800 --axis "
-                   "C=0:360",
+                   "nonio new machine site/machines/S-0042.toml --axis X=0:800 --axis C=0:360",
                    "nonio new campaign site/2026-11-rossi --axis X=0:800 --file X=laser/x.csv"},
       .run = [wish, &common] { return make_new(*wish, common); }};
 }

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdlib>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -31,9 +30,8 @@ struct OpenWish {
 };
 
 Expected<Json> json_file(const fs::path& path) {
-  const auto text = storage::read_file(path);
-  if (!text) return fail(text.error());
-  Json json = Json::parse(*text, nullptr, false);
+  NONIO_TRY(const auto text, storage::read_file(path));
+  Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.is_object())
     return fail(path.string() + " is not a JSON object");
   return json;
@@ -42,10 +40,9 @@ Expected<Json> json_file(const fs::path& path) {
 /// The report in the language that was asked for; else a page; else the results
 /// themselves.
 Expected<fs::path> document_of(const fs::path& results) {
-  const auto json = json_file(results / evaluation::results_name);
-  if (!json) return fail(json.error());
+  NONIO_TRY(const auto json, json_file(results / evaluation::results_name));
   std::vector<std::string> files;
-  for (const Json& o : json->value("outputs", Json::array()))
+  for (const Json& o : json.value("outputs", Json::array()))
     if (o.is_object()) files.push_back(o.value("file", ""));
   std::stable_partition(files.begin(), files.end(),
                         [](const std::string& file) { return file.starts_with("report"); });
@@ -57,11 +54,10 @@ Expected<fs::path> document_of(const fs::path& results) {
 
 /// The first campaign that requires action or has failed; with none, the summary.
 Expected<fs::path> document_of_night(const fs::path& out, const Common& common) {
-  const auto summary = json_file(out / "summary.json");
-  if (!summary) return fail(summary.error());
+  NONIO_TRY(const auto summary, json_file(out / "summary.json"));
   std::string first;
   for (const char* list : {"attention", "failed"})
-    for (const Json& c : summary->value(list, Json::array())) {
+    for (const Json& c : summary.value(list, Json::array())) {
       const std::string id = c.is_object() ? c.value("id", "") : "";
       if (id.empty()) continue;
       if (!common.quiet) std::cerr << status_word(list, STDERR_FILENO) << " " << id << "\n";
@@ -94,8 +90,7 @@ Expected<fs::path> document(const OpenWish& wish, const Common& common) {
 /// Why no window can be opened here; empty if one can.
 std::string no_desktop() {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr)
-    return "there is no desktop here (neither DISPLAY nor WAYLAND_DISPLAY is "
-           "set)";
+    return "there is no desktop here (neither DISPLAY nor WAYLAND_DISPLAY is set)";
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');)

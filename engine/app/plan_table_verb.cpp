@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -91,25 +90,22 @@ Expected<std::vector<TableRow>> rows_that_fit(const TableWish& wish, math::Tripl
                                          {"--resolution-y", &wish.resolution_y, &w.resolution_y},
                                          {"--max-step", &wish.max_step, &w.largest_step},
                                          {"--over-travel", &wish.over_travel, &w.over_travel}}) {
-    const auto length = length_of(option, *text);
-    if (!length) return fail(length.error());
-    *to = *length;
+    NONIO_TRY(const auto length, length_of(option, *text));
+    *to = length;
   }
   w.hypotenuse = wish.hypotenuse;
   w.max_points = wish.max_points;
   w.count = 1000;
   std::vector<TableRow> rows;
   if (wish.cheapest) {
-    const auto plans = math::cheapest_plans(w, wish.least_cover, cost_of(wish));
-    if (!plans) return fail(plans.error());
-    for (const math::TriplePlan& p : *plans)
+    NONIO_TRY(const auto plans, math::cheapest_plans(w, wish.least_cover, cost_of(wish)));
+    for (const math::TriplePlan& p : plans)
       rows.push_back({{p.a, p.b, p.c}, p, minutes_of(p, wish)});
     if (!rows.empty()) return rows;
   }
-  const auto found = math::plan_triples(w);
-  if (!found) return fail(found.error());
-  if (found->plans.empty()) return fail(planning::why_nothing(*found));
-  for (const math::TriplePlan& p : found->plans)
+  NONIO_TRY(const auto found, math::plan_triples(w));
+  if (found.plans.empty()) return fail(planning::why_nothing(found));
+  for (const math::TriplePlan& p : found.plans)
     if (p.worst_cover() >= wish.least_cover)
       rows.push_back({{p.a, p.b, p.c}, p, minutes_of(p, wish)});
   return rows;
@@ -264,8 +260,7 @@ Verb plan_table_verb(Common& common) {
           "Without travels: every primitive triple with a < b and c up to --hypotenuse, with b/a. "
           "With travels: the best plan of each triple, both ways round, and its cost in minutes. "
           "With separate resolutions, q is in units of their greatest common divisor.\n\nExit "
-          "status: "
-          "0; 1 no plan fits (prints which limits to relax); 2 usage.",
+          "status: 0; 1 no plan fits (prints which limits to relax); 2 usage.",
       .examples = {"nonio plan table --x 20000 --y 12000 --max-step 500 --pdf plans.pdf"},
       .run = [wish, &common] { return plan_table(*wish, common); }};
 }

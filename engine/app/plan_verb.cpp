@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
-#include <array>
 #include <charconv>
-#include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -53,9 +51,8 @@ struct ProgramWish {
 Expected<void> settle(Plan& plan) {
   math::TripleRequest& w = plan.wish;
   const auto one = [](const char* option, const std::string& text, double& to) -> Expected<void> {
-    const auto length = length_of(option, text);
-    if (!length) return fail(length.error());
-    to = *length;
+    NONIO_TRY(const auto length, length_of(option, text));
+    to = length;
     return {};
   };
   for (const auto& done : {one("--x", plan.mm.x, w.x), one("--y", plan.mm.y, w.y),

@@ -30,7 +30,7 @@ std::string duration(double seconds) {
 }
 
 std::string message_of(const batch::CampaignState& c) {
-  return c.errors().empty() ? c.reason : text_of(c.errors().front());
+  return c.errors.empty() ? c.reason : text_of(c.errors.front());
 }
 
 }  // namespace

@@ -110,8 +110,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
       if (!common.json) print(std::cerr, *done.draft);
       for (const std::string& key : done.without_reason)
         complain(key +
-                 " requires action and no reason is given for accepting it; expected "
-                 "--reason \"" +
+                 " requires action and no reason is given for accepting it; expected --reason \"" +
                  key + "=TEXT\"");
       return exit_failed;
     case State::approved:
@@ -190,8 +189,7 @@ Verb approve_verb(Common& common) {
           "changed since the draft was made, repeat the nightly run first. Exit status 1 if a "
           "reason is missing.",
       .examples = {"nonio certificate approve site/c1 --by \"B. Sample\" --reason \"X: "
-                   "drift=agreed with the "
-                   "customer\""},
+                   "drift=agreed with the customer\""},
       .run = [wanted, &common] { return release(*wanted, common); }};
 }
 

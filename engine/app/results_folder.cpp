@@ -34,8 +34,7 @@ std::string holds_nothing(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) return "there is no folder " + folder.string();
   return folder.string() +
-         " is neither a campaign (campaign.toml) nor what "
-         "`nonio run` left of one (results.json)";
+         " is neither a campaign (campaign.toml) nor what `nonio run` left of one (results.json)";
 }
 
 std::string id_of_campaign(const fs::path& folder) {

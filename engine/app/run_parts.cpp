@@ -101,8 +101,7 @@ int merge_night(NightWish& wish, const Common& common) {
   std::error_code error;
   if (!fs::is_directory(site, error))
     return complain("the site " + site +
-                    ", for which the run was planned, is not on this host; expected "
-                    "--site FOLDER");
+                    ", for which the run was planned, is not on this host; expected --site FOLDER");
   prepare_run(options, site, wish.out, common);
   Progress progress(common, common.quiet, common.json);
   const batch::Night night = batch::run_site(options, progress.events());

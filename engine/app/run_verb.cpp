@@ -34,10 +34,10 @@ void print_night_plan(const batch::Night& night, const config::TerminalWords& wo
   for (const batch::CampaignState& c : night.campaigns) {
     const bool collides =
         c.action == batch::CampaignState::Action::todo && c.status == evaluation::Status::failed;
-    const std::string reason = collides ? c.errors().front().message : c.reason;
+    const std::string reason = collides ? c.errors.front().message : c.reason;
     if (json)
       print_json(Json{{"id", c.id},
-                      {"folder", storage::path_text(c.folder.view())},
+                      {"folder", storage::path_text(c.folder)},
                       {"action", collides ? "refused" : to_text(c.action)},
                       {"reason", reason}},
                  -1);
@@ -62,8 +62,7 @@ std::string take_shard(RunWish& wish) {
   if (options.force || options.verify_results || options.dry_run || !options.date.empty() ||
       !options.only.empty())
     return "--shard goes with --jobs and --pack alone: whether and when campaigns are done is "
-           "planned "
-           "(nonio run plan --help)";
+           "planned (nonio run plan --help)";
   const char* const end = wish.shard.data() + wish.shard.size();
   const auto number = std::from_chars(wish.shard.data(), end, options.shard);
   const bool is_number = number.ec == std::errc() && number.ptr != end && *number.ptr == '/';

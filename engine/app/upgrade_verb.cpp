@@ -34,9 +34,8 @@ class Upgrade {
       return complain(folder.string() + " contains neither site.toml nor a campaign");
     if (is_site) file(folder / config::site_name, config::site_file());
     for (const auto& [name, why] : walk->unlisted) failed({why, name});
-    for (const batch::KeptText& one : walk->campaigns)
-      file((folder / one.view() / config::manifest_name).lexically_normal(),
-           config::campaign_file());
+    for (const std::string& one : walk->campaigns)
+      file((folder / one / config::manifest_name).lexically_normal(), config::campaign_file());
     return end();
   }
 
@@ -100,9 +99,7 @@ Verb upgrade_verb(Common& common) {
   auto folder = std::make_shared<std::string>();
   return {
       .name = "upgrade",
-      .summary =
-          "Gives keys with former names in site.toml and campaign.toml their present "
-          "names",
+      .summary = "Gives keys with former names in site.toml and campaign.toml their present names",
       .arguments = joined(
           {required(existing(Argument::Takes::folder, {"SITE|CAMPAIGN", folder.get(),
                                                        "Folder of a site or of one campaign"}))},

@@ -72,18 +72,17 @@ Expected<std::string> look_at_site(const RunOptions& options) {
 /// read: a summary without what was issued would pass for one of a run that issued nothing.
 Expected<void> note_certificates(Night& night, const RunOptions& options,
                                  const reading::Context& context, NightState& state) {
-  auto known = known_of(options, context, Look::again);
-  if (!known) return fail(known.error());
-  if (!*known) {  // the next run lists it
+  NONIO_TRY(auto known, known_of(options, context, Look::again));
+  if (!known) {  // the next run lists it
     night.notes.push_back("the register of certificates is locked: what was issued is not listed");
     return {};
   }
   const std::uint64_t before = state.issued_before.value_or(0);
   state.issued_at_begin = before;
-  state.issued_before = issued_so_far((*known)->numbers);
-  for (certificates::RegisterEntry& e : (*known)->numbers)
+  state.issued_before = issued_so_far(known->numbers);
+  for (certificates::RegisterEntry& e : known->numbers)
     if (e.order > before) night.issued.push_back(std::move(e));
-  for (certificates::WaitingDraft& draft : (*known)->drafts) {
+  for (certificates::WaitingDraft& draft : known->drafts) {
     const auto here = std::find_if(night.campaigns.begin(), night.campaigns.end(),
                                    [&](const CampaignState& c) { return c.id == draft.campaign; });
     if (here != night.campaigns.end() && here->status != evaluation::Status::failed)
@@ -181,10 +180,9 @@ Expected<void> survey_site(const RunOptions& options, const reading::Context& co
     for (const certificates::WaitingDraft& draft : known->drafts)
       input.drafts.insert(draft.campaign);
   }
-  auto surveyed = survey(input);
-  if (!surveyed) return fail(surveyed.error());
-  night.campaigns = std::move(surveyed->campaigns);
-  night.vanished = std::move(surveyed->vanished);
+  NONIO_TRY(auto surveyed, survey(input));
+  night.campaigns = std::move(surveyed.campaigns);
+  night.vanished = std::move(surveyed.vanished);
   night.may_vanish = context.site.limits.vanished;
   return {};
 }
@@ -194,10 +192,10 @@ void report_former_keys(const Night& night, const RunEvents& events) {
   constexpr std::size_t most = 20;
   std::size_t count = 0;
   for (const CampaignState& c : night.campaigns)
-    for (const Error& w : c.warnings())
+    for (const Error& w : c.warnings)
       if (++count <= most)
-        events.note(storage::path_text(c.folder.view()) + "/" + w.file + ":" +
-                    std::to_string(w.line) + ": " + w.message);
+        events.note(storage::path_text(c.folder) + "/" + w.file + ":" + std::to_string(w.line) +
+                    ": " + w.message);
   if (count > most)
     events.note("and " + std::to_string(count - most) +
                 " more keys with former names: `nonio check` lists them");
@@ -229,9 +227,8 @@ Expected<Plan> plan_night(const RunOptions& options, const RunEvents& events, co
   if (!surveyed) return fail(surveyed.error());
   std::string only;
   if (state.reopened) {
-    auto one = leave_only(options, state, night);
-    if (!one) return fail(one.error());
-    only = std::move(*one);
+    NONIO_TRY(auto one, leave_only(options, state, night));
+    only = std::move(one);
   }
   const auto& lost = place.parts.lost();
   night.vanished.insert(night.vanished.end(), lost.begin(), lost.end());

@@ -9,12 +9,10 @@ Expected<std::string_view> CampaignFiles::bytes(const std::string& name,
                                                 const std::string& digest) {
   auto found = known_.find(name);
   if (found == known_.end()) {
-    const auto path = storage::path_inside(folder_, name);
-    if (!path) return fail(path.error());
-    auto file = storage::ReadFile::open(*path);
-    if (!file) return fail(file.error());
-    std::string sha = storage::sha256(file->bytes());
-    found = known_.emplace(name, Known{std::move(*file), std::move(sha)}).first;
+    NONIO_TRY(const auto path, storage::path_inside(folder_, name));
+    NONIO_TRY(auto file, storage::ReadFile::open(path));
+    std::string sha = storage::sha256(file.bytes());
+    found = known_.emplace(name, Known{std::move(file), std::move(sha)}).first;
   }
   if (found->second.sha256 != digest)
     return fail(name + " was changed while the campaign was evaluated");
@@ -25,9 +23,8 @@ Expected<std::string> CampaignFiles::readings_sha256(const reading::Inputs& inpu
   storage::RunningDigest all;
   for (const auto& [input, digest] : inputs) {
     if (!input.starts_with(reading::input_name(""))) continue;
-    const auto part = bytes(file_of_input(input), digest);
-    if (!part) return fail(part.error());
-    all.add(*part);
+    NONIO_TRY(const auto part, bytes(file_of_input(input), digest));
+    all.add(part);
   }
   return all.hex();
 }

@@ -23,9 +23,8 @@ Expected<std::vector<RegisterEntry>> certificates_of(const fs::path& site,
                                                      const config::Numbering& numbering) {
   auto entries = Register::entries(site, numbering);
   if (!entries || entries->empty()) return entries;
-  auto opened = Register::open(site, numbering);
-  if (!opened) return fail(opened.error());
-  if (auto noted = opened->note_persons(*entries); !noted) return fail(noted.error());
+  NONIO_TRY(auto opened, Register::open(site, numbering));
+  if (auto noted = opened.note_persons(*entries); !noted) return fail(noted.error());
   return entries;
 }
 
@@ -37,24 +36,19 @@ Expected<void> withdraw(const fs::path& site, const config::Numbering& numbering
   if (!has_content(why)) return fail("the reason is empty; expected why it is withdrawn");
   if (std::any_of(why.begin(), why.end(), control))
     return fail("the reason has a control character; expected one line of text");
-  const auto entries = Register::entries(site, numbering);
-  if (!entries) return fail(entries.error());
-  if (entries->empty()) return fail("no number " + number + " was ever drawn");
-  auto opened = Register::open(site, numbering);
-  if (!opened) return fail(opened.error());
-  return opened->withdraw(number, why, by);
+  NONIO_TRY(const auto entries, Register::entries(site, numbering));
+  if (entries.empty()) return fail("no number " + number + " was ever drawn");
+  NONIO_TRY(auto opened, Register::open(site, numbering));
+  return opened.withdraw(number, why, by);
 }
 
 Expected<Audit> audit(const fs::path& site, const config::Numbering& numbering) {
-  const auto place = register_place(site, numbering);
-  if (!place) return fail(place.error());
-  const auto there = has_register(*place, storage::Database::usual_patience);
-  if (!there) return fail(there.error());
-  if (!*there)
-    return fail("there is no register " + place->name + ": nothing was issued or drafted yet");
-  auto opened = Register::open_to_audit(site, numbering);
-  if (!opened) return fail(opened.error());
-  return opened->audit();
+  NONIO_TRY(const auto place, register_place(site, numbering));
+  NONIO_TRY(const auto there, has_register(place, storage::Database::usual_patience));
+  if (!there)
+    return fail("there is no register " + place.name + ": nothing was issued or drafted yet");
+  NONIO_TRY(auto opened, Register::open_to_audit(site, numbering));
+  return opened.audit();
 }
 
 namespace {
@@ -71,18 +65,15 @@ std::string export_name(const std::string& number, const evaluation::IssuedFile&
 
 Expected<void> export_certificates(const fs::path& site, const config::Numbering& numbering,
                                    const fs::path& folder) {
-  const auto entries = Register::entries(site, numbering);
-  if (!entries) return fail(entries.error());
-  if (entries->empty()) return {};
-  auto opened = Register::open(site, numbering);
-  if (!opened) return fail(opened.error());
-  for (const RegisterEntry& e : *entries) {
+  NONIO_TRY(const auto entries, Register::entries(site, numbering));
+  if (entries.empty()) return {};
+  NONIO_TRY(auto opened, Register::open(site, numbering));
+  for (const RegisterEntry& e : entries) {
     if (e.order == 0) continue;
-    const auto files = opened->files(e.number);
-    if (!files) return fail(files.error());
+    NONIO_TRY(const auto files, opened.files(e.number));
     std::vector<Artifact> out;
-    for (const evaluation::IssuedFile& f : *files)
-      out.push_back({export_name(e.number, f, files->front().output), f.bytes});
+    for (const evaluation::IssuedFile& f : files)
+      out.push_back({export_name(e.number, f, files.front().output), f.bytes});
     if (auto written = storage::publish(folder, out); !written) return written;
   }
   return {};

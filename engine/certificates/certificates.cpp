@@ -44,9 +44,8 @@ Expected<void> sign_documents(evaluation::Evaluated& evaluated, const SignWith& 
   for (Results::Written& w : evaluated.results.outputs)
     for (Artifact& a : w.result.artifacts) {
       if (!a.sign || is_pdf(a)) continue;
-      auto file = signed_by(how, a, w.plugin);
-      if (!file) return fail(file.error());
-      done.push_back(std::move(*file));
+      NONIO_TRY(auto file, signed_by(how, a, w.plugin));
+      done.push_back(std::move(file));
       attachments.push_back({a.name, a.bytes, "application/xml", "Data",
                              "digital calibration certificate, with a signature of its own"});
     }
@@ -84,11 +83,10 @@ Expected<pdf::Attachment> attached_input(const std::string& input, const std::st
                                          CampaignFiles& files) {
   const bool is_manifest = input == config::manifest_name;
   const std::string name = file_of_input(input);
-  const auto bytes = files.bytes(name, digest);
-  if (!bytes) return fail(bytes.error());
+  NONIO_TRY(const auto bytes, files.bytes(name, digest));
   const bool csv = name.ends_with(".csv");
   return pdf::Attachment{
-      name, std::string(*bytes),
+      name, std::string(bytes),
       is_manifest ? "application/toml"
       : csv       ? "text/csv"
                   : "application/octet-stream",
@@ -108,9 +106,8 @@ Expected<void> attach_sources(const evaluation::Evaluated& evaluated, CampaignFi
                       "Source", "the site's data of the machine"});
       continue;
     }
-    auto one = attached_input(input, digest, files);
-    if (!one) return fail(one.error());
-    to.push_back(std::move(*one));
+    NONIO_TRY(auto one, attached_input(input, digest, files));
+    to.push_back(std::move(one));
   }
   if (!context.site.settings.empty())
     to.push_back({settings_name, context.site.settings, "application/toml", source_relation,
@@ -150,9 +147,8 @@ Expected<void> sign_drafts(std::vector<Draft>& drafts, const evaluation::Evaluat
     auto reserved = pdf::reserve(d.artifact.bytes, attachments, now);
     if (!reserved) return fail(d.artifact.name + " " + reserved.error().message);
     d.artifact.bytes = std::move(*reserved);
-    auto file = signed_by(how, d.artifact, evaluated.results.outputs[d.output].plugin);
-    if (!file) return fail(file.error());
-    done.push_back(std::move(*file));
+    NONIO_TRY(auto file, signed_by(how, d.artifact, evaluated.results.outputs[d.output].plugin));
+    done.push_back(std::move(file));
   }
   return {};
 }

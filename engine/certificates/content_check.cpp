@@ -125,9 +125,8 @@ class Again {
     }
     context_.machines.clear();
     if (const pdf::Attachment* machine = find_attachment(v_, config::machine_record_name)) {
-      auto record = config::unpacked_record(machine->bytes);
-      if (!record) return fail(record.error());
-      context_.machines.push_back(std::move(*record));
+      NONIO_TRY(auto record, config::unpacked_record(machine->bytes));
+      context_.machines.push_back(std::move(record));
     }
     Content content;
     content.templates = take_templates();
@@ -253,8 +252,7 @@ class Again {
     if (again.status == evaluation::Status::failed)
       return fail("the attached readings cannot be evaluated: " +
                   again.results.errors.front().message);
-    const auto time = pdf::stated_time(pdf_);
-    if (!time) return fail(time.error());
+    NONIO_TRY(const auto time, pdf::stated_time(pdf_));
     std::size_t pages = 0;
     std::string difference;
     SignWith how;
@@ -275,7 +273,7 @@ class Again {
       if (auto same = same_results(results_, made, names); !same) return fail(same.error());
       return results_;
     };
-    if (const auto done = sign_artifacts(again, files_, context_, how, *time); !done)
+    if (const auto done = sign_artifacts(again, files_, context_, how, time); !done)
       return fail(done.error());
     if (pages != 0)
       return "the attached readings give this file and the same " + std::to_string(pages) +

@@ -75,9 +75,8 @@ Expected<Files> current_files(const evaluation::Evaluated& evaluated,
   for (const auto& [input, digest] : evaluated.inputs) {
     const std::string name = file_of_input(input);
     if (name.empty()) continue;
-    const auto bytes = of_campaign.bytes(name, digest);
-    if (!bytes) return fail(bytes.error());
-    files.emplace_back(name, *bytes);
+    NONIO_TRY(const auto bytes, of_campaign.bytes(name, digest));
+    files.emplace_back(name, bytes);
   }
   if (!context.site.settings.empty()) files.emplace_back(config::site_name, context.site.settings);
   return files;
@@ -145,9 +144,8 @@ const config::AcceptedRule* rule_for(const config::Numbering& numbering,
 }
 
 Expected<bool> Numbers::has_register() const {
-  const auto place = register_place(where_.site, context_.site.numbering);
-  if (!place) return fail(place.error());
-  return certificates::has_register(*place, short_wait(context_.site.numbering));
+  NONIO_TRY(const auto place, register_place(where_.site, context_.site.numbering));
+  return certificates::has_register(place, short_wait(context_.site.numbering));
 }
 
 Expected<Register> Numbers::open() const {
@@ -221,16 +219,13 @@ Expected<void> Numbers::check_release(const reading::Inputs& now) const {
 Expected<void> Numbers::amend(Register& opened, const RegisterEntry& before,
                               const evaluation::Evaluated& evaluated, CampaignFiles& files,
                               Issue& issue, std::vector<std::string>& missing) const {
-  const auto old_files = opened.files(before.number);
-  if (!old_files) return fail(old_files.error());
-  auto attached = attached_files(*old_files);
-  if (!attached) return fail(attached.error());
-  const Files then = std::move(*attached);
-  const auto now = current_files(evaluated, context_, files);
-  if (!now) return fail(now.error());
+  NONIO_TRY(const auto old_files, opened.files(before.number));
+  NONIO_TRY(auto attached, attached_files(old_files));
+  const Files then = std::move(attached);
+  NONIO_TRY(const auto now, current_files(evaluated, context_, files));
   issue.replaces = before.number;
   issue.replaces_date = before.date;
-  issue.changes = changes_of(then, *now);
+  issue.changes = changes_of(then, now);
   const std::string& stated = evaluated.campaign.certificate.amendment;
   const std::string* manifest = find_file(then, config::manifest_name);
   const bool is_old =
@@ -265,43 +260,39 @@ Expected<evaluation::Certificate> Numbers::find_or_draw(const evaluation::Evalua
   for (std::string& key : reading::days_to_come(evaluated.campaign, where_.today))
     missing.push_back(std::move(key));
   if (!missing.empty()) {
-    const auto there = has_register();
-    if (!there) return fail(there.error());
-    if (!*there) return evaluation::Certificate{};
+    NONIO_TRY(const auto there, has_register());
+    if (!there) return evaluation::Certificate{};
   }
-  auto opened = open();
-  if (!opened) return fail(opened.error());
+  NONIO_TRY(auto opened, open());
   const std::string& campaign = evaluated.campaign.id;
   const reading::Inputs data = data_of(evaluated, context_);
-  auto found = opened->find(campaign, data);
+  auto found = opened.find(campaign, data);
   if (!found) return fail(found.error());
   if (*found && releasing_ != nullptr) {
-    const auto first = opened->note_second((*found)->issue.number, campaign, releasing_->by);
+    const auto first = opened.note_second((*found)->issue.number, campaign, releasing_->by);
     return fail(first ? *first : first.error().message);
   }
   if (*found) return std::move(**found);
   if (auto same = check_release(made_from(evaluated, context_)); !same) return fail(same.error());
-  const auto before = opened->last_number(campaign);
-  if (!before) return fail(before.error());
+  NONIO_TRY(const auto before, opened.last_number(campaign));
   // Of the same data, by a night beside this one, since they were looked for? Then nothing is
   // amended.
-  if (*before) found = opened->find(campaign, data);
+  if (before) found = opened.find(campaign, data);
   if (!found) return fail(found.error());
   if (*found) return std::move(**found);
   evaluation::Certificate certificate;
   Issue& issue = certificate.issue;
-  if (*before)
-    if (auto done = amend(*opened, **before, evaluated, files, issue, missing); !done)
+  if (before)
+    if (auto done = amend(opened, *before, evaluated, files, issue, missing); !done)
       return fail(done.error());
   if (!missing.empty()) return evaluation::Certificate{};
   if (!where_.can_sign) return fail(no_key);
-  auto readings = files.readings_sha256(evaluated.inputs);
-  if (!readings) return fail(readings.error());
-  issue.readings_sha256 = *readings;
+  NONIO_TRY(auto readings, files.readings_sha256(evaluated.inputs));
+  issue.readings_sha256 = readings;
   certificate.templates_sha256 = context_.templates_sha256;
   certificate.draft = as_draft || !may_issue(evaluated);
   if (certificate.draft) return certificate;
-  auto drawn = opened->draw(campaign, data, where_.today);
+  auto drawn = opened.draw(campaign, data, where_.today);
   if (!drawn || drawn->issued) return drawn;
   if (drawn->issue.replaces != issue.replaces)
     return fail("another run has issued " + drawn->issue.replaces + " meanwhile");
@@ -365,9 +356,8 @@ Expected<void> Numbers::enter_draft(const evaluation::Evaluated& evaluated,
     }
   if (draft.file.empty())
     return fail("output " + certificate.output + " makes no PDF that could be released");
-  auto opened = open();
-  if (!opened) return fail(opened.error());
-  return opened->enter_draft(draft);
+  NONIO_TRY(auto opened, open());
+  return opened.enter_draft(draft);
 }
 
 Expected<void> Numbers::issue_new(evaluation::Evaluated& evaluated) const {
@@ -381,14 +371,13 @@ Expected<void> Numbers::issue_new(evaluation::Evaluated& evaluated) const {
                     " did not exist when the draft was made: run `nonio run` again");
   }
   evaluated.certificate->released = released_json(findings);
-  auto opened = open();
-  if (!opened) return fail(opened.error());
+  NONIO_TRY(auto opened, open());
   std::optional<Approved> approved;
   if (releasing_ != nullptr) approved.emplace(Approved{releasing_->draft, releasing_->by});
-  auto issued = opened->issue(*evaluated.certificate, evaluated.campaign.id,
-                              data_of(evaluated, context_), approved ? &*approved : nullptr);
-  if (!issued) return fail(issued.error());
-  evaluated.certificate = std::move(*issued);
+  NONIO_TRY(auto issued,
+            opened.issue(*evaluated.certificate, evaluated.campaign.id,
+                         data_of(evaluated, context_), approved ? &*approved : nullptr));
+  evaluated.certificate = std::move(issued);
   take_issued(evaluated);
   return {};
 }

@@ -2,7 +2,6 @@
 #include "certificates/register.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <utility>
 

@@ -90,10 +90,9 @@ Expected<std::optional<WaitingDraft>> Register::draft(const std::string& campaig
   const auto rows =
       database_->rows("SELECT campaign, says FROM drafts WHERE campaign = ?", {campaign});
   if (auto well = database_->take_error(); !well) return fail(well.error());
-  auto drafts = drafts_of(rows);
-  if (!drafts) return fail(drafts.error());
-  if (drafts->empty()) return std::nullopt;
-  return std::move(drafts->front());
+  NONIO_TRY(auto drafts, drafts_of(rows));
+  if (drafts.empty()) return std::nullopt;
+  return std::move(drafts.front());
 }
 
 namespace {
@@ -125,15 +124,14 @@ Expected<void> Register::drop_draft(const std::string& campaign) {
 }
 
 Expected<void> Register::check_seen(const WaitingDraft& seen, const Approval& by) {
-  const auto waiting = draft(seen.campaign);
-  if (!waiting) return fail(waiting.error());
-  if (!*waiting)
+  NONIO_TRY(const auto waiting, draft(seen.campaign));
+  if (!waiting)
     return fail("the draft of " + seen.campaign +
                 " no longer waits: it was issued, or made anew, since it was read");
-  if (!same_work(**waiting, seen))
+  if (!same_work(*waiting, seen))
     return fail("the draft of " + seen.campaign +
                 " has changed since it was read: read the new one, and approve that");
-  const auto& now = (*waiting)->author;
+  const auto& now = waiting->author;
   if (now.has_value() == seen.author.has_value() &&
       (!now || (now->by == seen.author->by && now->at == seen.author->at)))
     return {};
@@ -158,9 +156,8 @@ Expected<void> Register::approve(const WaitingDraft& seen, const Approval& appro
     if (auto ended = end(transaction); !ended) return ended;
     return same;
   }
-  auto waiting = draft(seen.campaign);
-  if (!waiting) return fail(waiting.error());
-  WaitingDraft& now = **waiting;
+  NONIO_TRY(auto waiting, draft(seen.campaign));
+  WaitingDraft& now = *waiting;
   now.author = approval;
   now.author->at = utc_now();
   now.author->account = own_account();
@@ -186,11 +183,10 @@ Expected<std::optional<Approval>> Register::approval_of(const std::string& numbe
 }
 
 Expected<std::string> Register::first_of(const std::string& number) {
-  const auto first = approval_of(number);
-  if (!first) return fail(first.error());
+  NONIO_TRY(const auto first, approval_of(number));
   return number + " was issued first" +
-         (*first ? ", approved by " + (*first)->by + " at " + (*first)->at
-                 : std::string(" by the rules of the laboratory")) +
+         (first ? ", approved by " + first->by + " at " + first->at
+                : std::string(" by the rules of the laboratory")) +
          "; this approval has no effect. The register keeps its reasons";
 }
 

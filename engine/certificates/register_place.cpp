@@ -49,18 +49,16 @@ constexpr std::string_view entry_key = "entry ";
 
 /// "UUID", and on a second line "entry 17 SHA-256".
 Expected<Identity> identity_in(const RegisterPlace& place) {
-  const auto there = storage::is_there(place.identity);
-  if (!there) return fail(there.error());
-  if (!*there) return Identity{};
-  const auto text = storage::read_small_file(place.identity);
-  if (!text) return fail(text.error());
-  Identity identity{text->substr(0, text->find('\n'))};
+  NONIO_TRY(const auto there, storage::is_there(place.identity));
+  if (!there) return Identity{};
+  NONIO_TRY(const auto text, storage::read_small_file(place.identity));
+  Identity identity{text.substr(0, text.find('\n'))};
   if (identity.id.empty())
     return fail(place.identity.string() +
                 " is empty; expected the identity of the site's register");
-  const std::size_t second = text->find('\n');
+  const std::size_t second = text.find('\n');
   const std::string_view rest =
-      second == std::string::npos ? std::string_view() : std::string_view(*text).substr(second + 1);
+      second == std::string::npos ? std::string_view() : std::string_view(text).substr(second + 1);
   if (!rest.starts_with(entry_key)) return identity;
   const std::size_t blank = rest.find(' ', entry_key.size());
   identity.place = integer(std::string(rest.substr(entry_key.size())));
@@ -78,9 +76,8 @@ Error is_gone(const RegisterPlace& place, const std::string& identity) {
 
 /// A register is not moved from a file to a server or back: a new one would begin with 1.
 Expected<void> check_is_first(const RegisterPlace& place) {
-  const auto there = storage::is_there(place.other);
-  if (!there) return fail(there.error());
-  if (!*there) return {};
+  NONIO_TRY(const auto there, storage::is_there(place.other));
+  if (!there) return {};
   return fail("the site has a register already (" + place.other.string() + "), and " + place.name +
               " would be a new one that gives its numbers a second time; expected the one that is "
               "there in site.toml. If a new register is meant, give it another [certificate] "
@@ -115,10 +112,9 @@ Expected<void> check_identity(Database& database, const RegisterPlace& place, bo
   const std::string id = database.first("SELECT id FROM site");
   const bool is_new = database.first("SELECT count(*) FROM certificates") == "0";
   if (auto well = database.take_error(); !well) return well;
-  const auto known = identity_in(place);
-  if (!known) return fail(known.error());
-  if (known->id == id) return check_state(database, place, *known);
-  if (!known->id.empty()) return fail(is_gone(place, known->id));
+  NONIO_TRY(const auto known, identity_in(place));
+  if (known.id == id) return check_state(database, place, known);
+  if (!known.id.empty()) return fail(is_gone(place, known.id));
   if (is_new || !place.server) return may_write ? note_state(database, place) : Expected<void>();
   return fail(place.name + " holds the register " + id +
               " of another site: give each site a schema of its own ([database] register in "
@@ -150,20 +146,18 @@ Expected<Database> open_on_server(const RegisterPlace& place, bool create, doubl
 Expected<Database> open_file(const RegisterPlace& place, Database::Use use, double patience,
                              bool as_it_is) {
   const bool create = use == Database::Use::create;
-  const auto known = identity_in(place);
-  if (!known) return fail(known.error());
+  NONIO_TRY(const auto known, identity_in(place));
   if (create) {
-    const auto there = storage::is_there(place.file);
-    if (!there) return fail(there.error());
-    if (!*there && !known->id.empty()) return fail(is_gone(place, known->id));
-    if (const auto first = check_is_first(place); !*there && !first) return fail(first.error());
+    NONIO_TRY(const auto there, storage::is_there(place.file));
+    if (!there && !known.id.empty()) return fail(is_gone(place, known.id));
+    if (const auto first = check_is_first(place); !there && !first) return fail(first.error());
     std::error_code error;
     fs::create_directories(place.file.parent_path(), error);
   }
   auto database = Database::open(place.file, use, patience);
   if (!database) return database;
-  if (!known->id.empty() && database->first("SELECT count(*) FROM sqlite_schema") == "0")
-    return fail(is_gone(place, known->id));
+  if (!known.id.empty() && database->first("SELECT count(*) FROM sqlite_schema") == "0")
+    return fail(is_gone(place, known.id));
   if (auto well = database->take_error(); !well) return fail(well.error());
   if (create)
     if (auto made = make_tables(*database); !made)
@@ -184,29 +178,26 @@ Expected<void> note_state(Database& database, const RegisterPlace& place) {
     now.sha256 = last->sha256;
   }
   if (auto well = database.take_error(); !well) return well;
-  const auto known = identity_in(place);
-  if (!known) return fail(known.error());
-  if (known->id.empty() || known->place < now.place)
+  NONIO_TRY(const auto known, identity_in(place));
+  if (known.id.empty() || known.place < now.place)
     if (auto written = write_identity(place, now); !written) return written;
   return transaction.end();
 }
 
 Expected<RegisterPlace> register_place(const fs::path& site, const config::Numbering& numbering) {
-  const auto path = register_path(site, numbering);
-  if (!path) return fail(path.error());
-  const auto identity = storage::path_inside(site, identity_name);
-  if (!identity) return fail(identity.error());
+  NONIO_TRY(const auto path, register_path(site, numbering));
+  NONIO_TRY(const auto identity, storage::path_inside(site, identity_name));
   if (!numbering.server) {
-    fs::path own = *path;
+    fs::path own = path;
     own += ".identity";
-    return RegisterPlace{*path, {}, path->string(), std::move(own), *identity};
+    return RegisterPlace{path, {}, path.string(), std::move(own), identity};
   }
   const auto& [url, password_file, schema, unused] = *numbering.server;
   return RegisterPlace{
-      *identity,
+      identity,
       storage::Server{url, schema,
                       password_file.empty() ? fs::path() : fs::absolute(site / password_file)},
-      "schema " + schema + " of " + url, *identity, *path};
+      "schema " + schema + " of " + url, identity, path};
 }
 
 Expected<bool> has_register(const RegisterPlace& place, double patience) {
@@ -214,9 +205,8 @@ Expected<bool> has_register(const RegisterPlace& place, double patience) {
     const auto there = storage::is_there(place.file);
     if (!there) return fail(what_of(place) + place.name + ": " + there.error().message);
     if (*there) return true;
-    const auto known = identity_in(place);
-    if (!known) return fail(known.error());
-    if (!known->id.empty()) return fail(is_gone(place, known->id));
+    NONIO_TRY(const auto known, identity_in(place));
+    if (!known.id.empty()) return fail(is_gone(place, known.id));
     return false;
   }
   auto database = Database::open(*place.server, patience);
@@ -224,9 +214,8 @@ Expected<bool> has_register(const RegisterPlace& place, double patience) {
   const bool there = has_tables(*database);
   if (auto well = database->take_error(); !well) return fail(what_of(place) + well.error().message);
   if (there) return true;
-  const auto known = identity_in(place);
-  if (!known) return fail(known.error());
-  if (!known->id.empty()) return fail(is_gone(place, known->id));
+  NONIO_TRY(const auto known, identity_in(place));
+  if (!known.id.empty()) return fail(is_gone(place, known.id));
   return false;
 }
 

@@ -57,20 +57,17 @@ Expected<Restamped> restamp(const fs::path& file, const sign::Prolonging& with,
         "is in the output of a run, which writes it again as it was issued: expected "
         "another folder (--out), found " +
         (folder / evaluation::record_name).string());
-  const auto bytes = read_bounded(file);
-  if (!bytes) return fail(bytes.error());
-  if (bytes->starts_with("<?xml"))
+  NONIO_TRY(const auto bytes, read_bounded(file));
+  if (bytes.starts_with("<?xml"))
     return fail(
         "is a separate DCC: long-term validation of XAdES (B-LT, B-LTA) is not supported; extend "
-        "the "
-        "PDF that carries the DCC");
+        "the PDF that carries the DCC");
   sign::Prolonging how = with;
-  how.verifier.issued_by = issued_by(rows, *bytes);
-  auto done = sign::prolong(*bytes, how);
+  how.verifier.issued_by = issued_by(rows, bytes);
+  auto done = sign::prolong(bytes, how);
   if (!done && how.verifier.issued_by.empty() && !rows.no_answer.empty())
     return fail(done.error().message +
-                " (the register, which may know an earlier signer, cannot "
-                "be read: " +
+                " (the register, which may know an earlier signer, cannot be read: " +
                 rows.no_answer + ")");
   if (!done) return fail(done.error());
   const std::string name = file.filename().string();

@@ -7,11 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -48,12 +45,11 @@ Expected<sign::Key> open_key(const config::Signing& s, const fs::path& site) {
   if (!s.pkcs12.empty())
     if (auto well = config::check_secret(site / s.pkcs12, "the signing key"); !well)
       return fail(well.error());
-  auto password = password_of(s, site);
-  if (!password) return fail(password.error());
+  NONIO_TRY(auto password, password_of(s, site));
   auto key =
       sign::Key::open({in_site(site, s.pkcs12), s.pkcs11, s.module, in_site(site, s.certificates)},
-                      *password, std::time(nullptr));
-  std::string& secret = *password;
+                      password, std::time(nullptr));
+  std::string& secret = password;
   explicit_bzero(secret.data(), secret.size());  // a plain fill of what ends is left out
   return key;
 }
@@ -61,12 +57,12 @@ Expected<sign::Key> open_key(const config::Signing& s, const fs::path& site) {
 Expected<sign::TimeStamping> stamping_of(const config::Signing& s, const fs::path& site) {
   sign::TimeStamping stamping;
   if (s.time_stamp.empty()) return stamping;
-  auto roots = storage::read_file(in_site(site, s.trust.empty() ? s.time_stamp_roots : s.trust));
-  if (!roots) return fail(roots.error());
+  NONIO_TRY(auto roots,
+            storage::read_file(in_site(site, s.trust.empty() ? s.time_stamp_roots : s.trust)));
   stamping.url = s.time_stamp;
   stamping.required = s.time_stamp_required;
   stamping.seconds = s.time_stamp_seconds;
-  stamping.trust = std::move(*roots);
+  stamping.trust = std::move(roots);
   // Certificates wait for each other: a server that is away costs its time limit once, not each time.
   stamping.away = std::make_shared<std::string>();
   return stamping;
@@ -102,12 +98,11 @@ void answer(int stream, const Expected<sign::Key>& key,
 /// `go_on`: asked now and then until the answer begins; may be empty.
 Expected<sign::Signed> ask(int channel, std::string_view bytes,
                            const std::function<bool()>& go_on = {}) {
-  auto ends = process::channel_pair(SOCK_STREAM, signing_process);
-  if (!ends) return fail(ends.error());
-  const process::Handle own = std::move((*ends)[0]);
+  NONIO_TRY(auto ends, process::channel_pair(SOCK_STREAM, signing_process));
+  const process::Handle own = std::move(ends[0]);
   bool asked = false;
   {
-    const process::Handle theirs = std::move((*ends)[1]);
+    const process::Handle theirs = std::move(ends[1]);
     asked = process::send_descriptors(channel, 's', {theirs.get()});
   }
   asked = asked && process::write_text(own.get(), bytes);
@@ -166,10 +161,9 @@ void Signer::serve() const noexcept {
 }
 
 Expected<sign::Identity> Signer::start() {
-  auto ends = process::channel_pair(SOCK_SEQPACKET, signing_process);
-  if (!ends) return fail(ends.error());
-  to_ = (*ends)[0].release();
-  from_ = (*ends)[1].release();
+  NONIO_TRY(auto ends, process::channel_pair(SOCK_SEQPACKET, signing_process));
+  to_ = ends[0].release();
+  from_ = ends[1].release();
   if (auto made = fork_process(); !made) return fail(made.error());
   const auto deadline =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(disk_seconds_);

@@ -71,15 +71,13 @@ Expected<sign::Verifier> read_trust(const VerifyOptions& o,
   verifier.signer_roots = std::move(*signer_roots);
   verifier.time_stamp_roots = std::move(*time_roots);
   if (!o.trust.empty()) {
-    auto both = single_root(o.trust);
-    if (!both) return fail(both.error());
-    verifier.signer_roots = *both;
-    verifier.time_stamp_roots = std::move(*both);
+    NONIO_TRY(auto both, single_root(o.trust));
+    verifier.signer_roots = both;
+    verifier.time_stamp_roots = std::move(both);
   }
   if (!o.revocation.empty()) {
-    auto lists = storage::read_file(o.revocation);
-    if (!lists) return fail(lists.error());
-    verifier.revocation = std::move(*lists);
+    NONIO_TRY(auto lists, storage::read_file(o.revocation));
+    verifier.revocation = std::move(lists);
   }
   verifier.signers = std::move(signers);
   verifier.now = std::time(nullptr);

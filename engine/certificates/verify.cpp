@@ -65,9 +65,8 @@ std::optional<std::string> why_no_certificate(std::string_view bytes) {
 
 Expected<void> add_register_state(sign::Verified& v, std::string_view bytes,
                                   const RegisterRows& rows) {
-  auto state = check_register(v, bytes, rows);
-  if (!state) return fail(state.error());
-  if (*state) v.checks.push_back(std::move(**state));
+  NONIO_TRY(auto state, check_register(v, bytes, rows));
+  if (state) v.checks.push_back(std::move(*state));
   return {};
 }
 
@@ -149,9 +148,8 @@ Expected<sign::Verified> verify_file(const fs::path& path, const sign::Verifier&
   const std::string_view issued = std::string_view(*bytes).substr(0, v.issued);
   if (auto added = add_register_state(v, issued, rows); !added) return fail(added.error());
   check_documents(v, verifier);
-  const auto context = open();
-  if (!context) return fail(context.error());
-  for (sign::Check& c : check_content(v, issued, **context)) v.checks.push_back(std::move(c));
+  NONIO_TRY(const auto context, open());
+  for (sign::Check& c : check_content(v, issued, *context)) v.checks.push_back(std::move(c));
   return v;
 }
 

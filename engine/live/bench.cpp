@@ -3,29 +3,72 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstring>
 #include <deque>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <new>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 
-#include "live/shared_column.h"
 #include "platform/process/child.h"
 #include "platform/process/confine.h"
-#include "platform/process/watched.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::live {
 using storage::Json;
 
 namespace {
+
+/// Numbers that a child writes and others read: one a reading of a part.
+class SharedColumn {
+ public:
+  explicit SharedColumn(std::size_t size) : size_(size) {
+    void* const at =
+        ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (at == MAP_FAILED) throw std::bad_alloc();
+    data_ = static_cast<double*>(at);
+  }
+  SharedColumn(const SharedColumn&) = delete;
+  SharedColumn& operator=(const SharedColumn&) = delete;
+  ~SharedColumn() { ::munmap(data_, bytes()); }
+  std::span<double> values() { return {data_, size_}; }
+
+ private:
+  std::size_t bytes() const { return std::max<std::size_t>(size_, 1) * sizeof(double); }
+  std::size_t size_;
+  double* data_ = nullptr;
+};
+
+/// What was fitted last of a part: the newest, by their trials.
+class FittedBefore {
+ public:
+  std::shared_ptr<SharedColumn> find(const std::string& key) const {
+    for (const auto& [known, residual] : all_)
+      if (known == key) return residual;
+    return nullptr;
+  }
+  void put(const std::string& key, std::shared_ptr<SharedColumn> residual) {
+    std::erase_if(all_, [&](const auto& one) { return one.first == key; });
+    all_.emplace_back(key, std::move(residual));
+    if (all_.size() > most) all_.pop_front();
+  }
+
+ private:
+  static constexpr std::size_t most = 8;  // steps to and fro; 8 MB each of 1,000,000 readings
+  std::deque<std::pair<std::string, std::shared_ptr<SharedColumn>>> all_;
+};
 
 using Clock = std::chrono::steady_clock;
 
@@ -155,9 +198,8 @@ class Loop {
   static constexpr std::size_t most_running = 8, most_slow = 2, most_waiting = 64;
 
   void tell(std::uint64_t number, const char* state, std::string_view text) {
-    process::Parcel parcel;
-    parcel.add(number).add(state).add(text);
-    if (!process::write_text(channel_.get(), parcel.bytes())) gone_ = true;
+    if (!process::write_text(channel_.get(), storage::pack(number, std::string_view(state), text)))
+      gone_ = true;
   }
 
   /// Slow work begins when the picture that a person waits for is ready, or takes long itself.
@@ -269,11 +311,11 @@ class Loop {
       gone_ = true;
       return;
     }
-    process::Parcel parcel(std::move(bytes));
-    const std::string what = parcel.text();
-    const std::uint64_t number = parcel.number();
+    std::string what, text;
+    std::uint64_t number = 0;
+    if (!storage::unpack(bytes, what, number, text)) return;
     if (what == "cancel") return cancel(number);
-    Job job{number, Json::parse(parcel.text()), "", "", ""};
+    Job job{number, Json::parse(text), "", "", ""};
     job.kind = job.request.value("kind", "");
     job.part = job.request.value("part", "");
     job.key = trial_key(job.request);
@@ -354,9 +396,9 @@ void run_bench(const BenchWish& wish, process::Handle channel) {
   try {
     auto bench = open_bench(wish);
     if (!bench) {
-      process::Parcel parcel;
-      parcel.add(std::uint64_t{0}).add(job_state::failed).add(words_of(bench.error()));
-      process::write_text(channel.get(), parcel.bytes());
+      process::write_text(channel.get(),
+                          storage::pack(std::uint64_t{0}, std::string_view(job_state::failed),
+                                        words_of(bench.error())));
       ::_exit(1);
     }
     Loop(std::move(*bench), std::move(channel)).run();

@@ -9,7 +9,7 @@
 /// is cancelled by the end of its child.
 namespace nonio::live {
 
-/// What travels from the bench process to the server, as a Parcel: number of the job, state, text.
+/// What travels from the bench process to the server, packed: number of the job, state, text.
 /// Job 0: the campaign itself ("opened" with `described`, perhaps "catalogue" later, or "failed").
 namespace job_state {
 inline constexpr const char* opened = "opened";
@@ -20,7 +20,7 @@ inline constexpr const char* done = "done";
 inline constexpr const char* failed = "failed";
 }  // namespace job_state
 
-/// Answers requests until the other side has gone. A request is a Parcel: "do" or "cancel", number
+/// Answers requests until the other side has gone. A request is packed: "do" or "cancel", number
 /// of the job, JSON.
 [[noreturn]] void run_bench(const BenchWish& wish, process::Handle channel);
 

@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "live/bench.h"
-#include "platform/process/watched.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::live {
 
@@ -33,9 +33,7 @@ BenchClient::~BenchClient() {
 }
 
 bool BenchClient::send(std::string_view what, std::uint64_t job, const std::string& text) {
-  process::Parcel parcel;
-  parcel.add(what).add(job).add(text);
-  return channel_ && process::write_text(channel_.get(), parcel.bytes());
+  return channel_ && process::write_text(channel_.get(), storage::pack(what, job, text));
 }
 
 std::uint64_t BenchClient::ask(const storage::Json& request) {
@@ -97,15 +95,15 @@ void BenchClient::hear() {
     from = channel_.get();
   }
   for (std::string bytes; process::read_text(from, bytes);) {
-    process::Parcel parcel(std::move(bytes));
-    const std::uint64_t job = parcel.number();
-    const std::string state = parcel.text();
+    std::uint64_t job = 0;
+    std::string state, text;
+    if (!storage::unpack(bytes, job, state, text)) continue;
     if (job != 0) {
       const bool goes_on = state == job_state::running || state == job_state::begun;
       const std::lock_guard lock(mutex_);
       if (goes_on ? !open_.contains(job) : open_.erase(job) == 0) continue;  // it was cancelled
     }
-    tell_(job, state, parcel.text());
+    tell_(job, state, text);
   }
 }
 

@@ -15,7 +15,7 @@
 #include "nonio/reports/wording.h"
 #include "nonio/workbench/data.h"
 #include "platform/process/keep_apart.h"
-#include "platform/process/watched.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::live {
 using modelling::PartModel;
@@ -192,16 +192,14 @@ Expected<Tried> tried(Bench& bench, const Json& request) {
     if (!bench.has_catalogue) modelling::fill_interpolated(*whole, bench.read);
     out.of_bench = whole;
   } else {
-    const auto kept = exclude(bench, request);
-    if (!kept) return fail(kept.error());
+    NONIO_TRY(const auto kept, exclude(bench, request));
     if (auto done = try_periods(bench, request); !done) return fail(done.error());
-    auto parts = modelling::part_models(bench.read, model);
-    if (!parts) return fail(parts.error());
-    const auto found = std::find_if(parts->begin(), parts->end(),
+    NONIO_TRY(auto parts, modelling::part_models(bench.read, model));
+    const auto found = std::find_if(parts.begin(), parts.end(),
                                     [&](const PartModel& p) { return p.part.name == name; });
-    if (found == parts->end()) return fail("no reading of part " + name + " is left");
+    if (found == parts.end()) return fail("no reading of part " + name + " is left");
     out.own = std::make_unique<PartModel>(std::move(*found));
-    if (!all) out.row = rows_of(*out.own, *whole, bench, *kept);
+    if (!all) out.row = rows_of(*out.own, *whole, bench, kept);
   }
   if (all) {
     out.row.resize(out.part().part.table.size());
@@ -248,29 +246,24 @@ std::string head_of(const Bench& bench, const PartModel& part, const model::Comp
 
 Expected<std::string> fit(Bench& bench, const Json& request, std::span<double> residual,
                           const First& first) {
-  const auto one = tried(bench, request);
-  if (!one) return fail(one.error());
+  NONIO_TRY(const auto one, tried(bench, request));
   const auto page_of = [&](const model::Comparison& c) {
     std::fill(residual.begin(), residual.end(), std::nan(""));
-    for (std::size_t i = 0; i < one->row.size(); ++i) residual[one->row[i]] = c.fit.residual[i];
-    return page_data(bench, one->part(), modelling::fitted_value(one->part(), c), one->row);
+    for (std::size_t i = 0; i < one.row.size(); ++i) residual[one.row[i]] = c.fit.residual[i];
+    return page_data(bench, one.part(), modelling::fitted_value(one.part(), c), one.row);
   };
   bool is_begun = false;
   const auto begin = [&](const model::Comparison& c) {
     const auto page = page_of(c);
     if (!page || !first) return;
-    process::Parcel parcel;
-    parcel.add(head_of(bench, one->part(), c, modelling::Extent::first)).add(*page);
-    first(parcel.bytes());
+    first(storage::pack(head_of(bench, one.part(), c, modelling::Extent::first), *page));
     is_begun = true;
   };
-  const auto compared = modelling::compare_part(one->part(), groundwork_of(bench, *one), begin);
-  if (!compared) return fail(compared.error());
-  auto page = is_begun ? Expected<std::string>("") : page_of(*compared);
+  NONIO_TRY(const auto compared,
+            modelling::compare_part(one.part(), groundwork_of(bench, one), begin));
+  auto page = is_begun ? Expected<std::string>("") : page_of(compared);
   if (!page) return page;
-  process::Parcel parcel;
-  parcel.add(head_of(bench, one->part(), *compared, modelling::Extent::whole)).add(*page);
-  return parcel.bytes();
+  return storage::pack(head_of(bench, one.part(), compared, modelling::Extent::whole), *page);
 }
 
 /// The readings as they were measured: what the page draws until there is a fit.
@@ -310,26 +303,24 @@ Json fingerprints_of(const PartModel& part, const model::Explanation& e) {
 }
 
 Expected<std::string> explain(Bench& bench, const Json& request, const First& first) {
-  const auto one = tried(bench, request);
-  if (!one) return fail(one.error());
-  if (!one->own && !bench.has_catalogue) modelling::fill_catalogue(*one->of_bench, bench.read);
-  auto explained = modelling::explain_part(one->part(), request.value("seed", std::uint64_t{1}),
-                                           groundwork_of(bench, *one));
-  if (!explained) return fail(explained.error());
-  const modelling::Explained both{one->part(), std::move(*explained)};
+  NONIO_TRY(const auto one, tried(bench, request));
+  if (!one.own && !bench.has_catalogue) modelling::fill_catalogue(*one.of_bench, bench.read);
+  NONIO_TRY(auto explained,
+            modelling::explain_part(one.part(), request.value("seed", std::uint64_t{1}),
+                                    groundwork_of(bench, one)));
+  const modelling::Explained both{one.part(), std::move(explained)};
   first("{\"explain\":" + modelling::part_json(both, bench.campaign(), words_of(bench)) + "}");
-  return "{\"fingerprints\":" + storage::dump_line(fingerprints_of(one->part(), both.explanation)) +
+  return "{\"fingerprints\":" + storage::dump_line(fingerprints_of(one.part(), both.explanation)) +
          ",\"what_if\":" +
-         modelling::foresight_json(model::foresee(one->part().part, both.explanation)) + "}";
+         modelling::foresight_json(model::foresee(one.part().part, both.explanation)) + "}";
 }
 
 Expected<std::string> without(Bench& bench, const Json& request) {
-  const auto one = tried(bench, request);
-  if (!one) return fail(one.error());
-  const auto rows = kept_of(one->part()).rows;
-  const Quantity q = one->part().deviation();
+  NONIO_TRY(const auto one, tried(bench, request));
+  const auto rows = kept_of(one.part()).rows;
+  const Quantity q = one.part().deviation();
   Json list = Json::array();
-  for (const ModelFit::Without& w : modelling::without_each(one->part())) {
+  for (const ModelFit::Without& w : modelling::without_each(one.part())) {
     Json item = {{"effect", w.effect}};
     storage::put(item, "rms", w.rms, q);
     storage::put(item, "cv_rms", w.cv_rms, q);
@@ -337,7 +328,7 @@ Expected<std::string> without(Bench& bench, const Json& request) {
     list.push_back(std::move(item));
   }
   Json out = {{"without", std::move(list)}};
-  if (one->part().part.table.size() > 0 && !one->part().names().empty() && out["without"].empty())
+  if (one.part().part.table.size() > 0 && !one.part().names().empty() && out["without"].empty())
     out["why_not"] = "more than 20000 readings: each fit takes seconds";
   return storage::dump_line(out);
 }
@@ -353,10 +344,9 @@ PartModel* Bench::part(const std::string& name) {
 Expected<Bench> open_bench(const BenchWish& wish) {
   process::keep_plugins_apart(wish.own_plugins);
   Bench bench{wish.folder, nullptr, {}, {}, false, {}};
-  auto place = reading::open_workplace(wish.folder, wish.plugin_folders, wish.template_folders,
-                                       wish.version);
-  if (!place) return fail(place.error());
-  bench.place = std::move(*place);
+  NONIO_TRY(auto place, reading::open_workplace(wish.folder, wish.plugin_folders,
+                                                wish.template_folders, wish.version));
+  bench.place = std::move(place);
   bench.read = reading::read_campaign(wish.folder, bench.place->context, [](const std::string&) {});
   if (!bench.read.manifest) return fail(bench.read.errors.front());
   bench.parts = modelling::bare_parts(bench.read);

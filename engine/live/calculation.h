@@ -61,7 +61,7 @@ using First = std::function<void(const std::string&)>;
 /// the part as the files have it, NaN where it is excluded; a fit fills it, others read it if
 /// `fitted`. Errors are for the person at the page.
 ///
-/// fit: a Parcel of the members "compare" and "text", and the value of "page". Of many readings this
+/// fit: packed, the members "compare" and "text", and the value of "page". Of many readings this
 /// comes first, without the places; then the page is empty. explain: the explanation first, then
 /// the fingerprints.
 Expected<std::string> calculate(Bench& bench, const storage::Json& request,

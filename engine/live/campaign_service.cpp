@@ -55,21 +55,17 @@ Expected<Shells> shells_of(const LiveWish& wish) {
   std::string digest;
   const auto settings = config::read_site(site, digest);
   if (!settings) return fail(settings.error().front());
-  const auto folders = config::with_site_templates(wish.template_folders, site);
-  if (!folders) return fail(folders.error());
+  NONIO_TRY(const auto folders, config::with_site_templates(wish.template_folders, site));
   std::vector<std::string> below;
   for (const std::string& language : {std::string("en"), settings->language})
     below.push_back("words/" + language + "/workbench");
-  const auto templates = config::read_templates(*folders, digest, nullptr, {}, below);
-  if (!templates) return fail(templates.error());
-  const bool is_there = templates->tables.contains(below.back());
+  NONIO_TRY(const auto templates, config::read_templates(folders, digest, nullptr, {}, below));
+  const bool is_there = templates.tables.contains(below.back());
   const std::string language = is_there ? settings->language : "en";
-  auto campaign = workbench::shell_html(*templates, language, workbench::Shell::campaign);
-  if (!campaign) return fail(campaign.error());
-  auto of_site = workbench::shell_html(*templates, language, workbench::Shell::site);
-  if (!of_site) return fail(of_site.error());
-  return Shells{std::move(*campaign), std::move(*of_site),
-                Sentences(workbench::words(*templates, language))};
+  NONIO_TRY(auto campaign, workbench::shell_html(templates, language, workbench::Shell::campaign));
+  NONIO_TRY(auto of_site, workbench::shell_html(templates, language, workbench::Shell::site));
+  return Shells{std::move(campaign), std::move(of_site),
+                Sentences(workbench::words(templates, language))};
 }
 
 }  // namespace
@@ -96,13 +92,11 @@ Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish) {
   if (!is_campaign && campaigns_in(wish.folder).empty())
     return fail("there is no " + std::string(config::manifest_name) + " in " + wish.name +
                 " or in a folder below it: it is neither a campaign nor a site");
-  auto shells = shells_of(wish);
-  if (!shells) return fail(shells.error());
-  auto launcher = Launcher::start(
-      {wish.folder, wish.plugin_folders, wish.template_folders, wish.own_plugins, wish.version});
-  if (!launcher) return fail(launcher.error());
-  if (!is_campaign) return site_service(wish, std::move(*launcher), std::move(*shells));
-  return std::make_unique<CampaignService>(wish, std::move(*launcher), std::move(*shells));
+  NONIO_TRY(auto shells, shells_of(wish));
+  NONIO_TRY(auto launcher, Launcher::start({wish.folder, wish.plugin_folders, wish.template_folders,
+                                            wish.own_plugins, wish.version}));
+  if (!is_campaign) return site_service(wish, std::move(launcher), std::move(shells));
+  return std::make_unique<CampaignService>(wish, std::move(launcher), std::move(shells));
 }
 
 }  // namespace nonio::live

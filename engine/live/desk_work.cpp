@@ -5,7 +5,7 @@
 
 #include "live/bench.h"
 #include "live/desk.h"
-#include "platform/process/watched.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::live {
 using storage::Json;
@@ -221,9 +221,9 @@ void Desk::take_work(const std::string& part, PartState::Work& work, bool is_fit
 
 void Desk::take_fit(const std::string& part, PartState::Work& work, const std::string& text,
                     bool is_done) {
-  process::Parcel parcel(text);
-  work.head = parcel.text();
-  if (std::string page = parcel.text(); !page.empty()) work.rest = std::move(page);
+  std::string page;
+  storage::unpack(text, work.head, page);
+  if (!page.empty()) work.rest = std::move(page);
   if (!is_done) return publish("picture", part, {{"part", part}});
   work.state = job_state::done;
   fits_.put(parts_[part].key, {work.head, work.rest, figures_of(work.head)});

@@ -52,9 +52,8 @@ Expected<modelling::CampaignEdit> edit_of(const Bench& bench, const Json& reques
       .model = modelling::edits_between(bench.campaign().model, model_in(request)),
       .why = request.value("why", "")};
   for (const Json& one : request.at("exclusions")) {
-    auto exclusion = exclusion_of(bench, one);
-    if (!exclusion) return fail(exclusion.error());
-    edit.excluded.push_back(std::move(*exclusion));
+    NONIO_TRY(auto exclusion, exclusion_of(bench, one));
+    edit.excluded.push_back(std::move(exclusion));
   }
   for (const auto& [axis, mm] : request.at("period_mm").items())
     edit.periods.push_back({axis, mm.get<double>()});
@@ -64,13 +63,11 @@ Expected<modelling::CampaignEdit> edit_of(const Bench& bench, const Json& reques
 }  // namespace
 
 Expected<std::string> save(Bench& bench, const Json& request) {
-  const auto edit = edit_of(bench, request);
-  if (!edit) return fail(edit.error());
-  if (edit->empty()) return fail("campaign.toml has this model already; nothing was written");
-  const auto changes = modelling::change_campaign(bench.folder, bench.read, *edit);
-  if (!changes) return fail(changes.error());
+  NONIO_TRY(const auto edit, edit_of(bench, request));
+  if (edit.empty()) return fail("campaign.toml has this model already; nothing was written");
+  NONIO_TRY(const auto changes, modelling::change_campaign(bench.folder, bench.read, edit));
   Json steps = Json::array();
-  for (const modelling::Change& change : *changes)
+  for (const modelling::Change& change : changes)
     steps.push_back(Json::parse(modelling::history_line(change.step)));
   return storage::dump_line({{"model", bench.campaign().model},
                              {"manifest_sha256", bench.read.inputs.front().second},
@@ -78,23 +75,20 @@ Expected<std::string> save(Bench& bench, const Json& request) {
 }
 
 Expected<std::string> difference(Bench& bench, const Json& request) {
-  const auto text = storage::read_small_file(bench.folder / config::manifest_name);
-  if (!text) return fail(text.error());
-  const std::string digest = storage::sha256(*text);
+  NONIO_TRY(const auto text, storage::read_small_file(bench.folder / config::manifest_name));
+  const std::string digest = storage::sha256(text);
   Json out = {{"manifest_sha256", digest},
               {"changed_on_disk", digest != bench.read.inputs.front().second},
               {"diff", ""}};
-  if (const auto manifest = config::parse_manifest(*text, config::manifest_name,
+  if (const auto manifest = config::parse_manifest(text, config::manifest_name,
                                                    bench.place->context.plugins->methods()))
     out["on_disk"] = manifest->campaign.model;
   else
     out["on_disk_error"] = manifest.error().front().message;
   if (digest != bench.read.inputs.front().second) return storage::dump_line(out);
-  const auto edit = edit_of(bench, request);
-  if (!edit) return fail(edit.error());
-  const auto edited = modelling::edited_manifest(*text, *edit);
-  if (!edited) return fail(edited.error());
-  out["diff"] = unified_difference(config::manifest_name, *text, *edited);
+  NONIO_TRY(const auto edit, edit_of(bench, request));
+  NONIO_TRY(const auto edited, modelling::edited_manifest(text, edit));
+  out["diff"] = unified_difference(config::manifest_name, text, edited);
   return storage::dump_line(out);
 }
 

@@ -55,17 +55,16 @@ bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
 }  // namespace
 
 Expected<Launcher> Launcher::start(const BenchWish& common) {
-  auto ends = process::channel_pair(SOCK_STREAM, "the process that starts others");
-  if (!ends) return fail(ends.error());
+  NONIO_TRY(auto ends, process::channel_pair(SOCK_STREAM, "the process that starts others"));
   std::cout.flush();
   std::cerr.flush();
   const pid_t child = process::fork_patiently();
   if (child < 0) return fail("no process could be started");
   if (child == 0) {
-    (*ends)[0] = process::Handle();
-    serve_launches(common, (*ends)[1].get());
+    ends[0] = process::Handle();
+    serve_launches(common, ends[1].get());
   }
-  return Launcher(std::move((*ends)[0]));
+  return Launcher(std::move(ends[0]));
 }
 
 Expected<process::Handle> Launcher::open(const std::filesystem::path& campaign) {

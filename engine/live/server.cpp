@@ -10,28 +10,191 @@
 #include <Poco/Net/StreamSocket.h>
 #include <Poco/Net/StreamSocketImpl.h>
 #include <fcntl.h>
+#include <netinet/in.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/random.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <cerrno>
+#include <chrono>
 #include <condition_variable>
+#include <cstdint>
+#include <cstring>
 #include <deque>
+#include <functional>
 #include <iostream>
+#include <map>
 #include <mutex>
+#include <string>
+#include <string_view>
 #include <thread>
+#include <vector>
 
 #include "live/campaign_service.h"
-#include "live/front.h"
-#include "live/token.h"
+#include "live/guard.h"
+#include "nonio/sdk/error.h"
+#include "platform/process/channel.h"
 #include "platform/storage/late_library.h"
 
 namespace nonio::live {
 namespace net = Poco::Net;
 
 namespace {
+
+/// Takes connections on 127.0.0.1 and hands each on when the whole head of its request is there:
+/// one who sends a byte now and then keeps no thread. One thread.
+class Front {
+ public:
+  static constexpr std::size_t most_waiting = 128;
+  static constexpr std::chrono::seconds head_patience{5};
+
+  /// `port` 0: the kernel chooses one.
+  static Expected<Front> open(std::uint16_t port);
+  std::uint16_t port() const { return port_; }
+
+  /// `take` gets a socket whose next bytes are a head, still unread; or the status with which it is
+  /// to be refused (408: too slow, 431: too large). Until `is_over`, asked several times a second.
+  void serve(const std::function<void(process::Handle, int refused)>& take,
+             const std::function<bool()>& is_over);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Front(process::Handle socket, std::uint16_t port) : socket_(std::move(socket)), port_(port) {}
+  void accept_all();
+  /// Whether the head is complete (200), refused (its status), or to be waited for (0); -1: gone.
+  int look_at(int socket) const;
+
+  struct Visitor {
+    process::Handle socket;
+    Clock::time_point since;
+    std::size_t seen = 0;
+  };
+  process::Handle socket_;
+  std::uint16_t port_;
+  std::map<std::uint64_t, Visitor> waiting_{};  ///< in the order in which they came
+  std::uint64_t last_ = 0;
+};
+
+Expected<Front> Front::open(std::uint16_t port) {
+  const auto failed = [&](const char* what) {
+    return fail("127.0.0.1:" + std::to_string(port) + ": " + what + ": " + std::strerror(errno));
+  };
+  process::Handle socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!socket) return failed("socket");
+  const int yes = 1;
+  ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  auto* const plain = reinterpret_cast<sockaddr*>(&address);
+  if (::bind(socket.get(), plain, sizeof address) != 0) return failed("bind");
+  if (::listen(socket.get(), SOMAXCONN) != 0) return failed("listen");
+  socklen_t size = sizeof address;
+  if (::getsockname(socket.get(), plain, &size) != 0) return failed("getsockname");
+  return Front(std::move(socket), ntohs(address.sin_port));
+}
+
+void Front::accept_all() {
+  while (true) {
+    process::Handle visitor(
+        ::accept4(socket_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (!visitor) return;
+    // The one who has waited longest has least to say.
+    if (waiting_.size() == most_waiting) waiting_.erase(waiting_.begin());
+    waiting_[++last_] = {std::move(visitor), Clock::now(), 0};
+  }
+}
+
+int Front::look_at(int socket) const {
+  constexpr std::size_t room = most_head + 4096;
+  std::array<char, room> bytes;
+  const ssize_t n = ::recv(socket, bytes.data(), bytes.size(), MSG_PEEK);
+  if (n < 0) return errno == EAGAIN || errno == EINTR ? 0 : -1;
+  if (n == 0) return -1;
+  const std::string_view seen(bytes.data(), static_cast<std::size_t>(n));
+  const std::size_t end = std::min(seen.find("\r\n\r\n"), seen.find("\n\n"));
+  if (end != std::string_view::npos) return head_status(seen.substr(0, end));
+  return seen.size() >= room ? 431 : 0;
+}
+
+void Front::serve(const std::function<void(process::Handle, int)>& take,
+                  const std::function<bool()>& is_over) {
+  constexpr int tick = 100, soon = 2;
+  while (!is_over()) {
+    std::vector<pollfd> all{{socket_.get(), POLLIN, 0}};
+    for (const auto& [number, visitor] : waiting_) all.push_back({visitor.socket.get(), POLLIN, 0});
+    // A socket whose head has begun is always readable: looked at again a little later.
+    if (::poll(all.data(), all.size(), tick) > 0 && all.front().revents == 0) ::usleep(soon * 1000);
+    accept_all();
+    std::vector<std::pair<std::uint64_t, int>> ready;
+    for (const auto& [number, visitor] : waiting_) {
+      const int state = look_at(visitor.socket.get());
+      if (state != 0)
+        ready.emplace_back(number, state);
+      else if (Clock::now() - visitor.since > head_patience)
+        ready.emplace_back(number, 408);
+    }
+    for (const auto& [number, state] : ready) {
+      process::Handle socket = std::move(waiting_.at(number).socket);
+      waiting_.erase(number);
+      if (state > 0) take(std::move(socket), state == 200 ? 0 : state);
+    }
+  }
+}
+
+constexpr std::size_t digits = 32;
+
+Expected<std::string> read_token(const std::string& file, int fd) {
+  struct stat s {};
+  if (::fstat(fd, &s) != 0) return fail(file + ": " + std::strerror(errno));
+  if (!S_ISREG(s.st_mode) || s.st_uid != ::geteuid() || (s.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+    return fail(file + ": expected a file of this user that no other user can read (chmod 600)");
+  std::array<char, digits + 2> bytes{};
+  const ssize_t n = ::read(fd, bytes.data(), bytes.size());
+  std::string token(bytes.data(), n > 0 ? static_cast<std::size_t>(n) : 0);
+  if (token.ends_with('\n')) token.pop_back();
+  if (token.size() != digits || token.find_first_not_of("0123456789abcdef") != std::string::npos)
+    return fail(file +
+                ": expected a token of 32 hexadecimal digits (delete the file for a new one)");
+  return token;
+}
+
+/// 128 bits of the kernel's as 32 hexadecimal digits.
+Expected<std::string> new_token() {
+  std::array<unsigned char, digits / 2> bits{};
+  if (::getrandom(bits.data(), bits.size(), 0) != static_cast<ssize_t>(bits.size()))
+    return fail(std::string("no random numbers: ") + std::strerror(errno));
+  std::string token;
+  for (const unsigned char byte : bits) {
+    constexpr const char* hex = "0123456789abcdef";
+    token += hex[byte >> 4];
+    token += hex[byte & 15];
+  }
+  return token;
+}
+
+/// The token in a file that only its owner can read; a new one if there is no such file. For an
+/// address that stays when the server is started again.
+Expected<std::string> token_in(const std::string& file) {
+  const process::Handle old(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  if (old) return read_token(file, old.get());
+  if (errno != ENOENT) return fail(file + ": " + std::strerror(errno));
+  auto token = new_token();
+  if (!token) return token;
+  const process::Handle made(
+      ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
+  const std::string line = *token + "\n";
+  if (!made || ::write(made.get(), line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+    return fail(file + ": " + std::strerror(errno));
+  return token;
+}
 
 constexpr std::size_t threads = 16, most_queued = 64;
 constexpr auto heartbeat = std::chrono::seconds(15);
@@ -278,24 +441,22 @@ sigset_t block_signals() {
 }
 
 Expected<void> serve_here(const LiveWish& wish) {
-  auto token = wish.token_file.empty() ? new_token() : token_in(wish.token_file);
-  if (!token) return fail(token.error());
-  auto front = Front::open(wish.port);
-  if (!front) return fail(front.error());
+  NONIO_TRY(auto token, wish.token_file.empty() ? new_token() : token_in(wish.token_file));
+  NONIO_TRY(auto front, Front::open(wish.port));
   auto service = service_of(wish);  // makes processes: before the first thread
   if (!service) return fail(service.error());
   const sigset_t ends = block_signals();
-  const Post post{front->port(), *token, wish.hosts, false, wish.edit};
+  const Post post{front.port(), token, wish.hosts, false, wish.edit};
   if (auto begun = (*service)->begin(); !begun) return fail(begun.error());
   House house{post, **service};
   {
     Pool pool(house);
     std::thread taker([&] {
-      front->serve(
+      front.serve(
           [&](process::Handle socket, int refused) { pool.take(std::move(socket), refused); },
           [&] { return house.over.load(); });
     });
-    std::cout << address_of(post) << "#t=" << *token << std::endl;
+    std::cout << address_of(post) << "#t=" << token << std::endl;
     if (!wish.quiet)
       std::cerr << "nonio live: open the address above in a browser on this computer; it is the "
                    "key, do not pass it on. End with Ctrl-C.\n";
@@ -309,6 +470,7 @@ Expected<void> serve_here(const LiveWish& wish) {
 }
 
 }  // namespace
+
 }  // namespace nonio::live
 
 NONIO_EXPORTED const nonio::live::Serve nonio_serve;

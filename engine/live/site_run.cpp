@@ -49,18 +49,17 @@ Expected<bool> SiteRun::begin(const std::vector<std::string>& arguments, const s
                               const std::string& id) {
   std::unique_lock lock(mutex_);
   if (running_ || over_) return false;
-  auto channel = launcher_.run(arguments);
-  if (!channel) return fail(channel.error());
+  NONIO_TRY(auto channel, launcher_.run(arguments));
   if (thread_.joinable()) thread_.join();  // it has told its end
   running_ = true;
   cancelled_ = false;
   id_ = id;
   before_ = results_now(out_, id);
-  channel_ = channel->get();
+  channel_ = channel.get();
   last_words_.clear();
   now_ = {{"state", "running"}, {"campaign", id}, {"command", command},
           {"stage", "begin"},   {"done", 0},      {"to_do", 0}};
-  thread_ = std::thread([this, from = channel->release()] { follow(process::Handle(from)); });
+  thread_ = std::thread([this, from = channel.release()] { follow(process::Handle(from)); });
   return true;
 }
 

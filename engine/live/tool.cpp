@@ -13,12 +13,14 @@
 #include <csignal>
 
 #include "platform/process/child.h"
-#include "platform/process/watched.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::live {
 
 namespace {
 
+/// A message begins with it or its opposite.
+constexpr bool is_line = true;
 constexpr std::size_t most_printed = 64 << 20, most_errors = 1 << 16;
 
 [[noreturn]] void become(const std::string& program, const std::vector<std::string>& arguments,
@@ -50,9 +52,7 @@ bool take_from(int fd, std::string& into) {
 /// Whole lines of `text` from `told` on.
 void tell_lines(const std::string& text, std::size_t& told, int channel) {
   for (std::size_t end; (end = text.find('\n', told)) != std::string::npos; told = end + 1) {
-    process::Parcel parcel;
-    parcel.add("line").add(text.substr(told, end - told));
-    process::write_text(channel, parcel.bytes());
+    process::write_text(channel, storage::pack(is_line, text.substr(told, end - told)));
   }
 }
 
@@ -90,12 +90,10 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
     ;
-  process::Parcel parcel;
-  parcel.add("end")
-      .add(static_cast<std::uint64_t>(WIFEXITED(status) ? WEXITSTATUS(status) : 255))
-      .add(printed)
-      .add(std::string_view(said).substr(said.size() - std::min(said.size(), most_errors)));
-  process::write_text(channel.get(), parcel.bytes());
+  said.erase(0, said.size() - std::min(said.size(), most_errors));
+  process::write_text(
+      channel.get(),
+      storage::pack(!is_line, WIFEXITED(status) ? WEXITSTATUS(status) : 255, printed, said));
   ::_exit(0);
 }
 
@@ -107,14 +105,12 @@ ToolEnd hear_tool(const process::Handle& channel,
                   const std::function<void(const std::string&)>& line) {
   ToolEnd end;
   for (std::string bytes; process::read_text(channel.get(), bytes);) {
-    process::Parcel parcel(std::move(bytes));
-    if (parcel.text() == "line") {
-      line(parcel.text());
+    bool is_one_line = false;
+    if (std::string text; storage::unpack(bytes, is_one_line, text)) {
+      line(text);
       continue;
     }
-    end.status = static_cast<int>(parcel.number());
-    end.out = parcel.text();
-    end.errors = parcel.text();
+    storage::unpack(bytes, is_one_line, end.status, end.out, end.errors);
     break;
   }
   return end;

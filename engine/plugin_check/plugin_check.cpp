@@ -130,14 +130,12 @@ Expected<std::vector<kit::Source>> sources_below(const fs::path& folder) {
   std::vector<kit::Source> sources;
   for (const fs::path& manifest : files_with(folder, std::string("/") + config::manifest_name)) {
     const fs::path place = manifest.parent_path();
-    auto text = storage::read_file(manifest);
-    if (!text) return fail(text.error());
-    kit::Source s{place.filename().string(), std::move(*text), {}};
+    NONIO_TRY(auto text, storage::read_file(manifest));
+    kit::Source s{place.filename().string(), std::move(text), {}};
     for (const auto& entry : fs::directory_iterator(place)) {
       if (!entry.is_regular_file()) continue;
-      auto bytes = storage::read_file(entry.path());
-      if (!bytes) return fail(bytes.error());
-      s.files.push_back({entry.path().filename().string(), std::move(*bytes)});
+      NONIO_TRY(auto bytes, storage::read_file(entry.path()));
+      s.files.push_back({entry.path().filename().string(), std::move(bytes)});
     }
     if (auto values = storage::read_file(place / "expected" / "values.csv"); values)
       s.files.push_back({"expected/values.csv", std::move(*values)});
@@ -154,17 +152,15 @@ class Checker {
   Expected<void> prepare() {
     own_.load({request_.own_plugins});
     std::string digest;
-    auto templates = config::read_templates(request_.template_folders, digest);
-    if (!templates) return fail(templates.error());
-    bench_.templates = std::move(*templates);
+    NONIO_TRY(auto templates, config::read_templates(request_.template_folders, digest));
+    bench_.templates = std::move(templates);
     bench_.context.version = request_.version;
     bench_.context.plugins = &own_;
     bench_.context.templates = bench_.templates;
     seed(request_.seed);
     for (const fs::path& folder : request_.cases) {
-      auto cases = sources_below(folder);
-      if (!cases) return fail(cases.error());
-      for (kit::Source& s : *cases) cases_.push_back(std::move(s));
+      NONIO_TRY(auto cases, sources_below(folder));
+      for (kit::Source& s : cases) cases_.push_back(std::move(s));
     }
     return {};
   }

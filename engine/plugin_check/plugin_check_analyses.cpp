@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 
 #include "nonio/sdk/format.h"
 #include "platform/storage/digest.h"
@@ -467,8 +466,7 @@ const std::vector<Check<Analysis>>& analysis_checks() {
       {"finite", "A value that cannot be given is absent.", analysis_finite},
       {"rows", "The order of rows does not change the result.", analysis_rows},
       {"shift",
-       "The unknown zero of the readings leaves a result unchanged, or shifts it by "
-       "itself.",
+       "The unknown zero of the readings leaves a result unchanged, or shifts it by itself.",
        analysis_shift},
       {"scale", "Doubled deviations double the results.", analysis_scale},
       {"mirror", "A reversed axis gives results of the same size.", analysis_mirror},

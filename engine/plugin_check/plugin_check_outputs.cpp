@@ -3,7 +3,6 @@
 // (plugin_check_controllers.cpp).
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 

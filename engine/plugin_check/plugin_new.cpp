@@ -63,11 +63,10 @@ Expected<std::vector<std::string>> new_plugin(const fs::path& skeletons, const s
   std::sort(sources.begin(), sources.end());
   std::vector<std::string> written;
   for (const fs::path& source : sources) {
-    const auto text = storage::read_file(source);
-    if (!text) return fail(text.error());
+    NONIO_TRY(const auto text, storage::read_file(source));
     const std::string relative = source.lexically_relative(skeletons / kind).string();
     const fs::path target = folder / with_names(relative.substr(0, relative.size() - 3), name);
-    const Artifact file{target.filename().string(), with_names(*text, name)};
+    const Artifact file{target.filename().string(), with_names(text, name)};
     if (auto done = storage::publish(target.parent_path(), {file}); !done)
       return fail(done.error());
     written.push_back(target.string());

@@ -12,8 +12,7 @@ namespace fs = std::filesystem;
 Expected<TemplateCheck> check_templates(const std::vector<fs::path>& template_folders,
                                         const std::vector<fs::path>& plugin_folders) {
   std::string digest;
-  const auto templates = config::read_templates(template_folders, digest);
-  if (!templates) return fail(templates.error());
+  NONIO_TRY(const auto templates, config::read_templates(template_folders, digest));
   loader::Plugins plugins;
   plugins.load(plugin_folders);
   if (!plugins.conflicts().empty()) return fail(plugins.conflicts().front());
@@ -23,7 +22,7 @@ Expected<TemplateCheck> check_templates(const std::vector<fs::path>& template_fo
     check.outputs.push_back(output.info.name);
     const auto errors = process::guarded(
         "output " + output.info.name,
-        [&]() -> Expected<std::vector<Error>> { return output.check_templates(*templates); });
+        [&]() -> Expected<std::vector<Error>> { return output.check_templates(templates); });
     if (!errors)
       check.errors.push_back(errors.error());
     else

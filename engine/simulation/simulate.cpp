@@ -171,9 +171,8 @@ Expected<void> add_effect(const EffectSpec& e, const Specification& s, const std
     if (!place) continue;
     if (!e.effect.applies(seen.table, *place))
       return fail(e.name + " does not apply to these readings: " + e.effect.info.summary);
-    const auto found = shape_of(e, seen.table, *place);
-    if (!found) return fail(found.error());
-    shape = *found;
+    NONIO_TRY(const auto found, shape_of(e, seen.table, *place));
+    shape = found;
     const auto columns = e.effect.columns(seen.table, *place, shape);
     if (!columns) return fail(e.name + ": " + columns.error().message);
     if (!e.effect.curve && columns->size() != e.linear.size())
@@ -242,9 +241,8 @@ Expected<std::string> readings(const Specification& s, std::size_t k, const Obse
                                    {"noise", quantity_json(c.noise, rotary)},
                                    {"misread", std::move(misread)}});
   if (c.method == nullptr) return text;
-  const auto written = nonio::simulate(*c.method, {s.campaign, c.measurement, as_read});
-  if (!written) return fail(written.error());
-  return std::string(simulated_mark) + "\n" + table_of(*c.method, *written);
+  NONIO_TRY(const auto written, nonio::simulate(*c.method, {s.campaign, c.measurement, as_read}));
+  return std::string(simulated_mark) + "\n" + table_of(*c.method, written);
 }
 
 /// Rotary axes and squares as they were, mm, urad.

@@ -117,8 +117,7 @@ class CycleReader {
         std::adjacent_find(c_.targets.begin(), c_.targets.end(), std::greater_equal<>());
     if (c_.targets.size() < 2 || c_.targets.size() > 100000 || falls != c_.targets.end()) {
       complain(reader_.place(list) +
-               ": expected 2 to 100000 targets, each larger than the "
-               "one before; found " +
+               ": expected 2 to 100000 targets, each larger than the one before; found " +
                std::to_string(c_.targets.size()) + " targets");
       return;
     }

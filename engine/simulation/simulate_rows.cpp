@@ -75,9 +75,8 @@ Expected<Observations> along(const Specification& s, const CycleSpec& c,
     sense = {}, sense[k] = 1.0;
   }
   if (c.is("diagonal")) {
-    auto found = sides_of(c.measurement);
-    if (!found) return fail(found.error());
-    sides = std::move(*found);
+    NONIO_TRY(auto found, sides_of(c.measurement));
+    sides = std::move(found);
     sense = {};
     for (const Side& side : sides) sense[side.coordinate] = side.slope;
   }
@@ -101,15 +100,14 @@ Expected<Observations> along(const Specification& s, const CycleSpec& c,
 }
 
 Expected<Observations> in_steps(const Specification& s, const CycleSpec& c) {
-  const auto sides = sides_of(c.measurement);
-  if (!sides) return fail(sides.error());
-  if (sides->size() != 3)
+  NONIO_TRY(const auto sides, sides_of(c.measurement));
+  if (sides.size() != 3)
     return fail("measurement \"" + c.measurement.id +
                 "\": expected `from` and `to` to differ in X, Y and Z");
   Observations o;
   o.measurement = c.measurement.id;
   o.structure = s.campaign.machine.structure;
-  for (const Side& side : *sides) o.axes.push_back({side.axis, false, {}, {}});
+  for (const Side& side : sides) o.axes.push_back({side.axis, false, {}, {}});
   static constexpr std::array<std::pair<const char*, std::array<double, 3>>, 4> corners{
       {{"PPP", {1, 1, 1}}, {"NPP", {-1, 1, 1}}, {"PNP", {1, -1, 1}}, {"PPN", {1, 1, -1}}}};
   Clock clock(c);
@@ -118,12 +116,12 @@ Expected<Observations> in_steps(const Specification& s, const CycleSpec& c) {
       if (!o.lines.empty()) clock.pause();
       Observations::Line line{
           c.measurement.id + " " + name + (run == 1 ? "" : " run " + std::to_string(run)), {}};
-      for (std::size_t k = 0; k < 3; ++k) line.sense[k] = sign[k] * (*sides)[k].slope;
+      for (std::size_t k = 0; k < 3; ++k) line.sense[k] = sign[k] * sides[k].slope;
       o.lines.push_back(line);
       // Step 0 is where the display is set to 0; the file does not have it.
       for (std::uint32_t step = 0; step <= 3 * c.steps; ++step) {
         for (std::size_t k = 0; k < 3; ++k) {
-          const Side& side = (*sides)[k];
+          const Side& side = sides[k];
           const double whole = c.measurement.to.at(side.axis) - side.from;
           // X, then Y, Z
           const std::uint32_t moved = (step + 2 - static_cast<std::uint32_t>(k)) / 3;
@@ -136,8 +134,7 @@ Expected<Observations> in_steps(const Specification& s, const CycleSpec& c) {
         o.line.push_back(static_cast<std::uint32_t>(o.lines.size() - 1));
         o.deviation.push_back(0.0);
         clock.reading(
-            o, std::fabs(c.measurement.to.at((*sides)[moving].axis) - (*sides)[moving].from) /
-                   c.steps);
+            o, std::fabs(c.measurement.to.at(sides[moving].axis) - sides[moving].from) / c.steps);
       }
     }
   return o;

@@ -2,7 +2,6 @@
 #include "simulation/simulate_spec.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "campaign/config/formula.h"
 #include "campaign/config/formula_reader.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // due.html, instruments.html, compare.html: lists over all machines.
 #include <algorithm>
-#include <map>
 
 #include "chart.h"
 #include "html.h"

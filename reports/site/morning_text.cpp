@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The worklist as text: one line per action.
-#include <algorithm>
 #include <map>
 
 #include "html.h"

@@ -24,9 +24,8 @@ Expected<std::shared_ptr<const Fonts>> fonts_of(const Templates& templates) {
 Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Templates& templates,
                                            const std::string& language) {
   const Wording words(templates, language, {"site"});
-  const auto fonts = fonts_of(templates);
-  if (!fonts) return fail(fonts.error());
-  const site::Page root{history, templates, words, "", *fonts};
+  NONIO_TRY(const auto fonts, fonts_of(templates));
+  const site::Page root{history, templates, words, "", fonts};
   using Written = Expected<std::string> (*)(const site::Page&);
   constexpr std::pair<const char*, Written> pages[] = {{"index.html", site::index_page},
                                                        {"due.html", site::due_page},
@@ -34,9 +33,8 @@ Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Tem
                                                        {"compare.html", site::compare_page}};
   std::vector<Artifact> out{{"due.ics", site::due_calendar(root)}};
   for (const auto& [name, write] : pages) {
-    auto bytes = write(root);
-    if (!bytes) return fail(bytes.error());
-    out.push_back({name, std::move(*bytes)});
+    NONIO_TRY(auto bytes, write(root));
+    out.push_back({name, std::move(bytes)});
   }
   if (auto complete = words.complete(); !complete) return fail(complete.error());
   return out;
@@ -45,13 +43,11 @@ Expected<std::vector<Artifact>> site_lists(const SiteHistory& history, const Tem
 Expected<Artifact> machine_page_of(const SiteHistory& history, const MachineHistory& machine,
                                    const Templates& templates, const std::string& language) {
   const Wording words(templates, language, {"site"});
-  const auto fonts = fonts_of(templates);
-  if (!fonts) return fail(fonts.error());
-  const site::Page below{history, templates, words, "../", *fonts};
-  auto bytes = site::machine_page(below, machine);
-  if (!bytes) return fail(bytes.error());
+  NONIO_TRY(const auto fonts, fonts_of(templates));
+  const site::Page below{history, templates, words, "../", fonts};
+  NONIO_TRY(auto bytes, site::machine_page(below, machine));
   if (auto complete = words.complete(); !complete) return fail(complete.error());
-  return Artifact{std::string(machines_folder) + "/" + machine.file, std::move(*bytes)};
+  return Artifact{std::string(machines_folder) + "/" + machine.file, std::move(bytes)};
 }
 
 Expected<std::vector<Artifact>> site_pages(const SiteHistory& history, const Templates& templates,
@@ -59,9 +55,8 @@ Expected<std::vector<Artifact>> site_pages(const SiteHistory& history, const Tem
   auto out = site_lists(history, templates, language);
   if (!out) return out;
   for (const MachineHistory& m : history.machines) {
-    auto page = machine_page_of(history, m, templates, language);
-    if (!page) return fail(page.error());
-    out->push_back(std::move(*page));
+    NONIO_TRY(auto page, machine_page_of(history, m, templates, language));
+    out->push_back(std::move(page));
   }
   return out;
 }

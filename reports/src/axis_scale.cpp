@@ -2,7 +2,6 @@
 #include "axis_scale.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "nonio/sdk/format.h"

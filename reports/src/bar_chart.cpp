@@ -46,13 +46,12 @@ class BarSetter {
   Expected<void> measure() {
     double labels = 0, texts = 0, most = chart_.line ? chart_.line->at + chart_.line->half : 0.0;
     for (const BarChart::Row& row : chart_.rows) {
-      auto label = set_line(context_, row.label, false, size_, 0.4 * width_, field_);
-      if (!label) return fail(label.error());
-      labels = std::max(labels, label->lines[0].width * size_);
+      NONIO_TRY(auto label, set_line(context_, row.label, false, size_, 0.4 * width_, field_));
+      labels = std::max(labels, label.lines[0].width * size_);
       for (const BarChart::Bar& bar : row.bars) {
-        auto text = set_line(context_, bar.text, false, size_ - 0.5, 0.3 * width_, field_);
-        if (!text) return fail(text.error());
-        texts = std::max(texts, text->lines[0].width * size_);
+        NONIO_TRY(auto text,
+                  set_line(context_, bar.text, false, size_ - 0.5, 0.3 * width_, field_));
+        texts = std::max(texts, text.lines[0].width * size_);
         if (std::isfinite(bar.value)) most = std::max(most, bar.value);
       }
     }
@@ -63,9 +62,8 @@ class BarSetter {
   }
 
   Expected<void> draw_legend(const std::string& text, Colour colour, bool line, double& x) {
-    auto set = set_line(context_, text, false, size_ - 0.5, width_ / 2, field_);
-    if (!set) return fail(set.error());
-    const double wide = 18 + set->lines[0].width * (size_ - 0.5);
+    NONIO_TRY(auto set, set_line(context_, text, false, size_ - 0.5, width_ / 2, field_));
+    const double wide = 18 + set.lines[0].width * (size_ - 0.5);
     if (x > 0 && x + wide > width_) x = 0, y_ -= 1.4 * size_;
     if (line) {
       canvas_.filled(x + 2, y_ - size_, 8, size_ - 1, style_.rule);
@@ -77,17 +75,16 @@ class BarSetter {
       canvas_.filled(x, y_ - size_ + 0.5, 12, size_ - 2, colour);
     }
     canvas_.fill_colour(style_.text);
-    set->draw(canvas_, 0, x + 16, y_);
+    set.draw(canvas_, 0, x + 16, y_);
     x += wide + 12;
     return {};
   }
 
   Expected<void> draw_head() {
-    auto title = set_line(context_, chart_.title, true, size_ + 0.5, width_, field_);
-    if (!title) return fail(title.error());
+    NONIO_TRY(auto title, set_line(context_, chart_.title, true, size_ + 0.5, width_, field_));
     canvas_.fill_colour(style_.text);
-    title->draw(canvas_, 0, 0, 0);
-    y_ = -title->height() - 2;
+    title.draw(canvas_, 0, 0, 0);
+    y_ = -title.height() - 2;
     double x = 0;
     const auto is_said = [](const BarChart::Series& s) { return !s.legend.empty(); };
     if (std::none_of(chart_.series.begin(), chart_.series.end(), is_said) && !chart_.line) {
@@ -120,10 +117,9 @@ class BarSetter {
   }
 
   Expected<void> draw_row(const BarChart::Row& row) {
-    auto label = set_line(context_, row.label, false, size_, left_ - 6, field_);
-    if (!label) return fail(label.error());
+    NONIO_TRY(auto label, set_line(context_, row.label, false, size_, left_ - 6, field_));
     canvas_.fill_colour(style_.text);
-    label->draw(canvas_, 0, 0, y_ - (row_height() - 1.25 * size_) / 2, left_ - 6, 1.0);
+    label.draw(canvas_, 0, 0, y_ - (row_height() - 1.25 * size_) / 2, left_ - 6, 1.0);
     double y = y_ - between / 2;
     for (std::size_t k = 0; k < row.bars.size(); ++k, y -= bar_height) {
       const BarChart::Bar& bar = row.bars[k];
@@ -133,11 +129,10 @@ class BarSetter {
         canvas_.filled(left_, y - bar_height + 0.7, end - left_, bar_height - 1.2,
                        chart_.series[k].colour);
       }
-      auto text = set_line(context_, bar.text, false, size_ - 0.5, 0.3 * width_, field_);
-      if (!text) return fail(text.error());
+      NONIO_TRY(auto text, set_line(context_, bar.text, false, size_ - 0.5, 0.3 * width_, field_));
       canvas_.fill_colour(style_.text);
       if (chart_.line) end = std::max(end, at(chart_.line->at + chart_.line->half));
-      text->draw(canvas_, 0, end + 3, y + 0.9);
+      text.draw(canvas_, 0, end + 3, y + 0.9);
     }
     y_ -= row_height();
     return {};

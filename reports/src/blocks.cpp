@@ -37,20 +37,18 @@ void note_glyphs(const Context& context, Glyphs& glyphs, bool bold) {
 
 Expected<SetText> set_text(const Context& context, std::string_view text, bool bold, double size,
                            double width, std::string_view field) {
-  auto glyphs = shape(text, context.fonts, bold, field, context.medium);
-  if (!glyphs) return fail(glyphs.error());
-  note_glyphs(context, *glyphs, bold);
-  SetText out{std::move(*glyphs), {}, bold, size};
+  NONIO_TRY(auto glyphs, shape(text, context.fonts, bold, field, context.medium));
+  note_glyphs(context, glyphs, bold);
+  SetText out{std::move(glyphs), {}, bold, size};
   out.lines = wrap(out.glyphs, width / size);
   return out;
 }
 
 Expected<SetText> set_line(const Context& context, std::string_view text, bool bold, double size,
                            double width, std::string_view field) {
-  auto glyphs = shape(text, context.fonts, bold, field, context.medium);
-  if (!glyphs) return fail(glyphs.error());
+  NONIO_TRY(auto glyphs, shape(text, context.fonts, bold, field, context.medium));
   SetText out{
-      shortened(std::move(*glyphs), width / size, context.fonts.weight(bold)), {}, bold, size};
+      shortened(std::move(glyphs), width / size, context.fonts.weight(bold)), {}, bold, size};
   note_glyphs(context, out.glyphs, bold);
   out.lines.push_back({0, out.glyphs.size(), width_of(out.glyphs)});
   return out;
@@ -75,22 +73,19 @@ Expected<void> draw_axis_text(Canvas& canvas, const Context& context, const Axis
                               double size, std::string_view field) {
   double free_from = -1e9;
   for (std::size_t i = 0; i < scale.ticks.size(); ++i) {
-    auto text = set_line(context, scale.labels[i], false, size, width, field);
-    if (!text) return fail(text.error());
-    const double x = left + width * scale.at(scale.ticks[i]),
-                 half = text->lines[0].width * size / 2;
+    NONIO_TRY(auto text, set_line(context, scale.labels[i], false, size, width, field));
+    const double x = left + width * scale.at(scale.ticks[i]), half = text.lines[0].width * size / 2;
     if (x - half < free_from) continue;
     free_from = x + half + 3;
-    text->draw(canvas, 0, x - 50, top, 100, 0.5);
+    text.draw(canvas, 0, x - 50, top, 100, 0.5);
   }
   // Of a title in two languages the first alone, where there is no room for both.
   constexpr std::string_view between = " · ";
   if (const auto whole = shape(title, context.fonts, false, field, context.medium);
       whole && width_of(*whole) * size > width && title.find(between) != std::string_view::npos)
     title = title.substr(0, title.find(between));
-  auto text = set_line(context, title, false, size, width, field);
-  if (!text) return fail(text.error());
-  text->draw(canvas, 0, left, top - 1.3 * size, width, 0.5);
+  NONIO_TRY(auto text, set_line(context, title, false, size, width, field));
+  text.draw(canvas, 0, left, top - 1.3 * size, width, 0.5);
   return {};
 }
 
@@ -140,13 +135,12 @@ Expected<Laid> lay(const Heading& heading, double width, const Context& context,
   const double size = heading.level == 0   ? style.title
                       : heading.level == 1 ? style.heading
                                            : style.subheading;
-  auto text = set_text(context, heading.text, true, size, width, field);
-  if (!text) return fail(text.error());
+  NONIO_TRY(auto text, set_text(context, heading.text, true, size, width, field));
   PdfCanvas canvas;
   canvas.fill_colour(heading.level == 2 ? style.text : style.accent);
   const double above = heading.level == 1 ? 9 : heading.level == 2 ? 4 : 0;
-  text->draw_all(canvas, 0, -above);
-  double height = above + text->height();
+  text.draw_all(canvas, 0, -above);
+  double height = above + text.height();
   if (heading.level == 1) {
     canvas.stroke_colour(style.accent);
     canvas.line(0.8);
@@ -161,11 +155,10 @@ Expected<Laid> lay(const Paragraph& paragraph, double width, const Context& cont
   const Style& style = context.style;
   using Look = Paragraph::Look;
   const bool small = paragraph.look == Look::small || paragraph.look == Look::muted;
-  auto text = set_text(context, paragraph.text, paragraph.look == Look::bold,
-                       small ? style.small : style.body, width, field);
-  if (!text) return fail(text.error());
+  NONIO_TRY(auto text, set_text(context, paragraph.text, paragraph.look == Look::bold,
+                                small ? style.small : style.body, width, field));
   Laid out;
-  add_text(out.pieces, *text, 0, paragraph.look == Look::muted ? style.muted : style.text,
+  add_text(out.pieces, text, 0, paragraph.look == Look::muted ? style.muted : style.text,
            paragraph.with_next);
   out.pieces.back().gap = small ? 1.5 : 3;
   return out;
@@ -175,9 +168,8 @@ Expected<Laid> lay(const Grid& grid, double width, const Context& context, std::
   const Style& style = context.style;
   Laid out;
   if (!grid.title.empty()) {
-    auto title = set_text(context, grid.title, true, style.body, width, field);
-    if (!title) return fail(title.error());
-    add_text(out.pieces, *title, 0, style.accent, true);
+    NONIO_TRY(auto title, set_text(context, grid.title, true, style.body, width, field));
+    add_text(out.pieces, title, 0, style.accent, true);
     out.pieces.back().gap = 1.5;
   }
   double label_width = 0;
@@ -187,19 +179,17 @@ Expected<Laid> lay(const Grid& grid, double width, const Context& context, std::
   label_width = std::min(label_width, 0.45 * width);
   for (const Grid::Row& row : grid.rows) {
     if (row.value.empty()) continue;
-    auto label = set_text(context, row.label, false, style.small, label_width, row.field);
-    if (!label) return fail(label.error());
+    NONIO_TRY(auto label, set_text(context, row.label, false, style.small, label_width, row.field));
     const double x = label_width + 6;
-    auto value = set_text(context, row.value, false, style.small, width - x, row.field);
-    if (!value) return fail(value.error());
+    NONIO_TRY(auto value, set_text(context, row.value, false, style.small, width - x, row.field));
     Piece first;
     PdfCanvas canvas;
     canvas.fill_colour(style.muted);
-    label->draw_all(canvas, 0, 0);
+    label.draw_all(canvas, 0, 0);
     std::vector<Piece> lines;
-    add_text(lines, *value, x, style.text);
+    add_text(lines, value, x, style.text);
     first.ops = std::move(canvas.ops) + "q\n" + lines.front().ops + "Q\n";
-    first.height = std::max(lines.front().height, label->height());
+    first.height = std::max(lines.front().height, label.height());
     lines.front() = std::move(first);
     lines.back().gap = 0.8;
     std::move(lines.begin(), lines.end(), std::back_inserter(out.pieces));
@@ -214,9 +204,8 @@ Expected<Laid> lay(const Note& note, double width, const Context& context, std::
   Laid out;
   const auto add = [&](const std::string& text, bool bold, bool with_next) -> Expected<void> {
     if (text.empty()) return {};
-    auto set = set_text(context, text, bold, style.body, width - indent, field);
-    if (!set) return fail(set.error());
-    add_text(out.pieces, *set, indent, style.text, with_next);
+    NONIO_TRY(auto set, set_text(context, text, bold, style.body, width - indent, field));
+    add_text(out.pieces, set, indent, style.text, with_next);
     return {};
   };
   if (auto ok = add(note.title, true, true); !ok) return fail(ok.error());
@@ -237,13 +226,13 @@ Expected<Laid> lay(const Status& status, double width, const Context& context,
   const Style& style = context.style;
   constexpr double pad = 6, bar = 4, indent = 24;
   std::vector<SetText> texts;
-  auto head = set_text(context, status.text, true, style.body + 1.5, width - indent - pad, field);
-  if (!head) return fail(head.error());
-  texts.push_back(std::move(*head));
+  NONIO_TRY(auto head,
+            set_text(context, status.text, true, style.body + 1.5, width - indent - pad, field));
+  texts.push_back(std::move(head));
   for (const std::string& line : status.lines) {
-    auto text = set_text(context, "• " + line, false, style.body, width - indent - pad, field);
-    if (!text) return fail(text.error());
-    texts.push_back(std::move(*text));
+    NONIO_TRY(auto text,
+              set_text(context, "• " + line, false, style.body, width - indent - pad, field));
+    texts.push_back(std::move(text));
   }
   double height = 2 * pad;
   for (const SetText& text : texts) height += text.height();
@@ -266,11 +255,10 @@ Expected<Laid> lay(const Status& status, double width, const Context& context,
 }
 
 Expected<Laid> lay(const Image& image, double width, const Context& context, std::string_view) {
-  auto picture = shared_picture(image.bytes, image.name);
-  if (!picture) return fail(picture.error());
+  NONIO_TRY(auto picture, shared_picture(image.bytes, image.name));
   auto& pictures = context.used.pictures;
-  auto it = std::find(pictures.begin(), pictures.end(), *picture);
-  if (it == pictures.end()) it = pictures.insert(it, *picture);
+  auto it = std::find(pictures.begin(), pictures.end(), picture);
+  if (it == pictures.end()) it = pictures.insert(it, picture);
   const double shape = static_cast<double>((*it)->width) / (*it)->height;
   const double height = std::min({image.height, width / shape, context.page_room});
   PdfCanvas canvas;
@@ -336,9 +324,8 @@ Expected<void> put_in_line(Columns& columns, double room, const Context& context
     Block& first = columns.parts[i].front();
     auto* plot = std::get_if<Plot>(&first.what);
     if (plot == nullptr) continue;
-    const auto own = plot_top(*plot, room * share_of(i), context, first.field);
-    if (!own) return fail(own.error());
-    top = std::max(top, *own);
+    NONIO_TRY(const auto own, plot_top(*plot, room * share_of(i), context, first.field));
+    top = std::max(top, own);
     plots.push_back(plot);
   }
   if (plots.size() > 1)

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <mutex>
-#include <optional>
 
 #include "font_reader.h"
 #include "font_subset.h"
@@ -217,9 +216,8 @@ Expected<std::shared_ptr<const Fonts>> shared_fonts(FontFile regular, FontFile b
   for (const auto& [font, file] :
        {std::pair(&fonts.regular, regular), {&fonts.bold, bold}, {&fonts.wide, wide}}) {
     if (file.bytes.empty() && font == &fonts.wide) continue;
-    auto parsed = parse_font(file);
-    if (!parsed) return fail(parsed.error());
-    *font = std::move(*parsed);
+    NONIO_TRY(auto parsed, parse_font(file));
+    *font = std::move(parsed);
     if (font != &fonts.wide) compress(*font);
   }
   memo.fonts = std::make_shared<const Fonts>(std::move(fonts));

@@ -114,24 +114,21 @@ Expected<void> add_heads_and_feet(std::vector<PdfCanvas>& pages, const Document&
     PdfCanvas canvas;
     const std::string number =
         numbered(numbered(document.page_of, "{page}", i + 1), "{pages}", pages.size());
-    auto right = set_line(context, number, false, style.small, 0.4 * width, "page_of");
-    if (!right) return fail(right.error());
-    auto left = set_line(context, document.foot, false, style.small,
-                         width - right->lines[0].width * style.small - 10, "foot");
-    if (!left) return fail(left.error());
+    NONIO_TRY(auto right, set_line(context, number, false, style.small, 0.4 * width, "page_of"));
+    NONIO_TRY(auto left, set_line(context, document.foot, false, style.small,
+                                  width - right.lines[0].width * style.small - 10, "foot"));
     canvas.stroke_colour(style.rule);
     canvas.line(0.4);
     canvas.segment(0, foot_room - 2, width, foot_room - 2);
     canvas.fill_colour(style.muted);
-    left->draw(canvas, 0, 0, foot_room - 5);
-    right->draw(canvas, 0, 0, foot_room - 5, width, 1.0);
+    left.draw(canvas, 0, 0, foot_room - 5);
+    right.draw(canvas, 0, 0, foot_room - 5, width, 1.0);
     pages[i].place(style.left, style.bottom - 6, canvas.ops);
     if (i == 0 || document.head.empty()) continue;
     PdfCanvas head;
-    auto text = set_line(context, document.head, false, style.small, width, "head");
-    if (!text) return fail(text.error());
+    NONIO_TRY(auto text, set_line(context, document.head, false, style.small, width, "head"));
     head.fill_colour(style.muted);
-    text->draw(head, 0, 0, 0);
+    text.draw(head, 0, 0, 0);
     head.stroke_colour(style.rule);
     head.line(0.4);
     head.segment(0, -style.small * 1.3 - 1, width, -style.small * 1.3 - 1);
@@ -218,9 +215,8 @@ Expected<std::string> pdf_bytes(const Document& document, const Fonts& fonts) {
         std::pair(&document.subject, "subject")})
     if (auto glyphs = shape(*text, fonts, false, field); !glyphs) return fail(glyphs.error());
   Laid waiting;  // headings wait for what follows them
-  const auto foot = lay_first_foot(document, width, context);
-  if (!foot) return fail(foot.error());
-  Pages pages(style, !document.head.empty(), *foot);
+  NONIO_TRY(const auto foot, lay_first_foot(document, width, context));
+  Pages pages(style, !document.head.empty(), foot);
   std::optional<Laid> before_last;  // the last block is not alone on a page
   for (const Block& block : document.blocks) {
     auto laid = lay_block(block, width, context);

@@ -52,11 +52,11 @@ Expected<Laid> lay_code(const Code& code, double width, const Context& context,
   draw_modules(canvas, *modules, size);
   double height = size;
   if (!code.caption.empty()) {
-    auto caption = set_text(context, code.caption, false, context.style.small - 1, width, field);
-    if (!caption) return fail(caption.error());
+    NONIO_TRY(auto caption,
+              set_text(context, code.caption, false, context.style.small - 1, width, field));
     canvas.fill_colour(context.style.muted);
-    caption->draw_all(canvas, 0, -height);
-    height += caption->height();
+    caption.draw_all(canvas, 0, -height);
+    height += caption.height();
   }
   return Laid{{{height, 4, std::move(canvas.ops), false}}};
 }
@@ -67,10 +67,9 @@ Expected<Laid> lay_signature(const SignatureBox& box, double width, const Contex
   const Style& style = context.style;
   std::vector<SetText> texts;
   for (std::size_t i = 0; i <= box.lines.size(); ++i) {
-    auto text = set_text(context, i == 0 ? box.title : box.lines[i - 1], i == 0, style.small,
-                         width - 2 * pad, field);
-    if (!text) return fail(text.error());
-    texts.push_back(std::move(*text));
+    NONIO_TRY(auto text, set_text(context, i == 0 ? box.title : box.lines[i - 1], i == 0,
+                                  style.small, width - 2 * pad, field));
+    texts.push_back(std::move(text));
   }
   double height = 2 * pad;
   for (const SetText& text : texts) height += text.height();

@@ -5,7 +5,6 @@
 
 #include <png.h>
 
-#include <algorithm>
 #include <mutex>
 #include <vector>
 
@@ -123,10 +122,9 @@ Expected<std::shared_ptr<const Picture>> shared_picture(std::string_view bytes,
   const std::lock_guard lock(memo.mutex);
   for (const Known& k : memo.known)
     if (k.bytes == bytes) return k.picture;
-  auto picture = read(bytes, name);
-  if (!picture) return fail(picture.error());
+  NONIO_TRY(auto picture, read(bytes, name));
   if (memo.known.size() == most) memo.known.erase(memo.known.begin());
-  memo.known.push_back({std::string(bytes), std::make_shared<Picture>(std::move(*picture))});
+  memo.known.push_back({std::string(bytes), std::make_shared<Picture>(std::move(picture))});
   return memo.known.back().picture;
 }
 

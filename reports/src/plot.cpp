@@ -288,11 +288,11 @@ class PlotSetter {
  private:
   Expected<double> draw_title() {
     if (plot_.title.empty()) return 0.0;
-    auto title = set_text(context_, plot_.title, true, style_.small + 0.5, width_, field_);
-    if (!title) return fail(title.error());
+    NONIO_TRY(auto title,
+              set_text(context_, plot_.title, true, style_.small + 0.5, width_, field_));
     canvas_.fill_colour(style_.text);
-    title->draw_all(canvas_, 0, 0);
-    return title->height() + 1;
+    title.draw_all(canvas_, 0, 0);
+    return title.height() + 1;
   }
 
   void draw_sample(const Curve& curve, double x, double y) {
@@ -324,18 +324,17 @@ class PlotSetter {
     bool any = false;
     for (const Curve& curve : plot_.curves) {
       if (curve.legend.empty()) continue;
-      auto text = set_text(context_, curve.legend, false, size_, width_ - 20, field_);
-      if (!text) return fail(text.error());
+      NONIO_TRY(auto text, set_text(context_, curve.legend, false, size_, width_ - 20, field_));
       double wide = 0;
-      for (const TextLine& line : text->lines) wide = std::max(wide, 19 + line.width * size_);
+      for (const TextLine& line : text.lines) wide = std::max(wide, 19 + line.width * size_);
       if (x > 0 && x + wide > width_) {
         x = 0;
-        y += text->leading();
+        y += text.leading();
       }
       draw_sample(curve, x, -y - 0.65 * size_);
       canvas_.fill_colour(style_.text);
-      text->draw_all(canvas_, x + 19, -y);
-      y += text->height() - text->leading();
+      text.draw_all(canvas_, x + 19, -y);
+      y += text.height() - text.leading();
       x += wide + 9;
       any = true;
     }
@@ -343,14 +342,13 @@ class PlotSetter {
   }
 
   Expected<void> draw_nothing(double top, double height) {
-    auto text = set_text(context_, plot_.empty_text, false, style_.small, width_, field_);
-    if (!text) return fail(text.error());
+    NONIO_TRY(auto text, set_text(context_, plot_.empty_text, false, style_.small, width_, field_));
     canvas_.stroke_colour(style_.rule);
     canvas_.line(0.5);
     canvas_.rectangle(0, -height, width_, height - top);
     canvas_.stroke();
     canvas_.fill_colour(style_.muted);
-    text->draw_all(canvas_, 0, -(height + top) / 2, width_, 0.5);
+    text.draw_all(canvas_, 0, -(height + top) / 2, width_, 0.5);
     return {};
   }
 
@@ -376,15 +374,13 @@ class PlotSetter {
     std::vector<SetText> labels;
     double label_width = plot_.number_room;
     for (const std::string& label : frame.up.labels) {
-      auto text = set_line(context_, label, false, size_, width_, field_);
-      if (!text) return fail(text.error());
-      label_width = std::max(label_width, text->lines[0].width * size_);
-      labels.push_back(std::move(*text));
+      NONIO_TRY(auto text, set_line(context_, label, false, size_, width_, field_));
+      label_width = std::max(label_width, text.lines[0].width * size_);
+      labels.push_back(std::move(text));
     }
-    auto up_title = set_text(context_, plot_.y_title, false, size_, frame.h, field_);
-    if (!up_title) return fail(up_title.error());
+    NONIO_TRY(auto up_title, set_text(context_, plot_.y_title, false, size_, frame.h, field_));
     frame.x =
-        1.3 * size_ * static_cast<double>(up_title->lines.size()) + 0.2 * size_ + label_width + 4;
+        1.3 * size_ * static_cast<double>(up_title.lines.size()) + 0.2 * size_ + label_width + 4;
     frame.y = -height + below;
     frame.w = width_ - frame.x - 2 - span_room() * static_cast<double>(plot_.spans.size());
     if (plot_.same_scale) widen(across, (up.high - up.low) * frame.w / frame.h);
@@ -394,7 +390,7 @@ class PlotSetter {
                    plot_.language);
     if (!plot_.lanes.empty()) frame.across = lanes();
     if (!plot_.ticks.empty()) frame.across = own_ticks(frame.across);
-    if (auto ok = draw_axes(frame, labels, *up_title); !ok) return ok;
+    if (auto ok = draw_axes(frame, labels, up_title); !ok) return ok;
     canvas_.clip(frame.x, frame.y, frame.w, frame.h);
     canvas_.round_joins();
     if (auto ok = draw_events(frame); !ok) return ok;
@@ -420,9 +416,8 @@ class PlotSetter {
 
   /// One scale both ways, in the middle, and the caption below.
   Expected<void> draw_picture(double top, double height, Range across, Range up) {
-    auto caption = set_text(context_, plot_.x_title, false, size_, width_, field_);
-    if (!caption) return fail(caption.error());
-    const double below = caption->height() + 2, edge = 1.6 * size_;
+    NONIO_TRY(auto caption, set_text(context_, plot_.x_title, false, size_, width_, field_));
+    const double below = caption.height() + 2, edge = 1.6 * size_;
     Frame frame{
         edge, -height + below + edge, width_ - 2 * edge, height - top - below - 2 * edge, {}, {}};
     const double per_pt = std::max(
@@ -435,17 +430,16 @@ class PlotSetter {
     for (const Curve& curve : plot_.curves) draw_line(canvas_, frame, curve);
     canvas_.fill_colour(style_.text);
     for (const Plot::Label& label : plot_.labels) {
-      auto text = set_line(context_, label.text, true, size_, width_, field_);
-      if (!text) return fail(text.error());
+      NONIO_TRY(auto text, set_line(context_, label.text, true, size_, width_, field_));
       const double x = frame.px(label.x), y = frame.py(label.y), half = size_ * 0.9;
       const double right = x - (frame.x + frame.w / 2), over = y - (frame.y + frame.h / 2);
       const double far = std::max(std::hypot(right, over), 1e-9);
-      const double wide = text->lines[0].width * size_;
-      text->draw(canvas_, 0, x + right / far * (half + wide / 2) - wide / 2,
-                 y + over / far * half + 0.65 * size_);
+      const double wide = text.lines[0].width * size_;
+      text.draw(canvas_, 0, x + right / far * (half + wide / 2) - wide / 2,
+                y + over / far * half + 0.65 * size_);
     }
     canvas_.fill_colour(style_.muted);
-    caption->draw_all(canvas_, 0, -height + caption->height(), width_, 0.5);
+    caption.draw_all(canvas_, 0, -height + caption.height(), width_, 0.5);
     return {};
   }
 
@@ -491,15 +485,14 @@ class PlotSetter {
   Expected<void> draw_events(const Frame& f) {
     for (const Plot::Event& event : plot_.events) {
       if (!(event.at >= f.across.from && event.at <= f.across.to)) continue;
-      auto text = set_line(context_, event.text, false, size_, f.w, field_);
-      if (!text) return fail(text.error());
+      NONIO_TRY(auto text, set_line(context_, event.text, false, size_, f.w, field_));
       const double x = f.px(event.at);
       canvas_.begin_item(event.title, {});
       canvas_.stroke_colour(style_.muted);
       canvas_.line(0.8, Dash::dotted);
       canvas_.segment(x, f.y, x, f.y + f.h);
       canvas_.fill_colour(style_.muted);
-      text->draw(canvas_, 0, x + 3, f.y + f.h);
+      text.draw(canvas_, 0, x + 3, f.y + f.h);
       canvas_.end_item();
     }
     return {};
@@ -529,8 +522,7 @@ class PlotSetter {
   Expected<void> draw_spans(const Frame& f) {
     double x = f.x + f.w + 5;
     for (const Plot::Span& span : plot_.spans) {
-      auto text = set_line(context_, span.text, false, size_, f.h, field_);
-      if (!text) return fail(text.error());
+      NONIO_TRY(auto text, set_line(context_, span.text, false, size_, f.h, field_));
       const double low = f.py(std::min(span.from, span.to)),
                    high = f.py(std::max(span.from, span.to));
       canvas_.stroke_colour(style_.text);
@@ -539,9 +531,9 @@ class PlotSetter {
       canvas_.segment(x - 2.5, low, x + 2.5, low);
       canvas_.segment(x - 2.5, high, x + 2.5, high);
       canvas_.fill_colour(style_.text);
-      const double wide = text->lines[0].width * size_;
+      const double wide = text.lines[0].width * size_;
       const double from = std::clamp((low + high - wide) / 2, f.y, std::max(f.y, f.y + f.h - wide));
-      canvas_.text_upwards(x + size_ + 2, from, false, size_, text->glyphs);
+      canvas_.text_upwards(x + size_ + 2, from, false, size_, text.glyphs);
       x += span_room();
     }
     return {};
@@ -561,10 +553,9 @@ class PlotSetter {
 Expected<Laid> lay_plot(const Plot& plot, double width, const Context& context,
                         std::string_view field) {
   PdfCanvas canvas;
-  const auto height = PlotSetter(plot, width, context, field, canvas).set();
-  if (!height) return fail(height.error());
+  NONIO_TRY(const auto height, PlotSetter(plot, width, context, field, canvas).set());
   const bool legend = plot.only_legend;
-  return Laid{{{*height, legend ? 2.0 : 5.0, std::move(canvas.ops), legend}}};
+  return Laid{{{height, legend ? 2.0 : 5.0, std::move(canvas.ops), legend}}};
 }
 
 Expected<double> plot_top(const Plot& plot, double width, const Context& context,

@@ -116,25 +116,22 @@ class TableSetter {
       if (number) ask(needs.numbers, std::min(all, most));
     };
     for (std::size_t c = 0; c < n; ++c) {
-      auto title = shape(table_.columns[c].title, context_.fonts, true, names[c]);
-      if (!title) return fail(title.error());
-      auto unit = shape(table_.columns[c].unit, context_.fonts, false, names[c]);
-      if (!unit) return fail(unit.error());
+      NONIO_TRY(auto title, shape(table_.columns[c].title, context_.fonts, true, names[c]));
+      NONIO_TRY(auto unit, shape(table_.columns[c].unit, context_.fonts, false, names[c]));
       constexpr double short_title = 48;  // "U (k = 2)", "Nr. / No.": in one line
-      const double wide = width_of(*title) * context_.style.small;
-      measure(c, *title, false);
+      const double wide = width_of(title) * context_.style.small;
+      measure(c, title, false);
       if (wide <= short_title) needs.least[c] = std::max(needs.least[c], wide + 2 * pad + rounding);
-      measure(c, *unit, false);
-      titles_.push_back(std::move(*title));
-      units_.push_back(std::move(*unit));
+      measure(c, unit, false);
+      titles_.push_back(std::move(title));
+      units_.push_back(std::move(unit));
     }
     for (const auto& row : table_.rows) {
       Cells cells;
       for (std::size_t c = 0; c < n && c < row.size(); ++c) {
-        auto text = shape(row[c].text, context_.fonts, row[c].bold, names[c]);
-        if (!text) return fail(text.error());
-        measure(c, *text, table_.columns[c].number);
-        cells.text.push_back(std::move(*text));
+        NONIO_TRY(auto text, shape(row[c].text, context_.fonts, row[c].bold, names[c]));
+        measure(c, text, table_.columns[c].number);
+        cells.text.push_back(std::move(text));
         cells.bold.push_back(row[c].bold);
       }
       rows_.push_back(std::move(cells));
@@ -170,12 +167,11 @@ class TableSetter {
   Expected<void> add_title(Laid& out) const {
     if (table_.title.empty()) return {};
     const Style& style = context_.style;
-    auto text = set_text(context_, table_.title, true, style.subheading, width_, field_);
-    if (!text) return fail(text.error());
+    NONIO_TRY(auto text, set_text(context_, table_.title, true, style.subheading, width_, field_));
     PdfCanvas canvas;
     canvas.fill_colour(style.text);
-    text->draw_all(canvas, 0, -3);
-    out.pieces.push_back({text->height() + 3, 2, std::move(canvas.ops), true});
+    text.draw_all(canvas, 0, -3);
+    out.pieces.push_back({text.height() + 3, 2, std::move(canvas.ops), true});
     return {};
   }
 

@@ -58,9 +58,8 @@ Expected<store::Told> read_told(const RunOptions& options, const reading::Contex
 }
 
 Expected<void> HistoryUpdate::begin(std::optional<std::uint64_t> planned) {
-  const auto known = store::known_night(options_.out);
-  if (!known) return fail(known.error());
-  known_ = *known ? *known : planned;
+  NONIO_TRY(const auto known, store::known_night(options_.out));
+  known_ = known ? known : planned;
   std::optional<storage::Server> server;
   if (const auto& choice = context_.site.database)
     server =
@@ -68,9 +67,8 @@ Expected<void> HistoryUpdate::begin(std::optional<std::uint64_t> planned) {
                         choice->password_file.empty()
                             ? std::filesystem::path()
                             : std::filesystem::absolute(options_.site / choice->password_file)};
-  const auto elsewhere = store::note_place(options_.out, server);
-  if (!elsewhere) return fail(elsewhere.error());
-  if (*elsewhere) known_.reset();
+  NONIO_TRY(const auto elsewhere, store::note_place(options_.out, server));
+  if (elsewhere) known_.reset();
   return store::forget_known_night(options_.out);
 }
 

@@ -237,11 +237,11 @@ Expected<std::string> by_server(const config::Mail& mail, const fs::path& site,
                                 const net::MailMessage& message, double seconds) {
   std::string password;
   if (!mail.user.empty()) {
-    auto read = config::read_password({mail.password_file, mail.password_env,
-                                       mail.password_credential, "the mail's password", "mail"},
-                                      site);
-    if (!read) return fail(read.error());
-    password = std::move(*read);
+    NONIO_TRY(auto read,
+              config::read_password({mail.password_file, mail.password_env,
+                                     mail.password_credential, "the mail's password", "mail"},
+                                    site));
+    password = std::move(read);
   }
   const auto failed = [&](const std::string& why) {
     return fail(mail.smtp + ":" + std::to_string(mail.port) +

@@ -23,9 +23,9 @@ Expected<void> send_mail(const config::Mail& mail, const std::filesystem::path& 
                          const Letter& letter, double seconds) {
   const auto sent = read_apart<std::string>(
       "the answer to the mail", seconds, [&](process::SignsOfLife&) -> Expected<std::string> {
-        const auto deliver = storage::exported_as<Deliver>("libnonio_mail.so", "nonio_deliver");
-        if (!deliver) return fail(deliver.error());
-        return (**deliver)(mail, site, letter, seconds / 2);
+        NONIO_TRY(const auto deliver,
+                  storage::exported_as<Deliver>("libnonio_mail.so", "nonio_deliver"));
+        return (*deliver)(mail, site, letter, seconds / 2);
       });
   if (!sent) return fail("the mail was not sent: " + sent.error().message);
   return {};

@@ -118,33 +118,29 @@ Expected<Texts> texts_of(reports::SiteHistory site, const reading::Context& cont
   const std::string language = language_of_pages(context);
   const std::string json = assessment::lines_json(site, context.templates);
   const auto asking = std::count_if(site.lines.begin(), site.lines.end(), reports::asks);
-  const auto mail = mail_text(site, context, language);
-  if (!mail) return fail(mail.error());
+  NONIO_TRY(const auto mail, mail_text(site, context, language));
   reports::SiteHistory action;
   std::copy_if(site.lines.begin(), site.lines.end(), std::back_inserter(action.lines),
                reports::asks);
   const std::string actions = assessment::lines_json(action, context.templates, language);
   std::erase_if(site.lines, stands_in_a_list);
-  auto text = site.lines.empty()
-                  ? Expected<std::string>()
-                  : reports::morning_text(site, context.templates, language, most_lines);
-  if (!text) return fail(text.error());
-  return Texts{std::move(*text),       json,  std::to_string(asking),
-               site.judged ? "1" : "", *mail, actions};
+  NONIO_TRY(auto text, site.lines.empty()
+                           ? Expected<std::string>()
+                           : reports::morning_text(site, context.templates, language, most_lines));
+  return Texts{std::move(text),        json, std::to_string(asking),
+               site.judged ? "1" : "", mail, actions};
 }
 
 /// All machines anew, with the error curves of each campaign's results.json.
 Expected<Texts> small_morning(const fs::path& out, const reading::Context& context,
                               const assessment::Tonight& tonight,
                               const std::function<void()>& alive) {
-  auto site = assessment::assess(out, tonight, alive, assessment::Keep::trends);
-  if (!site) return fail(site.error());
-  add_curves(*site, out, alive);
-  auto pages = reports::site_pages(*site, context.templates, language_of_pages(context));
-  if (!pages) return fail(pages.error());
+  NONIO_TRY(auto site, assessment::assess(out, tonight, alive, assessment::Keep::trends));
+  add_curves(site, out, alive);
+  NONIO_TRY(auto pages, reports::site_pages(site, context.templates, language_of_pages(context)));
   alive();
-  if (auto written = write_pages(out, std::move(*pages)); !written) return fail(written.error());
-  return texts_of(std::move(*site), context);
+  if (auto written = write_pages(out, std::move(pages)); !written) return fail(written.error());
+  return texts_of(std::move(site), context);
 }
 
 /// Pages of machines of which nothing is new stay.
@@ -166,10 +162,9 @@ class MachinePages {
       alive();
       present.insert(machines[i].file);
       if (assessment_.has_page(i, made_from_)) continue;
-      const auto machine = assessment_.whole(i);
-      if (!machine) return fail(machine.error());
+      NONIO_TRY(const auto machine, assessment_.whole(i));
       auto page =
-          reports::machine_page_of(assessment_.site(), *machine, context_.templates, language_);
+          reports::machine_page_of(assessment_.site(), machine, context_.templates, language_);
       if (!page) return fail(page.error());
       which_.push_back(i);
       if (!is_as_it_was(out_ / page->name, page->bytes))

@@ -41,8 +41,7 @@ bool show_histories(const RunOptions& options, const RunEvents& events,
     std::vector<std::string> again;
     for (CampaignState& c : night.campaigns) {
       if (!others->contains(c.id)) continue;
-      if (c.action != Action::done)
-        c.reason = KeptText::shared("the history of its machine changed");
+      if (c.action != Action::done) c.reason = "the history of its machine changed";
       c.action = Action::todo;
       again.push_back(c.id);
     }

@@ -57,10 +57,9 @@ Expected<std::map<std::string, assessment::HistoryBasis>> ShownHistories::others
                              signs.reading(options_.out.string());
                              std::vector<std::string> ids;
                              for (const auto& [id, digest] : shown) ids.push_back(id);
-                             auto bases = assessment::history_bases(options_.out, ids);
-                             if (!bases) return fail(bases.error());
+                             NONIO_TRY(auto bases, assessment::history_bases(options_.out, ids));
                              Bases out;
-                             for (assessment::HistoryBasis& b : *bases)
+                             for (assessment::HistoryBasis& b : bases)
                                if (b.sha256 != shown[b.campaign])
                                  out.emplace(b.campaign, std::move(b));
                              return out;

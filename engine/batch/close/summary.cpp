@@ -56,12 +56,12 @@ struct List {
 
 storage::Json entry_json(const CampaignState& c, const std::string& reason) {
   storage::Json json = {{"id", c.id},
-                        {"folder", storage::path_text(c.folder.view())},
+                        {"folder", storage::path_text(c.folder)},
                         {"status", to_text(c.status)},
                         {"reason", reason}};
-  if (!c.errors().empty()) {
+  if (!c.errors.empty()) {
     storage::Json errors = storage::Json::array();
-    for (const Error& e : c.errors()) errors.push_back(storage::to_json(e));
+    for (const Error& e : c.errors) errors.push_back(storage::to_json(e));
     json["errors"] = std::move(errors);
   }
   return json;
@@ -125,11 +125,10 @@ struct Lists {
     (is_done ? done : unchanged)
         .add(is_done ? c.id + ": " + reason_in(c.reason, words) : c.id, entry_json(c, c.reason));
     if (!is_done && c.status == evaluation::Status::ok) return {};
-    const auto record = evaluation::read_record(storage::results_folder(out, c.id));
-    if (!record) return fail(record.error());
+    NONIO_TRY(const auto record, evaluation::read_record(storage::results_folder(out, c.id)));
     if (c.status == evaluation::Status::attention) {
       std::string said, english;
-      for (const evaluation::KnownFinding& f : record->findings) {
+      for (const evaluation::KnownFinding& f : record.findings) {
         if (!f.attention) continue;
         const std::string of = f.measurement.empty() ? "" : f.measurement + ": ";
         said += (said.empty() ? "" : "; ") + of + f.heading();
@@ -142,8 +141,8 @@ struct Lists {
       attention.add(c.id + ": " + said, entry_json(c, english));
     }
     if (!is_done) return {};
-    for (const evaluation::KnownFinding& f : record->findings)
-      if (std::none_of(record->previous.begin(), record->previous.end(),
+    for (const evaluation::KnownFinding& f : record.findings)
+      if (std::none_of(record.previous.begin(), record.previous.end(),
                        [&](const evaluation::KnownFinding& p) { return p.same(f); }))
         add_fresh(c, f);
     return {};
@@ -350,9 +349,9 @@ std::string reason_in(const std::string& text, const config::TerminalWords& word
 }
 
 std::string first_error(const CampaignState& c, const config::TerminalWords& words) {
-  if (c.errors().empty()) return c.reason;
-  const std::size_t more = c.errors().size() - 1;
-  return where(c.errors().front()) +
+  if (c.errors.empty()) return c.reason;
+  const std::size_t more = c.errors.size() - 1;
+  return where(c.errors.front()) +
          (more == 0 ? "" : " " + words("more", {{"count", std::to_string(more)}}));
 }
 

@@ -17,7 +17,7 @@ void store_refused(const RunOptions& options, const reading::Context& context,
     if (c.action != Action::todo || c.status != evaluation::Status::failed) continue;
     const auto record = evaluation::read_record(storage::results_folder(options.out, c.id));
     const bool stays = c.is_campaign && record && record->status != evaluation::Status::failed;
-    std::vector<Error> errors = c.errors();
+    std::vector<Error> errors = c.errors;
     if (stays)
       errors.front().message +=
           "; the results of run " + std::to_string(record->night) + " stay as they are";
@@ -31,7 +31,7 @@ void store_refused(const RunOptions& options, const reading::Context& context,
           !stored)
         errors.push_back(stored.error());
     }
-    c.set_errors(std::move(errors));
+    c.errors = std::move(errors);
     before = &c;
     c.action = Action::done;
     events.finished(c);

@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <functional>
 #include <set>
 #include <utility>
@@ -12,7 +11,6 @@
 #include "campaign/evaluation/results_files.h"
 #include "campaign/evaluation/results_json.h"
 #include "laboratory/store/earlier.h"
-#include "nonio/sdk/format.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 
@@ -39,12 +37,11 @@ Expected<void> write_record(const fs::path& folder, const evaluation::Record& re
 
 /// What the record states of the previous runs.
 Expected<void> look_back(const fs::path& folder, evaluation::Record& record) {
-  const auto last = evaluation::last_record(folder);
-  if (!last) return fail(last.error());
+  NONIO_TRY(const auto last, evaluation::last_record(folder));
   if (record.status == evaluation::Status::failed)
     record.failed_since = evaluation::NightOf{record.night, record.date};
-  if (!*last) return {};
-  const evaluation::Record& old = (*last)->record;
+  if (!last) return {};
+  const evaluation::Record& old = last->record;
   record.previous = old.night < record.night ? old.findings : old.previous;
   if (record.status == evaluation::Status::failed && old.status == evaluation::Status::failed)
     record.failed_since = old.failed_since.value_or(evaluation::NightOf{old.night, old.date});
@@ -85,11 +82,10 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
     record.files.push_back(recorded(a));
   }
   std::string results = evaluation::results_json(e, context, record.files);
-  auto carried = store::carry_over(folder, record, results, e.campaign.id);
-  if (!carried) return fail(carried.error());
-  record.indexed = carried->indexed;
-  if (!carried->earlier.empty()) {
-    files.push_back({store::earlier_name, std::move(carried->earlier)});
+  NONIO_TRY(auto carried, store::carry_over(folder, record, results, e.campaign.id));
+  record.indexed = carried.indexed;
+  if (!carried.earlier.empty()) {
+    files.push_back({store::earlier_name, std::move(carried.earlier)});
     record.files.push_back(recorded(files.back()));
   }
   // Last, so that it never speaks of a file that is not there.
@@ -98,9 +94,8 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
 
   if (auto looked = look_back(folder, record); !looked) return looked;
   if (auto written = write_record(folder, record); !written) return written;
-  const auto left = storage::temporaries(folder);
-  if (!left) return fail(left.error());
-  for (const std::string& name : *left)
+  NONIO_TRY(const auto left, storage::temporaries(folder));
+  for (const std::string& name : left)
     if (std::error_code ignored; name != evaluation::record_name)
       fs::remove(storage::temporary_path(folder, name), ignored);
   return storage::write_temporaries(folder, files);
@@ -313,9 +308,8 @@ Expected<void> tidy(const fs::path& folder) {
   if (!left) return fail(left.error());
   if (!left->empty())
     return fail("cannot remove " + storage::temporary_path(folder, left->front()).string());
-  const auto complete = storage::is_there(folder / evaluation::record_name);
-  if (!complete) return fail(complete.error());
-  if (!*complete) return {};
+  NONIO_TRY(const auto complete, storage::is_there(folder / evaluation::record_name));
+  if (!complete) return {};
   return Move::put_away_record_before(folder);
 }
 

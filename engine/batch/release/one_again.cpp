@@ -18,14 +18,14 @@ Expected<std::string> leave_only(const RunOptions& options, const NightState& st
   std::size_t found = 0;
   std::string one;
   for (CampaignState& c : night.campaigns) {
-    const std::string folder = fs::path(c.folder.view()).generic_string();
+    const std::string folder = fs::path(c.folder).generic_string();
     const bool is_one =
         c.is_campaign && (c.id == options.only || folder == below || folder == from_here);
     if (is_one) ++found, one = c.id;
     if (is_one && c.action != Action::todo) {
       c.action = Action::todo;
       c.status = evaluation::Status::none;
-      c.set_errors({});
+      c.errors = {};
       c.reason = "--only";
     }
     if (is_one || c.action != Action::todo) continue;
@@ -33,8 +33,8 @@ Expected<std::string> leave_only(const RunOptions& options, const NightState& st
     const bool tonight = record && record->night == state.number;
     c.action = tonight ? Action::done : Action::unchanged;
     c.status = record ? record->status : evaluation::Status::none;
-    c.set_errors(record ? record->errors : std::vector<Error>{});
-    c.reason = KeptText::shared(tonight ? record->reason : "nothing changed");
+    c.errors = record ? record->errors : std::vector<Error>{};
+    c.reason = tonight ? record->reason : "nothing changed";
   }
   if (found == 1) return one;
   return fail("--only: there is " + std::string(found == 0 ? "no" : "more than one") +

@@ -163,21 +163,16 @@ class Releaser {
   Expected<void> open_draft() {
     const std::string none = "nothing of campaign " + id_ +
                              " waits for a release; a draft is made by `nonio run SITE --out OUT`";
-    const auto place = certificates::register_place(options_.site, numbering_);
-    if (!place) return fail(place.error());
-    const auto there = certificates::has_register(*place, numbering_.patience);
-    if (!there) return fail(there.error());
-    if (!*there) return fail(none);
-    auto opened = certificates::Register::open(options_.site, numbering_);
-    if (!opened) return fail(opened.error());
-    if (auto sound = opened->check_journal(true); !sound) return fail(sound.error());
-    auto draft = opened->draft(id_);
-    if (!draft) return fail(draft.error());
-    auto last = opened->last_number(id_);
-    if (!last) return fail(last.error());
-    if (*last) last_number_ = (*last)->number;
-    if (!*draft) return fail(*last ? none_but(*opened, **last) : none);
-    out_.draft = std::move(*draft);
+    NONIO_TRY(const auto place, certificates::register_place(options_.site, numbering_));
+    NONIO_TRY(const auto there, certificates::has_register(place, numbering_.patience));
+    if (!there) return fail(none);
+    NONIO_TRY(auto opened, certificates::Register::open(options_.site, numbering_));
+    if (auto sound = opened.check_journal(true); !sound) return fail(sound.error());
+    NONIO_TRY(auto draft, opened.draft(id_));
+    NONIO_TRY(auto last, opened.last_number(id_));
+    if (last) last_number_ = last->number;
+    if (!draft) return fail(last ? none_but(opened, *last) : none);
+    out_.draft = std::move(draft);
     seen_ = *out_.draft;
     std::error_code error;
     const fs::path folder = fs::canonical(request_.campaign, error)
@@ -215,9 +210,8 @@ class Releaser {
     if (!request_.out.empty()) out_.draft->out = fs::absolute(request_.out).string();
     options_.out = out_.draft->out;
     if (const std::string why = why_stale(*out_.draft); !why.empty()) return fail(why);
-    auto taken = OutputLock::take(options_.out);
-    if (!taken) return fail(taken.error());
-    lock_.emplace(std::move(*taken));
+    NONIO_TRY(auto taken, OutputLock::take(options_.out));
+    lock_.emplace(std::move(taken));
     const fs::path results = storage::results_folder(options_.out, id_);
     auto record = evaluation::read_record(results);
     if (!record) return fail("no result of a run in " + results.string());
@@ -261,23 +255,22 @@ class Releaser {
     if (!opened) return fail_with(opened.error().message);
     auto last = opened->last_number(id_);
     if (!last || !*last || (*last)->number == last_number_)
-      return fail_with(campaigns.front().errors().empty()
-                           ? "nothing was issued"
-                           : campaigns.front().errors().front().message);
+      return fail_with(campaigns.front().errors.empty() ? "nothing was issued"
+                                                        : campaigns.front().errors.front().message);
     // Another person may have approved it first.
     const auto first = opened->approval_of((*last)->number);
     if (!first) return fail_with(first.error().message);
     if (!*first || (*first)->by != approval.by || (*first)->at != approval.at ||
         (*first)->reasons != approval.reasons)
-      return fail_with(campaigns.front().errors().empty()
+      return fail_with(campaigns.front().errors.empty()
                            ? (*last)->number + " was issued first by another person"
-                           : campaigns.front().errors().front().message);
+                           : campaigns.front().errors.front().message);
     out_.entry = std::move(**last);
     out_.state = Released::State::issued;
     if (const auto files = opened->files(out_.entry.number))
       for (const evaluation::IssuedFile& f : *files)
         out_.files.push_back(storage::own_folder(options_.out, id_) / f.name);
-    if (!campaigns.front().errors().empty()) out_.why = campaigns.front().errors().front().message;
+    if (!campaigns.front().errors.empty()) out_.why = campaigns.front().errors.front().message;
     return std::move(out_);
   }
 
@@ -316,9 +309,8 @@ Released release(const ReleaseRequest& request, const RunOptions& base, const Ru
 
 Expected<std::vector<certificates::WaitingDraft>> waiting_drafts(const fs::path& folder) {
   const fs::path site = config::site_of(folder);
-  const auto numbering = certificates::numbering_of(site);
-  if (!numbering) return fail(numbering.error());
-  auto drafts = certificates::Register::drafts(site, *numbering);
+  NONIO_TRY(const auto numbering, certificates::numbering_of(site));
+  auto drafts = certificates::Register::drafts(site, numbering);
   std::error_code error;
   if (!drafts || !fs::exists(folder / config::manifest_name, error)) return drafts;
   const std::string own =

@@ -33,8 +33,8 @@ Expected<PackedShard> PackedShard::begin(const RunOptions& options,
   }
   for (const CampaignState& c : campaigns) {
     if (c.action != CampaignState::Action::todo) continue;
-    const auto copied = evaluation::copy_results(storage::results_folder(options.out, c.id),
-                                                 folder->path() / c.id.view());
+    const auto copied =
+        evaluation::copy_results(storage::results_folder(options.out, c.id), folder->path() / c.id);
     if (!copied) return fail(c.id + ": its last results cannot be read: " + copied.error().message);
   }
   // What is forked from now on has no packs of others open.
@@ -46,14 +46,12 @@ namespace {
 
 Expected<void> pack_campaign(const fs::path& folder, const std::string& id,
                              storage::PackWriter& pack) {
-  auto files = evaluation::results_files(folder);
-  if (!files) return fail(files.error());
-  std::sort(files->begin(), files->end(),
+  NONIO_TRY(auto files, evaluation::results_files(folder));
+  std::sort(files.begin(), files.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
-  for (const evaluation::RecordedFile& f : *files) {
-    const auto bytes = evaluation::read_result(folder, f);
-    if (!bytes) return fail(bytes.error());
-    if (auto added = pack.add(id + "/" + f.name, *bytes); !added) return added;
+  for (const evaluation::RecordedFile& f : files) {
+    NONIO_TRY(const auto bytes, evaluation::read_result(folder, f));
+    if (auto added = pack.add(id + "/" + f.name, bytes); !added) return added;
   }
   return {};
 }
@@ -79,21 +77,18 @@ Expected<void> PackedShard::hand_over(const RunOptions& options, const NightPlan
   const fs::path path = out() / ".nonio" / "results";
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
-  auto pack = storage::PackWriter::create(path);
-  if (!pack) return fail(pack.error());
+  NONIO_TRY(auto pack, storage::PackWriter::create(path));
   for (ShardResult* r : all) {
     const auto stored = evaluation::read_record(out() / r->campaign);
     if (!stored || stored->night != plan.night.number)
       return fail(r->campaign + " could not be stored in " + out().string() +
                   (r->errors.empty() ? "" : ": " + r->errors.back().message));
-    if (auto packed = pack_campaign(out() / r->campaign, r->campaign, *pack); !packed)
-      return packed;
+    if (auto packed = pack_campaign(out() / r->campaign, r->campaign, pack); !packed) return packed;
     r->packed = true;
   }
-  if (auto ended = pack->end(); !ended) return ended;
-  auto file = storage::hand_over(path, options.out, begin_of_name(plan, options.shard));
-  if (!file) return fail(file.error());
-  record.pack = std::move(*file);
+  if (auto ended = pack.end(); !ended) return ended;
+  NONIO_TRY(auto file, storage::hand_over(path, options.out, begin_of_name(plan, options.shard)));
+  record.pack = std::move(file);
   return {};
 }
 
@@ -102,9 +97,8 @@ namespace {
 /// Removes the results that a folder has of an earlier run. The record goes when all files are gone that only it
 /// names; what is left until then does not count as results of this run. Other files stay.
 Expected<void> clear_folder(const fs::path& folder, std::uint64_t night) {
-  const auto there = storage::is_there(folder);
-  if (!there) return fail(there.error());
-  if (!*there) return {};
+  NONIO_TRY(const auto there, storage::is_there(folder));
+  if (!there) return {};
   if (const auto record = evaluation::read_record(folder); record && record->night == night)
     return {};
   std::error_code error;
@@ -150,9 +144,8 @@ Expected<void> accept_packs(const fs::path& out, const NightPlan& plan,
   if (entries.empty()) return {};
   std::sort(entries.begin(), entries.end(),
             [](const auto& a, const auto& b) { return a.id < b.id; });
-  const auto before = storage::Catalogue::read(out);
-  if (!before) return fail(before.error());
-  if (auto put = before->publish_with(out, entries); !put) return put;
+  NONIO_TRY(const auto before, storage::Catalogue::read(out));
+  if (auto put = before.publish_with(out, entries); !put) return put;
   for (const storage::Catalogue::Entry& e : entries)
     if (auto cleared = clear_folder(storage::own_folder(out, e.id), plan.night.number); !cleared)
       return cleared;

@@ -65,7 +65,7 @@ std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site
   for (std::size_t i = 0; i < own; ++i)
     for (const auto& [digest, id] : listed[i].twins) {
       const std::uint32_t other = at(id);
-      states[i].add_twin({digest, other});
+      states[i].twins.emplace_back(digest, other);
     }
   if (whole_site) states.resize(own);
   return states;
@@ -77,8 +77,8 @@ bool take_stored(const fs::path& out, std::uint64_t night, CampaignState& c) {
   if (!record || record->night != night) return false;
   c.action = Action::done;
   c.status = record->status;
-  c.set_errors(record->errors);
-  c.reason = KeptText::shared(record->reason);
+  c.errors = record->errors;
+  c.reason = record->reason;
   c.shows_history = record->history.has_value();
   c.history = record->history ? record->history->sha256 : "";
   return true;
@@ -92,7 +92,7 @@ ShardRecord record_of(const fs::path& out, std::uint64_t night,
     results.push_back({c.id, c.status});
     if (c.action == Action::todo) results.back().status = evaluation::Status::none;
     if (c.status != evaluation::Status::failed) continue;
-    results.back().errors = c.errors();
+    results.back().errors = c.errors;
     CampaignState stored = c;
     results.back().stored = take_stored(out, night, stored);
   }
@@ -127,7 +127,7 @@ void take_reported(const ShardRecord& record, std::vector<CampaignState>& campai
     if (r.status == evaluation::Status::none) continue;
     campaigns[i].action = Action::done;
     campaigns[i].status = r.status;
-    campaigns[i].set_errors(r.errors);
+    campaigns[i].errors = r.errors;
   }
 }
 
@@ -144,9 +144,8 @@ Expected<void> do_part(const RunOptions& options, const RunEvents& events, const
       events.planned(own, 0);
       return {};
     }
-    auto begun = PackedShard::begin(options, night.campaigns);
-    if (!begun) return fail(begun.error());
-    packed.emplace(std::move(*begun));
+    NONIO_TRY(auto begun, PackedShard::begin(options, night.campaigns));
+    packed.emplace(std::move(begun));
     where.out = packed->out();
   }
   std::size_t to_do = own;
@@ -154,19 +153,17 @@ Expected<void> do_part(const RunOptions& options, const RunEvents& events, const
     if (take_stored(options.out, plan.night.number, night.campaigns[i])) --to_do;
   events.planned(own, to_do);
   if (to_do > 0) {  // else no plugin is loaded
-    const auto place = set_up(options);
-    if (!place) return fail(place.error());
-    const reading::Context& read = (*place)->context;
+    NONIO_TRY(const auto place, set_up(options));
+    const reading::Context& read = place->context;
     if (events.words) events.words(config::TerminalWords(read.templates, read.site.language));
-    if (const auto same = check_made_with(plan, (*place)->context); !same) return same;
+    if (const auto same = check_made_with(plan, place->context); !same) return same;
     NightState state;
     state.number = plan.night.number;
     state.date = plan.night.date;
     ReleaseDesk desk;
-    desk.plugins = &*(*place)->host;
+    desk.plugins = &*place->host;
     desk.elsewhere = true;
-    if (!do_campaigns(where, events, (*place)->context, state, desk, night.campaigns))
-      return fail("");
+    if (!do_campaigns(where, events, place->context, state, desk, night.campaigns)) return fail("");
   }
   night.campaigns.resize(own);
   night.error = "not reported";
@@ -299,14 +296,13 @@ Expected<std::vector<Reported>> reported_by_all(const fs::path& out, const Night
   std::vector<std::uint64_t> silent;
   std::string why;
   for (std::uint64_t shard = 0; shard < plan.shards.size(); ++shard) {
-    auto listed = read_shard_list(out, plan, shard);
-    if (!listed) return fail(listed.error());
+    NONIO_TRY(auto listed, read_shard_list(out, plan, shard));
     auto record = with_patience(until, [&] { return sound_record(out, plan, shard, why); });
     if (process::is_stop_requested()) return fail("");
-    if (!record || !is_of(record->results, *listed))
+    if (!record || !is_of(record->results, listed))
       silent.push_back(shard);
     else
-      all.push_back({std::move(*listed), std::move(*record)});
+      all.push_back({std::move(listed), std::move(*record)});
   }
   if (silent.empty()) return all;
   return fail(std::string("not complete: ") + (silent.size() == 1 ? "shard " : "shards ") +
@@ -330,7 +326,7 @@ void take_results(const fs::path& out, const NightPlan& plan, std::uint64_t shar
     if (result.stored) missing.push_back(c.id + " (shard " + std::to_string(shard) + ")");
     c.action = Action::done;
     c.status = result.status;
-    c.set_errors(result.errors);
+    c.errors = result.errors;
   }
 }
 
@@ -340,24 +336,22 @@ Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& n
   const auto until = std::chrono::steady_clock::now() +
                      std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                          std::chrono::duration<double>(options.patience));
-  auto all = read_rest(options.out, plan);
-  if (!all) return fail(all.error());
-  for (Listed& one : *all) {  // of a merge that was cut short
+  NONIO_TRY(auto all, read_rest(options.out, plan));
+  for (Listed& one : all) {  // of a merge that was cut short
     CampaignState& c = one.campaign;
     if (c.action == Action::todo && c.status != evaluation::Status::failed)
       take_stored(options.out, plan.night.number, c);
   }
-  auto reported = reported_by_all(options.out, plan, until);
-  if (!reported) return fail(reported.error());
+  NONIO_TRY(auto reported, reported_by_all(options.out, plan, until));
   std::vector<const ShardRecord*> records;
-  for (const Reported& r : *reported) records.push_back(&r.record);
+  for (const Reported& r : reported) records.push_back(&r.record);
   if (auto accepted = accept_packs(options.out, plan, records); !accepted) return accepted;
   std::vector<std::string> missing;
-  for (std::uint64_t shard = 0; shard < reported->size(); ++shard) {
-    Reported& one = (*reported)[shard];
+  for (std::uint64_t shard = 0; shard < reported.size(); ++shard) {
+    Reported& one = reported[shard];
     take_results(options.out, plan, shard, until, one, missing);
     if (process::is_stop_requested()) return fail("");
-    std::move(one.listed.begin(), one.listed.end(), std::back_inserter(*all));
+    std::move(one.listed.begin(), one.listed.end(), std::back_inserter(all));
     one = {};
   }
   if (!missing.empty())
@@ -365,7 +359,7 @@ Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& n
                 (missing.size() == 1 ? " are"
                                      : " and " + std::to_string(missing.size() - 1) + " more are") +
                 " not in the output folder; run their shards again, then `nonio run merge OUT`");
-  night.campaigns = states_of(std::move(*all), true);
+  night.campaigns = states_of(std::move(all), true);
   night.vanished = plan.vanished;
   night.notes.insert(night.notes.end(), plan.notes.begin(), plan.notes.end());
   return {};
@@ -376,7 +370,7 @@ Expected<void> note_failures(const RunOptions& options, const reading::Context& 
   std::vector<const CampaignState*> failed;
   for (const CampaignState& c : night.campaigns)
     if (c.action == Action::done && c.is_campaign && c.status == evaluation::Status::failed &&
-        !c.errors().empty())
+        !c.errors.empty())
       failed.push_back(&c);
   if (failed.empty()) return {};
   const auto noted = read_apart<bool>(
@@ -385,7 +379,7 @@ Expected<void> note_failures(const RunOptions& options, const reading::Context& 
         const certificates::Numbers numbers({options.site, options.out, night.night.date, can_sign},
                                             context, nullptr);
         for (const CampaignState* c : failed) {
-          numbers.note_failure(c->id, c->errors().front().message);
+          numbers.note_failure(c->id, c->errors.front().message);
           signs.beat();
         }
         return Expected<bool>(true);

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
-#include <utility>
 
 #include "batch/state/night_plan.h"
 #include "batch/state/output_lock.h"
@@ -56,9 +55,8 @@ Expected<std::optional<storage::Json>> read_state(const fs::path& out) {
   const fs::path path = out / state_folder / state_name;
   std::error_code error;
   if (fs::symlink_status(path, error).type() == fs::file_type::not_found) return std::nullopt;
-  const auto file = storage::read_file(path);
-  if (!file) return fail(file.error());
-  storage::Json json = storage::Json::parse(*file, nullptr, false);
+  NONIO_TRY(const auto file, storage::read_file(path));
+  storage::Json json = storage::Json::parse(file, nullptr, false);
   if (json.is_discarded() || !json.is_object() || !known_count(json, "night"))
     return fail(path.string() + " is damaged; remove it to do every campaign anew");
   return json;
@@ -135,14 +133,12 @@ Expected<void> check_site(const storage::Json& json, const std::string& site, co
 }  // namespace
 
 Expected<NightState> reopen_night(const RunOptions& options, const std::string& site) {
-  const auto state = read_state(options.out);
-  if (!state) return fail(state.error());
-  if (!*state || known_text(**state, "state") != "complete")
+  NONIO_TRY(const auto state, read_state(options.out));
+  if (!state || known_text(*state, "state") != "complete")
     return fail(
         "--only evaluates one campaign of a complete run again; expected `nonio run SITE --out "
-        "OUT` "
-        "before");
-  const storage::Json& json = **state;
+        "OUT` before");
+  const storage::Json& json = *state;
   if (auto own = check_site(json, site, options.out); !own) return fail(own.error());
   NightState night;
   night.reopened = true;
@@ -158,14 +154,12 @@ Expected<NightState> reopen_night(const RunOptions& options, const std::string& 
 
 Expected<NightState> planned_night(const RunOptions& options, const std::string& site,
                                    std::uint64_t number) {
-  const auto state = read_state(options.out);
-  if (!state) return fail(state.error());
-  if (!*state || known_text(**state, "state") != "running" ||
-      known_count(**state, "night") != number)
+  NONIO_TRY(const auto state, read_state(options.out));
+  if (!state || known_text(*state, "state") != "running" || known_count(*state, "night") != number)
     return fail("run " + std::to_string(number) + " was planned in " + options.out.string() +
                 ", and is not the run in progress there; expected `nonio run cancel OUT`, "
                 "then a new plan");
-  const storage::Json& json = **state;
+  const storage::Json& json = *state;
   if (auto own = check_site(json, site, options.out); !own) return fail(own.error());
   NightState night;
   night.number = number;
@@ -185,10 +179,9 @@ Expected<NightState> begin_night(const RunOptions& options, const std::string& s
   night.force = options.force;
   night.date = options.date.empty() ? today() : options.date;
   night.issued_before = issued_so_far;
-  const auto state = read_state(out);
-  if (!state) return fail(state.error());
-  if (*state) {
-    const storage::Json& json = **state;
+  NONIO_TRY(const auto state, read_state(out));
+  if (state) {
+    const storage::Json& json = *state;
     if (auto own = check_site(json, site, out); !own) return fail(own.error());
     night.resumed = known_text(json, "state") == "running";
     night.number = json["night"].get<std::uint64_t>() + (night.resumed ? 0 : 1);
@@ -217,12 +210,11 @@ const char* to_text(NightStatus::State state) {
 }
 
 Expected<NightStatus> night_status(const fs::path& out) {
-  const auto state = read_state(out);
-  if (!state) return fail(state.error());
-  if (!*state)
+  NONIO_TRY(const auto state, read_state(out));
+  if (!state)
     return fail("no run was started in " + out.string() +
                 "; expected the output folder of `nonio run`");
-  const storage::Json& json = **state;
+  const storage::Json& json = *state;
   NightStatus status;
   status.night = {*known_count(json, "night"), known_text(json, "date")};
   if (known_text(json, "state") == "complete") {
@@ -248,13 +240,11 @@ Expected<NightStatus> night_status(const fs::path& out) {
 }
 
 Expected<void> settle_folders(const fs::path& out, bool hashed, bool dry_run) {
-  const auto marked = storage::is_there(out / storage::hashed_mark);
-  if (!marked) return fail(marked.error());
-  if (*marked && hashed) return {};
-  const auto begun = storage::is_there(out / state_folder / state_name);
-  if (!begun) return fail(begun.error());
-  const bool are_hashed = *marked || (!*begun && lie_hashed(out) == true);
-  const bool are_flat = !are_hashed && (*begun || lie_hashed(out) == false);
+  NONIO_TRY(const auto marked, storage::is_there(out / storage::hashed_mark));
+  if (marked && hashed) return {};
+  NONIO_TRY(const auto begun, storage::is_there(out / state_folder / state_name));
+  const bool are_hashed = marked || (!begun && lie_hashed(out) == true);
+  const bool are_flat = !are_hashed && (begun || lie_hashed(out) == false);
   if (hashed ? are_flat : are_hashed)
     return fail("the output folder " + out.string() + " has its results in OUT/" +
                 (hashed ? "<id>" : "ab/<id>") + ", and site.toml wants them in OUT/" +
@@ -266,9 +256,8 @@ Expected<void> settle_folders(const fs::path& out, bool hashed, bool dry_run) {
 }
 
 Expected<void> check_not_planned(const fs::path& out) {
-  const auto planned = storage::is_there(out / state_folder / plan_folder / plan_name);
-  if (!planned) return fail(planned.error());
-  if (!*planned) return {};
+  NONIO_TRY(const auto planned, storage::is_there(out / state_folder / plan_folder / plan_name));
+  if (!planned) return {};
   return fail("a run is planned in " + out.string() +
               " and not merged yet; expected its shards and `nonio run merge OUT`, or `nonio "
               "run cancel OUT` to withdraw the plan");

@@ -87,9 +87,8 @@ bool is_gone(const User& user, const User& own) {
 
 /// The bytes of OUT/.nonio/user; none if there is no such file.
 Expected<std::optional<std::string>> read_user(const fs::path& path) {
-  const auto there = storage::is_there(path);
-  if (!there) return fail(there.error());
-  if (!*there) return std::nullopt;
+  NONIO_TRY(const auto there, storage::is_there(path));
+  if (!there) return std::nullopt;
   auto text = storage::read_small_file(path);
   if (text) return *text;
   const auto still = storage::is_there(path);
@@ -145,10 +144,9 @@ Expected<bool> become_user(const fs::path& out, const fs::path& path, const User
     const auto made = make_user(path, own, says);
     if (!made) return fail(made.error());
     if (*made != Made::taken) return *made == Made::done;
-    const auto text = read_user(path);
-    if (!text) return fail(text.error());
-    if (!*text) continue;
-    const User user = user_in(**text);
+    NONIO_TRY(const auto text, read_user(path));
+    if (!text) continue;
+    const User user = user_in(*text);
     if (!is_gone(user, own))
       return fail(words_for(user) + " is using the output folder " + out.string() +
                   ". Wait until it ends. If you are sure that it has ended: nonio run unlock " +
@@ -188,10 +186,9 @@ std::string user_of(const fs::path& out) {
 
 Expected<std::string> unlock(const fs::path& out, const std::optional<std::string>& alive) {
   const fs::path path = out / state_folder / user_name;
-  const auto text = read_user(path);
-  if (!text) return fail(text.error());
-  if (!*text) return std::string();
-  const User user = user_in(**text);
+  NONIO_TRY(const auto text, read_user(path));
+  if (!text) return std::string();
+  const User user = user_in(*text);
   if (alive && user.job.empty())
     return fail(words_for(user) + ", which uses the output folder " + out.string() +
                 ", was not started by a batch job. If you are sure that it has ended, repeat "
@@ -234,9 +231,8 @@ Expected<OutputLock> OutputLock::take(const fs::path& out, Use use) {
   const User own = own_user();
   const fs::path path = out / state_folder / user_name;
   std::string says = text_of(own);
-  const auto ours = become_user(out, path, own, says);
-  if (!ours) return fail(ours.error());
-  if (*ours) {
+  NONIO_TRY(const auto ours, become_user(out, path, own, says));
+  if (ours) {
     lock.user_ = path;
     lock.says_ = std::move(says);
     lock.pid_ = own.pid;

@@ -10,12 +10,8 @@ namespace nonio::batch {
 
 Expected<std::string> bytes_apart(const std::string& what, double seconds,
                                   const std::function<std::string(process::SignsOfLife&)>& read) {
-  auto started =
-      process::Watched::start([&](process::SignsOfLife& signs, const process::Watched::Send& send) {
-        process::Parcel parcel;
-        parcel.add(read(signs));
-        send(parcel);
-      });
+  auto started = process::Watched::start(
+      [&](process::SignsOfLife& signs, const process::Watched::Send& send) { send(read(signs)); });
   if (!started) {  // no process to be had is no reason to read nothing
     process::SignsOfLife alone{};
     return read(alone);
@@ -28,8 +24,8 @@ Expected<std::string> bytes_apart(const std::string& what, double seconds,
     if (process::is_stop_requested()) return fail("interrupted");
     if (child.is_silent(seconds))
       return fail("cannot read " + what + ": " + process::no_answer(seconds));
-    process::wait_for_parcels(children);
-    for (process::Parcel& parcel : child.take()) bytes = parcel.text();
+    process::wait_for_any(children);
+    for (std::string& piece : child.take()) bytes = std::move(piece);
   }
   if (bytes) return std::move(*bytes);
   return fail("cannot read " + what + ": the process that reads it ended: " + child.end().words);

@@ -24,18 +24,19 @@ Expected<T> read_apart(const std::string& what, double seconds, const Read& read
   const auto bytes = bytes_apart(what, seconds, [&](process::SignsOfLife& signs) {
     try {
       const Expected<T> got = read(signs);
-      return got ? wire::pack(std::optional<T>(*got), Error{})
-                 : wire::pack(std::optional<T>(), got.error());
+      return got ? storage::pack(std::optional<T>(*got), Error{})
+                 : storage::pack(std::optional<T>(), got.error());
     } catch (const std::bad_alloc&) {
-      return wire::pack(std::optional<T>(), Error{"out of memory while reading " + what});
+      return storage::pack(std::optional<T>(), Error{"out of memory while reading " + what});
     } catch (const std::exception& e) {
-      return wire::pack(std::optional<T>(), Error{"cannot read " + what + ": " + e.what()});
+      return storage::pack(std::optional<T>(), Error{"cannot read " + what + ": " + e.what()});
     }
   });
   if (!bytes) return fail(bytes.error());
   std::optional<T> value;
   Error why;
-  if (!wire::unpack(*bytes, value, why)) return fail("cannot read " + what + ": no whole answer");
+  if (!storage::unpack(*bytes, value, why))
+    return fail("cannot read " + what + ": no whole answer");
   if (!value) return fail(std::move(why));
   return std::move(*value);
 }

@@ -20,15 +20,15 @@ class ByFolder {
   ByFolder(const std::vector<CampaignState>& campaigns, std::size_t ordered)
       : first_(campaigns.data()), end_(first_ + ordered) {
     for (const CampaignState& c : campaigns) {
-      std::string text = storage::path_text(c.folder.view());
-      if (&c >= end_ || text != c.folder.view()) others_.emplace(std::move(text), &c);
+      std::string text = storage::path_text(c.folder);
+      if (&c >= end_ || text != c.folder) others_.emplace(std::move(text), &c);
     }
   }
 
   const CampaignState* at(const std::string& folder) const {
     const CampaignState* const found = std::lower_bound(
         first_, end_, folder,
-        [](const CampaignState& c, const std::string& text) { return c.folder.view() < text; });
+        [](const CampaignState& c, const std::string& text) { return c.folder < text; });
     if (found != end_ && found->folder == folder) return found;
     const auto other = others_.find(folder);
     return other == others_.end() ? nullptr : other->second;
@@ -53,7 +53,7 @@ ClaimedIds::ClaimedIds(const std::vector<CampaignState>& campaigns) : campaigns_
 bool ClaimedIds::contains(std::string_view id) const {
   const auto found = std::lower_bound(
       by_id_.begin(), by_id_.end(), id,
-      [&](std::uint32_t i, std::string_view text) { return campaigns_[i].id.view() < text; });
+      [&](std::uint32_t i, std::string_view text) { return campaigns_[i].id < text; });
   return found != by_id_.end() && campaigns_[*found].id == id;
 }
 
@@ -93,11 +93,11 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
     if (now != nullptr && now->id == e.id) continue;
     if (now != nullptr && e.failed)
       notes.push_back(storage::own_folder(out, e.id).string() + " is left over: it states that " +
-                      e.folder + " failed, which is the campaign " + now->id.str() + " now");
+                      e.folder + " failed, which is the campaign " + now->id + " now");
     else if (now != nullptr)
       vanished.push_back(
           {e.id, e.folder, e.night,
-           "its folder " + e.folder + " is the campaign " + now->id.str() + " now; " + meant});
+           "its folder " + e.folder + " is the campaign " + now->id + " now; " + meant});
     else if (above != unlisted.end())
       vanished.push_back({e.id, e.folder, e.night,
                           "it was not seen: the folder " + storage::path_text(above->folder) +

@@ -13,16 +13,15 @@ namespace {
 
 /// A register in an output folder below the site would be lost with it.
 Expected<void> check_register_place(const RunOptions& options, const reading::Context& context) {
-  const auto place = certificates::register_place(options.site, context.site.numbering);
-  if (!place) return fail(place.error());
+  NONIO_TRY(const auto place, certificates::register_place(options.site, context.site.numbering));
   std::error_code error;
   const auto is_below = [](const fs::path& one, const fs::path& folder) {
     const fs::path way = one.lexically_relative(folder);
     return !way.empty() && *way.begin() != "..";
   };
   const fs::path out = fs::weakly_canonical(options.out, error);
-  if (is_below(place->file, out) && is_below(out, fs::weakly_canonical(options.site, error)))
-    return fail("the register of certificates " + place->name +
+  if (is_below(place.file, out) && is_below(out, fs::weakly_canonical(options.site, error)))
+    return fail("the register of certificates " + place.name +
                 " would lie in the output folder; expected it elsewhere in the site");
   return {};
 }
@@ -42,17 +41,14 @@ Expected<std::optional<Known>> known_of(const RunOptions& options, const reading
         if (!numbering.server) signs.reading((options.site / numbering.register_file).string());
         if (const auto sound = check_register_place(options, context); !sound)
           return fail(sound.error());
-        auto numbers = certificates::Register::entries(options.site, numbering, patience);
-        if (!numbers) return fail(numbers.error());
-        if (!numbers->empty() && look == Look::first) {
-          auto opened = certificates::Register::open(options.site, numbering, patience);
-          if (!opened) return fail(opened.error());
-          if (auto sound = opened->check_journal(false); !sound) return fail(sound.error());
+        NONIO_TRY(auto numbers, certificates::Register::entries(options.site, numbering, patience));
+        if (!numbers.empty() && look == Look::first) {
+          NONIO_TRY(auto opened, certificates::Register::open(options.site, numbering, patience));
+          if (auto sound = opened.check_journal(false); !sound) return fail(sound.error());
         }
         signs.beat();
-        auto drafts = certificates::Register::drafts(options.site, numbering, patience);
-        if (!drafts) return fail(drafts.error());
-        return std::pair(std::move(*numbers), std::move(*drafts));
+        NONIO_TRY(auto drafts, certificates::Register::drafts(options.site, numbering, patience));
+        return std::pair(std::move(numbers), std::move(drafts));
       });
   if (!known && storage::is_locked(known.error())) return std::nullopt;
   if (!known) return fail(known.error());

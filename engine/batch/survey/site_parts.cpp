@@ -74,12 +74,10 @@ Expected<SiteParts> SiteParts::compare(const fs::path& site, const fs::path& out
 }
 
 Expected<void> SiteParts::read_inventory() {
-  const auto there = storage::is_there(out_ / inventory_name);
-  if (!there) return fail(there.error());
-  if (!*there) return read_copies();
-  const auto text = storage::read_file(out_ / inventory_name);
-  if (!text) return fail(text.error());
-  const storage::Json json = storage::Json::parse(*text, nullptr, false);
+  NONIO_TRY(const auto there, storage::is_there(out_ / inventory_name));
+  if (!there) return read_copies();
+  NONIO_TRY(const auto text, storage::read_file(out_ / inventory_name));
+  const storage::Json json = storage::Json::parse(text, nullptr, false);
   try {
     if (json.at("schema") != inventory_schema) throw std::runtime_error("another schema");
     date_ = json.at("date").get<std::string>();
@@ -100,16 +98,13 @@ Expected<void> SiteParts::read_inventory() {
 
 /// Without the list the copies themselves are the inventory.
 Expected<void> SiteParts::read_copies() {
-  const auto there = storage::is_there(out_ / copies_folder);
-  if (!there) return fail(there.error());
-  if (!*there) return {};
-  const auto copies = config::template_paths(out_ / copies_folder);
-  if (!copies) return fail(copies.error());
+  NONIO_TRY(const auto there, storage::is_there(out_ / copies_folder));
+  if (!there) return {};
+  NONIO_TRY(const auto copies, config::template_paths(out_ / copies_folder));
   if (damaged_.empty()) damaged_ = (out_ / inventory_name).string() + " is missing";
-  for (const auto& [path, file] : *copies) {
-    const auto digest = storage::sha256_of_file(file);
-    if (!digest) return fail(digest.error());
-    parts_[path].sha256 = *digest;
+  for (const auto& [path, file] : copies) {
+    NONIO_TRY(const auto digest, storage::sha256_of_file(file));
+    parts_[path].sha256 = digest;
   }
   return {};
 }
@@ -118,13 +113,11 @@ Expected<void> SiteParts::look_at_all() {
   std::set<std::string> paths(entered.begin(), entered.end());
   for (const auto& [path, part] : parts_) paths.insert(path);
   for (const char* folder : part_folders) {
-    const auto there = storage::is_there(site_ / folder);
-    if (!there) return fail(there.error());
+    NONIO_TRY(const auto there, storage::is_there(site_ / folder));
     std::error_code error;
-    if (!*there || !fs::is_directory(site_ / folder, error)) continue;
-    const auto files = config::template_paths(site_ / folder);
-    if (!files) return fail(files.error());
-    for (const auto& [name, file] : *files)
+    if (!there || !fs::is_directory(site_ / folder, error)) continue;
+    NONIO_TRY(const auto files, config::template_paths(site_ / folder));
+    for (const auto& [name, file] : files)
       if (const std::string path = std::string(folder) + "/" + name;
           folder == config::templates_folder || (is_record(path) && name.find('/') == name.npos))
         paths.insert(path);

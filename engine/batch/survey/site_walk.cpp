@@ -16,6 +16,7 @@
 #include "campaign/config/manifest.h"
 #include "platform/process/watched.h"
 #include "platform/storage/files.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::batch {
 namespace fs = std::filesystem;
@@ -46,7 +47,7 @@ bool is_nearly_manifest(const std::string& name) {
 }
 
 struct FolderNames {
-  std::deque<KeptText> folders;  // there may be millions
+  std::deque<std::string> folders;  // there may be millions
   std::vector<std::string> links, nearly;
   bool has_manifest = false;
 };
@@ -62,7 +63,7 @@ class Walker {
   }
 
   void run() {
-    std::deque<KeptText> todo{KeptText(".")};
+    std::deque<std::string> todo{"."};
     while (!todo.empty()) {
       const std::string folder = todo.back();
       todo.pop_back();
@@ -70,7 +71,7 @@ class Walker {
       FolderNames names = list(folder);
       for (; !names.folders.empty(); names.folders.pop_front())
         todo.push_back(folder == "." ? names.folders.front()
-                                     : KeptText(below(folder, names.folders.front())));
+                                     : below(folder, names.folders.front()));
       tell(folder, names);
     }
     if (remarks_ > most_remarks)
@@ -87,7 +88,7 @@ class Walker {
   }
 
   void tell(Seen what, std::string_view folder = {}, std::string_view why = {}) {
-    send_(process::Parcel().add(static_cast<std::uint64_t>(what)).add(folder).add(why));
+    send_(storage::pack(what, folder, why));
   }
   void unlisted(const std::string& folder, int code) {
     tell(Seen::unlisted, folder,
@@ -198,16 +199,17 @@ class Walker {
 };
 
 /// Takes what came; true once the walk is whole.
-bool take_over(std::vector<process::Parcel> parcels, SiteWalk& walk) {
-  for (process::Parcel& parcel : parcels) {
-    const auto what = static_cast<Seen>(parcel.number());
-    std::string folder = parcel.text();
+bool take_over(const std::vector<std::string>& pieces, SiteWalk& walk) {
+  for (const std::string& piece : pieces) {
+    Seen what{};
+    std::string folder, why;
+    if (!storage::unpack(piece, what, folder, why)) continue;
     switch (what) {
       case Seen::campaign:
         walk.campaigns.emplace_back(folder);
         break;
       case Seen::unlisted:
-        walk.unlisted.push_back({std::move(folder), parcel.text()});
+        walk.unlisted.push_back({std::move(folder), std::move(why)});
         break;
       case Seen::note:
         walk.notes.push_back(std::move(folder));
@@ -235,7 +237,7 @@ Expected<std::optional<SiteWalk>> try_walk(const fs::path& site, const fs::path&
   process::Watched& walker = children.front();
   SiteWalk walk;
   while (!stopped()) {
-    process::wait_for_parcels(children);
+    process::wait_for_any(children);
     if (take_over(walker.take(), walk)) return walk;
     const std::string place = walker.signs().reads_from();
     if (walker.ended())
@@ -256,21 +258,20 @@ Expected<SiteWalk> walk_site(const fs::path& site, const fs::path& out, double s
   Passed passed;
   while (passed.size() < most_hung) {
     const double patience = passed.size() < patient_for ? seconds : std::min(seconds, 1.0);
-    auto walk = try_walk(site, out, patience, stopped, passed);
-    if (!walk) return fail(walk.error());
-    if (!*walk) continue;
-    const auto root = std::find_if((*walk)->unlisted.begin(), (*walk)->unlisted.end(),
+    NONIO_TRY(auto walk, try_walk(site, out, patience, stopped, passed));
+    if (!walk) continue;
+    const auto root = std::find_if(walk->unlisted.begin(), walk->unlisted.end(),
                                    [](const auto& u) { return u.folder == "."; });
-    if (root != (*walk)->unlisted.end())
+    if (root != walk->unlisted.end())
       return fail("cannot read the site " + site.string() + ": " + root->why);
-    std::sort((*walk)->campaigns.begin(), (*walk)->campaigns.end());
-    std::sort((*walk)->unlisted.begin(), (*walk)->unlisted.end(),
+    std::sort(walk->campaigns.begin(), walk->campaigns.end());
+    std::sort(walk->unlisted.begin(), walk->unlisted.end(),
               [](const auto& a, const auto& b) { return a.folder < b.folder; });
     const auto same =
-        std::unique((*walk)->unlisted.begin(), (*walk)->unlisted.end(),
+        std::unique(walk->unlisted.begin(), walk->unlisted.end(),
                     [](const auto& a, const auto& b) { return a.folder == b.folder; });
-    (*walk)->unlisted.erase(same, (*walk)->unlisted.end());
-    return std::move(**walk);
+    walk->unlisted.erase(same, walk->unlisted.end());
+    return std::move(*walk);
   }
   return fail("cannot read the site " + site.string() + ": " + std::to_string(most_hung) +
               " of its folders give no answer");

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/kept_text.h"
 #include "nonio/sdk/error.h"
 
 namespace nonio::batch {
@@ -15,9 +14,9 @@ struct SiteWalk {
   struct Unlisted {
     std::string folder, why;
   };
-  std::vector<KeptText> campaigns;  ///< folders with a manifest
-  std::vector<Unlisted> unlisted;   ///< their content is not known
-  std::vector<std::string> notes;   ///< what looks like a campaign and is passed over
+  std::vector<std::string> campaigns;  ///< folders with a manifest
+  std::vector<Unlisted> unlisted;      ///< their content is not known
+  std::vector<std::string> notes;      ///< what looks like a campaign and is passed over
 };
 
 /// All folders below a site. Links are not followed: a campaign is a folder inside the site. Hidden

@@ -2,21 +2,162 @@
 #include "batch/survey/survey.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
 
+#include "batch/state/wire.h"
 #include "batch/survey/earlier_results.h"
 #include "batch/survey/site_walk.h"
-#include "batch/survey/survey_pool.h"
+#include "batch/survey/survey_look.h"
 #include "batch/survey/twins.h"
 #include "campaign/evaluation/record.h"
+#include "platform/process/watched.h"
 #include "platform/storage/files.h"
+
+namespace nonio::storage {
+NONIO_MEMBERS(batch::CampaignState, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+}  // namespace nonio::storage
 
 namespace nonio::batch {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// So many campaigns for one process: starting it is then cheap, and a crash costs little.
+constexpr std::size_t campaigns_in_batch = 2000;
+/// After so many that hang, a disk gets no more time than a second.
+constexpr std::size_t most_patience = 8;
+
+/// For a number that was issued before.
+Error unknown_number(const std::string& number, const std::filesystem::path& out) {
+  return Error{"the register of certificates does not know the number " + number + ", which " +
+               out.string() +
+               " states was issued: restore the register, or numbers would be used twice"};
+}
+
+struct Batch {
+  std::vector<std::uint32_t> campaigns{};
+  bool rough = false;
+  std::size_t received = 0;
+};
+
+class Pool {
+ public:
+  Pool(const SurveyInput& input, std::vector<CampaignState>& states)
+      : in_(input), states_(states) {}
+
+  Expected<void> run(std::span<const std::uint32_t> which) {
+    const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+    // Several for each core, so that all end at about the same time.
+    const std::size_t size =
+        std::clamp(which.size() / (4 * cores), std::size_t{1}, campaigns_in_batch);
+    while ((!which.empty() || !todo_.empty() || !children_.empty()) && !in_.stopped()) {
+      while ((!which.empty() || !todo_.empty()) && children_.size() < cores) {
+        if (todo_.empty()) {
+          const auto next = which.first(std::min(size, which.size()));
+          todo_.push_back({{next.begin(), next.end()}});
+          which = which.subspan(next.size());
+        }
+        if (auto started = start(); !started) return started;
+      }
+      process::wait_for_any(children_);
+      for (std::size_t i = children_.size(); i-- > 0;) serve(i);
+    }
+    if (!unknown_.empty()) return fail(unknown_number(unknown_, in_.out));
+    return {};
+  }
+
+ private:
+  Expected<void> start() {
+    Batch batch = std::move(todo_.back());
+    todo_.pop_back();
+    auto child = process::Watched::start(
+        [&](process::SignsOfLife& signs, const process::Watched::Send& send) {
+          ChangeDetector look(in_, signs);
+          for (std::size_t i = 0; i < batch.campaigns.size(); ++i) {
+            signs.index = i;
+            const CampaignState state = look.at(states_[batch.campaigns[i]], batch.rough);
+            send(storage::pack(state, look.unknown_number()));
+          }
+        },
+        in_.context.site.limits.memory_MB);
+    if (!child) return fail(child.error());
+    children_.push_back(std::move(*child));
+    batches_.push_back(std::move(batch));
+    return {};
+  }
+
+  void serve(std::size_t i) {
+    process::Watched& child = children_[i];
+    Batch& batch = batches_[i];
+    for (const std::string& piece : child.take())
+      if (batch.received < batch.campaigns.size()) {
+        std::string unknown;
+        storage::unpack(piece, states_[batch.campaigns[batch.received++]], unknown);
+        if (!unknown.empty()) unknown_ = std::move(unknown);
+      }
+    const double seconds = in_.context.site.limits.disk_seconds;
+    const double patience = hung_ < most_patience ? seconds : std::min(seconds, 1.0);
+    const bool silent = !child.ended() && child.is_silent(patience);
+    if (!child.ended() && !silent) return;
+    if (batch.received < batch.campaigns.size()) cut_short(child, batch, silent, patience);
+    children_.erase(children_.begin() + static_cast<std::ptrdiff_t>(i));
+    batches_.erase(batches_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+
+  /// The campaign that it was at is tried alone, or failed; the others are done by another process.
+  void cut_short(process::Watched& child, const Batch& batch, bool silent, double patience) {
+    const std::size_t at =
+        std::clamp<std::size_t>(child.signs().index, batch.received, batch.campaigns.size() - 1);
+    const std::string place = storage::path_text(child.signs().reads_from());
+    const bool hangs = silent && child.signs().reads;
+    const process::ChildEnd end = child.end();
+    const std::uint32_t campaign = batch.campaigns[at];
+    Batch rest{{}, batch.rough};
+    for (std::size_t i = batch.received; i < batch.campaigns.size(); ++i)
+      if (i != at) rest.campaigns.push_back(batch.campaigns[i]);
+    if (!rest.campaigns.empty()) todo_.push_back(std::move(rest));
+    const int tried = ++trials_[campaign];
+    if (hangs) ++hung_;
+    if (hangs)
+      fail_at(campaign, {process::no_answer(patience), place});
+    else if (tried <= 2)
+      todo_.push_back({{campaign}, tried == 2 || silent});
+    else
+      fail_at(campaign, {"the process that looked at it ended: " + end.words, place});
+  }
+
+  void fail_at(std::uint32_t campaign, Error why) {
+    CampaignState& state = states_[campaign];
+    state.named_by_folder = true;
+    state.status = evaluation::Status::failed;
+    state.reason = "not evaluated";
+    state.errors = {std::move(why)};
+  }
+
+  const SurveyInput& in_;
+  std::vector<CampaignState>& states_;
+  std::vector<Batch> todo_;  // before all others
+  std::vector<process::Watched> children_;
+  std::vector<Batch> batches_;  // of the children
+  std::map<std::uint32_t, int> trials_;
+  std::size_t hung_ = 0;
+  std::string unknown_;
+};
+
+/// Looks at the campaigns `which` of `states` and completes them, on all cores, in child processes
+/// that may hang or crash without harm to the run. An error only if no process can be had, or if
+/// the register does not know a number.
+Expected<void> look_at_all(const SurveyInput& input, std::span<const std::uint32_t> which,
+                           std::vector<CampaignState>& states) {
+  return Pool(input, states).run(which);
+}
 
 /// An id for a campaign whose manifest does not give one: its folder's name.
 std::string folder_id(const std::string& folder) {
@@ -43,7 +184,7 @@ void name_by_folder(std::vector<CampaignState>& states, const std::vector<Earlie
   }
   for (CampaignState& s : states) {
     if (!s.named_by_folder) continue;
-    if (const auto at = known.find(storage::path_text(s.folder.view())); at != known.end()) {
+    if (const auto at = known.find(storage::path_text(s.folder)); at != known.end()) {
       s.id = at->second;
       known.erase(at);
       continue;
@@ -70,15 +211,15 @@ void fail_collisions(std::vector<CampaignState>& states) {
         folders += (k == i         ? ""
                     : k + 1 == end ? " and "
                                    : ", ") +
-                   storage::path_text(states[k].folder.view());
+                   storage::path_text(states[k].folder);
       if (named < end) folders += " and " + std::to_string(end - named) + " more folders";
       for (std::size_t k = i; k < end; ++k) {
         states[k].action = CampaignState::Action::todo;
         states[k].status = evaluation::Status::failed;
         states[k].reason = "no result: its id is not unique";
-        states[k].set_errors({Error{"campaign.id \"" + states[k].id.str() + "\" is used by " +
-                                        folders + "; expected one id for one campaign",
-                                    config::manifest_name}});
+        states[k].errors = {Error{"campaign.id \"" + states[k].id + "\" is used by " + folders +
+                                      "; expected one id for one campaign",
+                                  config::manifest_name}};
       }
     }
     i = end;
@@ -92,21 +233,21 @@ CampaignState failed_folder(const SiteWalk::Unlisted& unlisted) {
   state.is_campaign = false;
   state.status = evaluation::Status::failed;
   state.reason = "the folder cannot be listed";
-  state.set_errors({Error{"the folder " + storage::path_text(unlisted.folder) +
-                          " cannot be listed, so its content is not known: " + unlisted.why}});
+  state.errors = {Error{"the folder " + storage::path_text(unlisted.folder) +
+                        " cannot be listed, so its content is not known: " + unlisted.why}};
   return state;
 }
 
 /// Whether other campaigns share readings as they did when the record was written.
 void compare_twins(CampaignState& state, const std::vector<CampaignState>& all) {
-  const reading::Twins before = state.twins_before();
-  state.set_twins_before({});
+  const reading::Twins before = state.twins_before;
+  state.twins_before = {};
   if (state.action == CampaignState::Action::todo) return;
   const reading::Twins now = twins_of(state, all);
   if (now == before) return;
   state.action = CampaignState::Action::todo;
   state.status = evaluation::Status::none;
-  state.set_errors({});
+  state.errors = {};
   state.reason = now.empty() ? "no other campaign has its readings any more"
                              : "campaign " + now.front().second + " has the same readings";
 }
@@ -132,11 +273,11 @@ Expected<Surveyed> survey(const SurveyInput& input) {
   if (!walk) return fail(walk.error());
   for (std::string& note : walk->notes) input.notes.push_back(std::move(note));
   states.reserve(walk->campaigns.size() + walk->unlisted.size());
-  for (const KeptText& folder : walk->campaigns) {
+  for (const std::string& folder : walk->campaigns) {
     states.emplace_back();
     states.back().folder = folder;
   }
-  std::vector<KeptText>().swap(walk->campaigns);
+  walk->campaigns = std::vector<std::string>();
   {
     std::vector<std::uint32_t> each(states.size());
     std::iota(each.begin(), each.end(), std::uint32_t{0});
@@ -147,15 +288,14 @@ Expected<Surveyed> survey(const SurveyInput& input) {
   for (const SiteWalk::Unlisted& u : walk->unlisted) states.push_back(failed_folder(u));
   {
     const ClaimedIds claimed(states);
-    const auto earlier = unclaimed_results(input.out, claimed);
-    if (!earlier) return fail(earlier.error());
-    name_by_folder(states, *earlier, claimed);
+    NONIO_TRY(const auto earlier, unclaimed_results(input.out, claimed));
+    name_by_folder(states, earlier, claimed);
     std::vector<std::uint32_t> which;
     for (std::size_t i = 0; i < states.size(); ++i)
       if (states[i].named_by_folder && states[i].status == evaluation::Status::none)
         which.push_back(static_cast<std::uint32_t>(i));
     if (auto looked = look_at_all(input, which, states); !looked) return fail(looked.error());
-    all.vanished = vanished_of(*earlier, states, walked, walk->unlisted, input.out, input.notes);
+    all.vanished = vanished_of(earlier, states, walked, walk->unlisted, input.out, input.notes);
   }
   set_in_order(states);
   return all;

@@ -38,9 +38,8 @@ CampaignState ChangeDetector::at(const CampaignState& known, bool rough) {
   state.folder = known.folder;
   state.id = known.id;
   state.named_by_folder = known.named_by_folder;
-  signs_.reading((fs::path(known.folder.view()) / config::manifest_name).string());
-  const auto text =
-      storage::read_small_file(in_.site / known.folder.view() / config::manifest_name);
+  signs_.reading((fs::path(known.folder) / config::manifest_name).string());
+  const auto text = storage::read_small_file(in_.site / known.folder / config::manifest_name);
   if (!text) {  // its worker says why
     state.named_by_folder = true;
     state.reason = "no earlier result";
@@ -51,7 +50,7 @@ CampaignState ChangeDetector::at(const CampaignState& known, bool rough) {
   if (state.id.empty()) state.id = config::extract_id(*text);
   Last last = last_of(state.id);
   const bool as_before = last && *last &&
-                         (*last)->record.folder == storage::path_text(known.folder.view()) &&
+                         (*last)->record.folder == storage::path_text(known.folder) &&
                          digest_in((*last)->record, config::manifest_name) == digest;
   if (!as_before) {
     std::string id = read_whole(state, *text, rough);
@@ -75,17 +74,17 @@ std::string ChangeDetector::read_whole(CampaignState& state, const std::string& 
   signs_.reads = true;
   signs_.beat();
   if (!parsed) return {};
-  state.set_warnings(parsed->warnings);
+  state.warnings = parsed->warnings;
   std::set<std::string> files;
   std::vector<std::uint64_t> readings;
   for (const Measurement& m : parsed->campaign.measurements) {
     if (!files.insert(m.file).second) continue;
-    signs_.reading((fs::path(state.folder.view()) / m.file).string());
-    const auto path = storage::path_inside(in_.site / state.folder.view(), m.file);
+    signs_.reading((fs::path(state.folder) / m.file).string());
+    const auto path = storage::path_inside(in_.site / state.folder, m.file);
     const auto digest = path ? digest_with_signs(*path) : fail(path.error());
     if (digest) readings.push_back(storage::short_digest(*digest));
   }
-  state.set_readings(readings);
+  state.readings = readings;
   return parsed->campaign.id;
 }
 
@@ -119,13 +118,13 @@ void ChangeDetector::judge(CampaignState& state, const Last& last,
   state.reason = changes(state, record, manifest_digest);
   if (state.reason.empty() && !(*last)->whole) state.reason = "its last results are not whole";
   if (!state.reason.empty()) return;
-  state.set_twins_before(twins_of(record.inputs));
+  state.twins_before = twins_of(record.inputs);
   state.shows_history = record.history.has_value();
   if (record.history) state.history = record.history->sha256;
   state.action = tonight ? CampaignState::Action::done : CampaignState::Action::unchanged;
   state.reason = tonight ? record.reason : "nothing changed";
   state.status = record.status;
-  state.set_errors(record.errors);
+  state.errors = record.errors;
 }
 
 std::string ChangeDetector::changes(CampaignState& state, const evaluation::Record& record,
@@ -133,7 +132,7 @@ std::string ChangeDetector::changes(CampaignState& state, const evaluation::Reco
   std::vector<std::string> why;
   if (record.retry && record.night != in_.night)
     why.push_back("it failed for a reason that may have passed");
-  if (record.folder != storage::path_text(state.folder.view()))
+  if (record.folder != storage::path_text(state.folder))
     why.push_back("moved from " + record.folder);
   for (const auto& [name, digest] : shared_)
     if (digest_in(record, name) != digest) why.push_back(name + " changed");
@@ -145,12 +144,12 @@ std::string ChangeDetector::changes(CampaignState& state, const evaluation::Reco
         config::machine_digest(in_.context.machines, name) != digest)
       why.push_back("the record of the machine (" + name.substr(config::machine_prefix.size()) +
                     ") changed");
-  std::vector<std::uint64_t> readings = state.readings();
+  std::vector<std::uint64_t> readings = state.readings;
   for (const auto& [name, digest] : record.inputs)
     if (name.starts_with(prefix))
       if (const auto now = look_at_file(state, name.substr(prefix.size()), digest, why))
         readings.push_back(*now);
-  state.set_readings(readings);
+  state.readings = readings;
   if (in_.force && record.night != in_.night) return "--force";
   look_at_outputs(state, record, why);
   look_at_number(state, record, why);
@@ -167,8 +166,8 @@ std::optional<std::uint64_t> ChangeDetector::look_at_file(const CampaignState& s
                                                           const std::string& name,
                                                           const std::string& digest,
                                                           std::vector<std::string>& why) {
-  signs_.reading((fs::path(state.folder.view()) / name).string());
-  const auto path = storage::path_inside(in_.site / state.folder.view(), name);
+  signs_.reading((fs::path(state.folder) / name).string());
+  const auto path = storage::path_inside(in_.site / state.folder, name);
   const auto now = path ? digest_with_signs(*path) : fail(path.error());
   std::error_code error;
   if (now.value_or(config::absent) != digest)

@@ -12,11 +12,11 @@ namespace {
 /// Digests that are there more than once, in order: few, so that the campaigns need not be kept with all of them.
 std::vector<std::uint64_t> found_again(const std::vector<CampaignState>& campaigns) {
   std::size_t count = 0;
-  for (const CampaignState& c : campaigns) count += c.readings().size();
+  for (const CampaignState& c : campaigns) count += c.readings.size();
   std::vector<std::uint64_t> all;
   all.reserve(count);
   for (const CampaignState& c : campaigns)
-    for (const std::uint64_t digest : c.readings()) all.push_back(digest);
+    for (const std::uint64_t digest : c.readings) all.push_back(digest);
   std::sort(all.begin(), all.end());
   std::vector<std::uint64_t> again;
   for (std::size_t i = 1; i < all.size(); ++i)
@@ -31,23 +31,24 @@ void find_twins(std::vector<CampaignState>& campaigns) {
   const std::vector<std::uint64_t> often = found_again(campaigns);
   std::vector<File> files;
   for (std::size_t i = 0; i < campaigns.size(); ++i) {
-    for (const std::uint64_t digest : campaigns[i].readings())
+    for (const std::uint64_t digest : campaigns[i].readings)
       if (std::binary_search(often.begin(), often.end(), digest))
         files.emplace_back(digest, static_cast<std::uint32_t>(i));
-    campaigns[i].set_readings({});
+    campaigns[i].readings = std::vector<std::uint64_t>();
   }
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
   for (std::size_t i = 0, end = 0; i < files.size(); i = end) {
     for (end = i + 1; end < files.size() && files[end].first == files[i].first;) ++end;
     for (std::size_t k = i; end - i > 1 && k < end; ++k)
-      campaigns[files[k].second].add_twin({files[k].first, files[k == i ? i + 1 : i].second});
+      campaigns[files[k].second].twins.emplace_back(files[k].first,
+                                                    files[k == i ? i + 1 : i].second);
   }
 }
 
 reading::Twins twins_of(const CampaignState& campaign, const std::vector<CampaignState>& all) {
   reading::Twins twins;
-  for (const auto& [digest, other] : campaign.twins()) twins.emplace_back(digest, all[other].id);
+  for (const auto& [digest, other] : campaign.twins) twins.emplace_back(digest, all[other].id);
   std::sort(twins.begin(), twins.end());
   return twins;
 }

@@ -42,8 +42,8 @@ std::optional<evaluation::AssignedNumber> ask_for_number(
   evaluation::AssignedNumber assigned;
   std::string reply;
   if (!process::write_text(
-          stream, has_analysed + wire::pack(analysed.evaluated, analysed.number->missing)) ||
-      !process::read_text(stream, reply) || !wire::unpack(reply, assigned))
+          stream, has_analysed + storage::pack(analysed.evaluated, analysed.number->missing)) ||
+      !process::read_text(stream, reply) || !storage::unpack(reply, assigned))
     ::_exit(0);
   return assigned;
 }
@@ -82,7 +82,7 @@ void evaluate_for(int stream, const reading::Context& context, process::SharedSt
     std::string id;
     reading::Twins twins;
     std::optional<HistorySoFar> history;
-    if (!wire::unpack(request, folder, id, twins, history)) return;
+    if (!storage::unpack(request, folder, id, twins, history)) return;
     evaluation::AnalysedCampaign analysed = evaluation::analyse(
         reading::read_campaign(folder, context, tell), id, context, tell, twins);
     const auto number = ask_for_number(stream, analysed);
@@ -91,7 +91,7 @@ void evaluate_for(int stream, const reading::Context& context, process::SharedSt
                                     history ? &*history : nullptr);
     prints.pass_on(now);
     const bool grown = process::has_grown(at_start);
-    if (!process::write_text(stream, has_done + wire::pack(evaluated, grown))) return;
+    if (!process::write_text(stream, has_done + storage::pack(evaluated, grown))) return;
   }
 }
 
@@ -124,7 +124,7 @@ constexpr const char* no_process_of_ours =
 Expected<Evaluator::Analysed> Evaluator::analyse(const fs::path& folder, const std::string& id,
                                                  const reading::Twins& twins,
                                                  const std::optional<HistorySoFar>& history) {
-  if (!process::write_text(stream_, wire::pack(folder, id, twins, history))) ::_exit(0);
+  if (!process::write_text(stream_, storage::pack(folder, id, twins, history))) ::_exit(0);
   for (std::string said;;) {
     if (!process::read_text(stream_, said)) ::_exit(0);
     if (said.empty()) break;
@@ -136,7 +136,7 @@ Expected<Evaluator::Analysed> Evaluator::analyse(const fs::path& folder, const s
     Analysed analysed;
     if (said[0] != has_analysed) break;
     if (rest.empty()) return analysed;
-    if (!wire::unpack(rest, analysed.evaluated, analysed.missing.emplace()) ||
+    if (!storage::unpack(rest, analysed.evaluated, analysed.missing.emplace()) ||
         analysed.evaluated.campaign.id != id)
       break;
     return analysed;
@@ -146,12 +146,12 @@ Expected<Evaluator::Analysed> Evaluator::analyse(const fs::path& folder, const s
 
 Expected<evaluation::Evaluated> Evaluator::write_documents(
     const std::string& id, std::optional<evaluation::AssignedNumber> assigned) {
-  if (assigned && !process::write_text(stream_, wire::pack(*assigned))) ::_exit(0);
+  if (assigned && !process::write_text(stream_, storage::pack(*assigned))) ::_exit(0);
   std::string said;
   evaluation::Evaluated evaluated;
   if (!process::read_text(stream_, said)) ::_exit(0);
   if (said.empty() || said[0] != has_done ||
-      !wire::unpack(std::string_view(said).substr(1), evaluated, grown_))
+      !storage::unpack(std::string_view(said).substr(1), evaluated, grown_))
     return fail(no_process_of_ours);
   if (const std::string why = unsound_answer(evaluated, id); !why.empty())
     return fail("the process that evaluates gave " + why);

@@ -71,9 +71,8 @@ evaluation::AssignedNumber number_of(const SiteWork& site, const RegisterState& 
 Expected<std::optional<HistorySoFar>> history_of(const SiteWork& site, const CampaignState& c) {
   const auto basis = site.histories.find(c.id);
   if (basis == site.histories.end()) return std::optional<HistorySoFar>();
-  auto history = assessment::history_so_far(site.options.out, basis->second);
-  if (!history) return fail(history.error());
-  return std::optional(std::move(*history));
+  NONIO_TRY(auto history, assessment::history_so_far(site.options.out, basis->second));
+  return std::optional(std::move(history));
 }
 
 bool wants_signature(const evaluation::Evaluated& evaluated) {
@@ -89,15 +88,13 @@ Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const Regi
                                                 const CampaignState& c, const fs::path& folder,
                                                 certificates::CampaignFiles& files, bool as_draft,
                                                 bool& locked, Evaluator& evaluator) {
-  const auto history = history_of(site, c);
-  if (!history) return fail(history.error());
-  const auto analysed = evaluator.analyse(
-      folder, c.id, site.twins ? *site.twins : twins_of(c, site.campaigns), *history);
-  if (!analysed) return fail(analysed.error());
+  NONIO_TRY(const auto history, history_of(site, c));
+  NONIO_TRY(const auto analysed,
+            evaluator.analyse(folder, c.id, site.twins ? *site.twins : twins_of(c, site.campaigns),
+                              history));
   std::optional<evaluation::AssignedNumber> number;
-  if (analysed->missing)
-    number =
-        number_of(site, state, analysed->evaluated, *analysed->missing, files, as_draft, locked);
+  if (analysed.missing)
+    number = number_of(site, state, analysed.evaluated, *analysed.missing, files, as_draft, locked);
   return evaluator.write_documents(c.id, std::move(number));
 }
 
@@ -106,7 +103,7 @@ Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const Regi
 Expected<evaluation::Evaluated> certified(const SiteWork& site, const RegisterState& state,
                                           const CampaignState& c, process::SharedStatus& stage,
                                           bool& locked, Evaluator& evaluator) {
-  const fs::path folder = site.options.site / c.folder.view();
+  const fs::path folder = site.options.site / c.folder;
   certificates::CampaignFiles files(folder);
   auto evaluation = evaluated_apart(site, state, c, folder, files, false, locked, evaluator);
   if (evaluation && site.numbers.held_up(*evaluation))

@@ -122,7 +122,7 @@ Expected<loader::Catalogue> PluginHost::load_once() {
   std::string hung;
   auto text = answer((*answers)[0].get(), progress, hung);
   Ready ready;
-  if (text && wire::unpack(*text, ready.catalogue, ready.said, ready.refused)) {
+  if (text && storage::unpack(*text, ready.catalogue, ready.said, ready.refused)) {
     if (!ready.refused.empty()) return fail(ready.refused);
     for (std::string& words : ready.said) notes_.push_back(std::move(words));
     return std::move(ready.catalogue);
@@ -301,7 +301,7 @@ void PluginHost::serve(int control, int catalogue, int prints,
     ready.catalogue = request_.context.plugins->catalogue();
     if (request_.confine) ready.refused = process::confine_files();
   }
-  if (!process::write_text(catalogue, wire::pack(ready.catalogue, ready.said, ready.refused)))
+  if (!process::write_text(catalogue, storage::pack(ready.catalogue, ready.said, ready.refused)))
     ::_exit(0);
   ::close(catalogue);
   while (ready.refused.empty()) make_sibling(control, prints);

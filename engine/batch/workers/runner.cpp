@@ -348,7 +348,7 @@ class Runner {
     CampaignState& c = campaigns_[index];
     c.action = Action::done;
     c.status = status;
-    c.set_errors(std::move(errors));
+    c.errors = std::move(errors);
     events_.finished(c);
   }
 

@@ -83,9 +83,8 @@ Expected<void> load_plugins(SetUp& place, const RunOptions& options) {
       PluginHost::Request{options.plugin_folders, library_folders(options.own_plugins),
                           config::secret_files(place.context.site, options.site), place.context,
                           process::is_stop_requested, options.confine});
-  auto catalogue = host.start();
-  if (!catalogue) return fail(catalogue.error());
-  place.plugins = loader::Plugins(std::move(*catalogue));
+  NONIO_TRY(auto catalogue, host.start());
+  place.plugins = loader::Plugins(std::move(catalogue));
   place.notes.insert(place.notes.end(), host.notes().begin(), host.notes().end());
   return {};
 }
@@ -104,9 +103,8 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
                                        [&](const fs::path& path) { signs.reading(path.string()); });
       });
   if (!files) return fail(all_of({files.error()}));
-  auto parts = SiteParts::compare(options.site, options.out);
-  if (!parts) return fail(parts.error());
-  place->parts = std::move(*parts);
+  NONIO_TRY(auto parts, SiteParts::compare(options.site, options.out));
+  place->parts = std::move(parts);
   if (const std::string why = place->parts.refusal(); !why.empty()) return fail(why);
   auto site = config::site_in(*files, context.site_sha256);
   if (!site) return fail(all_of(site.error()));
@@ -132,9 +130,8 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
   if (!plugins.conflicts().empty()) return fail(plugins.conflicts().front());
   for (std::string& note : plugins.refusal_notes()) place->notes.push_back(std::move(note));
   context.plugins = &plugins;
-  auto digest = plugins.digest();
-  if (!digest) return fail(digest.error());
-  context.plugins_sha256 = std::move(*digest);
+  NONIO_TRY(auto digest, plugins.digest());
+  context.plugins_sha256 = std::move(digest);
   if (const auto mistakes = reading::site_mistakes(context); !mistakes.empty())
     return fail(all_of(mistakes));
   return place;

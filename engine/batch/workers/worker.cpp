@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <iostream>
@@ -47,10 +46,9 @@ struct Message {
 Expected<Worker> Worker::prepare(int& theirs) {
   process::SharedStatus stage;
   if (!stage.valid()) return fail("no memory for a worker");
-  auto ends = process::channel_pair(SOCK_SEQPACKET, "a worker");
-  if (!ends) return fail(ends.error());
-  theirs = (*ends)[1].release();
-  return Worker((*ends)[0].release(), std::move(stage));
+  NONIO_TRY(auto ends, process::channel_pair(SOCK_SEQPACKET, "a worker"));
+  theirs = ends[1].release();
+  return Worker(ends[0].release(), std::move(stage));
 }
 
 Expected<void> Worker::fork_with(const Task& task, double memory_MB, int theirs) {
@@ -80,11 +78,10 @@ Expected<Worker> Worker::start(const Task& task, double memory_MB) {
 Expected<Worker> Worker::start(PluginHost& plugins, const std::function<Task(int)>& task,
                                double memory_MB) {
   int theirs = -1;
-  auto streams = process::channel_pair(SOCK_STREAM, "a process that evaluates");
-  if (!streams) return fail(streams.error());
+  NONIO_TRY(auto streams, process::channel_pair(SOCK_STREAM, "a process that evaluates"));
   auto worker = prepare(theirs);
   if (!worker) return worker;
-  const auto pid = plugins.make_process(std::move((*streams)[1]), worker->stage_);
+  const auto pid = plugins.make_process(std::move(streams[1]), worker->stage_);
   if (pid) {
     worker->plugins_ = *pid;
     ::setpgid(*pid, *pid);
@@ -92,7 +89,7 @@ Expected<Worker> Worker::start(PluginHost& plugins, const std::function<Task(int
     ::close(theirs);
     return fail(pid.error());
   }
-  if (auto forked = worker->fork_with(task((*streams)[0].get()), memory_MB, theirs); !forked)
+  if (auto forked = worker->fork_with(task(streams[0].get()), memory_MB, theirs); !forked)
     return fail(forked.error());
   return worker;
 }

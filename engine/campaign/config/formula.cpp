@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "campaign/config/formula_expression.h"
 #include "campaign/config/formula_units.h"
@@ -216,8 +215,7 @@ Expected<Effect::Columns> columns(const Formula& formula, const Observations& o,
                                   const std::vector<double>& shape) {
   auto expression = Expression::parse(formula, axis, true);
   if (!expression) return fail("formula " + formula.name + ": " + expression.error().message);
-  const auto r = readings_of(o, axis);
-  if (!r) return fail(r.error());
+  NONIO_TRY(const auto r, readings_of(o, axis));
   std::vector<double>& slots = expression->in_place();
   std::vector<std::size_t> linear;
   std::size_t shapes = 0;
@@ -236,15 +234,15 @@ Expected<Effect::Columns> columns(const Formula& formula, const Observations& o,
              humidity = mean_of_all(o, o.humidity);
   Effect::Columns out(linear.size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
-    if (!r->moved[i]) continue;
-    const std::array<double, Expression::variables> row{r->p[i],
-                                                        r->theta[i],
-                                                        r->d[i],
-                                                        r->t[i],
-                                                        r->K[i],
+    if (!r.moved[i]) continue;
+    const std::array<double, Expression::variables> row{r.p[i],
+                                                        r.theta[i],
+                                                        r.d[i],
+                                                        r.t[i],
+                                                        r.K[i],
                                                         o.run.empty() ? 1.0 : o.run[i],
-                                                        r->length,
-                                                        r->duration,
+                                                        r.length,
+                                                        r.duration,
                                                         last_run,
                                                         axis.screw_pitch.value_or(0.0),
                                                         static_cast<double>(axis.teeth.value_or(0)),

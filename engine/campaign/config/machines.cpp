@@ -216,19 +216,16 @@ Checked<MachineRecord> parse_machine(std::string_view text, const std::string& f
 
 Expected<MachineRecords> read_machines(const fs::path& site) {
   MachineRecords records;
-  const auto there = storage::is_there(site / machines_folder);
-  if (!there) return fail(there.error());
-  if (!*there) return records;
-  const auto folder = storage::path_inside(site, machines_folder);
-  if (!folder) return fail(folder.error());
+  NONIO_TRY(const auto there, storage::is_there(site / machines_folder));
+  if (!there) return records;
+  NONIO_TRY(const auto folder, storage::path_inside(site, machines_folder));
   std::vector<std::string> names;
   std::error_code error;
-  for (fs::directory_iterator it(*folder, error), end; !error && it != end; it.increment(error))
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
     if (const fs::path name = it->path().filename();
         name.extension() == ".toml" && !name.string().starts_with("."))
       names.push_back(name.stem().string());
-  if (error)
-    return fail("cannot read the machines in " + folder->string() + ": " + error.message());
+  if (error) return fail("cannot read the machines in " + folder.string() + ": " + error.message());
   std::sort(names.begin(), names.end());
   for (const std::string& name : names) records.push_back(read_record(site, name));
   return records;

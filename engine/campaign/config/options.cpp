@@ -181,10 +181,9 @@ Expected<void> flatten(const toml::table& table, const std::string& prefix, cons
 }  // namespace
 
 Expected<Settings> parse_settings(std::string_view text, const std::string& file) {
-  auto root = parse_toml(text, file);
-  if (!root) return fail(root.error());
+  NONIO_TRY(auto root, parse_toml(text, file));
   Settings settings;
-  if (auto flat = flatten(*root, "", file, settings); !flat) return fail(flat.error());
+  if (auto flat = flatten(root, "", file, settings); !flat) return fail(flat.error());
   return settings;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/config/site_files.h"
 
-#include <algorithm>
-
 #include "campaign/config/causes.h"
 #include "campaign/config/machines.h"
 #include "platform/storage/digest.h"
@@ -15,9 +13,8 @@ namespace fs = std::filesystem;
 namespace {
 
 Expected<std::optional<std::string>> read_settings(const fs::path& site) {
-  const auto there = storage::is_there(site / site_name);
-  if (!there) return fail(there.error());
-  if (!*there) return std::nullopt;
+  NONIO_TRY(const auto there, storage::is_there(site / site_name));
+  if (!there) return std::nullopt;
   auto text = storage::read_small_file(site / site_name);
   if (!text) return fail(Error{text.error().message, site_name});
   return std::move(*text);
@@ -41,12 +38,11 @@ Expected<std::vector<fs::path>> with_site_templates(std::vector<fs::path> folder
                                                     const fs::path& site) {
   for (const char* name : {templates_folder, causes_folder}) {
     const fs::path own = site / name;
-    const auto there = storage::is_there(own);
-    if (!there) return fail(there.error());
+    NONIO_TRY(const auto there, storage::is_there(own));
     std::error_code error;
     const auto kind = fs::status(own, error).type();
-    if (*there && error) return fail("cannot read " + own.string() + ": " + error.message());
-    if (*there && kind == fs::file_type::directory) folders.push_back(own);
+    if (there && error) return fail("cannot read " + own.string() + ": " + error.message());
+    if (there && kind == fs::file_type::directory) folders.push_back(own);
   }
   return folders;
 }
@@ -55,26 +51,22 @@ Expected<SiteFiles> read_site_files(const fs::path& site,
                                     const std::function<void(const fs::path&)>& reading) {
   SiteFiles files;
   reading(site / site_name);
-  auto settings = read_settings(site);
-  if (!settings) return fail(settings.error());
-  files.settings = std::move(*settings);
+  NONIO_TRY(auto settings, read_settings(site));
+  files.settings = std::move(settings);
   // Read again where they are used; here a share that hangs is noticed.
   reading(site / machines_folder);
   if (const auto machines = read_machines(site); !machines) return fail(machines.error());
   reading(site / "templates");
-  const auto own = with_site_templates({}, site);
-  if (!own) return fail(own.error());
+  NONIO_TRY(const auto own, with_site_templates({}, site));
   files.templates.folder = site / templates_folder;
-  for (const fs::path& folder : *own) {
-    const auto paths = template_paths(folder);
-    if (!paths) return fail(paths.error());
+  for (const fs::path& folder : own) {
+    NONIO_TRY(const auto paths, template_paths(folder));
     const std::string under = folder.filename() == causes_folder ? std::string(site_causes) : "";
-    for (const auto& [name, path] : *paths) {
+    for (const auto& [name, path] : paths) {
       if (!under.empty() && !is_causes_file(under + name)) continue;
       reading(path);
-      auto bytes = storage::read_file(path);
-      if (!bytes) return fail(bytes.error());
-      files.templates.files[under + name] = std::move(*bytes);
+      NONIO_TRY(auto bytes, storage::read_file(path));
+      files.templates.files[under + name] = std::move(bytes);
     }
   }
   return files;

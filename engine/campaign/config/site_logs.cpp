@@ -68,9 +68,8 @@ std::string reason_of(TableReader& reader) {
 }
 
 Expected<std::string> text_of_log(const fs::path& site, const char* name) {
-  const auto there = storage::is_there(site / name);
-  if (!there) return fail(there.error());
-  if (!*there) return std::string();
+  NONIO_TRY(const auto there, storage::is_there(site / name));
+  if (!there) return std::string();
   auto text = storage::read_small_file(site / name);
   if (!text) return fail(Error{text.error().message, name});
   return text;
@@ -80,10 +79,9 @@ template <class T>
 Expected<void> take_log(const fs::path& site, const char* name,
                         Checked<std::vector<T>> (*parse)(std::string_view, const std::string&),
                         std::vector<T>& into, std::vector<Error>& errors) {
-  const auto text = text_of_log(site, name);
-  if (!text) return fail(text.error());
-  if (text->empty()) return {};
-  auto parsed = parse(*text, name);
+  NONIO_TRY(const auto text, text_of_log(site, name));
+  if (text.empty()) return {};
+  auto parsed = parse(text, name);
   if (parsed)
     into = std::move(*parsed);
   else

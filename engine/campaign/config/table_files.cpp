@@ -33,9 +33,8 @@ Expected<std::vector<Artifact>> read_table_files(const std::string& list) {
 Expected<std::vector<Artifact>> read_table_files(const std::string& list,
                                                  const std::filesystem::path& base) {
   return read_list(list, [&](const std::filesystem::path& path) -> Expected<std::string> {
-    const auto inside = storage::path_inside(base, path.string());
-    if (!inside) return fail(inside.error());
-    auto bytes = storage::read_small_file(*inside);
+    NONIO_TRY(const auto inside, storage::path_inside(base, path.string()));
+    auto bytes = storage::read_small_file(inside);
     if (!bytes) return fail(path.string() + ": " + bytes.error().message);
     return bytes;
   });

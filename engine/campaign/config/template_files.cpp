@@ -65,9 +65,8 @@ Expected<void> keep(Templates& templates, const std::string& name, std::string b
     templates.files[name] = std::move(bytes);
     return {};
   }
-  auto settings = parse_settings(bytes, path);
-  if (!settings) return fail(settings.error());
-  templates.tables[name.substr(0, name.size() - 5)] = std::move(*settings);
+  NONIO_TRY(auto settings, parse_settings(bytes, path));
+  templates.tables[name.substr(0, name.size() - 5)] = std::move(settings);
   return {};
 }
 
@@ -78,10 +77,9 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
                                    const std::vector<std::string>& below) {
   std::map<std::string, fs::path> files;
   for (const fs::path& folder : folders) {
-    auto here = template_paths(folder);
-    if (!here) return fail(here.error());
+    NONIO_TRY(auto here, template_paths(folder));
     const std::string under = folder.filename() == causes_folder ? std::string(site_causes) : "";
-    for (auto& [name, path] : *here)
+    for (auto& [name, path] : here)
       if (under.empty() || is_causes_file(under + name)) files[under + name] = std::move(path);
   }
   for (const auto& [name, bytes] : own.files) files[name] = path_of(own, name);
@@ -95,16 +93,15 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
   storage::Json carried = storage::Json::object();
   for (const auto& [name, path] : files) {
     const auto of_site = own.files.find(name);
-    auto bytes = of_site == own.files.end() ? storage::read_file(path)
-                                            : Expected<std::string>(of_site->second);
-    if (!bytes) return fail(bytes.error());
-    const std::string sum = storage::sha256(*bytes);
+    NONIO_TRY(auto bytes, of_site == own.files.end() ? storage::read_file(path)
+                                                     : Expected<std::string>(of_site->second));
+    const std::string sum = storage::sha256(bytes);
     all += line_of(name, sum);
     if (json != nullptr)
       carried[name] = !travels(name)            ? storage::Json{{"sha256", sum}}
-                      : name.ends_with(".toml") ? storage::Json{{"text", *bytes}}
-                                                : storage::Json{{"hex", to_hex(*bytes)}};
-    if (auto kept = keep(templates, name, std::move(*bytes), path.string()); !kept)
+                      : name.ends_with(".toml") ? storage::Json{{"text", bytes}}
+                                                : storage::Json{{"hex", to_hex(bytes)}};
+    if (auto kept = keep(templates, name, std::move(bytes), path.string()); !kept)
       return fail(kept.error());
   }
   if (auto read = causes_in(templates))

@@ -42,8 +42,7 @@ class Precheck {
       if (quote_within_word()) return "a quote in the middle of a word";
       if (goes_on_outside_ascii())
         return "after \\ and blanks a text in \"\"\" cannot go on with a letter outside ASCII "
-               "here: "
-               "leave the \\ out, or break the line elsewhere";
+               "here: leave the \\ out, or break the line elsewhere";
       if (dots_ > most_dots || open_.size() > most_open)
         return "tables within tables, more than 32 with dots or 64 with brackets; expected few";
       if (!step(c)) return "a letter outside a-z 0-9 _ - needs quotes around it";

@@ -54,9 +54,8 @@ tl::unexpected<Error> by_hand(const FormerKey& key, const std::string& file) {
 
 Expected<UpgradedFile> upgraded(std::string_view text, const Key& declaration,
                                 const std::string& file) {
-  auto before = parse_toml(text, file);
-  if (!before) return fail(before.error());
-  const std::vector<FormerKey> keys = rename_former_keys(*before, declaration);
+  NONIO_TRY(auto before, parse_toml(text, file));
+  const std::vector<FormerKey> keys = rename_former_keys(before, declaration);
   UpgradedFile out{std::string(text), {}};
   if (keys.empty()) return out;
   std::vector<std::string> lines = lines_of(text);
@@ -75,7 +74,7 @@ Expected<UpgradedFile> upgraded(std::string_view text, const Key& declaration,
       out.lines.push_back({i + 1, without_end(old_lines[i]), without_end(lines[i])});
   }
   auto after = parse_toml(out.text, file);
-  if (!after || !rename_former_keys(*after, declaration).empty() || !(*after == *before))
+  if (!after || !rename_former_keys(*after, declaration).empty() || !(*after == before))
     return by_hand(keys.front(), file);
   return out;
 }

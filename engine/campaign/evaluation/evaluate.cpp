@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/evaluation/evaluate.h"
 
-#include <algorithm>
 #include <iterator>
 
 #include "campaign/evaluation/control_tables.h"

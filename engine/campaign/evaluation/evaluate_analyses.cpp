@@ -1,21 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 #include <set>
 
-#include "campaign/evaluation/cmc.h"
 #include "campaign/evaluation/evaluation.h"
 #include "campaign/modelling/model_fit.h"
 #include "campaign/reading/names.h"
 #include "campaign/reading/plausibility/plausibility.h"
+#include "nonio/sdk/campaign.h"
 #include "nonio/sdk/check.h"
 #include "nonio/sdk/format.h"
+#include "nonio/sdk/results.h"
 #include "nonio/sdk/statement.h"
 #include "platform/process/guarded.h"
 
 namespace nonio::evaluation {
 
 namespace {
+
+/// The smallest U of this quantity; 0 if none is stated.
+double floor_of(const Cmc& cmc, Quantity q, double length) {
+  switch (q) {
+    case Quantity::length:
+    case Quantity::deviation:
+      return cmc.fixed.value_or(0.0) + cmc.per_length.value_or(0.0) * length;
+    case Quantity::angle:
+    case Quantity::angular_deviation:
+    case Quantity::small_angle:
+    case Quantity::number:  // components of a direction
+      return cmc.angle.value_or(0.0);
+    default:
+      return 0.0;
+  }
+}
+
+/// An accredited laboratory's smallest uncertainty, `[laboratory.cmc]`: no result of the evaluation
+/// keeps a smaller U. length: that it was measured over, m. Nothing happens without accreditation.
+/// Source: the policy of ILAC-P14 that U on a certificate is not below the CMC; its text was not at
+/// hand.
+void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
+  if (laboratory.accreditation.empty() || !laboratory.cmc.stated()) return;
+  std::string raised;
+  const auto raise = [&](double& U, Quantity q) {
+    const double least = floor_of(laboratory.cmc, q, length);
+    const bool below = U < least;
+    if (below) U = least;
+    return below;
+  };
+  const auto note = [&](const std::string& name) { raised += (raised.empty() ? "" : ", ") + name; };
+  for (Value& v : e.values)
+    if (v.U && raise(*v.U, v.quantity)) {
+      v.k = 2.0;  // that of [laboratory.cmc]
+      note(v.name);
+    }
+  for (PointTable::Column& c : e.points.columns)
+    if (c.U) raise(*c.U, c.quantity);
+  for (Series& s : e.series) {
+    bool any = false;
+    for (double& U : s.U) any = raise(U, s.quantity) || any;
+    if (any) note(s.name);
+  }
+  if (!raised.empty())
+    e.findings.push_back({.id = "uncertainty.cmc", .texts = {{"results", std::move(raised)}}});
+}
 
 /// Readings that were taken out without a word why. The evaluation stands; nothing is issued.
 void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {

@@ -173,28 +173,24 @@ std::optional<Record> record_in(const std::string& bytes) {
 
 /// None if there is no such file, or if it is not a record.
 Expected<std::optional<Record>> record_at(const fs::path& path) {
-  const auto there = storage::is_there(path);
-  if (!there) return fail(there.error());
-  if (!*there) return std::nullopt;
-  const auto bytes = storage::read_file(path);
-  if (!bytes) return fail(bytes.error());
-  return record_in(*bytes);
+  NONIO_TRY(const auto there, storage::is_there(path));
+  if (!there) return std::nullopt;
+  NONIO_TRY(const auto bytes, storage::read_file(path));
+  return record_in(bytes);
 }
 
 }  // namespace
 
 Expected<Record> read_record(const fs::path& campaign_output) {
-  auto record = record_at(campaign_output / record_name);
-  if (!record) return fail(record.error());
-  if (!*record) return fail((campaign_output / record_name).string() + " is not a record");
-  return std::move(**record);
+  NONIO_TRY(auto record, record_at(campaign_output / record_name));
+  if (!record) return fail((campaign_output / record_name).string() + " is not a record");
+  return std::move(*record);
 }
 
 Expected<std::optional<LastRecord>> last_record(const fs::path& campaign_output) {
   for (const char* name : {record_name, record_before_name}) {
-    auto record = record_at(campaign_output / name);
-    if (!record) return fail(record.error());
-    if (*record) return LastRecord{std::move(**record), name == record_name};
+    NONIO_TRY(auto record, record_at(campaign_output / name));
+    if (record) return LastRecord{std::move(*record), name == record_name};
   }
   return std::nullopt;
 }

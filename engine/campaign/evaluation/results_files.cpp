@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/evaluation/results_files.h"
 
-#include <algorithm>
 #include <set>
 
 #include "platform/storage/digest.h"
@@ -19,20 +18,17 @@ constexpr const char* earlier_name = "earlier.json";
 Expected<void> add_files(const fs::path& folder, const std::string& before,
                          std::vector<RecordedFile>& all) {
   const fs::path path = folder / record_name;
-  const auto there = storage::is_there(path);
-  if (!there) return fail(there.error());
-  if (!*there) return {};
-  const auto record = read_record(folder);
-  if (!record) return fail(record.error());
-  for (const RecordedFile& f : record->files) {
+  NONIO_TRY(const auto there, storage::is_there(path));
+  if (!there) return {};
+  NONIO_TRY(const auto record, read_record(folder));
+  for (const RecordedFile& f : record.files) {
     if (!storage::is_artifact_name(f.name) && f.name != results_name && f.name != earlier_name)
       return fail(path.string() + " names a file \"" + storage::path_text(f.name) +
                   "\"; expected a plain name");
     all.push_back({before + f.name, f.size, f.sha256});
   }
-  const auto bytes = storage::read_file(path);
-  if (!bytes) return fail(bytes.error());
-  all.push_back({before + record_name, bytes->size(), storage::sha256(*bytes)});
+  NONIO_TRY(const auto bytes, storage::read_file(path));
+  all.push_back({before + record_name, bytes.size(), storage::sha256(bytes)});
   return {};
 }
 
@@ -46,11 +42,10 @@ Expected<std::vector<RecordedFile>> results_files(const fs::path& folder) {
   if (auto added = add_files(folder, "", all); !added) return fail(added.error());
   const auto packed = storage::in_pack(folder);
   if (!packed) return all;
-  const auto names = storage::names_packed(*packed);
-  if (!names) return fail(names.error());
+  NONIO_TRY(const auto names, storage::names_packed(*packed));
   std::set<std::string> known;
   for (const RecordedFile& f : all) known.insert(f.name);
-  for (const std::string& name : *names)
+  for (const std::string& name : names)
     if (!known.contains(name))
       return fail("the pack " + packed->pack.string() + " has a file \"" +
                   storage::path_text(packed->name + "/" + name) +
@@ -73,13 +68,12 @@ namespace {
 /// What is damaged is missing then, so that the campaign is evaluated anew; but earlier.json is the only copy.
 Expected<std::vector<Artifact>> files_to_copy(const fs::path& folder) {
   std::vector<Artifact> files;
-  const auto last = last_record(folder);
-  if (!last) return fail(last.error());
+  NONIO_TRY(const auto last, last_record(folder));
   bool has_earlier = false;
-  if (*last)
-    for (const RecordedFile& f : (*last)->record.files) {
-      auto bytes = (*last)->whole ? read_result(folder, f) : storage::read_file(folder / f.name);
-      if (!bytes && f.name == earlier_name && (*last)->whole) return fail(bytes.error());
+  if (last)
+    for (const RecordedFile& f : last->record.files) {
+      auto bytes = last->whole ? read_result(folder, f) : storage::read_file(folder / f.name);
+      if (!bytes && f.name == earlier_name && last->whole) return fail(bytes.error());
       if (!bytes) continue;
       has_earlier = has_earlier || f.name == earlier_name;
       files.push_back({f.name, std::move(*bytes)});
@@ -87,11 +81,10 @@ Expected<std::vector<Artifact>> files_to_copy(const fs::path& folder) {
   std::vector<std::string> more;
   if (const auto there = storage::is_there(folder / earlier_name); !has_earlier && there && *there)
     more.emplace_back(earlier_name);
-  if (*last) more.emplace_back((*last)->whole ? record_name : record_before_name);
+  if (last) more.emplace_back(last->whole ? record_name : record_before_name);
   for (const std::string& name : more) {
-    auto bytes = storage::read_file(folder / name);
-    if (!bytes) return fail(bytes.error());
-    files.push_back({name, std::move(*bytes)});
+    NONIO_TRY(auto bytes, storage::read_file(folder / name));
+    files.push_back({name, std::move(bytes)});
   }
   return files;
 }

@@ -120,10 +120,9 @@ class Importer {
   }
 
   Expected<void> look() {
-    const auto names = files();
-    if (!names) return fail(names.error());
+    NONIO_TRY(const auto names, files());
     std::map<std::string, std::string> first;  // by digest
-    for (const std::string& name : *names) {
+    for (const std::string& name : names) {
       const auto excluded =
           std::find_if(request_.rule.exclude.begin(), request_.rule.exclude.end(),
                        [&](const std::string& part) { return name.find(part) != name.npos; });
@@ -139,14 +138,13 @@ class Importer {
         continue;
       }
       const auto path = storage::path_inside(request_.folder, name);
-      auto bytes = path ? storage::read_file(*path) : fail(path.error());
-      if (!bytes) return fail(bytes.error());
-      const auto [same, fresh] = first.try_emplace(storage::sha256(*bytes), name);
+      NONIO_TRY(auto bytes, path ? storage::read_file(*path) : fail(path.error()));
+      const auto [same, fresh] = first.try_emplace(storage::sha256(bytes), name);
       if (!fresh) {
         report_.duplicates.push_back({name, "the same bytes as " + same->second});
         continue;
       }
-      campaigns_[campaign_of(request_.rule, ways[0])].push_back({name, std::move(*bytes), ways[0]});
+      campaigns_[campaign_of(request_.rule, ways[0])].push_back({name, std::move(bytes), ways[0]});
     }
     return {};
   }
@@ -371,9 +369,8 @@ class Importer {
 
   Expected<Observations> read(const config::Manifest& manifest, const Measurement& m,
                               const Found& found, std::string& name) const {
-    const auto converted = utf8_of_utf16(found.bytes);
-    if (!converted) return fail(converted.error());
-    const std::string& bytes = *converted ? **converted : found.bytes;
+    NONIO_TRY(const auto converted, utf8_of_utf16(found.bytes));
+    const std::string& bytes = converted ? *converted : found.bytes;
     const Reader* reader = nullptr;
     for (const Reader& r : plugins_.readers()) {
       if (!name.empty() ? r.info.name == name

@@ -176,8 +176,7 @@ void check_axes(const ImportRule& rule, config::TableReader& reader) {
 
 Expected<void> check(const ImportRule& rule) {
   if (rule.pattern.empty()) return fail("pattern: is missing: how the names of the files are made");
-  const auto tokens = tokens_of(rule.pattern);
-  if (!tokens) return fail(tokens.error());
+  NONIO_TRY(const auto tokens, tokens_of(rule.pattern));
   return {};
 }
 

@@ -37,9 +37,8 @@ std::string text_at(std::string_view bytes, std::uint64_t at) {
 // Not boost::dll::library_info: it reads the table of names that `strip` takes away, and does not
 // tell weak symbols from others.
 Expected<std::vector<std::string>> exported_symbols(const std::filesystem::path& library) {
-  const auto file = storage::MappedFile::open(library);
-  if (!file) return fail(file.error());
-  const std::string_view bytes = file->bytes();
+  NONIO_TRY(const auto file, storage::MappedFile::open(library));
+  const std::string_view bytes = file.bytes();
   const auto head = entries<Elf64_Ehdr>(bytes, 0, 1);
   if (head.empty() || std::memcmp(head[0].e_ident, ELFMAG, SELFMAG) != 0 ||
       head[0].e_ident[EI_CLASS] != ELFCLASS64)

@@ -256,9 +256,8 @@ Expected<std::string> Plugins::digest() const {
   std::string all;
   for (const PluginFile& file : files_) {
     if (!file.refused.empty()) continue;
-    const auto bytes = storage::MappedFile::open(file.path);
-    if (!bytes) return fail(bytes.error());
-    all += file.path.filename().string() + " " + storage::sha256(bytes->bytes()) + "\n";
+    NONIO_TRY(const auto bytes, storage::MappedFile::open(file.path));
+    all += file.path.filename().string() + " " + storage::sha256(bytes.bytes()) + "\n";
   }
   return storage::sha256(all);
 }

@@ -183,20 +183,17 @@ namespace {
 /// Takes what the effect says off the readings; nothing where they do not show it.
 Expected<void> hold(PartModel& part, const Entry& entry, const Machine& machine,
                     const std::vector<Effect>& effects) {
-  auto terms = model::terms_of(part.part, machine, {entry.effect}, effects);
-  if (!terms) return fail(terms.error());
-  const auto term = std::find_if(terms->begin(), terms->end(),
+  NONIO_TRY(auto terms, model::terms_of(part.part, machine, {entry.effect}, effects));
+  const auto term = std::find_if(terms.begin(), terms.end(),
                                  [&](const model::Term& t) { return t.name() == entry.effect; });
-  if (term == terms->end()) return {};
-  const auto value = held_value(entry, *term->effect, term->axis.rotary);
-  if (!value) return fail(value.error());
-  auto says = model::said_by(part.part.table, *term, *value);
-  if (!says) return fail(says.error());
-  PartModel::Held held{*term, {}, entry.text(), std::move(*says)};
+  if (term == terms.end()) return {};
+  NONIO_TRY(const auto value, held_value(entry, *term->effect, term->axis.rotary));
+  NONIO_TRY(auto says, model::said_by(part.part.table, *term, value));
+  PartModel::Held held{*term, {}, entry.text(), std::move(says)};
   held.term.held = true;
   const Effect::Parameter& p = term->effect->linear.front();
   const Quantity q = term->axis.rotary ? p.rotary : p.quantity;
-  held.parameter = {entry.effect, p.name, *value, 0.0, q, false, {}, true};
+  held.parameter = {entry.effect, p.name, value, 0.0, q, false, {}, true};
   for (std::size_t i = 0; i < held.part.size(); ++i) part.part.table.deviation[i] -= held.part[i];
   part.held.push_back(std::move(held));
   return {};
@@ -267,8 +264,7 @@ Error nothing_to_compare(const reading::ReadCampaign& read) {
   if (kinds.empty()) return {"no measurement of this campaign has readings"};
   return {
       "effects explain runs of an axis, straightness, diagonals, circles, ball centres and "
-      "displacements over time; this "
-      "campaign has readings of another kind: " +
+      "displacements over time; this campaign has readings of another kind: " +
       storage::listed(kinds)};
 }
 

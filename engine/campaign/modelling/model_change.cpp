@@ -29,9 +29,8 @@ Expected<std::optional<Compared>> compare_axis(const reading::ReadCampaign& read
     else
       fill_catalogue(part, read);
     if (!part.shows(effect)) continue;
-    auto comparison = compare_part(part);
-    if (!comparison) return fail(comparison.error());
-    return Compared{std::move(part), std::move(*comparison)};
+    NONIO_TRY(auto comparison, compare_part(part));
+    return Compared{std::move(part), std::move(comparison)};
   }
   return std::nullopt;
 }
@@ -70,22 +69,19 @@ Expected<std::string> unchanged_manifest(const fs::path& folder,
 
 Expected<void> write(const fs::path& folder, const reading::ReadCampaign& read,
                      const CampaignEdit& edit, const std::vector<Change>& changes) {
-  const auto text = unchanged_manifest(folder, read);
-  if (!text) return fail(text.error());
-  auto edited = edited_manifest(*text, edit);
-  if (!edited) return fail(edited.error());
+  NONIO_TRY(const auto text, unchanged_manifest(folder, read));
+  NONIO_TRY(auto edited, edited_manifest(text, edit));
   std::string history;
   std::error_code error;
   if (fs::exists(folder / history_name, error)) {
-    const auto old = storage::read_file(folder / history_name);
-    if (!old) return fail(old.error());
-    if (const auto sound = parse_history(*old); !sound) return fail(sound.error());
-    history = *old;
+    NONIO_TRY(const auto old, storage::read_file(folder / history_name));
+    if (const auto sound = parse_history(old); !sound) return fail(sound.error());
+    history = old;
     if (!history.empty() && history.back() != '\n') history += '\n';
   }
   for (const Change& change : changes) history += history_line(change.step);
   return storage::publish(
-      folder, {{history_name, std::move(history)}, {config::manifest_name, std::move(*edited)}});
+      folder, {{history_name, std::move(history)}, {config::manifest_name, std::move(edited)}});
 }
 
 /// From one model to the next. `known`: a comparison of the first one, if there is one already.
@@ -229,9 +225,8 @@ Expected<std::vector<Change>> change_campaign(const fs::path& folder, reading::R
 
 Expected<Change> change_model(const fs::path& folder, reading::ReadCampaign& read,
                               const std::string& effect, bool add, const Compared* known) {
-  auto changes = change_campaign(folder, read, {.model = {{effect, add, {}}}}, known);
-  if (!changes) return fail(changes.error());
-  return std::move(changes->front());
+  NONIO_TRY(auto changes, change_campaign(folder, read, {.model = {{effect, add, {}}}}, known));
+  return std::move(changes.front());
 }
 
 }  // namespace nonio::modelling

@@ -225,9 +225,8 @@ struct Parsed {
 };
 
 Expected<Parsed> look(std::string_view text) {
-  auto root = config::parse_toml(text, config::manifest_name);
-  if (!root) return fail(root.error());
-  Parsed out{std::move(*root), std::nullopt, 0};
+  NONIO_TRY(auto root, config::parse_toml(text, config::manifest_name));
+  Parsed out{std::move(root), std::nullopt, 0};
   const toml::node* node = out.root["model"]["effects"].node();
   if (node == nullptr) return out;
   out.line = node->source().begin.line;
@@ -242,31 +241,29 @@ Expected<Parsed> look(std::string_view text) {
 }  // namespace
 
 Expected<std::string> with_effect(std::string_view text, const std::string& effect) {
-  const auto parsed = look(text);
-  if (!parsed) return fail(parsed.error());
-  Names wanted = names_in(parsed->root);
+  NONIO_TRY(const auto parsed, look(text));
+  Names wanted = names_in(parsed.root);
   wanted.push_back(effect);
   const std::vector<std::string> tries =
-      parsed->list ? std::vector{appended(text, *parsed->list, quoted(effect))}
-                   : with_new_list(text, effect);
+      parsed.list ? std::vector{appended(text, *parsed.list, quoted(effect))}
+                  : with_new_list(text, effect);
   for (const std::string& one : tries)
-    if (is_meant(parsed->root, one, wanted)) return one;
+    if (is_meant(parsed.root, one, wanted)) return one;
   return refusal("\"" + effect + "\" could not be added without changing something else",
-                 parsed->line);
+                 parsed.line);
 }
 
 Expected<std::string> without_effect(std::string_view text, const std::string& effect) {
-  const auto parsed = look(text);
-  if (!parsed) return fail(parsed.error());
-  Names wanted = names_in(parsed->root);
+  NONIO_TRY(const auto parsed, look(text));
+  Names wanted = names_in(parsed.root);
   const auto found = std::find(wanted.begin(), wanted.end(), effect);
-  if (found == wanted.end()) return refusal("\"" + effect + "\" is not in it", parsed->line);
+  if (found == wanted.end()) return refusal("\"" + effect + "\" is not in it", parsed.line);
   const auto index = static_cast<std::size_t>(found - wanted.begin());
   wanted.erase(found);
-  std::string one = removed(text, *parsed->list, index);
-  if (is_meant(parsed->root, one, wanted)) return one;
+  std::string one = removed(text, *parsed.list, index);
+  if (is_meant(parsed.root, one, wanted)) return one;
   return refusal("\"" + effect + "\" could not be taken out without changing something else",
-                 parsed->line);
+                 parsed.line);
 }
 
 namespace {
@@ -310,9 +307,8 @@ toml::table* measurement_in(toml::table& root, const std::string& id) {
 Expected<std::string> with_excluded(std::string_view text, const std::string& measurement,
                                     const std::vector<std::uint32_t>& lines,
                                     const std::string& why) {
-  auto root = config::parse_toml(text, config::manifest_name);
-  if (!root) return fail(root.error());
-  toml::table* table = measurement_in(*root, measurement);
+  NONIO_TRY(auto root, config::parse_toml(text, config::manifest_name));
+  toml::table* table = measurement_in(root, measurement);
   if (table == nullptr)
     return fail(Error{"there is no measurement \"" + measurement + "\"", config::manifest_name});
   toml::array wanted;
@@ -346,15 +342,14 @@ Expected<std::string> with_excluded(std::string_view text, const std::string& me
     out = with_line(out, *now, "exclude", "exclude_reason = " + value);
   table->insert_or_assign("exclude_reason", reason);
   const auto after = config::parse_toml(out, config::manifest_name);
-  if (!after || *after != *root) return not_meant("exclude", *table);
+  if (!after || *after != root) return not_meant("exclude", *table);
   return out;
 }
 
 Expected<std::string> with_period(std::string_view text, const std::string& axis, double mm) {
   constexpr const char* key = "screw_pitch_mm";
-  auto root = config::parse_toml(text, config::manifest_name);
-  if (!root) return fail(root.error());
-  toml::table* const table = (*root)["machine"]["axes"][axis].as_table();
+  NONIO_TRY(auto root, config::parse_toml(text, config::manifest_name));
+  toml::table* const table = root["machine"]["axes"][axis].as_table();
   if (table == nullptr)
     return fail(Error{"does not describe axis " + axis +
                           ": write screw_pitch_mm by hand, here or "
@@ -368,7 +363,7 @@ Expected<std::string> with_period(std::string_view text, const std::string& axis
     out = with_line(text, *table, "kind", key + (" = " + value));
   table->insert_or_assign(key, mm);
   const auto after = config::parse_toml(out, config::manifest_name);
-  if (!after || *after != *root) return not_meant(key, *table);
+  if (!after || *after != root) return not_meant(key, *table);
   return out;
 }
 

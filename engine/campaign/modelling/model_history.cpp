@@ -84,9 +84,8 @@ Expected<std::vector<ModelStep>> parse_history(std::string_view text) {
 Expected<std::vector<ModelStep>> read_history(const std::filesystem::path& folder) {
   std::error_code error;
   if (!std::filesystem::exists(folder / history_name, error)) return std::vector<ModelStep>{};
-  const auto text = storage::read_file(folder / history_name);
-  if (!text) return fail(text.error());
-  return parse_history(*text);
+  NONIO_TRY(const auto text, storage::read_file(folder / history_name));
+  return parse_history(text);
 }
 
 }  // namespace nonio::modelling

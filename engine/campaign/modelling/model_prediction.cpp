@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/modelling/model_prediction.h"
 
-#include <algorithm>
-
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 
@@ -33,13 +31,12 @@ std::size_t named_terms(const PartModel& part) { return part.names().size(); }
 
 Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
                                              const reading::ReadCampaign& unseen, bool zero_kept) {
-  auto known = part_models(seen, seen.manifest->campaign.model);
-  if (!known) return fail(known.error());
+  NONIO_TRY(auto known, part_models(seen, seen.manifest->campaign.model));
   std::vector<PartModel> others = bare_parts(unseen);
   std::vector<Predicted> out;
   for (PartModel& other : others) {
     if (other.part.kind != model::Part::Kind::course) continue;
-    const PartModel* part = same_part(*known, other);
+    const PartModel* part = same_part(known, other);
     if (part == nullptr) continue;
     auto predicted = model::predict(part->part, part->terms, other.part, zero_kept);
     if (!predicted) return fail(other.part.name + ": " + predicted.error().message);
@@ -47,7 +44,7 @@ Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
   }
   if (out.empty())
     return fail("no displacement over time is in both campaigns: " + seen.manifest->campaign.id +
-                " has " + listed_parts(*known) + ", " + unseen.manifest->campaign.id + " has " +
+                " has " + listed_parts(known) + ", " + unseen.manifest->campaign.id + " has " +
                 listed_parts(others));
   return out;
 }

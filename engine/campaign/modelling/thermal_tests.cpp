@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/modelling/thermal_tests.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "nonio/sdk/axis_readings.h"

@@ -2,7 +2,6 @@
 #include "campaign/planning/plan.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "nonio/sdk/format.h"
@@ -161,8 +160,7 @@ std::string why_nothing(const math::TriplePlans& plans) {
   if (!plans.blocked_by.empty()) {
     for (const TripleLimit l : plans.blocked_by) append(limits, option_of(l), "; or ");
     return plans.blocked_by.front() == TripleLimit::travel
-               ? "no plan fits: the travel is shorter than five points of the smallest triple "
-                 "(" +
+               ? "no plan fits: the travel is shorter than five points of the smallest triple (" +
                      limits + ")"
                : "no plan fits; one does if this is eased: " + limits;
   }

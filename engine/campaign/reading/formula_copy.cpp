@@ -122,9 +122,8 @@ Expected<std::string> copy_of(const Observations& o, const Axis& axis, const Eff
     if (grid.empty()) return std::string();
     shape.push_back(grid[grid.size() / 2]);
   }
-  auto columns = own.columns(o, axis, shape);
-  if (!columns) return fail(columns.error());
-  const Columns span = span_of(o, std::move(*columns));
+  NONIO_TRY(auto columns, own.columns(o, axis, shape));
+  const Columns span = span_of(o, std::move(columns));
   if (span.empty()) return std::string("zero");
   for (const Effect& effect : catalogue) {
     if (effect.info.name == own.info.name || !effect.applies || !effect.applies(o, axis)) continue;

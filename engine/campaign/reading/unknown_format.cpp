@@ -50,8 +50,7 @@ std::string known_by_name(std::string_view file) {
          quoted(file.substr(dot)) +
          "), whose layout is not public. Export the readings from that program as text and read "
          "them with a column map (reader = \"long-table\" or \"wide-table\"); to read the file "
-         "itself, "
-         "such a file is needed with the values that the program shows for it";
+         "itself, such a file is needed with the values that the program shows for it";
 }
 
 bool is_numbers(std::string_view line) {

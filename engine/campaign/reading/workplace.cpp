@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <optional>
 
 #include "campaign/config/secret_files.h"
 #include "campaign/config/site_files.h"
 #include "campaign/config/template_files.h"
 #include "campaign/reading/campaign_reader.h"
 #include "platform/process/apart.h"
-#include "platform/storage/files.h"
 
 namespace nonio::reading {
 namespace fs = std::filesystem;
@@ -28,9 +26,8 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   auto read = config::read_site(site, context.site_sha256);
   if (!read) return fail(read.error().front());
   context.site = std::move(*read);
-  auto machines = config::read_machines(site);
-  if (!machines) return fail(machines.error());
-  context.machines = std::move(*machines);
+  NONIO_TRY(auto machines, config::read_machines(site));
+  context.machines = std::move(machines);
   process::hide_from_plugins(config::secret_files(context.site, site));
   place->plugins.load(plugin_folders);
   if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
@@ -40,14 +37,13 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
                            warning.message);
   context.plugins = &place->plugins;
   // After the process for the plugins was forked: it would copy each page of them when it frees them.
-  const auto folders = config::with_site_templates(template_folders, site);
-  if (!folders) return fail(folders.error());
+  NONIO_TRY(const auto folders, config::with_site_templates(template_folders, site));
   std::vector<std::string> below;
   if (what == TemplatesFor::terminal)
     below = {"words/en/", "words/" + context.site.language + "/", "causes/"};
-  auto templates = config::read_templates(*folders, context.templates_sha256, nullptr, {}, below);
-  if (!templates) return fail(templates.error());
-  context.templates = std::move(*templates);
+  NONIO_TRY(auto templates,
+            config::read_templates(folders, context.templates_sha256, nullptr, {}, below));
+  context.templates = std::move(templates);
   return place;
 }
 

@@ -2,7 +2,6 @@
 #include "campaign/tables/table_check.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "nonio/math/distributions.h"

@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "laboratory/assessment/bytes.h"
 #include "laboratory/assessment/changes.h"
 #include "laboratory/assessment/days.h"
 #include "laboratory/assessment/describe.h"
@@ -19,6 +18,7 @@
 #include "laboratory/store/query.h"
 #include "laboratory/store/reader.h"
 #include "platform/storage/digest.h"
+#include "platform/storage/serialise.h"
 
 namespace nonio::assessment {
 namespace fs = std::filesystem;
@@ -66,9 +66,8 @@ class Assessment::State {
   }
 
   Expected<void> make() {
-    auto logs = store_.logs();
-    if (!logs) return fail(logs.error());
-    logs_ = std::move(*logs);
+    NONIO_TRY(auto logs, store_.logs());
+    logs_ = std::move(logs);
     if (entered_ != nullptr) take_entered(*entered_);
     if (auto well = list_machines(); !well) return well;
     if (auto well = learn_all(); !well) return well;
@@ -91,7 +90,7 @@ class Assessment::State {
   std::string page_key(std::size_t i, const std::string& templates) const {
     const Assessed& m = machines_[i];
     const auto lines = lines_.find(m.state.machine.name);
-    ByteWriter w;
+    storage::ValueWriter w;
     // The page is written again when the date of a forecast has passed.
     w(m.kept.stood, m.kept.standing.until, templates,
       lines == lines_.end() ? std::string() : bytes_of(lines->second),
@@ -175,30 +174,27 @@ class Assessment::State {
 
   /// With what was kept of them, as far as nothing is new.
   Expected<void> list_machines() {
-    auto states = store_.machines();
-    if (!states) return fail(states.error());
-    auto evaluations = store_.evaluations();
-    if (!evaluations) return fail(evaluations.error());
-    auto numbers = store_.certificates();
-    if (!numbers) return fail(numbers.error());
-    if (auto well = count_tests(*evaluations); !well) return well;
-    learned_from_ = learned_from(evaluations->size());
+    NONIO_TRY(auto states, store_.machines());
+    NONIO_TRY(auto evaluations, store_.evaluations());
+    NONIO_TRY(auto numbers, store_.certificates());
+    if (auto well = count_tests(evaluations); !well) return well;
+    learned_from_ = learned_from(evaluations.size());
     std::map<std::string, std::vector<const store::StoredEvaluation*>> of_machine;
-    for (const auto& e : *evaluations) of_machine[e.machine].push_back(&e);
+    for (const auto& e : evaluations) of_machine[e.machine].push_back(&e);
     std::set<std::string> forgotten;
     for (const config::Forgotten& f : logs_.forgotten) forgotten.insert(f.campaign);
-    const MachineEvents events(*states, logs_);
-    note_unknown(*states, events);
+    const MachineEvents events(states, logs_);
+    note_unknown(states, events);
     const auto add = [&](Assessed m, const std::vector<const store::StoredEvaluation*>& all) {
       alive_();
-      ByteWriter rows;
+      storage::ValueWriter rows;
       rows(learned_from_);
       put_identity(rows, m);
       for (const store::StoredEvaluation* e : all) {
         rows(e->campaign, e->sha256, e->night, e->counts, e->day > until_);
         if (!e->counts) continue;
         m.campaigns.push_back(e->campaign);
-        if (const auto n = numbers->find(e->campaign); n != numbers->end()) rows(n->second);
+        if (const auto n = numbers.find(e->campaign); n != numbers.end()) rows(n->second);
       }
       if (std::all_of(m.campaigns.begin(), m.campaigns.end(),
                       [&](const std::string& id) { return forgotten.contains(id); }))
@@ -211,7 +207,7 @@ class Assessment::State {
       m.kept.rows = rows_key;
       machines_.push_back(std::move(m));
     };
-    for (const store::MachineState& state : *states)
+    for (const store::MachineState& state : states)
       add({.state = state, .events = events.of(state.machine.name), .campaigns = {}, .kept = {}},
           of_machine[state.machine.name]);
     machines_with_name_ = machines_.size();
@@ -248,7 +244,7 @@ class Assessment::State {
     unknown_.push_back(machine + " (" + file + ":" + std::to_string(line) + ")");
   }
 
-  static void put_identity(ByteWriter& rows, const Assessed& m) {
+  static void put_identity(storage::ValueWriter& rows, const Assessed& m) {
     const store::NamedMachine& named = m.state.machine;
     rows(named.name, named.stated.asset, named.stated.maker, named.stated.model,
          named.stated.serial);
@@ -258,7 +254,7 @@ class Assessment::State {
 
   /// The tests of a run are counted once.
   Expected<void> count_tests(const std::vector<store::StoredEvaluation>& evaluations) {
-    std::map<std::uint64_t, ByteWriter> of_night;
+    std::map<std::uint64_t, storage::ValueWriter> of_night;
     for (const store::StoredEvaluation& e : evaluations)
       of_night[e.night](e.machine, e.campaign, e.sha256);
     std::map<std::uint64_t, KeptMachines::Night> nights;
@@ -271,11 +267,10 @@ class Assessment::State {
       if (!same && !first) first = night;
     }
     if (first) {
-      const auto counted = store_.followed_since(*first);
-      if (!counted) return fail(counted.error());
+      NONIO_TRY(const auto counted, store_.followed_since(*first));
       for (auto at = nights.lower_bound(*first); at != nights.end(); ++at) {
-        const auto found = counted->find(at->first);
-        at->second.asked = found == counted->end() ? 0 : found->second;
+        const auto found = counted.find(at->first);
+        at->second.asked = found == counted.end() ? 0 : found->second;
       }
     }
     nights_are_new_ = first || nights.size() != nights_.size();
@@ -284,10 +279,9 @@ class Assessment::State {
   }
 
   Expected<void> read(Assessed& m) {
-    auto stored = m.alone.empty() ? store_.machine(m.state.machine.name, until_)
-                                  : store_.campaign(m.alone, until_);
-    if (!stored) return fail(stored.error());
-    AssessedMachine read{m.state, std::move(*stored), m.events, {}, {}};
+    NONIO_TRY(auto stored, m.alone.empty() ? store_.machine(m.state.machine.name, until_)
+                                           : store_.campaign(m.alone, until_));
+    AssessedMachine read{m.state, std::move(stored), m.events, {}, {}};
     if (m.alone.empty()) read.followed = followed_series(read.stored, read.events);
     read.shown = shown_series(read.stored);
     m.kept.series.resize(read.followed.size());
@@ -370,7 +364,7 @@ class Assessment::State {
   }
 
   std::string standing_key(const Assessed& m) const {
-    ByteWriter w;
+    storage::ValueWriter w;
     w(m.kept.rows);
     for (std::size_t k = 0; k < m.kept.series.size(); ++k) {
       const KeptMachine::Series& s = m.kept.series[k];
@@ -413,8 +407,7 @@ class Assessment::State {
     if (!tonight_.vanished.empty() || !tonight_.failed.empty())
       machine_of_campaign = store_.machine_of_campaigns();
     if (!machine_of_campaign) return fail(machine_of_campaign.error());
-    const auto spellings = store::spellings_in(out_);
-    if (!spellings) return fail(spellings.error());
+    NONIO_TRY(const auto spellings, store::spellings_in(out_));
     site.night = tonight_.night, site.date = tonight_.date;
     site.campaigns = tonight_.campaigns, site.done = tonight_.done;
     site.unchanged = tonight_.unchanged;
@@ -438,7 +431,7 @@ class Assessment::State {
     site.judged = std::any_of(standings.begin(), standings.end(),
                               [](const Standing* s) { return s->judged; });
     site.lines =
-        lines_of({tonight_, standings, *machine_of_campaign, *spellings, learned_.of, unknown_});
+        lines_of({tonight_, standings, *machine_of_campaign, spellings, learned_.of, unknown_});
     for (const reports::MorningLine& l : site.lines) lines_[l.machine].push_back(l);
     site.instruments = joined(instruments);
     std::vector<ComparedMachine> compared;
@@ -455,9 +448,8 @@ class Assessment::State {
           site.machines.begin(), site.machines.end(), name,
           [](const reports::MachineHistory& m, const std::string& x) { return m.id < x; });
       if (at == site.machines.end() || at->id != name) continue;
-      const auto whole_one = whole(static_cast<std::size_t>(at - site.machines.begin()));
-      if (!whole_one) return fail(whole_one.error());
-      *at = **whole_one;
+      NONIO_TRY(const auto whole_one, whole(static_cast<std::size_t>(at - site.machines.begin())));
+      *at = *whole_one;
     }
     return {};
   }
@@ -491,18 +483,16 @@ Assessment::~Assessment() = default;
 Expected<Assessment> Assessment::of(const fs::path& out, const Tonight& tonight,
                                     const std::function<void()>& alive, Kept kept,
                                     const config::SiteLogs* entered) {
-  auto store = store::StoreReader::open(out);
-  if (!store) return fail(store.error());
-  auto state = std::make_unique<State>(out, tonight, alive, std::move(*store), kept, entered);
+  NONIO_TRY(auto store, store::StoreReader::open(out));
+  auto state = std::make_unique<State>(out, tonight, alive, std::move(store), kept, entered);
   if (auto made = state->make(); !made) return fail(made.error());
   return Assessment(std::move(state));
 }
 
 const reports::SiteHistory& Assessment::site() const { return state_->site; }
 Expected<reports::MachineHistory> Assessment::whole(std::size_t machine) {
-  const auto found = state_->whole(machine);
-  if (!found) return fail(found.error());
-  return **found;
+  NONIO_TRY(const auto found, state_->whole(machine));
+  return *found;
 }
 bool Assessment::has_page(std::size_t machine, const std::string& templates) const {
   return state_->has_page(machine, templates);
@@ -514,18 +504,16 @@ void Assessment::keep() { state_->keep(Keep::all); }
 
 Expected<reports::SiteHistory> assess(const fs::path& out, const Tonight& tonight,
                                       const std::function<void()>& alive, Keep keep) {
-  auto made = Assessment::of(out, tonight, alive, Assessment::Kept::ignored);
-  if (!made) return fail(made.error());
-  return std::move(*made).take_whole(keep);
+  NONIO_TRY(auto made, Assessment::of(out, tonight, alive, Assessment::Kept::ignored));
+  return std::move(made).take_whole(keep);
 }
 
 reports::SiteHistory Assessment::take_site() && { return std::move(state_->site); }
 
 Expected<reports::SiteHistory> Assessment::take_whole(Keep keep) && {
   for (std::size_t i = 0; i < state_->count(); ++i) {
-    auto machine = whole(i);
-    if (!machine) return fail(machine.error());
-    state_->site.machines[i] = std::move(*machine);
+    NONIO_TRY(auto machine, whole(i));
+    state_->site.machines[i] = std::move(machine);
   }
   if (keep != Keep::nothing) state_->keep(keep);
   return std::move(state_->site);

@@ -8,6 +8,11 @@
 
 #include "laboratory/statistics/series.h"
 #include "laboratory/statistics/trend.h"
+#include "platform/storage/serialise.h"
+
+namespace nonio::storage {
+NONIO_MEMBERS(statistics::Slope, a, b)
+}  // namespace nonio::storage
 
 namespace nonio::assessment {
 

@@ -70,22 +70,19 @@ Expected<std::vector<HistoryBasis>> history_bases(const fs::path& out,
                                                   const std::vector<std::string>& campaigns) {
   auto store = store::StoreReader::open(out);
   if (!store) return fail(store.error());
-  const auto logs = store->logs();
-  if (!logs) return fail(logs.error());
-  const auto machines = store->machines();
-  if (!machines) return fail(machines.error());
-  const auto counted = store->counted_campaigns();
-  if (!counted) return fail(counted.error());
+  NONIO_TRY(const auto logs, store->logs());
+  NONIO_TRY(const auto machines, store->machines());
+  NONIO_TRY(const auto counted, store->counted_campaigns());
   const std::set<std::string> wanted(campaigns.begin(), campaigns.end());
-  const MachineEvents events(*machines, *logs);
+  const MachineEvents events(machines, logs);
   std::map<std::string, std::vector<const store::CountedCampaign*>> by_machine;
-  for (const store::CountedCampaign& c : *counted) by_machine[c.machine].push_back(&c);
+  for (const store::CountedCampaign& c : counted) by_machine[c.machine].push_back(&c);
   std::vector<HistoryBasis> bases;
   for (const auto& [name, of_machine] : by_machine) {
     if (std::none_of(of_machine.begin(), of_machine.end(),
                      [&](const auto* c) { return wanted.contains(c->campaign); }))
       continue;
-    const BasisMachine machine(*machines, name, *logs, events);
+    const BasisMachine machine(machines, name, logs, events);
     for (const store::CountedCampaign* c : of_machine)
       if (wanted.contains(c->campaign)) bases.push_back(machine.basis(*c, of_machine));
   }
@@ -130,12 +127,11 @@ Expected<void> add_steps(const AssessedMachine& m, const FollowedSeries& s,
     const store::StoredResult &before = m.stored.results[s.results[k - 1]],
                               &now = m.stored.results[s.results[k]];
     if (m.stored.campaigns[now.campaign].id != campaign) continue;
-    const auto step = kernel::difference(points[k - 1], points[k]);
-    if (!step) return fail(step.error());
+    NONIO_TRY(const auto step, kernel::difference(points[k - 1], points[k]));
     const store::StoredCampaign& other = m.stored.campaigns[before.campaign];
     HistoryStep out{s.axis, s.quantity, series, campaign, other.id, other.day};
     out.point = to.series[series].points.size() - s.results.size() + k;
-    out.size = si(step->value, q), out.u = si(step->u, q);
+    out.size = si(step.value, q), out.u = si(step.u, q);
     to.steps.push_back(std::move(out));
   }
   return {};
@@ -157,12 +153,10 @@ Expected<HistorySoFar> history_so_far(const fs::path& out, const HistoryBasis& b
     so_far.events.push_back({e.date, e.axis, e.kind, e.text});
   if (basis.machine.name.empty() || !day_number(basis.day)) return so_far;
   if (basis.months != 0) so_far.due = months_later(basis.day, basis.months);
-  auto store = store::StoreReader::open(out);
-  if (!store) return fail(store.error());
-  const auto all = store->machine(basis.machine.name);
-  if (!all) return fail(all.error());
+  NONIO_TRY(auto store, store::StoreReader::open(out));
+  NONIO_TRY(const auto all, store.machine(basis.machine.name));
   std::vector<AssessedMachine> one{
-      {{basis.machine, 0, {}}, campaigns_up_to(*all, basis), basis.events, {}, {}}};
+      {{basis.machine, 0, {}}, campaigns_up_to(all, basis), basis.events, {}, {}}};
   AssessedMachine& m = one.front();
   m.followed = followed_series(m.stored, m.events);
   m.shown = shown_series(m.stored);

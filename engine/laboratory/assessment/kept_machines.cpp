@@ -1,69 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "laboratory/assessment/kept_machines.h"
 
-#include "laboratory/assessment/bytes.h"
+#include "laboratory/assessment/fits.h"
 #include "platform/storage/digest.h"
+#include "platform/storage/serialise.h"
 
-namespace nonio {
+namespace nonio::storage {
 
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, Number>
-void fields(Io& io, T& n) { io(n.name, n.value, n.quantity); }
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, Finding>
-void fields(Io& io, T& f) { io(f.id, f.attention, f.evidence, f.texts, f.measurement, f.advice); }
-
-}  // namespace nonio
-
-namespace nonio::reports {
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, OpenValue>
-void fields(Io& io, T& v) {
-  io(v.axis, v.quantity, v.campaign, v.measurement, v.value, v.u, v.limit, v.unit, v.undecided);
+NONIO_MEMBERS(Number, a, b, c)
+NONIO_MEMBERS(Finding, a, b, c, d, e, f)
+NONIO_MEMBERS(reports::OpenValue, a, b, c, d, e, f, g, h, i)
+NONIO_MEMBERS(reports::MorningLine, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u,
+              v)
+NONIO_MEMBERS(reports::IntervalProposal, a, b, c, d, e)
+/// Without series.
+template <class Archive, class T>
+requires std::same_as<std::remove_const_t<T>, reports::MachineHistory>
+void members(Archive& archive, T& m) {
+  archive(m.id, m.maker, m.model, m.serial, m.customer, m.place, m.control, m.due, m.why_due,
+          m.file);
 }
+NONIO_MEMBERS(reports::MonthOfMachine, a, b, c, d, e)
+NONIO_MEMBERS(reports::InstrumentUse::On, a, b, c, d, e)
+NONIO_MEMBERS(reports::InstrumentUse, a, b, c, d)
+NONIO_MEMBERS(assessment::Lesson, a, b, c, d)
+NONIO_MEMBERS(assessment::Manner, a, b, c)
+NONIO_MEMBERS(assessment::SeriesTests::Of, a, b, c)
+NONIO_MEMBERS(assessment::SeriesTests, a, b, c)
+NONIO_MEMBERS(assessment::IntervalFacts, a, b, c, d, e, f, g, h, i)
+NONIO_MEMBERS(assessment::ComparedValue, a, b, c, d, e, f, g, h)
+NONIO_MEMBERS(assessment::Standing, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+NONIO_MEMBERS(assessment::KeptMachine::Series, a, b, c)
+NONIO_MEMBERS(assessment::KeptMachine::Page, a, b, c)
+NONIO_MEMBERS(assessment::KeptMachine, a, b, c, d, e, f)
 
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, MorningLine>
-void fields(Io& io, T& l) {
-  io(l.kind, l.state, l.id, l.machine, l.axis, l.quantity, l.campaign, l.customer, l.value, l.u,
-     l.limit, l.unit, l.finding, l.since, l.link, l.by, l.until, l.why, l.sure, l.also, l.campaigns,
-     l.measurement);
-}
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, IntervalProposal>
-void fields(Io& io, T& p) { io(p.months, p.method, p.axis, p.quantity, p.why); }
-
-/// Of one without series.
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, MachineHistory>
-void fields(Io& io, T& m) {
-  io(m.id, m.maker, m.model, m.serial, m.customer, m.place, m.control, m.due, m.why_due, m.file);
-}
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, MonthOfMachine>
-void fields(Io& io, T& m) { io(m.machine, m.month, m.gravest, m.measured, m.event); }
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, InstrumentUse::On>
-void fields(Io& io, T& on) { io(on.campaign, on.date, on.machine, on.number, on.link); }
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, InstrumentUse>
-void fields(Io& io, T& use) { io(use.name, use.certificate, use.valid_until, use.results); }
-
-}  // namespace nonio::reports
-
-namespace nonio::statistics {
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, Slope>
-void fields(Io& io, T& s) { io(s.b, s.u); }
-
-}  // namespace nonio::statistics
+}  // namespace nonio::storage
 
 namespace nonio::assessment {
 namespace fs = std::filesystem;
@@ -75,15 +46,14 @@ using storage::Database;
 constexpr const char* kept_folder = ".nonio";
 constexpr const char* machines_name = "machines.sqlite";
 /// Another program may find out something else, and come to another trend of the same series.
-constexpr std::string_view machines_version = "7 " NONIO_VERSION, trends_version = "3";
+constexpr std::string_view machines_version = "8 " NONIO_VERSION, trends_version = "4";
 constexpr std::size_t digest_size = 64;
 constexpr double patience = 5.0;  // s; without the file a run takes longer
 
 constexpr const char* tables =
     "CREATE TABLE version(of TEXT PRIMARY KEY, is_ TEXT NOT NULL);"
     "CREATE TABLE machine(name TEXT PRIMARY KEY, found BLOB NOT NULL, trends BLOB NOT NULL) "
-    "WITHOUT ROWID;"
-    "CREATE TABLE night(found BLOB NOT NULL)";
+    "WITHOUT ROWID;CREATE TABLE night(found BLOB NOT NULL)";
 
 std::string signed_bytes(std::string body) { return storage::sha256(body) + body; }
 
@@ -96,53 +66,6 @@ std::optional<std::string_view> body_of(std::string_view bytes) {
 }
 
 }  // namespace
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, Lesson>
-void fields(Io& io, T& l) { io(l.quantity, l.points, l.ratios, l.slope); }
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, Manner>
-void fields(Io& io, T& m) { io(m.excess, m.spread, m.drift_below); }
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, SeriesTests::Of>
-void fields(Io& io, T& t) { io(t.p, t.declared, t.shows_instrument); }
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, SeriesTests>
-void fields(Io& io, T& t) { io(t.night, t.has_model, t.changes); }
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, IntervalFacts>
-void fields(Io& io, T& f) {
-  io(f.maker, f.model, f.days, f.months, f.tested, f.found, f.chart, f.refusal, f.out_now);
-}
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, ComparedValue>
-void fields(Io& io, T& v) {
-  io(v.axis, v.quantity, v.unit, v.value, v.u, v.conditions, v.travel, v.rotary);
-}
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, Standing>
-void fields(Io& io, T& s) {
-  io(s.name, s.alone, s.shown, s.compared, s.lines, s.months, s.instruments, s.has_results,
-     s.judged, s.conforms, s.attention, s.reversal, s.interval, s.until);
-}
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, KeptMachine::Series>
-void fields(Io& io, T& s) { io(s.lesson, s.manner, s.tests); }
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, KeptMachine::Page>
-void fields(Io& io, T& p) { io(p.made_from, p.size, p.changed); }
-
-template <class Io, class T>
-requires std::is_same_v<std::remove_const_t<T>, KeptMachine>
-void fields(Io& io, T& m) { io(m.rows, m.series, m.stood, m.date, m.standing, m.page); }
 
 KeptMachines::KeptMachines(fs::path out) : out_(std::move(out)) {
   std::error_code error;
@@ -168,10 +91,8 @@ std::map<std::string, KeptMachine> KeptMachines::machines() {
   file_->each("SELECT name, found FROM machine", {}, [&](const std::vector<std::string_view>& row) {
     const auto body = body_of(row[1]);
     if (!body) return;
-    ByteReader r(*body);
     KeptMachine machine;
-    r(machine);
-    if (r.well() && r.at_end()) out.emplace(row[0], std::move(machine));
+    if (storage::unpack(*body, machine)) out.emplace(row[0], std::move(machine));
   });
   if (!file_->take_error()) file_.reset();
   return out;
@@ -183,9 +104,9 @@ std::map<std::uint64_t, KeptMachines::Night> KeptMachines::nights() {
   for (const Database::Row& row : file_->rows("SELECT found FROM night")) {
     const auto body = body_of(row[0]);
     if (!body) continue;
-    ByteReader r(*body);
-    const auto number = r.get<std::uint64_t>();
-    r(out[number].made_from, out[number].asked);
+    std::uint64_t number = 0;
+    Night night;
+    if (storage::unpack(*body, number, night.made_from, night.asked)) out[number] = night;
   }
   if (!file_->take_error()) file_.reset();
   return out;
@@ -229,9 +150,7 @@ Expected<void> KeptMachines::put(const Changes& changes) {
   for (const Changes::Of& of : changes.machines) {
     file_->put("INSERT OR IGNORE INTO machine VALUES(?, x'', x'')", {of.machine});
     if (of.kept != nullptr) {
-      ByteWriter w;
-      w(*of.kept);
-      const std::string bytes = signed_bytes(w.take());
+      const std::string bytes = signed_bytes(storage::pack(*of.kept));
       file_->put("UPDATE machine SET found = ? WHERE name = ?",
                  {Database::Blob{bytes}, of.machine});
     }
@@ -246,9 +165,7 @@ Expected<void> KeptMachines::put(const Changes& changes) {
   if (changes.nights) {
     file_->put("DELETE FROM night");
     for (const auto& [number, night] : *changes.nights) {
-      ByteWriter w;
-      w(number, night.made_from, night.asked);
-      const std::string bytes = signed_bytes(w.take());
+      const std::string bytes = signed_bytes(storage::pack(number, night.made_from, night.asked));
       file_->put("INSERT INTO night VALUES(?)", {Database::Blob{bytes}});
     }
   }
@@ -256,15 +173,9 @@ Expected<void> KeptMachines::put(const Changes& changes) {
 }
 
 std::string bytes_of(const std::vector<reports::MorningLine>& lines) {
-  ByteWriter w;
-  w(lines);
-  return w.take();
+  return storage::pack(lines);
 }
 
-std::string bytes_of(const reports::IntervalProposal& proposal) {
-  ByteWriter w;
-  w(proposal);
-  return w.take();
-}
+std::string bytes_of(const reports::IntervalProposal& proposal) { return storage::pack(proposal); }
 
 }  // namespace nonio::assessment

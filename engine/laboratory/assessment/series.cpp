@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <tuple>
+#include <utility>
 
-#include "laboratory/assessment/conditions.h"
 #include "laboratory/assessment/days.h"
 #include "platform/storage/json_values.h"
 
@@ -15,6 +16,51 @@ namespace nonio::assessment {
 namespace {
 
 using storage::Json;
+
+constexpr double same_place = 0.01;  // of the span
+bool near(double a, double b, double span) { return std::fabs(a - b) <= same_place * span; }
+
+double number_at(const Json& o, const char* key) {
+  const auto it = o.find(key);
+  return it != o.end() && it->is_number() ? it->get<double>() : 0.0;
+}
+
+/// Why two numbers cannot be points of one series; empty: they can. A table that is switched on or
+/// off is a step that is known, and no other quantity. common_stretch: other ends do not matter.
+std::string difference(const Json& a, const Json& b, bool common_stretch) {
+  const double span = number_at(a, "to") - number_at(a, "from");
+  if (!common_stretch && (a.contains("from") != b.contains("from") ||
+                          !near(number_at(a, "from"), number_at(b, "from"), span) ||
+                          !near(number_at(a, "to"), number_at(b, "to"), span)))
+    return "span";
+  for (const auto& [key, why] :
+       {std::pair("at", "place"), std::pair("across", "across"), std::pair("model", "model"),
+        std::pair("period", "period"), std::pair("radius", "radius"), std::pair("feed", "feed")}) {
+    const Json one = a.value(key, Json()), other = b.value(key, Json());
+    const bool same = one.is_number() && other.is_number()
+                          ? near(one.get<double>(), other.get<double>(), one.get<double>())
+                          : one == other;
+    if (!same) return why;
+  }
+  return {};
+}
+
+/// No object: an empty one.
+Json parsed(const std::string& conditions) {
+  Json json = Json::parse(conditions, nullptr, false);
+  return json.is_object() ? json : Json::object();
+}
+
+/// on, off, or empty where it is not stated.
+std::string compensation(const Json& conditions) {
+  const auto it = conditions.find("compensation");
+  return it != conditions.end() && it->is_string() ? it->get<std::string>() : "";
+}
+
+bool stepped_by_table(const std::string& before, const std::string& after) {
+  return !before.empty() && !after.empty() && before != after;
+}
+
 using store::StoredMachine;
 using store::StoredResult;
 namespace kernel = nonio::statistics;

@@ -2,18 +2,139 @@
 #include "laboratory/assessment/standing.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
 
-#include "laboratory/assessment/acknowledged.h"
 #include "laboratory/assessment/days.h"
 #include "laboratory/assessment/describe.h"
 #include "laboratory/assessment/lines_of_machine.h"
 #include "laboratory/assessment/open_values.h"
+#include "laboratory/assessment/series.h"
+#include "nonio/reports/site.h"
 
 namespace nonio::assessment {
 
 using reports::MorningLine;
 
 namespace {
+
+/// A finding is named by the line's id, by the finding's, or by that without what follows a dash.
+bool is_of(const config::Acknowledgement& a, const MorningLine& l) {
+  const std::string& id = l.finding.id;
+  return a.finding == l.id || a.finding == id || a.finding == id.substr(0, id.find('-', 8));
+}
+
+/// What was known on a day, and its U.
+struct Knew {
+  double value = 0.0, U = 0.0;
+};
+
+std::optional<Knew> known_on(const AssessedMachine& m, const MorningLine& l,
+                             const std::string& day) {
+  std::optional<Knew> out;
+  for (const store::StoredResult& r : m.stored.results) {
+    if (r.axis != l.axis || r.quantity != l.quantity || quantity_of_unit(r.unit) != l.unit ||
+        m.stored.campaigns[r.campaign].day > day)
+      continue;
+    const double u =
+        r.followed ? r.u_repeat.value_or(0.0) : r.expanded.value_or(0.0) / r.k.value_or(2.0);
+    out = Knew{r.value, 2.0 * u};
+  }
+  return out;
+}
+
+/// What is expected has been acknowledged until its day, whatever is measured before.
+bool has_moved(const config::Acknowledgement& a, const AssessedMachine& m, const MorningLine& l) {
+  if (!l.value || l.kind == MorningLine::Kind::soon) return false;
+  const double now = *l.value * unit_of(l.unit).per_si;
+  const auto then = known_on(m, l, a.date);
+  if (!a.value && !then) return false;
+  const double value = a.value.value_or(then ? then->value : 0.0);
+  const double U = a.U.value_or(then ? then->U : 2.0 * l.u.value_or(0.0) * unit_of(l.unit).per_si);
+  return std::fabs(now - value) > U;
+}
+
+bool is_of_quantity(const config::Acknowledgement& a, const std::string& quantity) {
+  return a.quantity.empty() || a.quantity == quantity;
+}
+
+/// Whether this value was open on the day of the acknowledgement, and has not moved since.
+bool was_known(const config::Acknowledgement& a, const AssessedMachine& m, const MorningLine& l,
+               const reports::OpenValue& v) {
+  if (a.finding != l.id && !is_of_quantity(a, v.quantity)) return false;
+  if (!v.value)
+    for (const auto& limit : m.stored.without_value)
+      if (limit.axis == v.axis && limit.quantity == v.quantity &&
+          m.stored.campaigns[limit.campaign].day <= a.date)
+        return true;
+  bool open = false;
+  Knew knew;
+  for (const store::StoredResult& r : m.stored.results) {
+    if (r.followed || r.axis != v.axis || r.quantity != v.quantity ||
+        (v.axis.empty() && r.measurement != v.measurement) || quantity_of_unit(r.unit) != v.unit ||
+        m.stored.campaigns[r.campaign].day > a.date)
+      continue;
+    open = r.decision == does_not_conform ||
+           (v.undecided && !r.decision.empty() && r.decision != conforms);
+    knew = {r.value, 2.0 * r.expanded.value_or(0.0) / r.k.value_or(2.0)};
+  }
+  return open && v.value && std::fabs(*v.value * unit_of(v.unit).per_si - knew.value) <= knew.U;
+}
+
+/// A separate line for what is not acknowledged.
+MorningLine line_of_rest(const MorningLine& known, std::vector<reports::OpenValue> rest) {
+  const auto first = std::find_if(rest.begin(), rest.end(),
+                                  [](const reports::OpenValue& v) { return !v.undecided; });
+  if (first != rest.end()) std::rotate(rest.begin(), first, first + 1);
+  const reports::OpenValue& v = rest.front();
+  const char* finding = !v.value      ? "morning.no-value"
+                        : v.undecided ? (v.u ? "morning.undecided" : "morning.no-uncertainty")
+                                      : "morning.out";
+  MorningLine l = line_of(v.undecided ? MorningLine::Kind::undecided : MorningLine::Kind::out,
+                          finding, known.id.substr(known.id.find(':') + 1) + ":" + v.quantity);
+  l.machine = known.machine, l.customer = known.customer, l.link = known.link;
+  l.since = known.since;
+  l.axis = v.axis, l.quantity = v.quantity, l.campaign = v.campaign, l.measurement = v.measurement;
+  l.value = v.value, l.u = v.u, l.limit = v.limit, l.unit = v.unit;
+  l.finding.evidence = {{"limit", v.limit, v.unit}};
+  l.also.assign(rest.begin() + 1, rest.end());
+  return l;
+}
+
+/// Changes that a later campaign has shown.
+bool is_later(const config::Acknowledgement& a, const MorningLine& l) {
+  const auto before = std::find_if(l.finding.texts.begin(), l.finding.texts.end(),
+                                   [](const auto& t) { return t.first == "before"; });
+  return before != l.finding.texts.end() && before->second > a.date;
+}
+
+/// A line that a person has acknowledged, until then, is known. It is new again when what it says
+/// happened after that day, or when its value has moved by more than U since: from the value that
+/// the acknowledgement names, else from the last one before its day. What else the line lists is
+/// known if it was open on that day too and has not moved; a new line is returned with the rest.
+std::optional<MorningLine> acknowledge(MorningLine& l, const AssessedMachine& m,
+                                       const store::StoredLogs& logs, const std::string& date) {
+  if (l.state == MorningLine::State::fixed) return std::nullopt;
+  for (const config::Acknowledgement& a : logs.acknowledged) {
+    const auto alias = logs.aliases.find(a.machine);
+    const std::string& machine = alias == logs.aliases.end() ? a.machine : alias->second;
+    if (!is_of(a, l) || (!machine.empty() && machine != l.machine) ||
+        (!a.axis.empty() && a.axis != l.axis) || !is_of_quantity(a, l.quantity) || a.until < date ||
+        a.date > date || is_later(a, l) || has_moved(a, m, l))
+      continue;
+    l.state = MorningLine::State::known;
+    l.by = a.by, l.until = a.until, l.why = a.why;
+    const auto rest =
+        std::stable_partition(l.also.begin(), l.also.end(),
+                              [&](const reports::OpenValue& v) { return was_known(a, m, l, v); });
+    if (rest == l.also.end()) return std::nullopt;
+    MorningLine anew = line_of_rest(l, {rest, l.also.end()});
+    l.also.erase(rest, l.also.end());
+    return anew;
+  }
+  return std::nullopt;
+}
 
 constexpr const char* for_ever = "9999-12-31";
 

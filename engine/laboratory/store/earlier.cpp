@@ -43,15 +43,13 @@ struct Kept {
 };
 
 Expected<std::optional<Kept>> kept_in(const fs::path& folder) {
-  auto last = evaluation::last_record(folder);
-  if (!last) return fail(last.error());
-  if (!*last) return std::nullopt;
-  if (!may_pass((*last)->record)) return Kept{folder, std::move((*last)->record)};
+  NONIO_TRY(auto last, evaluation::last_record(folder));
+  if (!last) return std::nullopt;
+  if (!may_pass(last->record)) return Kept{folder, std::move(last->record)};
   const fs::path good = folder / evaluation::last_good_name;
-  auto record = evaluation::last_record(good);
-  if (!record) return fail(record.error());
-  if (!*record) return std::nullopt;
-  return Kept{good, std::move((*record)->record)};
+  NONIO_TRY(auto record, evaluation::last_record(good));
+  if (!record) return std::nullopt;
+  return Kept{good, std::move(record->record)};
 }
 
 std::string if_restored(const fs::path& folder) {
@@ -72,11 +70,10 @@ std::string recorded_digest(const fs::path& folder) {
 Expected<std::string> earlier_bytes(const fs::path& campaign) {
   for (const fs::path& folder : {campaign, campaign / evaluation::last_good_name}) {
     const fs::path path = folder / earlier_name;
-    const auto there = storage::is_there(path);
-    if (!there) return fail(there.error());
+    NONIO_TRY(const auto there, storage::is_there(path));
     const std::string recorded = recorded_digest(folder);
-    if (!*there && recorded.empty()) continue;
-    if (!*there)
+    if (!there && recorded.empty()) continue;
+    if (!there)
       return fail(path.string() + ", with the results that were replaced, is missing" +
                   if_restored(folder));
     auto bytes = storage::read_file(path);
@@ -198,8 +195,7 @@ Expected<void> put_aside(const Kept& kept, const fs::path& folder, const std::st
   if (!before) return {};
   const auto was = entry_of(*before, kept.record.inputs, id);
   if (!was) return {};
-  auto history = earlier_in(carried.earlier, folder);
-  if (!history) return fail(history.error());
+  NONIO_TRY(auto history, earlier_in(carried.earlier, folder));
   const IndexedSince since = since_of(kept.record, *was);
   const bool same = carried.indexed && since.sha256 == carried.indexed->sha256;
   if (same) carried.indexed = since;
@@ -207,13 +203,13 @@ Expected<void> put_aside(const Kept& kept, const fs::path& folder, const std::st
     return known.since.sha256 == since.sha256 && known.since.night.number == since.night.number;
   };
   const bool superseded =
-      !same && (history->evaluations.empty() || !is_it(history->evaluations.back()));
-  const std::size_t numbers = history->certificates.size();
+      !same && (history.evaluations.empty() || !is_it(history.evaluations.back()));
+  const std::size_t numbers = history.certificates.size();
   if (was->certificate && was->certificate->number != number)
-    add_number(was->certificate, history->certificates);
-  if (superseded || history->certificates.size() != numbers)
+    add_number(was->certificate, history.certificates);
+  if (superseded || history.certificates.size() != numbers)
     carried.earlier =
-        extended(carried.earlier, history->certificates,
+        extended(carried.earlier, history.certificates,
                  superseded ? text_of(since, kept.record.inputs, *before) : std::string());
   return {};
 }
@@ -221,35 +217,29 @@ Expected<void> put_aside(const Kept& kept, const fs::path& folder, const std::st
 }  // namespace
 
 Expected<FolderHistory> history_of(const fs::path& folder, const std::string& id) {
-  const auto bytes = earlier_bytes(folder);
-  if (!bytes) return fail(bytes.error());
-  auto history = earlier_in(*bytes, folder);
+  NONIO_TRY(const auto bytes, earlier_bytes(folder));
+  auto history = earlier_in(bytes, folder);
   if (!history) return history;
-  const auto kept = kept_in(folder);
-  if (!kept) return fail(kept.error());
-  if (!*kept) return history;
-  const fs::path path = (*kept)->folder / evaluation::results_name;
-  const auto results = storage::read_file(path);
-  if (!results) return fail(results.error());
-  auto entry = entry_of(*results, (*kept)->record.inputs, id);
-  if (!entry) return fail((*kept)->folder.string() + "/" + entry.error().message);
+  NONIO_TRY(const auto kept, kept_in(folder));
+  if (!kept) return history;
+  const fs::path path = kept->folder / evaluation::results_name;
+  NONIO_TRY(const auto results, storage::read_file(path));
+  auto entry = entry_of(results, kept->record.inputs, id);
+  if (!entry) return fail(kept->folder.string() + "/" + entry.error().message);
   add_number(entry->certificate, history->certificates);
-  const IndexedSince since = since_of((*kept)->record, *entry);
+  const IndexedSince since = since_of(kept->record, *entry);
   history->evaluations.push_back({since, std::move(*entry)});
   return history;
 }
 
 Expected<std::vector<std::uint64_t>> nights_of(const fs::path& folder) {
-  const auto bytes = earlier_bytes(folder);
-  if (!bytes) return fail(bytes.error());
-  const auto earlier = earlier_in(*bytes, folder);
-  if (!earlier) return fail(earlier.error());
-  const auto kept = kept_in(folder);
-  if (!kept) return fail(kept.error());
+  NONIO_TRY(const auto bytes, earlier_bytes(folder));
+  NONIO_TRY(const auto earlier, earlier_in(bytes, folder));
+  NONIO_TRY(const auto kept, kept_in(folder));
   std::vector<std::uint64_t> nights;
-  for (const Known& known : earlier->evaluations) nights.push_back(known.since.night.number);
-  if (*kept) {
-    const Record& record = (*kept)->record;
+  for (const Known& known : earlier.evaluations) nights.push_back(known.since.night.number);
+  if (kept) {
+    const Record& record = kept->record;
     nights.push_back(record.indexed ? record.indexed->night.number : record.night);
   }
   return nights;
@@ -257,28 +247,25 @@ Expected<std::vector<std::uint64_t>> nights_of(const fs::path& folder) {
 
 Expected<Carried> carry_over(const fs::path& folder, const Record& fresh, std::string_view results,
                              const std::string& id) {
-  auto bytes = earlier_bytes(folder);
-  if (!bytes) return fail(bytes.error());
-  Carried carried{{}, std::move(*bytes)};
-  const auto kept = kept_in(folder);
-  if (!kept) return fail(kept.error());
+  NONIO_TRY(auto bytes, earlier_bytes(folder));
+  Carried carried{{}, std::move(bytes)};
+  NONIO_TRY(const auto kept, kept_in(folder));
   if (may_pass(fresh)) {
     // The store keeps good results in last-good; a failure that stays would be lost.
-    if (*kept && (*kept)->record.status == evaluation::Status::failed)
-      if (auto put = put_aside(**kept, folder, id, {}, carried); !put) return fail(put.error());
+    if (kept && kept->record.status == evaluation::Status::failed)
+      if (auto put = put_aside(*kept, folder, id, {}, carried); !put) return fail(put.error());
     return carried;
   }
-  const auto entry = entry_of(results, fresh.inputs, id);
-  if (!entry) return fail(entry.error());
+  NONIO_TRY(const auto entry, entry_of(results, fresh.inputs, id));
   carried.indexed =
-      IndexedSince{{fresh.night, fresh.date}, input(fresh.inputs, "version"), digest_of(*entry)};
-  if (!*kept) return carried;
-  const Record& old = (*kept)->record;
+      IndexedSince{{fresh.night, fresh.date}, input(fresh.inputs, "version"), digest_of(entry)};
+  if (!kept) return carried;
+  const Record& old = kept->record;
   const bool same = old.indexed && old.indexed->sha256 == carried.indexed->sha256;
   if (same) carried.indexed = old.indexed;
   if (same && (old.certificate.empty() || old.certificate == fresh.certificate)) return carried;
-  const std::string number = entry->certificate ? entry->certificate->number : std::string();
-  if (auto put = put_aside(**kept, folder, id, number, carried); !put) return fail(put.error());
+  const std::string number = entry.certificate ? entry.certificate->number : std::string();
+  if (auto put = put_aside(*kept, folder, id, number, carried); !put) return fail(put.error());
   return carried;
 }
 

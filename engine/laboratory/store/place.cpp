@@ -57,13 +57,11 @@ constexpr const char* another_owner =
 
 Expected<StorePlace> place_of(const fs::path& out) {
   const fs::path path = place_folder(out) / place_name;
-  const auto there = storage::is_there(path);
-  if (!there) return fail(there.error());
-  if (!*there) return StorePlace{};
-  const auto text = storage::read_small_file(path);
-  if (!text) return fail(text.error());
+  NONIO_TRY(const auto there, storage::is_there(path));
+  if (!there) return StorePlace{};
+  NONIO_TRY(const auto text, storage::read_small_file(path));
   try {
-    const auto json = nlohmann::json::parse(*text);
+    const auto json = nlohmann::json::parse(text);
     StorePlace place{std::nullopt, json.at("owner"), json.at("evaluations"),
                      json.value("turns", std::vector<std::string>{})};
     if (json.contains("url"))
@@ -78,28 +76,26 @@ Expected<StorePlace> place_of(const fs::path& out) {
 }
 
 Expected<bool> note_place(const fs::path& out, const std::optional<storage::Server>& server) {
-  auto place = place_of(out);
-  if (!place) return fail(place.error());
+  NONIO_TRY(auto place, place_of(out));
   const auto where = [](const std::optional<storage::Server>& s) {
     return s ? s->url + "\n" + s->schema : std::string();
   };
-  const bool elsewhere = where(place->server) != where(server);
+  const bool elsewhere = where(place.server) != where(server);
   const auto file = [](const std::optional<storage::Server>& s) {
     return s ? s->password_file : fs::path();
   };
-  if (!elsewhere && file(place->server) == file(server)) return false;
-  place->server = server;
-  if (place->owner.empty()) place->owner = random_digits(32);
-  if (auto written = write_place(out, *place); !written) return fail(written.error());
+  if (!elsewhere && file(place.server) == file(server)) return false;
+  place.server = server;
+  if (place.owner.empty()) place.owner = random_digits(32);
+  if (auto written = write_place(out, place); !written) return fail(written.error());
   return elsewhere;
 }
 
 Expected<void> note_evaluations(const fs::path& out, std::int64_t count) {
-  auto place = place_of(out);
-  if (!place) return fail(place.error());
-  if (place->evaluations == count) return {};
-  place->evaluations = count;
-  return write_place(out, *place);
+  NONIO_TRY(auto place, place_of(out));
+  if (place.evaluations == count) return {};
+  place.evaluations = count;
+  return write_place(out, place);
 }
 
 std::string name_of(const StorePlace& place, const fs::path& out) {
@@ -113,26 +109,24 @@ std::string store_in(const fs::path& out) {
 }
 
 Expected<Database> open_store(const fs::path& out) {
-  const auto place = place_of(out);
-  if (!place) return fail(place.error());
-  const std::string name = name_of(*place, out);
+  NONIO_TRY(const auto place, place_of(out));
+  const std::string name = name_of(place, out);
   const std::string how = ": `nonio run SITE --out " + out.string() + "` writes it";
-  if (!place->server) {
-    const auto there = storage::is_there(out / store_name);
-    if (!there) return fail(there.error());
-    if (!*there) return fail("there is no " + name + how);
+  if (!place.server) {
+    NONIO_TRY(const auto there, storage::is_there(out / store_name));
+    if (!there) return fail("there is no " + name + how);
   }
-  auto database = place->server ? Database::open(*place->server)
-                                : Database::open(out / store_name, Database::Use::write);
+  auto database = place.server ? Database::open(*place.server)
+                               : Database::open(out / store_name, Database::Use::write);
   if (!database) return database;
   const auto version = version_of(*database);
-  if (place->server && version) {
+  if (place.server && version) {
     // The lock waits for a store that is being made again, and the state is that of its end.
     database->script("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY");
     database->script("LOCK TABLE store IN ACCESS SHARE MODE");
   }
   if (auto well = database->take_error(); !well) return fail(well.error());
-  if (place->server && !version) return fail("there is no history in " + name + how);
+  if (place.server && !version) return fail("there is no history in " + name + how);
   if (version != schema_version)
     return fail(name + " is of version " + std::to_string(version.value_or(0)) +
                 ", this program reads " + std::to_string(schema_version) +
@@ -163,9 +157,8 @@ Expected<void> take_turn(Database& database, const fs::path& out, StorePlace& pl
 }  // namespace
 
 Expected<void> take_schema(Database& database, const fs::path& out) {
-  auto place = place_of(out);
-  if (!place) return fail(place.error());
-  const std::string& schema = place->server->schema;
+  NONIO_TRY(auto place, place_of(out));
+  const std::string& schema = place.server->schema;
   if (database.first("SELECT COUNT(*) FROM pg_catalog.pg_namespace WHERE nspname = ?", {schema}) ==
       "0")
     database.script("CREATE SCHEMA \"" + schema + "\"");
@@ -174,12 +167,12 @@ Expected<void> take_schema(Database& database, const fs::path& out) {
   if (database.failed()) return database.take_error();
   if (owner.empty()) {
     if (has_table(database, "store")) return fail("schema " + schema + another_owner);
-    database.put("INSERT INTO owner VALUES (?)", {place->owner});
-    owner = place->owner;
+    database.put("INSERT INTO owner VALUES (?)", {place.owner});
+    owner = place.owner;
   }
   const std::size_t mark = owner.find(':');
-  if (owner.substr(0, mark) != place->owner) return fail("schema " + schema + another_owner);
-  return take_turn(database, out, *place, mark == owner.npos ? "" : owner.substr(mark + 1));
+  if (owner.substr(0, mark) != place.owner) return fail("schema " + schema + another_owner);
+  return take_turn(database, out, place, mark == owner.npos ? "" : owner.substr(mark + 1));
 }
 
 }  // namespace nonio::store

@@ -2,15 +2,21 @@
 #include "laboratory/store/store.h"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <map>
+#include <string>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "campaign/config/manifest.h"
+#include "campaign/config/site_logs.h"
 #include "laboratory/store/earlier.h"
+#include "laboratory/store/identity.h"
 #include "laboratory/store/place.h"
-#include "laboratory/store/rows.h"
 #include "laboratory/store/schema.h"
 #include "platform/storage/database.h"
 #include "platform/storage/files.h"
@@ -20,6 +26,141 @@ namespace fs = std::filesystem;
 using storage::Database;
 
 namespace {
+
+/// The evaluation of a campaign that the next one supersedes.
+struct Before {
+  std::int64_t evaluation = 0;  ///< 0: there is none
+  std::string campaign_sha256, version;
+};
+
+Database::Value value_of(const std::optional<double>& x) {
+  return x ? Database::Value(*x) : Database::Value(Database::Null{});
+}
+
+std::int64_t number(std::size_t n) { return static_cast<std::int64_t>(n); }
+
+/// Doubles of 8 bytes, the least significant byte first.
+std::string bytes_of(const std::vector<double>& numbers) {
+  std::string out;
+  for (const double x : numbers) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    for (int shift = 0; shift < 64; shift += 8) out += static_cast<char>(bits >> shift & 0xFF);
+  }
+  return out;
+}
+
+std::optional<double> together(const std::vector<CommonPart>& parts) {
+  if (parts.empty()) return std::nullopt;
+  double sum = 0.0;
+  for (const CommonPart& part : parts) sum += part.u * part.u;
+  return std::sqrt(sum);
+}
+
+void insert_campaign(Database& database, const Entry& e) {
+  const std::string machine = machine_of(e.machine);
+  database.put("INSERT INTO machine VALUES (?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
+               {machine, e.machine.asset, e.machine.maker, e.machine.model, e.machine.serial});
+  const InstrumentAsStated& i = e.instrument;
+  database.put(
+      "INSERT INTO campaign VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
+      {e.campaign, e.campaign_sha256, machine, e.day, e.customer,
+       e.purpose.empty() ? std::string_view("periodic") : std::string_view(e.purpose), i.maker,
+       i.model, i.serial, i.certificate, i.calibrated, i.valid_until});
+}
+
+void insert_result(Database& database, std::int64_t evaluation, std::int64_t item,
+                   const ResultRow& r) {
+  database.put("INSERT INTO result VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+               {evaluation, item, r.measurement, r.axis, r.quantity, r.source, r.unit, r.state,
+                r.value, value_of(r.u_repeat), value_of(together(r.common)), value_of(r.expanded),
+                value_of(r.k), value_of(r.tolerance), r.decision, r.conditions, r.not_stated});
+  for (std::size_t i = 0; i < r.common.size(); ++i)
+    database.put("INSERT INTO common_part VALUES (?, ?, ?, ?, ?)",
+                 {evaluation, item, number(i), r.common[i].source, r.common[i].u});
+}
+
+const char* why(const Known& known, const Before& before) {
+  if (before.evaluation == 0) return "";
+  if (before.campaign_sha256 != known.entry.campaign_sha256) return "files";
+  return before.version != known.since.version ? "version" : "settings";
+}
+
+/// Appends one evaluation with all that belongs to it under this sequence number.
+void insert(Database& database, std::int64_t evaluation, const Known& known, const Before& before) {
+  const Entry& e = known.entry;
+  insert_campaign(database, e);
+  const Database::Value supersedes = before.evaluation == 0 ? Database::Value(Database::Null{})
+                                                            : Database::Value(before.evaluation);
+  database.put("INSERT INTO evaluation VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+               {evaluation, known.since.sha256, e.campaign, e.campaign_sha256,
+                static_cast<std::int64_t>(known.since.night.number), known.since.night.date,
+                known.since.version, e.status, e.message, supersedes,
+                std::string_view(why(known, before)), e.place, e.control});
+  for (std::size_t i = 0; i < e.results.size(); ++i)
+    insert_result(database, evaluation, number(i), e.results[i]);
+  for (const CovarianceRow& c : e.covariance) {
+    const std::string upper = bytes_of(c.upper);
+    database.put(
+        "INSERT INTO covariance VALUES (?, ?, ?, ?, ?)",
+        {evaluation, number(c.first), number(c.count), Database::Blob{upper}, c.other_targets});
+  }
+  for (std::size_t i = 0; i < e.without_value.size(); ++i) {
+    const LimitRow& l = e.without_value[i];
+    database.put("INSERT INTO limit_without_value VALUES (?, ?, ?, ?, ?, ?, ?)",
+                 {evaluation, number(i), l.measurement, l.axis, l.quantity, l.unit, l.tolerance});
+  }
+  for (std::size_t i = 0; i < e.control_tables.size(); ++i) {
+    const ControlTableRow& t = e.control_tables[i];
+    database.put("INSERT INTO control_table VALUES (?, ?, ?, ?, ?)",
+                 {evaluation, number(i), t.measurement, t.axis, t.state});
+  }
+  for (std::size_t i = 0; i < e.findings.size(); ++i) {
+    const FindingRow& f = e.findings[i];
+    database.put("INSERT INTO finding VALUES (?, ?, ?, ?, ?, ?)",
+                 {evaluation, number(i), f.measurement, f.source, f.id, f.severity});
+  }
+}
+
+void insert(Database& database, const std::string& campaign,
+            const std::vector<CertificateRow>& certificates) {
+  for (const CertificateRow& c : certificates)
+    database.put("INSERT INTO certificate VALUES (?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
+                 {c.number, campaign, c.campaign_sha256, c.day, c.replaces});
+}
+
+/// What people say, as the site's files have it now, in place of what they had.
+void replace_logs(Database& database, const config::SiteLogs& logs,
+                  const std::vector<config::Alias>& aliases,
+                  const std::vector<config::Event>& of_records,
+                  const std::vector<config::DueRule>& due) {
+  for (const char* sql :
+       {"DELETE FROM machine_alias", "DELETE FROM event", "DELETE FROM acknowledgement",
+        "DELETE FROM forgotten", "DELETE FROM due_rule"})
+    database.put(sql);
+  for (const config::Alias& a : aliases)
+    database.put("INSERT INTO machine_alias VALUES (?, ?, ?)", {a.name, a.asset, a.why});
+  std::int64_t item = 0;
+  const auto put_event = [&](const config::Event& e, std::string_view source) {
+    database.put("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                 {++item, e.date, e.machine, e.axis, e.kind, e.text, e.by, source,
+                  static_cast<std::int64_t>(e.line)});
+  };
+  for (const config::Event& e : logs.events) put_event(e, config::events_name);
+  for (const config::Event& e : of_records) put_event(e, "machines");
+  item = 0;
+  for (const config::Acknowledgement& a : logs.acknowledged)
+    database.put(
+        "INSERT INTO acknowledgement VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        {++item, a.date, a.finding, a.machine, a.axis, a.quantity, a.until, value_of(a.value),
+         value_of(a.U), a.by, a.why, static_cast<std::int64_t>(a.line)});
+  item = 0;
+  for (const config::Forgotten& f : logs.forgotten)
+    database.put("INSERT INTO forgotten VALUES (?, ?, ?, ?, ?, ?)",
+                 {++item, f.date, f.campaign, f.by, f.why, static_cast<std::int64_t>(f.line)});
+  for (const config::DueRule& rule : due)
+    database.put("INSERT INTO due_rule VALUES (?, ?)",
+                 {rule.machine, static_cast<std::int64_t>(rule.months)});
+}
 
 constexpr const char* known_folder = ".nonio";
 constexpr const char* known_name = "history";
@@ -50,11 +191,10 @@ class Filling {
 
   /// Everything, into empty tables.
   Expected<void> all() {
-    auto places = all_places();
-    if (!places) return fail(places.error());
+    NONIO_TRY(auto places, all_places());
     std::int64_t number = 0;
     std::map<std::string, Before> last;  // of campaigns with more than one evaluation
-    for (const Place& place : *places) {
+    for (const Place& place : places) {
       alive_();
       const auto history =
           history_of(storage::results_folder(out_, place.campaign), place.campaign);
@@ -221,9 +361,8 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
                         const Told& told, const std::function<void()>& alive) {
   const auto place = place_of(out);
   if (!place) return fail(place.error());
-  auto opened = open_or_replace(out, *place);
-  if (!opened) return fail(opened.error());
-  Database& database = *opened;
+  NONIO_TRY(auto opened, open_or_replace(out, *place));
+  Database& database = opened;
   Updated updated;
   Database::Transaction transaction(database);
   const auto version = version_of(database);
@@ -236,9 +375,8 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
   if (!again && place->server) again = last_number(database) != place->evaluations;
   Filling filling(out, database, alive, updated);
   if (!again) {
-    const auto added = filling.some(campaigns);
-    if (!added) return fail(added.error());
-    again = !*added;
+    NONIO_TRY(const auto added, filling.some(campaigns));
+    again = !added;
   }
   if (again) {
     updated = {0, true, {}};
@@ -269,14 +407,12 @@ Expected<Updated> rebuild(const fs::path& out, const Told& told,
 
 Expected<std::optional<std::uint64_t>> known_night(const fs::path& out) {
   const fs::path path = out / known_folder / known_name;
-  const auto there = storage::is_there(path);
-  if (!there) return fail(there.error());
-  if (!*there) return std::nullopt;
-  const auto text = storage::read_small_file(path);
-  if (!text) return fail(text.error());
+  NONIO_TRY(const auto there, storage::is_there(path));
+  if (!there) return std::nullopt;
+  NONIO_TRY(const auto text, storage::read_small_file(path));
   std::uint64_t night = 0;
-  const char* const end = text->data() + text->size();
-  const auto [at, error] = std::from_chars(text->data(), end, night);
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, night);
   if (error != std::errc() || std::string_view(at, end) != "\n") return std::nullopt;
   return night;
 }

@@ -9,7 +9,6 @@
 //                   the other
 #include "nonio/math/straightness.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

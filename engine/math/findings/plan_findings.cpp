@@ -9,7 +9,6 @@
 //                   different phases
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "common/constants.h"
 #include "common/finding_builder.h"

@@ -15,7 +15,6 @@
 //   height is compared with the q_j that it does not touch: t, 1 % over all targets.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "axis/pass_model.h"

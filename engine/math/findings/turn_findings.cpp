@@ -9,7 +9,6 @@
 // With one pass in each direction no scatter is known and nothing is said.
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <vector>
 
 #include "common/constants.h"

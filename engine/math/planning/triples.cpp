@@ -432,23 +432,21 @@ Expected<Search> sound_search(const TripleRequest& wish) {
 }  // namespace
 
 Expected<TriplePlans> plan_triples(const TripleRequest& wish) {
-  const auto search = sound_search(wish);
-  if (!search) return fail(search.error());
+  NONIO_TRY(const auto search, sound_search(wish));
   TriplePlans out;
-  out.tried = work(*search);
-  out.plans = chosen(*search, wish);
+  out.tried = work(search);
+  out.plans = chosen(search, wish);
   if (out.plans.empty()) explain_nothing(wish, out);
   return out;
 }
 
 Expected<std::vector<TriplePlan>> cheapest_plans(const TripleRequest& wish, double least_cover,
                                                  const MeasuringCost& cost) {
-  const auto search = sound_search(wish);
-  if (!search) return fail(search.error());
+  NONIO_TRY(const auto search, sound_search(wish));
   std::vector<TriplePlan> plans;
   const Triple* of = nullptr;
-  for_each_plan(*search, [&](const Found& f) {
-    const TriplePlan p = plan_of(*search, f, wish);
+  for_each_plan(search, [&](const Found& f) {
+    const TriplePlan p = plan_of(search, f, wish);
     if (p.worst_cover() < least_cover) return false;
     if (of != f.triple) {
       plans.push_back(p);

@@ -70,8 +70,7 @@ Expected<SphereFit> fit_sphere(std::span<const std::array<double, 3>> touches,
   points.rowwise() -= mean.transpose();
   auto sphere = start(points);
   const char* const not_fixed =
-      "the touches do not fix a sphere: they lie in one plane, or on too "
-      "small a part of the ball";
+      "the touches do not fix a sphere: they lie in one plane, or on too small a part of the ball";
   if (!sphere) return fail(not_fixed);
   if (radius) sphere->radius = *radius;
   MatrixXd J(n, unknowns);

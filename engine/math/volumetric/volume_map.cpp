@@ -2,7 +2,6 @@
 #include "nonio/math/volume_map.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace nonio::math {
 

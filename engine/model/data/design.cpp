@@ -86,9 +86,8 @@ Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vect
   std::vector<MatrixXd> blocks;
   bool curves = false;
   for (const Term& term : terms) {
-    auto block = columns_of(o, term, term.shape);
-    if (!block) return fail(block.error());
-    blocks.push_back(std::move(*block));
+    NONIO_TRY(auto block, columns_of(o, term, term.shape));
+    blocks.push_back(std::move(block));
     curves = curves || may_lose(o, term);
   }
   if (lost != nullptr) lost->assign(terms.size(), 0);

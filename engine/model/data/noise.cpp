@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "nonio/math/distributions.h"
 #include "whitening.h"

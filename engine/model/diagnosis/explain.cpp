@@ -2,20 +2,282 @@
 #include "nonio/model/explain.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "beside.h"
 #include "course/course.h"
 #include "data/thin.h"
 #include "fit/compare.h"
+#include "nonio/math/distributions.h"
+#include "nonio/sdk/axis_readings.h"
 #include "search/candidates.h"
 #include "search/finding.h"
-#include "statements.h"
 #include "verdict.h"
 
 namespace nonio::model {
 
 namespace {
+
+// docs/dev/constants.md, M36.
+constexpr double stated_below = 0.001;
+
+/// Weighted sums of a column over cells or passes.
+struct Sums {
+  std::vector<double> sum, n;
+  Sums(const std::vector<std::uint32_t>& of, std::size_t count, const std::vector<double>& weight,
+       const std::vector<double>& x)
+      : sum(count, 0.0), n(count, 0.0) {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      sum[of[i]] += weight[i] * x[i], n[of[i]] += weight[i];
+  }
+  double mean(std::size_t k) const { return n[k] > 0.0 ? sum[k] / n[k] : 0.0; }
+};
+
+/// Less the mean of the repeats of each cell.
+std::vector<double> within_cells(const Finding& f, std::vector<double> x) {
+  const Sums cells(f.repeats.cell, f.repeats.cells, f.weight, x);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= cells.mean(f.repeats.cell[i]);
+  return x;
+}
+
+/// Straight line of the zeros of passes over their times.
+std::optional<Statement> drift(const Finding& f, double dof) {
+  const auto read = readings_of(f.part.table, f.part.axes.front());
+  if (!read || !(read->duration > 0.0) || !(dof > 2.0)) return std::nullopt;
+  const Repeats& r = f.repeats;
+  const Sums zero(r.pass, r.passes, f.weight, within_cells(f, f.part.table.deviation));
+  const Sums time(r.pass, r.passes, f.weight, within_cells(f, read->t));
+  double tt = 0.0, ty = 0.0, yy = 0.0;
+  for (std::size_t p = 0; p < r.passes; ++p) {
+    const double t = time.mean(p), y = zero.mean(p);
+    tt += t * t, ty += t * y, yy += y * y;
+  }
+  if (!(tt > 0.0)) return std::nullopt;
+  const double slope = ty / tt, s2 = std::max(yy - slope * ty, 0.0) / (dof - 1.0);
+  Statement out{.what = Statement::What::drift};
+  out.value = slope * read->duration;
+  out.u = std::sqrt(s2 / tt) * read->duration;
+  out.p = math::t_two_sided(math::test_ratio(out.value, out.u), dof - 1.0);
+  return out.p < stated_below ? std::optional(out) : std::nullopt;
+}
+
+/// The reversal of each target, all of one sign, each by itself larger than chance gives.
+std::optional<Statement> reversal(const Finding& f, double dof) {
+  const Repeats& r = f.repeats;
+  const std::vector<double>& y = f.part.table.deviation;
+  const std::vector<double> e = within_cells(f, y);
+  const Sums cells(r.cell, r.cells, f.weight, y);
+  double squares = 0.0, used = 0.0, full = 0.0;
+  for (std::size_t i = 0; i < e.size(); ++i) squares += f.weight[i] * e[i] * e[i];
+  for (const double n : cells.n) used += n, full += n > 0.0 ? 1.0 : 0.0;
+  if (!(used - full >= 1.0) || f.part.way.size() != y.size()) return std::nullopt;
+  const double s2 = squares / (used - full);
+  std::vector<std::array<std::optional<std::uint32_t>, 2>> of(r.targets);
+  for (std::size_t i = 0; i < y.size(); ++i)
+    if (f.weight[i] > 0.0 && f.part.way[i] != 0)
+      of[r.target[i]][f.part.way[i] > 0 ? 0 : 1] = r.cell[i];
+  Statement out{.what = Statement::What::reversal};
+  out.low = std::numeric_limits<double>::infinity(), out.high = -out.low;
+  double n = 0.0, sum = 0.0, variance = 0.0;
+  for (const auto& [plus, minus] : of) {
+    if (!plus || !minus) return std::nullopt;
+    const double b = cells.mean(*plus) - cells.mean(*minus);
+    const double v = s2 * (1.0 / cells.n[*plus] + 1.0 / cells.n[*minus]);
+    out.p =
+        std::max(n == 0.0 ? 0.0 : out.p, math::t_two_sided(math::test_ratio(b, std::sqrt(v)), dof));
+    out.low = std::min(out.low, b), out.high = std::max(out.high, b);
+    sum += b, variance += v, ++n;
+  }
+  if (n < 3.0 || !(out.low * out.high > 0.0)) return std::nullopt;
+  out.value = sum / n;
+  out.u = std::sqrt(variance / n);  // the zeros of passes are in all targets
+  out.p = std::min(1.0, out.p * n);
+  return out.p < stated_below ? std::optional(out) : std::nullopt;
+}
+
+/// What the readings of an axis show whatever repeats at each target from each side: a drift of the
+/// zero, a reversal at every target. Each pass may have a zero of its own: they are tested against
+/// that scatter. Empty where fewer than 3 passes repeat others.
+std::vector<Statement> statements_of(const Finding& f) {
+  std::vector<Statement> out;
+  const double dof = static_cast<double>(f.repeats.passes) - static_cast<double>(f.repeats.sides);
+  if (f.part.kind != Part::Kind::axis || !(dof >= 3.0)) return out;
+  for (const auto& one : {drift(f, dof), reversal(f, dof)})
+    if (one) out.push_back(*one);
+  return out;
+}
+
+struct Means {
+  double plus = 0.0, minus = 0.0, n_plus = 0.0, n_minus = 0.0;
+};
+
+/// Whether the term says the same of all readings of a target from one side.
+bool of_place(const Finding& f, const Term& term) {
+  const auto columns = columns_of(f.part.table, term, term.shape);
+  if (!columns) return false;
+  std::vector<Index> first(f.repeats.cells, -1);
+  for (std::size_t i = 0; i < f.repeats.cell.size(); ++i) {
+    Index& seen = first[f.repeats.cell[i]];
+    const auto row = static_cast<Index>(i);
+    if (seen < 0)
+      seen = row;
+    else if (!(columns->row(row) - columns->row(seen)).isZero())
+      return false;
+  }
+  return true;
+}
+
+/// What a description says: of each target a value or a reversal, else of each reading.
+void measure(const Finding& f, const std::vector<double>& says, Description& d) {
+  std::vector<double> values = says;
+  if (of_place(f, d.term)) {
+    std::vector<Means> target(f.repeats.targets);
+    for (std::size_t i = 0; i < says.size(); ++i) {
+      Means& m = target[f.repeats.target[i]];
+      (f.part.way[i] < 0 ? m.minus : m.plus) += says[i];
+      (f.part.way[i] < 0 ? m.n_minus : m.n_plus) += 1.0;
+    }
+    values.clear();
+    d.what = Description::What::value_at_targets;
+    for (const Means& m : target)
+      if (m.n_plus > 0.0 && m.n_minus > 0.0 &&
+          std::fabs(m.plus / m.n_plus - m.minus / m.n_minus) > 1e-6 * d.rms)
+        d.what = Description::What::reversal_at_targets;
+    for (const Means& m : target) {
+      const bool both = m.n_plus > 0.0 && m.n_minus > 0.0;
+      if (d.what == Description::What::value_at_targets)
+        values.push_back((m.plus + m.minus) / (m.n_plus + m.n_minus));
+      else if (both)
+        values.push_back(m.plus / m.n_plus - m.minus / m.n_minus);
+    }
+  }
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  d.mean = values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double zero = d.what == Description::What::reversal_at_targets ? 0.0 : d.mean;
+  if (!values.empty()) d.low = *low - zero, d.high = *high - zero;
+}
+
+/// What the model and the effects that are certain leave, by descriptions: one after the other, the
+/// best first, as long as the evidence pays for their columns.
+std::vector<Description> described(const Finding& finding, const std::vector<Term>& certain) {
+  std::vector<Term> terms = finding.of_model.fit.terms;
+  terms.insert(terms.end(), certain.begin(), certain.end());
+  const std::size_t explained = terms.size();
+  terms.insert(terms.end(), finding.descriptions.begin(), finding.descriptions.end());
+  const Workbench bench(finding.part.table, terms, finding.weight, {}, 0, nullptr, finding.noise);
+  Workbench::State state = bench.state({});
+  for (std::size_t e = 0; e < explained; ++e) state = bench.with(state, bench.gains(state, e), e);
+  std::vector<Description> out;
+  terms.resize(explained);
+  while (true) {
+    const Workbench::Gains gains = bench.gains(state);
+    Workbench::State best = state;
+    for (std::size_t e = explained; e < bench.instances().size(); ++e) {
+      if (bench.holds(state, e)) continue;
+      Workbench::State more = bench.with(state, gains, e);
+      if (more.criterion < best.criterion) best = std::move(more);
+    }
+    if (best.blocks.size() == state.blocks.size()) break;
+    state = std::move(best);
+    const Workbench::Block& block = bench.blocks()[state.blocks.back()];
+    out.push_back({finding.descriptions[block.effect - explained],
+                   std::sqrt(state.squares / bench.readings())});
+    out.back().term.shape = block.shape;
+    terms.push_back(out.back().term);
+  }
+  const auto fitted =
+      fit_near(finding.part.table, terms, std::vector<char>(terms.size(), 0), finding.weight);
+  for (std::size_t k = 0; fitted && k < out.size(); ++k)
+    measure(finding, fitted->part[explained + k], out[k]);
+  return out;
+}
+
+/// Terms of the candidates that are certain, with their shapes.
+std::vector<Term> certain_terms(const Explanation& out) {
+  std::vector<Term> terms;
+  for (const std::string& name : out.certain)
+    for (const Candidate& c : out.candidates)
+      if (c.term.name() == name) terms.push_back(c.term);
+  return terms;
+}
+
+/// Effects that are certain beside the model and do not repeat at a place; their candidates.
+std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& model,
+                                  const std::vector<Term>& catalogue, std::uint64_t seed) {
+  std::vector<Candidate> out;
+  const auto finding = find_best(part, model, catalogue, seed);
+  if (!finding) return out;
+  Explanation e;
+  e.candidates = candidates_of(
+      *finding, {finding->repeats, finding->suspects, finding->weight, finding->noise});
+  for (const Candidate& c : e.candidates)
+    if (c.visible && finding->bench->holds(finding->best, finding->index_of(c.term.name())))
+      e.together.push_back(c.term.name());
+  judge(*finding, e);
+  for (const Candidate& c : e.candidates)
+    if (std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end() &&
+        !of_place(*finding, c.term))
+      out.push_back(c);
+  return out;
+}
+
+/// An effect that is certain beside descriptions only.
+void take_over(Candidate found, const std::vector<std::string>& beside, Explanation& out) {
+  const std::string name = found.term.name();
+  if (std::find(out.certain.begin(), out.certain.end(), name) != out.certain.end()) return;
+  const auto known = std::find_if(out.candidates.begin(), out.candidates.end(),
+                                  [&](const Candidate& c) { return c.term.name() == name; });
+  if (known == out.candidates.end()) return;
+  found.rms = known->rms;
+  found.cv_rms = known->cv_rms;
+  found.beside = beside;
+  *known = std::move(found);
+  out.certain.push_back(name);
+}
+
+/// What is left with all that is certain in the model.
+double rms_beside(const Finding& finding, const Explanation& out) {
+  std::vector<Term> terms = finding.of_model.fit.terms;
+  for (Term& term : certain_terms(out)) terms.push_back(std::move(term));
+  const double rms = rms_with(finding.part.table, terms, finding.weight);
+  return std::isfinite(rms) ? rms : finding.of_model.fit.rms;
+}
+
+/// Where the search is worth doing again beside free values of place: with few targets, in which
+/// the catalogue cannot say what repeats there. More would cost more than they tell.
+bool few_places(const Finding& finding) {
+  constexpr std::uint32_t most_targets = 60;
+  return finding.part.kind == Part::Kind::axis && finding.repeats.targets <= most_targets;
+}
+
+/// Where the verdict is `unknown`: explained again beside descriptions of place alone (a value for
+/// each target, a reversal for each), which hold whatever of the rest repeats at a place and cannot
+/// stand for what time does. What is certain there is certain; it comes into `out.certain`, and its
+/// candidate says beside what. Then what is left beside all that is certain is described.
+void describe(const Finding& finding, const std::vector<Term>& catalogue, Explanation& out) {
+  out.descriptions = described(finding, certain_terms(out));
+  std::vector<Term> model = finding.of_model.fit.terms;
+  std::vector<std::string> beside;
+  const std::size_t before = out.certain.size();
+  for (const Description& description : out.descriptions) {
+    if (!few_places(finding) || !of_place(finding, description.term)) continue;
+    model.push_back(description.term);
+    beside.push_back(description.term.name());
+    for (Candidate& found : certain_in(finding.part, model, catalogue, finding.seed))
+      take_over(std::move(found), beside, out);
+  }
+  out.significant_rms = rms_beside(finding, out);
+  if (out.certain.size() == before) return;
+  std::stable_sort(out.candidates.begin(), out.candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  out.descriptions = described(finding, certain_terms(out));
+}
 
 Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& model,
                                   const std::vector<Term>& catalogue, std::uint64_t seed,
@@ -82,13 +344,12 @@ Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                          ground.thin ? *ground.of_thin : ground.whole);
   if (!out) return out;
   // The model is compared as `compare` does it: one model has one RMS.
-  auto comparison = compare(part, model, known);
-  if (!comparison) return fail(comparison.error());
+  NONIO_TRY(auto comparison, compare(part, model, known));
   if (ground.thin)
     judge_on_all(part, model, catalogue, ground, *out);
   else
-    add_suspects(out->comparison.suspects, *comparison);
-  out->comparison = std::move(*comparison);
+    add_suspects(out->comparison.suspects, comparison);
+  out->comparison = std::move(comparison);
   return out;
 }
 

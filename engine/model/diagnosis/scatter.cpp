@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "data/whitening.h"
 #include "nonio/math/distributions.h"

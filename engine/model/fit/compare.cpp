@@ -291,10 +291,9 @@ Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
   const Part& thin = *ground->thin;
   out->means = thin.table.size();
   if (fitted) fitted(*out);
-  auto of_means = compare_on(thin, out->fit.terms, *ground->of_thin);
-  if (!of_means) return fail(of_means.error());
-  if (of_means->fails()) out->seats = seats_in(thin, ground->of_thin->repeats, *of_means);
-  out->places = std::move(of_means->places);
+  NONIO_TRY(auto of_means, compare_on(thin, out->fit.terms, *ground->of_thin));
+  if (of_means.fails()) out->seats = seats_in(thin, ground->of_thin->repeats, of_means);
+  out->places = std::move(of_means.places);
   return out;
 }
 

@@ -38,9 +38,8 @@ Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms
   Design d;
   Index columns = lines;
   for (Index k = 0; k < lines; ++k) d.names.push_back("the zero of line " + std::to_string(k + 1));
-  auto blocks = blocks_of(o, terms, white.root(), &d.lost);
-  if (!blocks) return fail(blocks.error());
-  d.blocks = std::move(*blocks);
+  NONIO_TRY(auto blocks, blocks_of(o, terms, white.root(), &d.lost));
+  d.blocks = std::move(blocks);
   for (std::size_t t = 0; t < terms.size(); ++t) {
     d.first.push_back(columns);
     columns += d.blocks[t].cols();
@@ -175,10 +174,9 @@ Expected<void> start_shapes(const Observations& o, std::vector<Term>& terms,
                             const std::vector<char>& searched, const std::vector<double>& weight,
                             const Noise& noise) {
   const Workbench bench(o, terms, weight, {}, 0, nullptr, noise);
-  auto best = bench.best_shapes();
-  if (!best) return fail(best.error());
+  NONIO_TRY(auto best, bench.best_shapes());
   for (std::size_t t = 0; t < terms.size(); ++t)
-    if (searched[t]) terms[t].shape = (*best)[t];
+    if (searched[t]) terms[t].shape = best[t];
   return {};
 }
 
@@ -488,9 +486,8 @@ Expected<Fit> fit(const Observations& o, std::vector<Term> terms, std::vector<do
   const Observations made = is_long && known_thin == nullptr ? thinned(o, weight) : Observations{};
   const Observations& thin = is_long && known_thin != nullptr ? *known_thin : made;
   if (thin.size() > 0 && thin.size() < o.size()) {
-    auto near = fit(thin, terms);
-    if (!near) return fail(near.error());
-    terms = std::move(near->terms);
+    NONIO_TRY(auto near, fit(thin, terms));
+    terms = std::move(near.terms);
   } else if (any) {
     if (auto found = start_shapes(o, terms, searched, weight, noise); !found)
       return fail(found.error());
@@ -520,39 +517,38 @@ Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
   const Whitening white(o, weight, Whitening::of_repeats(noise));
   const VectorXd y =
       Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.deviation.size()));
-  auto design = design_of(o, terms, white);
-  if (!design) return fail(design.error());
+  NONIO_TRY(auto design, design_of(o, terms, white));
   const auto used = static_cast<Index>((white.root().array() > 0.0).count());
-  if (used <= design->a.cols())
+  if (used <= design.a.cols())
     return fail(std::to_string(used) + " readings cannot determine " +
-                std::to_string(design->a.cols()) + " unknowns");
-  const auto s = solve(*design, white(y));
+                std::to_string(design.a.cols()) + " unknowns");
+  const auto s = solve(design, white(y));
   if (!s) return fail(s.error());
 
   Fit out;
   out.terms = std::move(terms);
   out.weight = weight.empty() ? std::vector<double>(o.size(), 1.0) : std::move(weight);
-  out.redundancy = static_cast<std::size_t>(used - design->a.cols());
-  const Index lines = design->first.front();
+  out.redundancy = static_cast<std::size_t>(used - design.a.cols());
+  const Index lines = design.first.front();
   out.zero.assign(s->x.data(), s->x.data() + lines);
   // A reading of weight 0 has a residual too: what it is away from the model.
   VectorXd residual = y;
   for (Index i = 0; i < y.size(); ++i)
     residual(i) -= s->x(static_cast<Index>(line_of(o, static_cast<std::size_t>(i))));
   for (std::size_t t = 0; t < out.terms.size(); ++t) {
-    const MatrixXd& block = design->blocks[t];
-    const VectorXd part = block * s->x.segment(design->first[t], block.cols());
+    const MatrixXd& block = design.blocks[t];
+    const VectorXd part = block * s->x.segment(design.first[t], block.cols());
     residual -= part;
     out.part.emplace_back(part.data(), part.data() + part.size());
   }
   out.residual.assign(residual.data(), residual.data() + residual.size());
   out.noise = noise;
-  name_parameters(out, o, *design);
-  for (const Index lost : design->lost) out.lost.push_back(static_cast<std::size_t>(lost));
+  name_parameters(out, o, design);
+  for (const Index lost : design.lost) out.lost.push_back(static_cast<std::size_t>(lost));
   Index column = lines;
   for (Parameter& p : out.parameters)
     if (!p.shape) p.value = s->x(column++);
-  fill_covariance(out, o, std::move(*design), *s, searched, white);
+  fill_covariance(out, o, std::move(design), *s, searched, white);
   double sum = 0.0;
   for (const double w : out.weight) sum += w;
   // What is left of the readings as they are, not of the whitened ones.
@@ -565,9 +561,8 @@ Expected<Fit> fit_at(const Observations& o, std::vector<Term> terms,
 }
 
 Expected<std::vector<double>> said_by(const Observations& o, const Term& term, double value) {
-  const auto columns = columns_of(o, term, term.shape);
-  if (!columns) return fail(columns.error());
-  const VectorXd says = columns->col(0) * value;
+  NONIO_TRY(const auto columns, columns_of(o, term, term.shape));
+  const VectorXd says = columns.col(0) * value;
   return std::vector<double>(says.data(), says.data() + says.size());
 }
 

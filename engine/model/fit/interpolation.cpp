@@ -132,9 +132,8 @@ struct Said {
   Expected<VectorXd> of(const Observations& o) const {
     VectorXd sum = VectorXd::Zero(static_cast<Index>(o.size()));
     for (std::size_t t = 0; t < terms.size(); ++t) {
-      const auto columns = columns_of(o, terms[t], terms[t].shape);
-      if (!columns) return fail(columns.error());
-      if (columns->cols() == linear[t].size()) sum += *columns * linear[t];
+      NONIO_TRY(const auto columns, columns_of(o, terms[t], terms[t].shape));
+      if (columns.cols() == linear[t].size()) sum += columns * linear[t];
     }
     return sum;
   }
@@ -163,8 +162,7 @@ Expected<Said> warmed(const Observations& filled, const AxisReadings& r,
 /// A column for each gap: what it changes of what is said.
 Expected<MatrixXd> columns_of_gaps(const Observations& filled, const Said& said,
                                    const std::vector<Gap>& gaps) {
-  const auto as_fitted = said.of(filled);
-  if (!as_fitted) return fail(as_fitted.error());
+  NONIO_TRY(const auto as_fitted, said.of(filled));
   const std::size_t columns = std::min(gaps.size(), most_columns);
   MatrixXd out(static_cast<Index>(filled.size()), static_cast<Index>(columns));
   Observations other = filled;
@@ -173,9 +171,8 @@ Expected<MatrixXd> columns_of_gaps(const Observations& filled, const Said& said,
     for (std::size_t g = c, k = 0; g < gaps.size(); g += columns, ++k)
       for (std::size_t j = 0; j < gaps[g].row.size(); ++j)
         other.material[gaps[g].row[j]] += (k % 2 == 0 ? 1.0 : -1.0) * gaps[g].off[j];
-    const auto wrong = said.of(other);
-    if (!wrong) return fail(wrong.error());
-    out.col(static_cast<Index>(c)) = *wrong - *as_fitted;
+    NONIO_TRY(const auto wrong, said.of(other));
+    out.col(static_cast<Index>(c)) = wrong - as_fitted;
   }
   return out;
 }
@@ -198,19 +195,17 @@ Expected<MatrixXd> wrong_by_interpolation(const Observations& o, const std::vect
     Observations filled = o;
     for (std::size_t i = 0; i < o.size(); ++i)
       if (r->moved[i]) filled.material[i] = 20.0 + r->K[i];
-    const auto said = warmed(filled, *r, terms, linear, axis);
-    if (!said) return fail(said.error());
-    if (said->terms.empty()) continue;
+    NONIO_TRY(const auto said, warmed(filled, *r, terms, linear, axis));
+    if (said.terms.empty()) continue;
     std::vector<Gap> gaps;
     for (const TemperatureCourse& course : temperature_courses(o, *r))
       if (!add_gaps(course, *r, gaps))
         return fail(
             "too few temperatures are known for the uncertainty of those interpolated between "
             "them");
-    const auto wrong = columns_of_gaps(filled, *said, gaps);
-    if (!wrong) return fail(wrong.error());
-    out.conservativeResize(Eigen::NoChange, out.cols() + wrong->cols());
-    out.rightCols(wrong->cols()) = *wrong;
+    NONIO_TRY(const auto wrong, columns_of_gaps(filled, said, gaps));
+    out.conservativeResize(Eigen::NoChange, out.cols() + wrong.cols());
+    out.rightCols(wrong.cols()) = wrong;
   }
   return out;
 }

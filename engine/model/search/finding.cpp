@@ -51,9 +51,8 @@ class Finder {
     if (alone_) f_.noise.in_repeats = f_.noise.neighbours = 0.0;
     f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_,
                      f_.noise, scatter());
-    auto start = best_start();
-    if (!start) return fail(start.error());
-    f_.start = std::move(*start);
+    NONIO_TRY(auto start, best_start());
+    f_.start = std::move(start);
     f_.best = best_explanation(*f_.bench, f_.start);
     // What lies between the values of a grid would be taken for an effect of its own.
     constexpr double worth_another_round = 1.0;
@@ -242,8 +241,7 @@ class Finder {
     return least < all ? std::vector<Suspect>{worst} : std::vector<Suspect>{};
   }
 
-  /// A reading of weight 0 against what the best explanation of the others says of it: none if it
-  /// is as far away as one of so many may be.
+  /// A reading of weight 0 against what the best explanation of the others says of it: none if (it) /// is as far away as one of so many may be.
   std::optional<Suspect> predicted(std::size_t row) const {
     // docs/dev/constants.md, M12.
     constexpr double rarely = 0.01;
@@ -376,10 +374,9 @@ Unsteady Finding::beside_walk(const std::vector<Term>& some) const {
 }
 
 Expected<MatrixXd> Finding::columns_of(const std::vector<Term>& some) const {
-  const auto blocks = blocks_of(part.table, some, bench->root_weight());
-  if (!blocks) return fail(blocks.error());
+  NONIO_TRY(const auto blocks, blocks_of(part.table, some, bench->root_weight()));
   MatrixXd out(static_cast<Index>(part.table.size()), 0);
-  for (const MatrixXd& block : *blocks) {
+  for (const MatrixXd& block : blocks) {
     out.conservativeResize(Eigen::NoChange, out.cols() + block.cols());
     out.rightCols(block.cols()) = block;
   }

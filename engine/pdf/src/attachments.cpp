@@ -86,12 +86,11 @@ Expected<std::vector<Attachment>> attachments_of(const File& file) {
     return fail("holds other files than it lists");
   std::size_t total = 0;
   for (std::size_t i = 0; i < list->items.size(); i += 2) {
-    auto one = attachment_of(file, list->items[i].text, &list->items[i + 1], total);
-    if (!one) return fail(one.error());
-    if (!out.empty() && out.back().name >= one->name)
-      return fail("the attachment " + quoted(one->name) +
+    NONIO_TRY(auto one, attachment_of(file, list->items[i].text, &list->items[i + 1], total));
+    if (!out.empty() && out.back().name >= one.name)
+      return fail("the attachment " + quoted(one.name) +
                   " is present twice, or its name is misplaced");
-    out.push_back(std::move(*one));
+    out.push_back(std::move(one));
   }
   return out;
 }

@@ -4,7 +4,6 @@
 #include <libdeflate.h>
 #include <openssl/sha.h>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>

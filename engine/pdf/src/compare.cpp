@@ -81,9 +81,8 @@ class Comparison {
 Expected<void> same_pdf(std::string_view signed_pdf, std::string_view reserved) {
   const auto a = parse(signed_pdf), b = parse(reserved);
   if (!a || !b) return fail(a ? b.error() : a.error());
-  const auto signature = find_signature(*b);
-  if (!signature) return fail(signature.error());
-  return Comparison(*a, *b, *signature).run();
+  NONIO_TRY(const auto signature, find_signature(*b));
+  return Comparison(*a, *b, signature).run();
 }
 
 }  // namespace nonio::pdf

@@ -97,12 +97,11 @@ Expected<void> Lexer::read_container(Value& value, int depth) {
       value.keys.push_back(std::move(key.text));
       value.items.emplace_back();
     }
-    auto item = value_in(depth + 1);
-    if (!item) return fail(item.error());
+    NONIO_TRY(auto item, value_in(depth + 1));
     if (is_dictionary)
-      value.items.back() = std::move(*item);
+      value.items.back() = std::move(item);
     else
-      value.items.push_back(std::move(*item));
+      value.items.push_back(std::move(item));
   }
 }
 

@@ -60,9 +60,8 @@ class Pages {
 }  // namespace
 
 Expected<std::vector<std::string>> page_contents(std::string_view bytes) {
-  const auto file = parse(bytes);
-  if (!file) return fail(file.error());
-  return Pages(*file).read();
+  NONIO_TRY(const auto file, parse(bytes));
+  return Pages(file).read();
 }
 
 }  // namespace nonio::pdf

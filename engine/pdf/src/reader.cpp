@@ -117,20 +117,19 @@ class FileReader {
     }
     if (offsets_.front() != 0) return refuse(in.at(), "expected no free object but the first");
     if (!in.take("trailer\n")) return refuse(in.at(), "expected the trailer");
-    auto trailer = in.value();
-    if (!trailer) return fail(trailer.error());
-    if (!trailer->is(Value::Kind::dictionary)) return refuse(in.at(), "expected a dictionary");
+    NONIO_TRY(auto trailer, in.value());
+    if (!trailer.is(Value::Kind::dictionary)) return refuse(in.at(), "expected a dictionary");
     in.skip_space();
     if (in.at() != tail_) return refuse(in.at(), "expected startxref");
     for (const char* key : {"Prev", "XRefStm", "Encrypt"})
-      if (trailer->find(key) != nullptr)
+      if (trailer.find(key) != nullptr)
         return fail(std::string("the trailer has /") + key +
                     ": expected one revision, not encrypted");
-    const Value* size = trailer->find("Size");
+    const Value* size = trailer.find("Size");
     if (size == nullptr || !size->is(Value::Kind::integer) ||
         size->integer != static_cast<std::int64_t>(count))
       return fail("the trailer's /Size is not the number of objects");
-    file_.trailer = std::move(*trailer);
+    file_.trailer = std::move(trailer);
     return {};
   }
 
@@ -158,9 +157,8 @@ class FileReader {
     std::size_t found = 0;
     if (!in.take_number(found, 10) || found != number || !in.take(" 0 obj"))
       return refuse(at, "expected object " + std::to_string(number));
-    auto value = in.value();
-    if (!value) return fail(value.error());
-    object.value = std::move(*value);
+    NONIO_TRY(auto value, in.value());
+    object.value = std::move(value);
     in.skip_space();
     if (in.take("stream"))
       if (auto done = read_stream(in, object); !done) return done;
@@ -246,9 +244,8 @@ constexpr std::size_t best_ratio = 1040;
 }  // namespace
 
 Expected<std::string> content(const File& file, const Object& object, std::size_t size) {
-  const auto packed = is_packed(file, object);
-  if (!packed) return fail(packed.error());
-  if (!*packed) {
+  NONIO_TRY(const auto packed, is_packed(file, object));
+  if (!packed) {
     if (object.stream.size() != size) return fail("has not the size that it should have");
     return std::string(object.stream);
   }
@@ -260,9 +257,8 @@ Expected<std::string> content(const File& file, const Object& object, std::size_
 }
 
 Expected<std::string> content_up_to(const File& file, const Object& object, std::size_t most) {
-  const auto packed = is_packed(file, object);
-  if (!packed) return fail(packed.error());
-  if (!*packed) {
+  NONIO_TRY(const auto packed, is_packed(file, object));
+  if (!packed) {
     if (object.stream.size() > most) return fail("is too long");
     return std::string(object.stream);
   }

@@ -48,8 +48,7 @@ Expected<PdfSignature> signature_at_end(std::string_view bytes) {
   if (found == std::string_view::npos || from + found < time_size)
     return fail(
         "has no signature where Nonio writes one: it was changed, or saved again by another "
-        "program, "
-        "which breaks the signature; request the file as it was issued");
+        "program, which breaks the signature; request the file as it was issued");
   std::size_t at = from + found + range.size();
   std::array<std::size_t, 3> numbers{};
   for (std::size_t i = 0; i < numbers.size(); ++i, at += digits + 1) {
@@ -73,16 +72,14 @@ Expected<PdfSignature> signature_at_end(std::string_view bytes) {
     return fail("/Contents: expected digits and small letters a to f");
   signature.before = bytes.substr(0, signature.gap);
   signature.behind = bytes.substr(behind);
-  const auto time = time_in(bytes.substr(from + found - time_size, time_size));
-  if (!time) return fail(time.error());
-  signature.time = *time;
+  NONIO_TRY(const auto time, time_in(bytes.substr(from + found - time_size, time_size)));
+  signature.time = time;
   return signature;
 }
 
 Expected<Time> stated_time(std::string_view bytes) {
-  const auto signature = signature_at_end(bytes);
-  if (!signature) return fail(signature.error());
-  return signature->time;
+  NONIO_TRY(const auto signature, signature_at_end(bytes));
+  return signature.time;
 }
 
 Expected<PdfSignature> signature_of(const File& file, const Value& dictionary) {

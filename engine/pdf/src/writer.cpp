@@ -8,7 +8,6 @@
 #include <hpdf_pages.h>
 #include <hpdf_streams.h>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -16,16 +15,48 @@
 #include <cstring>
 #include <deque>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "nonio/pdf/bytes.h"
 #include "nonio/pdf/text.h"
-#include "xmp.h"
+#include "nonio/sdk/text.h"
 
 // The one place that knows libharu. Its own text functions are not used: libharu 2.3.0 would parse
 // and compress both fonts again for each document, lose glyphs in silence and write a 128 kB
 // CIDToGIDMap. Here the fonts are built from its objects, with streams that were compressed once.
+
 namespace nonio::pdf {
 namespace {
+
+/// An element, with its list in it if it has one; nothing if there is no text.
+std::string element(std::string_view name, std::string_view text, std::string_view list = {}) {
+  if (text.empty()) return {};
+  const std::string tag(name), kind(list);
+  const std::string item = kind == "Alt" ? "<rdf:li xml:lang=\"x-default\">" : "<rdf:li>";
+  const std::string inner = escaped_markup(text);
+  return "   <" + tag + ">" +
+         (kind.empty() ? inner
+                       : "<rdf:" + kind + ">" + item + inner + "</rdf:li></rdf:" + kind + ">") +
+         "</" + tag + ">\n";
+}
+
+/// The document's properties as XMP (ISO 16684-1), equal to those of its Info dictionary.
+/// No pdfaid schema: it would claim a conformance that no validator has seen.
+std::string xmp_packet(const NewFile& file, std::string_view producer) {
+  const std::string date = file.date.empty() ? "" : file.date + "T00:00:00Z";
+  return "<?xpacket begin=\"\xEF\xBB\xBF\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n"
+         "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n"
+         " <rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n"
+         "  <rdf:Description rdf:about=\"\" xmlns:dc=\"http://purl.org/dc/elements/1.1/\""
+         " xmlns:xmp=\"http://ns.adobe.com/xap/1.0/\""
+         " xmlns:pdf=\"http://ns.adobe.com/pdf/1.3/\">\n" +
+         element("dc:title", file.title, "Alt") + element("dc:creator", file.author, "Seq") +
+         element("dc:description", file.subject, "Alt") +
+         element("dc:language", file.language, "Bag") + element("xmp:CreateDate", date) +
+         element("pdf:Producer", producer) +
+         "  </rdf:Description>\n </rdf:RDF>\n</x:xmpmeta>\n<?xpacket end=\"r\"?>\n";
+}
 
 /// The first error of a document; libharu repeats it in every later call.
 struct Failure {

@@ -8,7 +8,6 @@
 #include <cfenv>
 #include <clocale>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <locale>
 #include <optional>

@@ -31,13 +31,13 @@ Length length_at(std::string_view bytes, std::size_t at) {
   return n;
 }
 
-/// In the child: parcels in a buffer, sent when there are many, and at the end.
+/// In the child: pieces in a buffer, sent when there are many, and at the end.
 class Outbox {
  public:
   explicit Outbox(int channel) : channel_(channel) {}
-  void put(const Parcel& parcel) {
-    append_length(buffer_, parcel.bytes().size());
-    buffer_ += parcel.bytes();
+  void put(std::string_view piece) {
+    append_length(buffer_, piece.size());
+    buffer_ += piece;
     if (buffer_.size() > (1U << 15)) send();
   }
   void send() {
@@ -61,7 +61,7 @@ class Outbox {
   if (memory_MB > 0.0) limit_memory(memory_MB);
   Outbox outbox(channel);
   try {
-    task(signs, [&](const Parcel& parcel) { outbox.put(parcel); });
+    task(signs, [&](std::string_view piece) { outbox.put(piece); });
     outbox.send();
   } catch (...) {
     ::_exit(3);
@@ -70,31 +70,6 @@ class Outbox {
 }
 
 }  // namespace
-
-Parcel& Parcel::add(std::string_view text) {
-  append_length(bytes_, text.size());
-  bytes_ += text;
-  return *this;
-}
-
-Parcel& Parcel::add(std::uint64_t number) {
-  append_length(bytes_, number);
-  return *this;
-}
-
-std::uint64_t Parcel::number() {
-  if (bytes_.size() - at_ < sizeof(Length)) return 0;
-  const Length n = length_at(bytes_, at_);
-  at_ += sizeof n;
-  return n;
-}
-
-std::string Parcel::text() {
-  const std::size_t size = std::min<std::size_t>(number(), bytes_.size() - at_);
-  std::string out = bytes_.substr(at_, size);
-  at_ += size;
-  return out;
-}
 
 void SignsOfLife::reading(std::string_view path) {
   const std::size_t n = std::min(path.size(), place.size() - 1);
@@ -160,7 +135,7 @@ Watched::~Watched() {
   if (signs_ != nullptr) ::munmap(signs_, sizeof(SignsOfLife));
 }
 
-std::vector<Parcel> Watched::take() {
+std::vector<std::string> Watched::take() {
   std::array<char, 1 << 16> part;
   while (!ended_) {
     const ssize_t n = ::read(channel_, part.data(), part.size());
@@ -171,16 +146,16 @@ std::vector<Parcel> Watched::take() {
     else
       received_.append(part.data(), static_cast<std::size_t>(n));
   }
-  std::vector<Parcel> parcels;
+  std::vector<std::string> pieces;
   std::size_t at = 0;
   while (received_.size() - at >= sizeof(Length)) {
     const Length size = length_at(received_, at);
     if (received_.size() - at - sizeof size < size) break;
-    parcels.emplace_back(received_.substr(at + sizeof size, size));
+    pieces.emplace_back(received_.substr(at + sizeof size, size));
     at += sizeof size + size;
   }
   received_.erase(0, at);
-  return parcels;
+  return pieces;
 }
 
 bool Watched::is_silent(double seconds) {
@@ -203,7 +178,7 @@ std::string no_answer(double seconds) {
   return "no answer within " + text + " s: the disk or share does not respond";
 }
 
-void wait_for_parcels(const std::vector<Watched>& children) {
+void wait_for_any(const std::vector<Watched>& children) {
   std::vector<pollfd> channels;
   for (const Watched& child : children) channels.push_back({child.channel(), POLLIN, 0});
   ::poll(channels.data(), channels.size(), 100);

@@ -19,22 +19,6 @@
 
 namespace nonio::process {
 
-/// Fields one behind the other, to be read in the order in which they were added.
-class Parcel {
- public:
-  Parcel() = default;
-  explicit Parcel(std::string bytes) : bytes_(std::move(bytes)) {}
-  Parcel& add(std::string_view text);
-  Parcel& add(std::uint64_t number);
-  std::string text();
-  std::uint64_t number();
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_;
-  std::size_t at_ = 0;
-};
-
 /// Signs of life of a child, readable by its parent while it hangs and after its death.
 struct SignsOfLife {
   std::atomic<std::uint64_t> beats;
@@ -49,11 +33,11 @@ struct SignsOfLife {
 };
 
 /// A child process for what may hang (a disk, a share) or crash (a parser). What it sends arrives
-/// as parcels; the parent waits for it no longer than it shows signs of life. Moved, not copied.
+/// in the same pieces; the parent waits for it no longer than it shows signs of life. Moved, not copied.
 class Watched {
  public:
-  /// Sends a parcel to the parent, not at once.
-  using Send = std::function<void(const Parcel&)>;
+  /// Sends a piece to the parent, not at once.
+  using Send = std::function<void(std::string_view)>;
   using Task = std::function<void(SignsOfLife&, const Send&)>;
 
   /// `memory_MB`: none if 0.
@@ -65,7 +49,7 @@ class Watched {
   int channel() const { return channel_; }
   const SignsOfLife& signs() const { return *signs_; }
   /// What has come since the last call.
-  std::vector<Parcel> take();
+  std::vector<std::string> take();
   /// Nothing more can come: the process has ended.
   bool ended() const { return ended_; }
   /// No sign of life for so long.
@@ -91,6 +75,6 @@ class Watched {
 std::string no_answer(double seconds);
 
 /// Returns when one of them may have sent something, or soon.
-void wait_for_parcels(const std::vector<Watched>& children);
+void wait_for_any(const std::vector<Watched>& children);
 
 }  // namespace nonio::process

@@ -39,9 +39,8 @@ Database& Database::operator=(Database&&) noexcept = default;
 Database::~Database() = default;
 
 Expected<Database> Database::open(const std::filesystem::path& path, Use use, double patience) {
-  auto connection = connect_sqlite(path, use, patience);
-  if (!connection) return fail(connection.error());
-  return Database(std::move(*connection), Kind::sqlite);
+  NONIO_TRY(auto connection, connect_sqlite(path, use, patience));
+  return Database(std::move(connection), Kind::sqlite);
 }
 
 namespace {
@@ -58,11 +57,9 @@ Expected<void> check_address(const std::string& url) {
 }
 
 Expected<Database> Database::open(const Server& server, double patience) {
-  const auto library = postgresql();
-  if (!library) return fail(library.error());
-  auto connection = (*library)->connect(server, patience);
-  if (!connection) return fail(connection.error());
-  return Database(std::move(*connection), Kind::postgresql);
+  NONIO_TRY(const auto library, postgresql());
+  NONIO_TRY(auto connection, library->connect(server, patience));
+  return Database(std::move(connection), Kind::postgresql);
 }
 
 Expected<void> Database::take_error() {

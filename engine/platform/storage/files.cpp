@@ -193,10 +193,9 @@ namespace {
 std::optional<Expected<std::string>> read_from_pack(const fs::path& path) {
   const auto at = opener() ? std::nullopt : in_pack(path);
   if (!at) return std::nullopt;
-  auto bytes = read_packed(*at);
-  if (!bytes) return fail(bytes.error());
-  if (!*bytes) return fail("cannot read " + path.string() + ": the pack has no such file");
-  return std::move(**bytes);
+  NONIO_TRY(auto bytes, read_packed(*at));
+  if (!bytes) return fail("cannot read " + path.string() + ": the pack has no such file");
+  return std::move(*bytes);
 }
 
 }  // namespace
@@ -207,11 +206,10 @@ Expected<void> read_parts(const fs::path& path, const std::function<void(std::st
     take(**packed);
     return {};
   }
-  const auto file = open_regular(path);
-  if (!file) return fail(file.error());
-  std::string buffer(std::min<std::size_t>(file->size + 1, 1 << 20), '\0');
+  NONIO_TRY(const auto file, open_regular(path));
+  std::string buffer(std::min<std::size_t>(file.size + 1, 1 << 20), '\0');
   for (;;) {
-    const ssize_t n = ::read(file->descriptor.get(), buffer.data(), buffer.size());
+    const ssize_t n = ::read(file.descriptor.get(), buffer.data(), buffer.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return system_error("cannot read", path);
     if (n == 0) return {};
@@ -222,15 +220,14 @@ Expected<void> read_parts(const fs::path& path, const std::function<void(std::st
 Expected<std::string> read_file(const fs::path& path) {
   constexpr std::size_t most_at_once = 1 << 28;
   if (auto packed = read_from_pack(path)) return std::move(*packed);
-  const auto file = open_regular(path);
-  if (!file) return fail(file.error());
+  NONIO_TRY(const auto file, open_regular(path));
   std::string bytes;
   // A byte more than there is: that none comes says that the file ends there.
-  for (std::size_t size = 0, room = std::min(file->size, most_at_once) + 1;; room *= 2) {
+  for (std::size_t size = 0, room = std::min(file.size, most_at_once) + 1;; room *= 2) {
     bytes.resize(room);
-    const auto read = read_into(file->descriptor.get(), bytes.data() + size, room - size, path);
-    if (!read) return fail(read.error());
-    size += *read;
+    NONIO_TRY(const auto read,
+              read_into(file.descriptor.get(), bytes.data() + size, room - size, path));
+    size += read;
     if (size == room) continue;
     bytes.resize(size);
     return bytes;
@@ -239,9 +236,8 @@ Expected<std::string> read_file(const fs::path& path) {
 
 Expected<bool> is_there(const fs::path& path) {
   if (const auto packed = in_pack(path)) {
-    const auto size = size_packed(*packed);
-    if (!size) return fail(size.error());
-    return size->has_value();
+    NONIO_TRY(const auto size, size_packed(*packed));
+    return size.has_value();
   }
   struct stat info {};
   if (::lstat(path.c_str(), &info) == 0) return true;
@@ -389,9 +385,8 @@ namespace {
 Expected<std::vector<Descriptor>> fill(const fs::path& folder, const std::vector<Artifact>& files) {
   std::vector<Descriptor> open;
   for (const Artifact& file : files) {
-    auto written = write_new(temporary_path(folder, file.name), file.bytes);
-    if (!written) return fail(written.error());
-    open.push_back(std::move(*written));
+    NONIO_TRY(auto written, write_new(temporary_path(folder, file.name), file.bytes));
+    open.push_back(std::move(written));
   }
   return open;
 }
@@ -412,16 +407,14 @@ Expected<bool> make_folder(const fs::path& folder) {
 /// All files are filled before the first is flushed, so that the file system can write them
 /// together: one journal commit instead of one for each.
 Expected<void> fill_and_flush(const fs::path& folder, const std::vector<Artifact>& files) {
-  const auto open = fill(folder, files);
-  if (!open) return fail(open.error());
-  for (std::size_t i = 0; i < open->size(); ++i)
-    if (::fsync((*open)[i].get()) != 0) return system_error("cannot flush", folder / files[i].name);
+  NONIO_TRY(const auto open, fill(folder, files));
+  for (std::size_t i = 0; i < open.size(); ++i)
+    if (::fsync(open[i].get()) != 0) return system_error("cannot flush", folder / files[i].name);
   for (const Artifact& file : files) {
     const fs::path path = temporary_path(folder, file.name);
     drop_cached(path);
-    const auto now = read_file(path);
-    if (!now) return fail(now.error());
-    if (*now != file.bytes)
+    NONIO_TRY(const auto now, read_file(path));
+    if (now != file.bytes)
       return fail("the disk does not give back what was written to it: " +
                   (folder / file.name).string());
   }

@@ -121,9 +121,8 @@ Expected<std::optional<std::uint64_t>> size_in(Database& database, const PackAdd
 }
 
 Expected<std::optional<std::string>> read_in(Database& database, const PackAddress& at) {
-  const auto size = size_in(database, at);
-  if (!size) return fail(size.error());
-  if (!*size) return std::nullopt;
+  NONIO_TRY(const auto size, size_in(database, at));
+  if (!size) return std::nullopt;
   std::string bytes = database.first("SELECT data FROM sqlar WHERE name = ?", {at.name});
   const std::string sha256_noted =
       database.first("SELECT sha256 FROM digest WHERE name = ?", {at.name});
@@ -137,14 +136,13 @@ Expected<std::optional<std::string>> read_in(Database& database, const PackAddre
 }  // namespace
 
 Expected<PackWriter> PackWriter::create(const fs::path& path) {
-  auto database = Database::open(path, Database::Use::create);
-  if (!database) return fail(database.error());
+  NONIO_TRY(auto database, Database::open(path, Database::Use::create));
   for (const char* sql : {"PRAGMA page_size = 16384", "PRAGMA journal_mode = OFF",
                           "PRAGMA synchronous = OFF", "BEGIN"})
-    database->rows(sql);
-  database->script(tables);
-  if (auto well = database->take_error(); !well) return fail(well.error());
-  return PackWriter(std::move(*database));
+    database.rows(sql);
+  database.script(tables);
+  if (auto well = database.take_error(); !well) return fail(well.error());
+  return PackWriter(std::move(database));
 }
 
 Expected<void> PackWriter::add(const std::string& name, std::string_view bytes) {
@@ -169,9 +167,8 @@ template <class Use>
 auto with_pack(const fs::path& pack, const Use& use) -> decltype(use(std::declval<Database&>())) {
   Opened& all = opened();
   const std::lock_guard lock(all.mutex);
-  const auto database = open_pack(all, pack);
-  if (!database) return fail(database.error());
-  return use(**database);
+  NONIO_TRY(const auto database, open_pack(all, pack));
+  return use(*database);
 }
 
 Expected<std::vector<std::string>> names_in(Database& database, const PackAddress& folder) {
@@ -236,10 +233,9 @@ Expected<void> copy_flushed(const fs::path& from, const fs::path& to) {
 Expected<PackFile> hand_over(const fs::path& pack, const fs::path& out, const std::string& begin) {
   std::error_code error;
   const fs::path folder = out / packs_folder;
-  const auto digest = sha256_of_file(pack);
-  if (!digest) return fail(digest.error());
-  PackFile file{begin + "-" + digest->substr(0, 16) + pack_suffix, fs::file_size(pack, error),
-                *digest};
+  NONIO_TRY(const auto digest, sha256_of_file(pack));
+  PackFile file{begin + "-" + digest.substr(0, 16) + pack_suffix, fs::file_size(pack, error),
+                digest};
   fs::create_directories(folder, error);
   if (error) return fail("cannot make the folder " + folder.string() + ": " + error.message());
   const fs::path temporary = temporary_path(folder, file.name);
@@ -261,9 +257,8 @@ Expected<PackFile> hand_over(const fs::path& pack, const fs::path& out, const st
 
 Expected<void> check_handed_over(const fs::path& out, const PackFile& pack) {
   const fs::path path = out / packs_folder / pack.name;
-  const auto digest = sha256_of_file(path);
-  if (!digest) return fail(digest.error());
-  if (*digest == pack.sha256) return {};
+  NONIO_TRY(const auto digest, sha256_of_file(path));
+  if (digest == pack.sha256) return {};
   if (const auto sound = check_pack(path); !sound) return fail(sound.error());
   return fail(damaged(path, "", "it does not have the digest that its shard has reported"));
 }

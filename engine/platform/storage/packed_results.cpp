@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -82,12 +81,10 @@ Expected<Catalogue> Catalogue::parse(const std::string& text) {
 
 Expected<Catalogue> Catalogue::read(const fs::path& out) {
   const fs::path path = out / packs_folder / catalogue_name;
-  const auto there = is_there(path);
-  if (!there) return fail(there.error());
-  if (!*there) return Catalogue();
-  const auto text = read_file(path);
-  if (!text) return fail(text.error());
-  auto made = parse(*text);
+  NONIO_TRY(const auto there, is_there(path));
+  if (!there) return Catalogue();
+  NONIO_TRY(const auto text, read_file(path));
+  auto made = parse(text);
   if (!made)
     return fail(path.string() + ", the index of the packs, is damaged: " + made.error().message +
                 "; bring it back from a copy of the output folder, or remove it to do those "
@@ -146,8 +143,7 @@ Expected<void> Catalogue::publish_with(const fs::path& out, const std::vector<En
 }
 
 Expected<void> check_catalogue(const fs::path& out) {
-  const auto read = Catalogue::read(out);
-  if (!read) return fail(read.error());
+  NONIO_TRY(const auto read, Catalogue::read(out));
   return {};
 }
 
@@ -222,14 +218,13 @@ fs::path results_folder(const fs::path& out, const std::string& id) {
 
 Expected<void> each_results_folder(const fs::path& out,
                                    const std::function<void(const fs::path&)>& take) {
-  const auto catalogue = Catalogue::read(out);
-  if (!catalogue) return fail(catalogue.error());
+  NONIO_TRY(const auto catalogue, Catalogue::read(out));
   std::set<std::string> in_folders;  // although a pack has them too
   std::error_code error;
   const auto take_folder = [&](const fs::path& folder) {
     const std::string id = folder.filename().string();
-    if (catalogue->find(id) != nullptr && !has_record(folder)) return;
-    if (catalogue->find(id) != nullptr) in_folders.insert(id);
+    if (catalogue.find(id) != nullptr && !has_record(folder)) return;
+    if (catalogue.find(id) != nullptr) in_folders.insert(id);
     take(folder);
   };
   const bool hashed = is_hashed(out);
@@ -240,17 +235,16 @@ Expected<void> each_results_folder(const fs::path& out,
       each_folder_in(folder, error, take_folder);
   });
   if (error) return fail("cannot list the output folder " + out.string() + ": " + error.message());
-  catalogue->each([&](std::string_view id, const PackFile& pack) {
+  catalogue.each([&](std::string_view id, const PackFile& pack) {
     if (!in_folders.contains(std::string(id))) take(out / packs_folder / pack.name / id);
   });
   return {};
 }
 
 Expected<void> sweep_packs(const fs::path& out) {
-  const auto catalogue = Catalogue::read(out);
-  if (!catalogue) return fail(catalogue.error());
+  NONIO_TRY(const auto catalogue, Catalogue::read(out));
   std::set<std::string> used;
-  catalogue->each([&](std::string_view, const PackFile& pack) { used.insert(pack.name); });
+  catalogue.each([&](std::string_view, const PackFile& pack) { used.insert(pack.name); });
   remove_leftovers(out / packs_folder);
   std::error_code error;
   std::vector<fs::path> unused;
@@ -280,11 +274,10 @@ Expected<std::optional<Written>> written(const fs::path& path) {
 Expected<std::optional<Written>> written_at(const fs::path& file) {
   const auto packed = in_pack(file);
   if (!packed) return written(file);
-  const auto size = size_packed(*packed);
-  if (!size) return fail(size.error());
-  if (!*size) return std::nullopt;
+  NONIO_TRY(const auto size, size_packed(*packed));
+  if (!size) return std::nullopt;
   auto pack = written(packed->pack);
-  if (pack && *pack) (*pack)->size = **size;
+  if (pack && *pack) (*pack)->size = *size;
   return pack;
 }
 

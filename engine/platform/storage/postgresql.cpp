@@ -306,9 +306,8 @@ Expected<std::unique_ptr<Connection>> connect(const Server& server, double patie
   if (auto well = check(server.url); !well) return fail(well.error());
   std::string password;
   if (!server.password_file.empty()) {
-    auto read = server_password(server.password_file);
-    if (!read) return fail(read.error());
-    password = std::move(*read);
+    NONIO_TRY(auto read, server_password(server.password_file));
+    password = std::move(read);
   }
   // What comes later counts: the address may say how long it waits.
   const char* keywords[] = {"connect_timeout",

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <string_view>
 #include <unordered_map>
-#include <utility>
 
 #include "platform/storage/connection.h"
 

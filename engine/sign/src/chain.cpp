@@ -60,9 +60,8 @@ Expected<void> check_verifier(const Verifier& verifier) {
 }
 
 Expected<std::size_t> number_of_roots(const std::string& pem) {
-  const auto roots = certificates_of(pem);
-  if (!roots) return fail(roots.error());
-  return roots->size();
+  NONIO_TRY(const auto roots, certificates_of(pem));
+  return roots.size();
 }
 
 Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,

@@ -48,10 +48,9 @@ Expected<void> sign_attributes(const Key::Impl& key, CMS_SignerInfo* signer,
   const bool rsa = EVP_PKEY_get_base_id(key.key.get()) == EVP_PKEY_RSA;
   X509_ALGOR_set0(algorithm, OBJ_nid2obj(rsa ? NID_rsaEncryption : NID_ecdsa_with_SHA256),
                   rsa ? V_ASN1_NULL : V_ASN1_UNDEF, nullptr);
-  const auto signature = key.sign_bytes(attributes_of(signer));
-  if (!signature) return fail(signature.error());
-  if (ASN1_STRING_set(CMS_SignerInfo_get0_signature(signer), signature->data(),
-                      static_cast<int>(signature->size())) != 1)
+  NONIO_TRY(const auto signature, key.sign_bytes(attributes_of(signer)));
+  if (ASN1_STRING_set(CMS_SignerInfo_get0_signature(signer), signature.data(),
+                      static_cast<int>(signature.size())) != 1)
     return fail("no signature: " + reason());
   return {};
 }

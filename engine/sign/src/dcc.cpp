@@ -135,9 +135,8 @@ class Reader {
 }  // namespace
 
 Expected<std::vector<DccValue>> read_dcc(std::string_view xml) {
-  const auto document = parse_xml(xml);
-  if (!document) return fail(document.error());
-  return Reader().read(xmlDocGetRootElement(document->get()));
+  NONIO_TRY(const auto document, parse_xml(xml));
+  return Reader().read(xmlDocGetRootElement(document.get()));
 }
 
 }  // namespace nonio::sign

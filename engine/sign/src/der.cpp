@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "der.h"
 
-#include <string>
-
 namespace nonio::sign {
 
 using namespace std::string_view_literals;

@@ -63,9 +63,8 @@ Expected<int> connect_to(const char* host, const char* port, int seconds) {
 /// Null where OpenSSL connects by itself: by a proxy of the environment.
 Expected<BioPtr> connection_to(const OpensslText& host, const OpensslText& port, int seconds) {
   if (OSSL_HTTP_adapt_proxy(nullptr, nullptr, host.text, 0) != nullptr) return BioPtr();
-  const auto connected = connect_to(host.text, port.text, seconds);
-  if (!connected) return fail(connected.error());
-  return BioPtr(BIO_new_socket(*connected, BIO_CLOSE));
+  NONIO_TRY(const auto connected, connect_to(host.text, port.text, seconds));
+  return BioPtr(BIO_new_socket(connected, BIO_CLOSE));
 }
 
 }  // namespace

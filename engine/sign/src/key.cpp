@@ -4,7 +4,6 @@
 #include <openssl/err.h>
 #include <openssl/pkcs12.h>
 
-#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -25,12 +24,11 @@ Expected<std::string> read(const std::string& path) {
 }
 
 Expected<Key::Impl> open_pkcs12(const std::string& path, const std::string& password) {
-  const auto bytes = read(path);
-  if (!bytes) return fail(bytes.error());
+  NONIO_TRY(const auto bytes, read(path));
   ERR_clear_error();
-  const unsigned char* at = data_of(*bytes);
+  const unsigned char* at = data_of(bytes);
   const std::unique_ptr<PKCS12, Freed<PKCS12_free>> file(
-      d2i_PKCS12(nullptr, &at, static_cast<long>(bytes->size())));
+      d2i_PKCS12(nullptr, &at, static_cast<long>(bytes.size())));
   if (!file) return fail(path + " is no PKCS#12 file: " + reason());
   EVP_PKEY* key = nullptr;
   X509* certificate = nullptr;
@@ -95,9 +93,8 @@ Expected<Key> Key::open(const KeyPlace& place, const std::string& password, Time
       place.pkcs12.empty() ? open_token(place, password) : open_pkcs12(place.pkcs12, password);
   if (!impl) return fail(impl.error());
   if (!place.certificates.empty()) {
-    const auto pem = read(place.certificates);
-    if (!pem) return fail(pem.error());
-    auto more = certificates_of(*pem);
+    NONIO_TRY(const auto pem, read(place.certificates));
+    auto more = certificates_of(pem);
     if (!more) return fail(place.certificates + " " + more.error().message);
     std::move(more->begin(), more->end(), std::back_inserter(impl->chain));
   }

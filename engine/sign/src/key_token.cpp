@@ -34,8 +34,7 @@ Expected<Key::Impl> open_token(const KeyPlace& place, const std::string& passwor
   const EnginePtr engine(ENGINE_by_id("pkcs11"));
   if (!engine)
     return fail(
-        "OpenSSL has no engine for PKCS#11 tokens; expected the package "
-        "libengine-pkcs11-openssl");
+        "OpenSSL has no engine for PKCS#11 tokens; expected the package libengine-pkcs11-openssl");
   if (ENGINE_ctrl_cmd_string(engine.get(), "MODULE_PATH", place.module.c_str(), 0) != 1 ||
       ENGINE_ctrl_cmd_string(engine.get(), "PIN", password.c_str(), 0) != 1 ||
       ENGINE_init(engine.get()) != 1)

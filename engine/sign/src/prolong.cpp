@@ -4,7 +4,6 @@
 #include <openssl/err.h>
 #include <openssl/x509v3.h>
 
-#include <algorithm>
 #include <set>
 
 #include "http.h"
@@ -83,16 +82,14 @@ class Prolongation {
     if (auto sound = check(bytes_, "is not prolonged"); !sound) return fail(sound.error());
     file_ = pdf::parse(bytes_.substr(0, ends_.front()));
     if (!file_) return fail(file_.error());
-    auto updater = pdf::Updater::of(*file_);
-    if (!updater) return fail(updater.error());
-    auto added = read_updates(bytes_, ends_, *updater);
-    if (!added) return fail(added.error());
+    NONIO_TRY(auto updater, pdf::Updater::of(*file_));
+    NONIO_TRY(auto added, read_updates(bytes_, ends_, updater));
     if (auto known = read_known(); !known) return fail(known.error());
-    if (auto used = read_chains(*added); !used) return fail(used.error());
-    for (const std::string& der : added->certificates) there_.insert(der);
+    if (auto used = read_chains(added); !used) return fail(used.error());
+    for (const std::string& der : added.certificates) there_.insert(der);
     for (const Used& used : used_)
       if (auto done = collect(used); !done) return fail(done.error());
-    auto update = updater->write(store_, !how_.stamping.url.empty());
+    auto update = updater.write(store_, !how_.stamping.url.empty());
     if (!update)
       return fail("gets nothing new: revocation data are in it, and no time stamp is asked for");
     return finish(*update);
@@ -108,18 +105,16 @@ class Prolongation {
   }
 
   Expected<void> read_known() {
-    auto known = trusted(how_.verifier);
-    if (!known) return fail(known.error());
-    known_ = std::move(*known);
+    NONIO_TRY(auto known, trusted(how_.verifier));
+    known_ = std::move(known);
     for (const std::string& der : how_.answers) {
       auto answer = Statement::of_answer(der);
       if (!answer) return fail("what was given holds " + answer.error().message);
       at_hand_.push_back(std::move(*answer));
     }
     for (const RevocationPtr& list : known_.lists) {
-      auto statement = Statement::of_list(der_of(list.get(), &i2d_X509_CRL));
-      if (!statement) return fail(statement.error());
-      at_hand_.push_back(std::move(*statement));
+      NONIO_TRY(auto statement, Statement::of_list(der_of(list.get(), &i2d_X509_CRL)));
+      at_hand_.push_back(std::move(statement));
     }
     for (Statement& s : at_hand_) s.seen = how_.verifier.now;
     return {};
@@ -129,31 +124,28 @@ class Prolongation {
   /// covered by another.
   Expected<void> read_chains(Added& added) {
     const Time now = how_.verifier.now;
-    auto stamps = check_document_stamps(added, known_, now);
-    if (!stamps) return fail(stamps.error());
-    const Time existed = stamps->empty() ? 0 : stamps->front().time;
+    NONIO_TRY(auto stamps, check_document_stamps(added, known_, now));
+    const Time existed = stamps.empty() ? 0 : stamps.front().time;
     const auto until = [&](std::size_t next) {
-      return next < stamps->size() ? (*stamps)[next].time : std::numeric_limits<Time>::max();
+      return next < stamps.size() ? stamps[next].time : std::numeric_limits<Time>::max();
     };
     const auto place = pdf::signature_at_end(file_->bytes);
-    const auto der = place ? der_in(place->contents) : fail("has no signature");
-    if (!der) return fail(der.error());
-    const auto data = SignedData::parse(*der, SignedData::Content::detached);
-    if (!data) return fail(data.error());
+    NONIO_TRY(const auto der, place ? der_in(place->contents) : fail("has no signature"));
+    NONIO_TRY(const auto data, SignedData::parse(der, SignedData::Content::detached));
     Time at = existed == 0 ? now : existed;
-    if (!data->time_stamp().empty()) {
+    if (!data.time_stamp().empty()) {
       auto stamp =
-          check_time_stamp(data->time_stamp(), sha256(data->signature()), known_, now, until(0));
+          check_time_stamp(data.time_stamp(), sha256(data.signature()), known_, now, until(0));
       if (!stamp) return fail(stamp.error());
       at = stamp->time;
       used_.push_back({std::move(stamp->chain), {at, now, Revocation::Of::time_server, until(0)}});
     }
-    auto chain = chain_of(data->certificate(), data->certificates(), known_.signer_roots, at);
-    if (!chain) return fail(chain.error());
-    used_.push_back({std::move(*chain), {at, now, Revocation::Of::signer}});
-    for (std::size_t i = 0; i < stamps->size(); ++i)
-      used_.push_back({std::move((*stamps)[i].chain),
-                       {(*stamps)[i].time, now, Revocation::Of::time_server, until(i + 1)}});
+    NONIO_TRY(auto chain,
+              chain_of(data.certificate(), data.certificates(), known_.signer_roots, at));
+    used_.push_back({std::move(chain), {at, now, Revocation::Of::signer}});
+    for (std::size_t i = 0; i < stamps.size(); ++i)
+      used_.push_back({std::move(stamps[i].chain),
+                       {stamps[i].time, now, Revocation::Of::time_server, until(i + 1)}});
     return {};
   }
 
@@ -174,9 +166,8 @@ class Prolongation {
   Expected<bool> is_in(const std::vector<Statement>& statements, X509* one, X509* issuer,
                        const Revocation& revocation, bool take) {
     for (const Statement& s : statements) {
-      const auto good = vouches(s, one, issuer, revocation);
-      if (!good) return fail(good.error());
-      if (!*good) continue;
+      NONIO_TRY(const auto good, vouches(s, one, issuer, revocation));
+      if (!good) continue;
       if (take) keep(s);
       return true;
     }
@@ -194,15 +185,13 @@ class Prolongation {
   Expected<void> find_statement(X509* one, X509* issuer, const Revocation& revocation) {
     for (const auto& [statements, take] :
          {std::pair(&known_.kept, false), std::pair(&at_hand_, true)}) {
-      const auto found = is_in(*statements, one, issuer, revocation, take);
-      if (!found) return fail(found.error());
-      if (*found) return {};
+      NONIO_TRY(const auto found, is_in(*statements, one, issuer, revocation, take));
+      if (found) return {};
     }
     std::string why;
     if (how_.fetch) {
-      const auto found = ask(one, issuer, revocation, why);
-      if (!found) return fail(found.error());
-      if (*found) return {};
+      NONIO_TRY(const auto found, ask(one, issuer, revocation, why));
+      if (found) return {};
       if (why.empty()) why = "its certificate names no address that begins with http://";
     } else {
       why = "no server may be asked (--no-fetch)";

@@ -228,11 +228,10 @@ Expected<Statement> Statement::of_answer(std::string_view der) {
 }
 
 Expected<bool> vouches(const Statement& s, X509* one, X509* issuer, const Revocation& revocation) {
-  const auto said = heard(s, one, issuer);
-  if (!said) return fail(said.error());
-  if (!*said) return false;
-  if (auto good = check_not_revoked(**said, one, revocation); !good) return fail(good.error());
-  return why_not(**said, one, issuer, revocation.at, s.seen).empty();
+  NONIO_TRY(const auto said, heard(s, one, issuer));
+  if (!said) return false;
+  if (auto good = check_not_revoked(*said, one, revocation); !good) return fail(good.error());
+  return why_not(*said, one, issuer, revocation.at, s.seen).empty();
 }
 
 namespace {

@@ -82,11 +82,10 @@ Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::stri
                                          Time now) {
   if (stamping.away && !stamping.away->empty())
     return fail(*stamping.away + " (asked once in this run)");
-  const auto request = request_for(imprint);
-  if (!request) return fail(request.error());
+  NONIO_TRY(const auto request, request_for(imprint));
   const auto answer = ask_server(stamping.url, {.query = "application/timestamp-query",
                                                 .reply = "application/timestamp-reply",
-                                                .body = request->der,
+                                                .body = request.der,
                                                 .longest = 60000,
                                                 .seconds = stamping.seconds});
   if (!answer) {
@@ -95,23 +94,21 @@ Expected<std::string> ask_for_time_stamp(const TimeStamping& stamping, std::stri
   }
   auto token = token_of(*answer);
   if (!token) return fail(stamping.url + ": " + token.error().message);
-  const auto roots = trusted({.time_stamp_roots = stamping.trust});
-  if (!roots) return fail(roots.error());
-  const auto stamp = check_time_stamp(*token, imprint, *roots, now);
+  NONIO_TRY(const auto roots, trusted({.time_stamp_roots = stamping.trust}));
+  const auto stamp = check_time_stamp(*token, imprint, roots, now);
   if (!stamp) return fail(stamping.url + ": the time stamp " + stamp.error().message);
-  if (stamp->nonce != request->nonce)
+  if (stamp->nonce != request.nonce)
     return fail(stamping.url + ": the answer is not to this question");
   return token;
 }
 
 Expected<Stamp> check_time_stamp(std::string_view token, std::string_view stamped,
                                  const Trusted& known, Time now, Time until) {
-  const auto data = SignedData::parse(token, SignedData::Content::time_stamp);
-  if (!data) return fail(data.error());
-  if (auto holds = data->check_signature(data->content(), {}); !holds) return fail(holds.error());
-  if (auto named = data->check_certificate_named(); !named) return fail(named.error());
-  const unsigned char* at = data_of(data->content());
-  const InfoPtr info(d2i_TS_TST_INFO(nullptr, &at, static_cast<long>(data->content().size())));
+  NONIO_TRY(const auto data, SignedData::parse(token, SignedData::Content::time_stamp));
+  if (auto holds = data.check_signature(data.content(), {}); !holds) return fail(holds.error());
+  if (auto named = data.check_certificate_named(); !named) return fail(named.error());
+  const unsigned char* at = data_of(data.content());
+  const InfoPtr info(d2i_TS_TST_INFO(nullptr, &at, static_cast<long>(data.content().size())));
   if (!info || TS_TST_INFO_get_version(info.get()) != 1) return fail("holds no time");
   TS_MSG_IMPRINT* imprint = TS_TST_INFO_get_msg_imprint(info.get());
   const X509_ALGOR* algorithm = TS_MSG_IMPRINT_get_algo(imprint);
@@ -119,21 +116,21 @@ Expected<Stamp> check_time_stamp(std::string_view token, std::string_view stampe
   X509_ALGOR_get0(&kind, nullptr, nullptr, algorithm);
   if (OBJ_obj2nid(kind) != NID_sha256 || bytes_of(TS_MSG_IMPRINT_get_msg(imprint)) != stamped)
     return fail("belongs to another signature");
-  Stamp stamp{time_of(TS_TST_INFO_get_time(info.get())), subject_of(data->certificate()),
+  Stamp stamp{time_of(TS_TST_INFO_get_time(info.get())), subject_of(data.certificate()),
               nonce_of(info.get())};
   if (stamp.time == 0) return fail("holds no time");
   if (stamp.time > now + clock_tolerance)
     return fail("is of " + text_of(stamp.time) + ", which is yet to come: here it is " +
                 text_of(now) + " (a wrong clock, here or there?)");
-  if (X509_check_purpose(data->certificate(), X509_PURPOSE_TIMESTAMP_SIGN, 0) != 1)
+  if (X509_check_purpose(data.certificate(), X509_PURPOSE_TIMESTAMP_SIGN, 0) != 1)
     return fail("was made by " + quoted(stamp.by) + ", whose certificate is not for time stamps");
   // At the time of the stamp: that the server's certificate has run out since does not make it
   // less true that it was given.
-  auto chain = chain_of(data->certificate(), data->certificates(), known.time_roots, stamp.time);
+  auto chain = chain_of(data.certificate(), data.certificates(), known.time_roots, stamp.time);
   if (!chain)
     return fail("was made by " + quoted(stamp.by) +
                 ", who is not trusted: " + chain.error().message);
-  if (auto sound = check_issued(data->certificates(), known.time_roots); !sound)
+  if (auto sound = check_issued(data.certificates(), known.time_roots); !sound)
     return fail(sound.error());
   bool looked = false;
   const auto revocation = check_revocation(

@@ -182,12 +182,10 @@ class PdfCheck {
 
   /// The one that a reader of PDF finds is the one that was checked.
   static Expected<void> check_only(const pdf::File& file, const pdf::PdfSignature& found) {
-    const auto dictionary = pdf::find_signature(file);
-    if (!dictionary) return fail(dictionary.error());
-    const auto place = pdf::signature_of(file, **dictionary);
-    if (!place) return fail(place.error());
-    if (place->gap != found.gap || place->contents.size() != found.contents.size() ||
-        place->time != found.time)
+    NONIO_TRY(const auto dictionary, pdf::find_signature(file));
+    NONIO_TRY(const auto place, pdf::signature_of(file, *dictionary));
+    if (place.gap != found.gap || place.contents.size() != found.contents.size() ||
+        place.time != found.time)
       return fail("has another signature than the last one in the file");
     return {};
   }
@@ -250,14 +248,12 @@ class PdfCheck {
   Expected<Added> check_updates(Trusted& known, std::vector<std::vector<CertificatePtr>>& chains) {
     if (!out_.holds()) return fail("are not read: the signature does not hold");
     if (!file()) return fail(file().error());
-    auto updater = pdf::Updater::of(*file());
-    if (!updater) return fail(updater.error());
-    auto added = read_updates(bytes_, ends_, *updater);
+    NONIO_TRY(auto updater, pdf::Updater::of(*file()));
+    auto added = read_updates(bytes_, ends_, updater);
     if (!added) return fail(added.error());
-    auto stamps = check_document_stamps(*added, known, verifier_.now);
-    if (!stamps) return fail(stamps.error());
-    if (!stamps->empty()) out_.existed = stamps->front().time;
-    for (Stamp& stamp : *stamps) {
+    NONIO_TRY(auto stamps, check_document_stamps(*added, known, verifier_.now));
+    if (!stamps.empty()) out_.existed = stamps.front().time;
+    for (Stamp& stamp : stamps) {
       stamped_ += (stamped_.empty() ? "" : ", ") + text_of(stamp.time) + " by " + quoted(stamp.by);
       chains.push_back(std::move(stamp.chain));
     }
@@ -304,11 +300,9 @@ std::string_view issued_part(std::string_view file) {
 
 Expected<Identity> unverified_signer(std::string_view signed_pdf) {
   const auto place = pdf::signature_at_end(issued_part(signed_pdf));
-  const auto der = place ? der_in(place->contents) : fail(place.error());
-  if (!der) return fail(der.error());
-  const auto data = SignedData::parse(*der, SignedData::Content::detached);
-  if (!data) return fail(data.error());
-  X509* certificate = data->certificate();
+  NONIO_TRY(const auto der, place ? der_in(place->contents) : fail(place.error()));
+  NONIO_TRY(const auto data, SignedData::parse(der, SignedData::Content::detached));
+  X509* certificate = data.certificate();
   return Identity{subject_of(certificate), hex(sha256(der_of(certificate))),
                   *algorithm_of(X509_get0_pubkey(certificate), true),
                   time_of(X509_get0_notBefore(certificate)),
@@ -316,9 +310,8 @@ Expected<Identity> unverified_signer(std::string_view signed_pdf) {
 }
 
 Expected<std::vector<pdf::Attachment>> unverified_attachments(std::string_view pdf) {
-  const auto file = pdf::parse(pdf);
-  if (!file) return fail(file.error());
-  return pdf::attachments_of(*file);
+  NONIO_TRY(const auto file, pdf::parse(pdf));
+  return pdf::attachments_of(file);
 }
 
 }  // namespace nonio::sign

@@ -78,16 +78,15 @@ Expected<Added> read_updates(std::string_view bytes, const std::vector<std::size
   Added added;
   FileDigest digest(bytes);
   for (std::size_t i = 1; i < ends.size(); ++i) {
-    const auto update = updater.read(bytes, ends[i]);
-    if (!update) return fail(update.error());
-    if (auto done = take_store(update->store, added); !done)
+    NONIO_TRY(const auto update, updater.read(bytes, ends[i]));
+    if (auto done = take_store(update.store, added); !done)
       return fail("an update holds " + done.error().message);
-    if (!update->has_stamp) continue;
-    auto token = der_in(bytes.substr(update->gap + 1, update->behind - update->gap - 2));
+    if (!update.has_stamp) continue;
+    auto token = der_in(bytes.substr(update.gap + 1, update.behind - update.gap - 2));
     if (!token) return fail("a time stamp of the document " + token.error().message);
     added.stamps.push_back(
         {std::move(*token),
-         digest.of(update->gap, bytes.substr(update->behind, ends[i] - update->behind))});
+         digest.of(update.gap, bytes.substr(update.behind, ends[i] - update.behind))});
   }
   return added;
 }

@@ -88,10 +88,9 @@ std::string canonical(xmlDoc* document) {
 
 /// The canonical form of a document that has nothing that this form leaves out.
 Expected<std::string> canonical_form(std::string_view bytes) {
-  const auto document = parse_xml(bytes);
-  if (!document) return fail(document.error());
-  if (auto sound = check_nodes(document->get()->children); !sound) return fail(sound.error());
-  auto text = canonical(document->get());
+  NONIO_TRY(const auto document, parse_xml(bytes));
+  if (auto sound = check_nodes(document.get()->children); !sound) return fail(sound.error());
+  auto text = canonical(document.get());
   if (text.empty()) return fail("has no canonical form");
   return text;
 }
@@ -147,12 +146,11 @@ Expected<void> add_time_stamp(XmlSignature& signature, Time now, const TimeStamp
 /// Put together here and not by xmlsec, which cannot sign with a key that is in a token.
 Expected<Signed> sign_xml(const Key::Impl& key, std::string_view bytes, Time now,
                           const TimeStamping& stamping) {
-  auto content = canonical_form(bytes);
-  if (!content) return fail(content.error());
-  if (content->find(signature_namespace) != std::string::npos) return fail("is signed already");
+  NONIO_TRY(auto content, canonical_form(bytes));
+  if (content.find(signature_namespace) != std::string::npos) return fail("is signed already");
   XmlSignature signature;
   signature.rsa = EVP_PKEY_get_base_id(key.key.get()) == EVP_PKEY_RSA;
-  signature.content = sha256(*content);
+  signature.content = sha256(content);
   signature.time = xml_time(now);
   signature.certificates = {der_of(key.certificate.get())};
   for (const CertificatePtr& c : key.chain) signature.certificates.push_back(der_of(c.get()));
@@ -165,8 +163,8 @@ Expected<Signed> sign_xml(const Key::Impl& key, std::string_view bytes, Time now
   Signed out;
   if (auto stamped = add_time_stamp(signature, now, stamping, out.no_time_stamp); !stamped)
     return fail(stamped.error());
-  content->insert(content->rfind("</"), signature.text());
-  out.bytes = std::string(xml_head) + *content + "\n";
+  content.insert(content.rfind("</"), signature.text());
+  out.bytes = std::string(xml_head) + content + "\n";
   if (out.bytes.size() > pdf::max_file) return fail(too_large);
   return out;
 }
@@ -198,9 +196,8 @@ struct Parts {
     parts.before = bytes.substr(0, begin);
     parts.behind = bytes.substr(root_end);
     if (!parts.behind.starts_with("</")) return fail("has data after its signature");
-    auto signature = read_xml_signature(bytes.substr(begin, root_end - begin));
-    if (!signature) return fail(signature.error());
-    parts.signature = std::move(*signature);
+    NONIO_TRY(auto signature, read_xml_signature(bytes.substr(begin, root_end - begin)));
+    parts.signature = std::move(signature);
     return parts;
   }
 };
@@ -259,13 +256,12 @@ Expected<XmlKeyPtr> key_of(EVP_PKEY* pkey) {
 
 /// A second opinion, by an independent program.
 Expected<void> ask_xmlsec(xmlDoc* document, X509* certificate) {
-  auto key = key_of(X509_get0_pubkey(certificate));
-  if (!key) return fail(key.error());
+  NONIO_TRY(auto key, key_of(X509_get0_pubkey(certificate)));
   xmlNode* signature =
       xmlSecFindNode(xmlDocGetRootElement(document), xmlSecNodeSignature, xmlSecDSigNs);
   const ContextPtr context(xmlSecDSigCtxCreate(nullptr));
   context->enabledReferenceUris = xmlSecTransformUriTypeEmpty | xmlSecTransformUriTypeSameDocument;
-  context->signKey = key->release();
+  context->signKey = key.release();
   if (signature == nullptr || xmlSecDSigCtxVerify(context.get(), signature) != 0 ||
       context->status != xmlSecDSigStatusSucceeded)
     return fail("xmlsec does not find the signature well");
@@ -276,12 +272,11 @@ Expected<void> ask_xmlsec(xmlDoc* document, X509* certificate) {
 Expected<void> check_form(std::string_view bytes, const Parts& parts, X509* certificate) {
   if (parts.before.find(signature_namespace) != std::string_view::npos)
     return fail("has more than one signature");
-  const auto document = parse_xml(bytes);
-  if (!document) return fail(document.error());
-  if (auto sound = check_nodes(document->get()->children); !sound) return sound;
-  if (std::string(xml_head) + canonical(document->get()) + "\n" != bytes)
+  NONIO_TRY(const auto document, parse_xml(bytes));
+  if (auto sound = check_nodes(document.get()->children); !sound) return sound;
+  if (std::string(xml_head) + canonical(document.get()) + "\n" != bytes)
     return fail("is not in its canonical form");
-  return ask_xmlsec(document->get(), certificate);
+  return ask_xmlsec(document.get(), certificate);
 }
 
 class XmlCheck {
@@ -345,13 +340,11 @@ Verified verify_xml(std::string_view bytes, const Verifier& verifier, std::strin
 }
 
 Expected<void> same_document(std::string_view signed_bytes, std::string_view written) {
-  const auto parts = Parts::of(signed_bytes);
-  if (!parts) return fail(parts.error());
-  const auto form = canonical_form(written);
-  if (!form) return fail(form.error());
-  const std::string was = std::string(parts->before) + std::string(parts->behind);
-  if (was == *form) return {};
-  const auto differ = std::mismatch(was.begin(), was.end(), form->begin(), form->end());
+  NONIO_TRY(const auto parts, Parts::of(signed_bytes));
+  NONIO_TRY(const auto form, canonical_form(written));
+  const std::string was = std::string(parts.before) + std::string(parts.behind);
+  if (was == form) return {};
+  const auto differ = std::mismatch(was.begin(), was.end(), form.begin(), form.end());
   const auto line = 2 + std::count(was.begin(), differ.first, '\n');
   return fail("is another document than the readings give, from line " + std::to_string(line) +
               " on");

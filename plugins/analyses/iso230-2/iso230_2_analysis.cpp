@@ -60,14 +60,13 @@ PointTable table(const AxisAnalysis& a, const Iso230Result& r) {
 }
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
-  auto begun = begin_axis_analysis(in);
-  if (!begun) return fail(begun.error());
+  NONIO_TRY(auto begun, begin_axis_analysis(in));
   const std::int64_t edition = in.options.integer("edition", 2014);
-  const Iso230Result result = evaluate_iso230_2(begun->test, coverage_factor(edition));
+  const Iso230Result result = evaluate_iso230_2(begun.test, coverage_factor(edition));
   Evaluation e;
-  add_values(e, *begun, result);
-  e.points = table(*begun, result);
-  e.findings = std::move(begun->findings);
+  add_values(e, begun, result);
+  e.points = table(begun, result);
+  e.findings = std::move(begun.findings);
   for (Finding& f : e.findings) f.measurement = in.measurement.id;
   e.notes.push_back({"method.iso230-2",
                      {{"edition", static_cast<double>(edition), Quantity::count},

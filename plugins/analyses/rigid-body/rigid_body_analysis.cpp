@@ -192,9 +192,8 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   const HeldLimits limits = limits_held(in.campaign, w.lines.tables);
   w.model = reading_model(in.campaign, limits.environment, w.lines.budget);
   put_stated_inputs(in, w.lines, w.model);
-  auto solution = solve_rigid_body(w.lines.lines, wish, &w.model);
-  if (!solution) return fail(solution.error());
-  w.s = std::move(*solution);
+  NONIO_TRY(auto solution, solve_rigid_body(w.lines.lines, wish, &w.model));
+  w.s = std::move(solution);
   say_separation(w);
   w.out.findings.insert(w.out.findings.end(), limits.findings.begin(), limits.findings.end());
   if (!w.model.missing.empty()) w.say(missing_finding(w.model.missing));

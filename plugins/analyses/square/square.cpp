@@ -3,9 +3,6 @@
 // Squareness of two axes that were read against the two faces of one square.
 #include "nonio/math/square.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/plugin.h"
 

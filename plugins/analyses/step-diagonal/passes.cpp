@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <set>
 
 #include "nonio/math/axis_test.h"
 #include "nonio/math/statistics.h"

@@ -8,14 +8,62 @@
 #include "nonio/math/distributions.h"
 #include "nonio/math/step_diagonals.h"
 #include "nonio/sdk/plugin.h"
+#include "nonio/sdk/results.h"
 #include "passes.h"
-#include "whole_steps.h"
 
 namespace nonio::step_diagonal {
 
 using namespace math;
 
 namespace {
+
+std::string short_name(const std::string& pass) {
+  const std::size_t space = pass.rfind(' ');
+  return space == std::string::npos ? pass : pass.substr(space + 1);
+}
+
+PointTable table_of(const Passes& p) {
+  const math::StepDiagonals& d = p.readings;
+  PointTable table;
+  table.columns.push_back({"target", Quantity::length, {}});
+  for (std::size_t i = 0; i <= d.n; ++i)
+    table.columns.back().values.push_back(d.diagonal() * static_cast<double>(i) /
+                                          static_cast<double>(d.n));
+  for (std::size_t k = 0; k < d.passes.size(); ++k) {
+    table.columns.push_back({short_name(p.names[k]), Quantity::deviation, {0.0}});
+    for (std::size_t i = 1; i <= d.n; ++i)
+      table.columns.back().values.push_back(d.passes[k].reading[3 * i - 1]);
+  }
+  return table;
+}
+
+/// Puts points, a row a whole step: `target` along the diagonal and a column for each pass, by its
+/// name; and D_max, the largest deviation there, with its U.
+void put_whole_steps(const Passes& p, const math::StepSolution& s, const math::ReadingModel& model,
+                     math::BudgetOf* budget, Evaluation& out) {
+  PointTable table = table_of(p);
+  double most = 0.0;
+  std::size_t pass = 0, step = 0;
+  bool whole = true;
+  for (std::size_t k = 1; k < table.columns.size(); ++k)
+    for (std::size_t i = 0; i <= p.readings.n; ++i) {
+      const double v = table.columns[k].values[i];
+      whole = whole && std::isfinite(v);
+      if (std::fabs(v) > most) most = std::fabs(v), pass = k - 1, step = i;
+    }
+  if (budget != nullptr && step > 0) {
+    // The reading there less that before the first move.
+    std::vector<double> row(model.readings(), 0.0);
+    const std::size_t zero = pass * (3 * p.readings.n + 1);
+    row[zero + 3 * step] = 1.0;
+    row[zero] = -1.0;
+    out.values.push_back(budget->value("D_max", most, Quantity::deviation,
+                                       std::sqrt(2.0) * s.u_reading, model.shares(row)));
+  } else {
+    out.values.push_back({"D_max", most, Quantity::deviation});
+  }
+  if (whole) out.points = std::move(table);
+}
 
 constexpr double level = 0.01;
 constexpr double enough_dof = 15.0;  // below it two standard deviations are not 95 %
@@ -214,26 +262,25 @@ Evaluation finished(Work& w) {
 }
 
 Expected<Evaluation> analyse(const AnalysisInput& in) {
-  const auto passes = passes_of(in);
-  if (!passes) return fail(passes.error());
-  Work w{in, *passes, {}, {}, {}, in.options.text("method") == "averaging", {}};
-  w.out.findings = passes->refusal;
-  if (!passes->refusal.empty() || refuse_mirror(w)) return finished(w);
-  w.lengths = w.averaging ? Lengths{} : lengths_of(in, *passes);
+  NONIO_TRY(const auto passes, passes_of(in));
+  Work w{in, passes, {}, {}, {}, in.options.text("method") == "averaging", {}};
+  w.out.findings = passes.refusal;
+  if (!passes.refusal.empty() || refuse_mirror(w)) return finished(w);
+  w.lengths = w.averaging ? Lengths{} : lengths_of(in, passes);
   w.out.uses = w.lengths.ids;
   for (const Finding& f : w.lengths.findings) w.out.findings.push_back(f);
   w.choices = {in.options.flag("set_up_square"), in.options.text("beam") == "off-diagonal",
                in.options.number("u_reading_um") * um};
-  w.checks = check_step_diagonals(passes->readings);
+  w.checks = check_step_diagonals(passes.readings);
   judge_checks(w);
   const HeldLimits limits = limits_of(w);
   ReadingModel model =
-      reading_model(in.campaign, limits.environment, budget_lines(*passes, w.lengths, in.campaign));
+      reading_model(in.campaign, limits.environment, budget_lines(passes, w.lengths, in.campaign));
   if (const double angle = in.options.number("angle_urad"); angle > 0.0)
-    model.inputs.push_back(angles_input(*passes, model, angle * urad));
+    model.inputs.push_back(angles_input(passes, model, angle * urad));
   const auto solution =
-      w.averaging ? average_step_diagonals(passes->readings, w.choices, &model)
-                  : solve_step_diagonals(passes->readings, w.lengths.series, w.choices, &model);
+      w.averaging ? average_step_diagonals(passes.readings, w.choices, &model)
+                  : solve_step_diagonals(passes.readings, w.lengths.series, w.choices, &model);
   if (!solution) {
     w.out.findings.push_back(attention(
         "step-diagonal.incomplete",

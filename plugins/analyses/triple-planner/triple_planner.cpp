@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "nonio/math/triples.h"
-#include "nonio/sdk/format.h"
 #include "nonio/sdk/plugin.h"
 
 namespace nonio::triple_planner {
@@ -108,15 +107,14 @@ Expected<Evaluation> analyse(const CampaignInput& in) {
   const auto x = planned_axis(in, "x"), y = planned_axis(in, "y");
   if (!x) return fail(x.error());
   if (!y) return fail(y.error());
-  const auto found = plan_triples(wish_of(**x, **y, in.options));
-  if (!found) return fail(found.error());
+  NONIO_TRY(const auto found, plan_triples(wish_of(**x, **y, in.options)));
   Evaluation e;
-  if (found->plans.empty()) {
-    e.findings.push_back(nothing_fits(*found, **x, **y));
+  if (found.plans.empty()) {
+    e.findings.push_back(nothing_fits(found, **x, **y));
     return e;
   }
-  e.rows = triple_table(found->plans);
-  const TriplePlan& best = found->plans.front();
+  e.rows = triple_table(found.plans);
+  const TriplePlan& best = found.plans.front();
   e.notes.push_back(best_plan(best, **x, **y));
   if (best.flat())
     e.findings.push_back(

@@ -39,9 +39,9 @@ std::vector<std::size_t> lines_of(const Campaign& c, const Measurement& of) {
 
 Expected<Line> line(const AnalysisInput& in, std::size_t i) {
   const Measurement& m = in.campaign.measurements[i];
-  auto begun = math::begin_axis_analysis({in.campaign, m, (*in.all)[i], in.options, in.all});
-  if (!begun) return fail(begun.error());
-  Line out{m.id, std::move(*begun)};
+  NONIO_TRY(auto begun,
+            math::begin_axis_analysis({in.campaign, m, (*in.all)[i], in.options, in.all}));
+  Line out{m.id, std::move(begun)};
   out.result = math::evaluate_iso230_2(out.analysis.test, k_of_2005);
   out.U = math::iso230_2_uncertainty(out.analysis.budget.value_or(math::Budget{}),
                                      out.analysis.approaches, k_of_2005);
@@ -96,10 +96,9 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   if (first.id != in.measurement.id) return e;  // they stand with the first line
   std::vector<Line> lines;
   for (const std::size_t i : all) {
-    auto l = line(in, i);
-    if (!l) return fail(l.error());
-    if (i != all.front()) e.uses.push_back(l->id);
-    lines.push_back(std::move(*l));
+    NONIO_TRY(auto l, line(in, i));
+    if (i != all.front()) e.uses.push_back(l.id);
+    lines.push_back(std::move(l));
   }
   const auto count = static_cast<double>(lines.size());
   if (lines.size() < 2)

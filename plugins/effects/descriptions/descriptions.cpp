@@ -33,14 +33,13 @@ static std::vector<double> reversals(const Observations& o, const Axis& axis) {
 /// The column of a target is `of(reading)` at its readings.
 template <class Value>
 static Expected<Effect::Columns> by_target(const Observations& o, const Axis& axis, Value of) {
-  const auto r = readings_of(o, axis);
-  if (!r) return fail(r.error());
-  const std::vector<double> all = targets_of(*r);
+  NONIO_TRY(const auto r, readings_of(o, axis));
+  const std::vector<double> all = targets_of(r);
   Effect::Columns columns(all.size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
-    if (!r->moved[i]) continue;
-    const auto after = std::upper_bound(all.begin(), all.end(), r->p[i]);
-    columns[static_cast<std::size_t>(after - all.begin()) - 1][i] = of(*r, i);
+    if (!r.moved[i]) continue;
+    const auto after = std::upper_bound(all.begin(), all.end(), r.p[i]);
+    columns[static_cast<std::size_t>(after - all.begin()) - 1][i] = of(r, i);
   }
   return columns;
 }

@@ -29,13 +29,12 @@ static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis
                                          const std::vector<double>& shape) {
   if (shape.size() != 1 || !(shape[0] >= 2.0 && shape[0] <= 1000.0))
     return fail("pitch-curve: expected a number of knots, 2 to 1000");
-  const auto r = readings_of(o, axis);
-  if (!r) return fail(r.error());
-  auto columns = math::smooth_basis(r->p, targets_of(*r), static_cast<int>(std::lround(shape[0])));
+  NONIO_TRY(const auto r, readings_of(o, axis));
+  auto columns = math::smooth_basis(r.p, targets_of(r), static_cast<int>(std::lround(shape[0])));
   if (!columns) return fail("pitch-curve: " + columns.error().message);
   for (auto& column : *columns)
     for (std::size_t i = 0; i < column.size(); ++i)
-      if (!r->moved[i]) column[i] = 0.0;
+      if (!r.moved[i]) column[i] = 0.0;
   return columns;
 }
 

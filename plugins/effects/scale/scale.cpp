@@ -13,9 +13,8 @@ static bool applies(const Observations& o, const Axis& axis) {
 
 static Expected<Effect::Columns> columns(const Observations& o, const Axis& axis,
                                          const std::vector<double>&) {
-  auto r = readings_of(o, axis);
-  if (!r) return fail(r.error());
-  return Effect::Columns{std::move(r->p)};
+  NONIO_TRY(auto r, readings_of(o, axis));
+  return Effect::Columns{std::move(r.p)};
 }
 
 NONIO_PLUGIN(registry) {

@@ -72,9 +72,8 @@ Expected<Effect::Columns> basis_at(const std::vector<double>& x, const std::vect
   Effect::Columns out(1);
   for (const double at : x) out[0].push_back((at - mean) / std::sqrt(square));
   if (knots < 2) return out;
-  auto smooth = math::smooth_basis(x, places, knots);
-  if (!smooth) return fail(smooth.error());
-  for (auto& column : *smooth) out.push_back(std::move(column));
+  NONIO_TRY(auto smooth, math::smooth_basis(x, places, knots));
+  for (auto& column : smooth) out.push_back(std::move(column));
   return out;
 }
 
@@ -90,13 +89,12 @@ Expected<Effect::Columns> integrals(const std::vector<double>& places, int knots
         x.push_back(places[j] + (places[j + 1] - places[j]) *
                                     (static_cast<double>(part) + 0.5 + side) /
                                     static_cast<double>(parts));
-  auto values = basis_at(x, places, knots);
-  if (!values) return fail(values.error());
-  Effect::Columns out(values->size(), std::vector<double>(places.size(), 0.0));
+  NONIO_TRY(auto values, basis_at(x, places, knots));
+  Effect::Columns out(values.size(), std::vector<double>(places.size(), 0.0));
   for (std::size_t k = 0; k < out.size(); ++k)
     for (std::size_t j = 0; j + 1 < places.size(); ++j) {
       double sum = 0.0;
-      for (std::size_t q = 0; q < 2 * parts; ++q) sum += (*values)[k][2 * parts * j + q];
+      for (std::size_t q = 0; q < 2 * parts; ++q) sum += values[k][2 * parts * j + q];
       out[k][j + 1] =
           out[k][j] + sum * (places[j + 1] - places[j]) / (2.0 * static_cast<double>(parts));
     }
@@ -132,13 +130,11 @@ Expected<Effect::Columns> columns(const Observations& o, const Angle& a, int kno
   const SpaceReadings s = space_of(o);
   if (!s.moves(a.axis)) return fail(std::string(a.kind) + ": these readings do not move the axis");
   const std::vector<double> places = places_of(s, a.axis);
-  const auto basis = basis_at(finite_or_zero(s.r[a.axis]), places, knots);
-  if (!basis) return fail(basis.error());
+  NONIO_TRY(const auto basis, basis_at(finite_or_zero(s.r[a.axis]), places, knots));
   const std::vector<double> levers = levers_of(o, s, a);
   const bool guided = follows_its_guide(o, a);
-  const auto ways = guided ? integrals(places, knots) : Expected<Effect::Columns>{};
-  if (!ways) return fail(ways.error());
-  Effect::Columns out(basis->size(), std::vector<double>(o.size(), 0.0));
+  NONIO_TRY(const auto ways, guided ? integrals(places, knots) : Expected<Effect::Columns>{});
+  Effect::Columns out(basis.size(), std::vector<double>(o.size(), 0.0));
   for (std::size_t i = 0; i < o.size(); ++i) {
     if (!std::isfinite(s.r[a.axis][i])) continue;
     // The measured places themselves: the nearest is the same within rounding.
@@ -146,8 +142,8 @@ Expected<Effect::Columns> columns(const Observations& o, const Angle& a, int kno
         std::lower_bound(places.begin(), places.end(), s.r[a.axis][i] - 1e-6 * s.length[a.axis]);
     const auto place = static_cast<std::size_t>(std::min(above, places.end() - 1) - places.begin());
     for (std::size_t k = 0; k < out.size(); ++k) {
-      out[k][i] = levers[i] * (*basis)[k][i];
-      if (guided) out[k][i] += a.guide_sign * (*ways)[k][place] * o.sense_of(i)[a.guided];
+      out[k][i] = levers[i] * basis[k][i];
+      if (guided) out[k][i] += a.guide_sign * ways[k][place] * o.sense_of(i)[a.guided];
     }
   }
   return out;

@@ -3,7 +3,6 @@
 // What of a test was other than its method plans, as far as readings and manifest show it (ISO/IEC
 // 17025:2017, 7.8.2.1 n), and how it was made. It need not be stated and cannot be left out.
 #include <algorithm>
-#include <cmath>
 
 #include "certificate.h"
 #include "nonio/reports/model.h"

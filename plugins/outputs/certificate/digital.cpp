@@ -2,7 +2,6 @@
 //
 // What the DCC says in words: the same as the pages, in the same languages.
 #include <algorithm>
-#include <cmath>
 
 #include "certificate.h"
 #include "nonio/reports/number.h"

@@ -5,14 +5,123 @@
 #include <algorithm>
 
 #include "certificate.h"
+#include "nonio/reports/document.h"
 #include "nonio/reports/picture.h"
-#include "two_languages.h"
 
 namespace nonio::certificate {
 
 using namespace reports;
 
 namespace {
+
+using Blocks = std::vector<Block>;
+
+/// The same but for the decimal sign.
+bool same(const std::string& a, const std::string& b) {
+  const auto plain = [](char c) { return c == ',' ? '.' : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return plain(x) == plain(y); });
+}
+
+/// "Hall 4 (beim Auftraggeber / at the customer's)": the common beginning is printed once.
+bool join_in_brackets(std::string& a, const std::string& b) {
+  const std::size_t open = a.find(" (");
+  if (open == std::string::npos || open == 0 || b.find(" (") != open || !a.ends_with(')') ||
+      !b.ends_with(')') || !same(a.substr(0, open), b.substr(0, open)))
+    return false;
+  a.pop_back();
+  a += " / " + b.substr(open + 2);
+  return true;
+}
+
+void join(std::string& a, const std::string& b, const char* between = " / ") {
+  if (!same(a, b) && !join_in_brackets(a, b)) a += between + b;
+}
+
+Blocks joined(Blocks first, const Blocks& second);
+
+void merge(Table& a, const Table& b) {
+  join(a.title, b.title);
+  for (std::size_t i = 0; i < a.columns.size(); ++i) join(a.columns[i].title, b.columns[i].title);
+  for (std::size_t r = 0; r < a.rows.size(); ++r)
+    for (std::size_t i = 0; i < a.rows[r].size(); ++i)
+      if (!a.columns[i].number) join(a.rows[r][i].text, b.rows[r][i].text);
+}
+
+void merge(Grid& a, const Grid& b) {
+  join(a.title, b.title);
+  for (std::size_t i = 0; i < a.rows.size(); ++i) {
+    join(a.rows[i].label, b.rows[i].label);
+    join(a.rows[i].value, b.rows[i].value);
+  }
+}
+
+/// Titles of axes have a stroke before their unit. Upwards there is no room for two.
+void merge(Plot& a, const Plot& b) {
+  join(a.title, b.title);
+  join(a.x_title, b.x_title, " · ");
+  join(a.empty_text, b.empty_text);
+  for (std::size_t i = 0; i < std::min(a.curves.size(), b.curves.size()); ++i)
+    join(a.curves[i].legend, b.curves[i].legend);
+}
+
+/// The labels of its rows have to be the same in both.
+void merge(BarChart& a, const BarChart& b) {
+  join(a.title, b.title);
+  join(a.x_title, b.x_title, " · ");
+}
+
+Block merged(Block a, const Block& b) {
+  if (auto* heading = std::get_if<Heading>(&a.what)) {
+    join(heading->text, std::get<Heading>(b.what).text);
+  } else if (auto* paragraph = std::get_if<Paragraph>(&a.what)) {
+    constexpr std::size_t line = 60;
+    const std::string& other = std::get<Paragraph>(b.what).text;
+    if (same(paragraph->text, other)) return a;
+    if (paragraph->text.size() > line || other.size() > line) return {Columns{{{a}, {b}}}, a.field};
+    join(paragraph->text, other);
+  } else if (auto* grid = std::get_if<Grid>(&a.what)) {
+    merge(*grid, std::get<Grid>(b.what));
+  } else if (auto* table = std::get_if<Table>(&a.what)) {
+    merge(*table, std::get<Table>(b.what));
+  } else if (auto* plot = std::get_if<Plot>(&a.what)) {
+    merge(*plot, std::get<Plot>(b.what));
+  } else if (auto* chart = std::get_if<BarChart>(&a.what)) {
+    merge(*chart, std::get<BarChart>(b.what));
+  } else if (auto* note = std::get_if<Note>(&a.what)) {
+    const Note& other = std::get<Note>(b.what);
+    join(note->title, other.title);
+    join(note->says, other.says);
+    join(note->advice, other.advice);
+  } else if (auto* code = std::get_if<Code>(&a.what)) {
+    join(code->caption, std::get<Code>(b.what).caption);
+  } else if (auto* box = std::get_if<SignatureBox>(&a.what)) {
+    const SignatureBox& other = std::get<SignatureBox>(b.what);
+    join(box->title, other.title);
+    for (std::size_t i = 0; i < box->lines.size(); ++i) join(box->lines[i], other.lines[i]);
+  } else if (auto* columns = std::get_if<Columns>(&a.what)) {
+    const Columns& other = std::get<Columns>(b.what);
+    for (std::size_t i = 0; i < columns->parts.size(); ++i)
+      columns->parts[i] = joined(std::move(columns->parts[i]), other.parts[i]);
+  }
+  return a;
+}
+
+Blocks joined(Blocks first, const Blocks& second) {
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] = merged(std::move(first[i]), second[i]);
+  return first;
+}
+
+/// A document in two languages out of the same document in each of them: labels joined, sentences
+/// side by side, numbers once, with the first one's decimal sign.
+Document side_by_side(Document first, const Document& second) {
+  join(first.title, second.title);
+  join(first.page_of, second.page_of);
+  join(first.mark, second.mark);
+  first.blocks = joined(std::move(first.blocks), second.blocks);
+  first.first_foot = joined(std::move(first.first_foot), second.first_foot);
+  return first;
+}
 
 constexpr const char* version = "1.0.0";
 constexpr const char* words_file = "certificate";
@@ -69,7 +178,7 @@ Expected<Document> document_of(const OutputInput& in, const pages::Look& look, c
     if (const auto complete = words.complete(); !complete) return fail(complete.error());
   }
   Document document = std::move(documents.front());
-  if (documents.size() == 2) document = pages::side_by_side(std::move(document), documents.back());
+  if (documents.size() == 2) document = side_by_side(std::move(document), documents.back());
   if (auto marked = mark_customer_data(in, document); !marked) return fail(marked.error());
   return document;
 }
@@ -85,20 +194,16 @@ std::string dcc_of(const OutputInput& in, const pages::Look& look, const Fonts& 
 
 Expected<OutputResult> write(const OutputInput& in) {
   if (in.issue == nullptr) return fail("a certificate needs a number, and none was drawn");
-  const auto look = look_of(in.templates, in.campaign.certificate.form);
-  if (!look) return fail(look.error());
-  const auto fonts = pages::fonts_of(in.templates, *look);
-  if (!fonts) return fail(fonts.error());
-  if (const auto sound = pages::check_texts(in.campaign, **fonts); !sound)
+  NONIO_TRY(const auto look, look_of(in.templates, in.campaign.certificate.form));
+  NONIO_TRY(const auto fonts, pages::fonts_of(in.templates, look));
+  if (const auto sound = pages::check_texts(in.campaign, *fonts); !sound)
     return fail(sound.error());
-  const auto document = document_of(in, *look, **fonts);
-  if (!document) return fail(document.error());
-  auto bytes = pdf_bytes(*document, **fonts);
-  if (!bytes) return fail(bytes.error());
+  NONIO_TRY(const auto document, document_of(in, look, *fonts));
+  NONIO_TRY(auto bytes, pdf_bytes(document, *fonts));
   OutputResult result;
-  result.artifacts.push_back({"certificate.pdf", std::move(*bytes), true});
+  result.artifacts.push_back({"certificate.pdf", std::move(bytes), true});
   if (!in.issue->is_draft())
-    result.artifacts.push_back({"certificate.xml", dcc_of(in, *look, **fonts), true});
+    result.artifacts.push_back({"certificate.xml", dcc_of(in, look, *fonts), true});
   return result;
 }
 

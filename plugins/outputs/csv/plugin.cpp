@@ -3,8 +3,6 @@
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <string>

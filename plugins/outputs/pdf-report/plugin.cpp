@@ -23,28 +23,25 @@ void prepare(const Templates& templates) {
 
 Expected<OutputResult> write(const OutputInput& in) {
   const std::string language = in.options.text("language", "en");
-  const auto look = look_of(in.templates, in.options.text("template", default_template));
-  if (!look) return fail(look.error());
-  const auto fonts = pages::fonts_of(in.templates, *look);
-  if (!fonts) return fail(fonts.error());
-  if (const auto sound = pages::check_texts(in.campaign, **fonts); !sound)
+  NONIO_TRY(const auto look, look_of(in.templates, in.options.text("template", default_template)));
+  NONIO_TRY(const auto fonts, pages::fonts_of(in.templates, look));
+  if (const auto sound = pages::check_texts(in.campaign, *fonts); !sound)
     return fail(sound.error());
   if (wants_history(in.options) &&
-      std::find(look->blocks.begin(), look->blocks.end(), "history") == look->blocks.end())
+      std::find(look.blocks.begin(), look.blocks.end(), "history") == look.blocks.end())
     return fail(
         Error{"options.pdf-report.history: the template has no block \"history\"; expected "
               "it in the list `blocks` of templates/" +
               in.options.text("template", default_template) + ".toml"});
   const Wording words(in.templates, language, {"results", "report"}),
       pictures(in.templates, language, {"pictures"}), site(in.templates, language, {"site"});
-  const reports::Document document = compose({{in, *look, words, **fonts}, pictures, site});
+  const reports::Document document = compose({{in, look, words, *fonts}, pictures, site});
   for (const Wording* asked : {&words, &pictures, &site})
     if (const auto complete = asked->complete(); !complete) return fail(complete.error());
-  auto bytes = reports::pdf_bytes(document, **fonts);
-  if (!bytes) return fail(bytes.error());
+  NONIO_TRY(auto bytes, reports::pdf_bytes(document, *fonts));
   OutputResult result;
   result.artifacts.push_back({language == "en" ? "report.pdf" : "report-" + language + ".pdf",
-                              std::move(*bytes), in.options.flag("sign")});
+                              std::move(bytes), in.options.flag("sign")});
   return result;
 }
 

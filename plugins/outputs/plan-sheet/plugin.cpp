@@ -253,10 +253,8 @@ Expected<OutputResult> write(const OutputInput& in) {
   if (rows == nullptr)
     return wrong("outputs", "plan-sheet: there is no plan (analysis triple-planner makes one)");
   const std::string language = o.text("language", "en");
-  const auto look = look_of(in.templates, o.text("template", "report"));
-  if (!look) return fail(look.error());
-  const auto fonts = pages::fonts_of(in.templates, *look);
-  if (!fonts) return fail(fonts.error());
+  NONIO_TRY(const auto look, look_of(in.templates, o.text("template", "report")));
+  NONIO_TRY(const auto fonts, pages::fonts_of(in.templates, look));
   const Wording words(in.templates, language, {"results", "report"});
   Sheet s{in,
           *rows,
@@ -269,13 +267,12 @@ Expected<OutputResult> write(const OutputInput& in) {
       if (axis == nullptr || !axis->travel)
         return wrong("machine.axes",
                      "axis " + o.text(key) + ": expected a linear axis with its travel");
-  const Document document = compose(s, *look);
+  const Document document = compose(s, look);
   if (const auto complete = words.complete(); !complete) return fail(complete.error());
-  auto bytes = pdf_bytes(document, **fonts);
-  if (!bytes) return fail(bytes.error());
+  NONIO_TRY(auto bytes, pdf_bytes(document, *fonts));
   OutputResult result;
   result.artifacts.push_back(
-      {language == "en" ? "plan-sheet.pdf" : "plan-sheet-" + language + ".pdf", std::move(*bytes)});
+      {language == "en" ? "plan-sheet.pdf" : "plan-sheet-" + language + ".pdf", std::move(bytes)});
   return result;
 }
 

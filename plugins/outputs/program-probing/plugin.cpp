@@ -8,15 +8,107 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "ball.h"
 #include "nonio/sdk/format.h"
 #include "programs.h"
 
 namespace nonio::program_probing {
 namespace {
+
+using Vector = std::array<double, 3>;
+
+/// A rotary axis: what turns about a line along a coordinate.
+struct Turning {
+  std::string axis;
+  Vector centre{};
+  bool with = true;  ///< right-handed about +X, +Y or +Z
+  std::size_t about() const { return static_cast<std::size_t>(axis.front() - 'A'); }
+  Vector direction(const Vector&, double angle) const;
+  Vector point(const Vector&, double angle) const;
+};
+
+struct Ball {
+  Turning table;                      ///< which carries the ball
+  std::optional<Turning> carrier;     ///< on the bed, which carries the table
+  Vector at{}, stem{0.0, 0.0, -1.0};  ///< with the axes at 0; from the ball along its stem
+  double radius = 0.0, approach = 0.0, beyond = 0.0;
+};
+
+/// The ball at one position of the axes.
+struct Place {
+  double angle = 0.0;
+  std::optional<double> carrier{};
+  Vector ball{}, stem{};
+};
+
+/// One touch: from next to the ball to inside it.
+struct Touch {
+  Vector from{}, to{};
+};
+
+Vector Turning::direction(const Vector& v, double angle) const {
+  const std::size_t k = about(), i = (k + 1) % 3, j = (k + 2) % 3;
+  const double t = (with ? angle : -angle) * std::numbers::pi / 180.0;
+  Vector out = v;
+  out[i] = v[i] * std::cos(t) - v[j] * std::sin(t);
+  out[j] = v[i] * std::sin(t) + v[j] * std::cos(t);
+  return out;
+}
+
+Vector Turning::point(const Vector& p, double angle) const {
+  Vector from{};
+  for (std::size_t i = 0; i < 3; ++i) from[i] = p[i] - centre[i];
+  Vector out = direction(from, angle);
+  for (std::size_t i = 0; i < 3; ++i) out[i] += centre[i];
+  return out;
+}
+
+/// The ball set on by `height` along the table's axis, turned about the table's line as it is with
+/// the carrier at 0, then about the carrier's.
+Place place_of(const Ball& ball, double height, double angle, std::optional<double> carrier) {
+  Vector at = ball.at;
+  at[ball.table.about()] += height;
+  Place out{angle, carrier, ball.table.point(at, angle), ball.table.direction(ball.stem, angle)};
+  if (!carrier || !ball.carrier) return out;
+  out.ball = ball.carrier->point(out.ball, *carrier);
+  out.stem = ball.carrier->direction(out.stem, *carrier);
+  return out;
+}
+
+/// From above, then from four sides at the height of the centre. A side to which the stem leans by
+/// less than 60 deg gives way to those between the sides that are free. None where the stem is above.
+std::vector<Touch> touches(const Ball& ball, const Place& place) {
+  constexpr double diagonal = std::numbers::sqrt2 / 2.0, nearest = 0.5;  // cos 60 deg
+  const auto is_free = [&](const Vector& way) {
+    return way[0] * place.stem[0] + way[1] * place.stem[1] + way[2] * place.stem[2] <
+           nearest - 1e-9;
+  };
+  const Vector above{0.0, 0.0, 1.0};
+  if (!is_free(above)) return {};
+  std::vector<Vector> ways{above};
+  const Vector sides[] = {{1.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0}};
+  for (const Vector& side : sides)
+    if (is_free(side)) ways.push_back(side);
+  if (ways.size() < 5)
+    for (const double x : {diagonal, -diagonal})
+      for (const double y : {diagonal, -diagonal})
+        if (is_free({x, y, 0.0})) ways.push_back({x, y, 0.0});
+  std::vector<Touch> out;
+  for (const Vector& way : ways) {
+    Touch t{place.ball, place.ball};
+    for (std::size_t k = 0; k < 3; ++k) {
+      t.from[k] += way[k] * (ball.radius + ball.approach);
+      t.to[k] += way[k] * (ball.radius - ball.beyond);
+    }
+    out.push_back(t);
+  }
+  return out;
+}
 
 constexpr std::array<const char*, 3> linear{"X", "Y", "Z"};
 
@@ -283,20 +375,18 @@ Expected<std::string> program(const Wish& w, const Machine& machine, double heig
 
 Expected<OutputResult> write(const OutputInput& in) {
   const Machine& machine = in.campaign.machine;
-  const auto w = wish_of(in.options, machine);
-  if (!w) return fail(w.error());
+  NONIO_TRY(const auto w, wish_of(in.options, machine));
   OutputResult result;
-  const char* ending = w->dialect == "siemens" ? ".mpf" : ".ngc";
-  for (std::size_t i = 0; i < w->heights.size(); ++i) {
-    const std::string name = (w->ball.carrier ? w->ball.carrier->axis : std::string()) +
-                             w->ball.table.axis +
-                             (w->heights.size() > 1 ? std::to_string(i + 1) : std::string());
-    auto text = program(*w, machine, w->heights[i], name);
-    if (!text) return fail(text.error());
-    result.artifacts.push_back({"program-probing-" + name + ending, std::move(*text)});
+  const char* ending = w.dialect == "siemens" ? ".mpf" : ".ngc";
+  for (std::size_t i = 0; i < w.heights.size(); ++i) {
+    const std::string name = (w.ball.carrier ? w.ball.carrier->axis : std::string()) +
+                             w.ball.table.axis +
+                             (w.heights.size() > 1 ? std::to_string(i + 1) : std::string());
+    NONIO_TRY(auto text, program(w, machine, w.heights[i], name));
+    result.artifacts.push_back({"program-probing-" + name + ending, std::move(text)});
   }
   result.notes.push_back({.id = "program.dry-run"});
-  if (w->dialect != "linuxcnc")
+  if (w.dialect != "linuxcnc")
     result.notes.push_back({.id = "program.no-control", .texts = {{"output", "program-probing"}}});
   return result;
 }

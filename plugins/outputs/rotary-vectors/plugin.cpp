@@ -4,7 +4,6 @@
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <set>
 #include <string_view>

@@ -2,13 +2,18 @@
 #include "camonitor.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
+#include <string_view>
+#include <vector>
 
 #include "lines.h"
-#include "log.h"
+#include "nonio/sdk/error.h"
 #include "nonio/sdk/format.h"
 #include "runs.h"
 
@@ -16,6 +21,84 @@ namespace nonio::camonitor {
 using namespace readers;
 
 namespace {
+
+/// One line: PV, date, time, value; a status and a severity may follow.
+struct Entry {
+  std::string_view pv, value;
+  std::int64_t time = 0;  ///< us since 1970-01-01, of the clock that the log is in
+  std::uint64_t line = 0;
+};
+
+/// `count` digits at `at`; -1 if there is something else.
+int digits(std::string_view text, std::size_t at, std::size_t count) {
+  int value = 0;
+  if (at + count > text.size()) return -1;
+  for (const char c : text.substr(at, count)) {
+    if (c < '0' || c > '9') return -1;
+    value = 10 * value + (c - '0');
+  }
+  return value;
+}
+
+/// 2022-04-07 and 08:23:29.748369
+std::optional<std::int64_t> time_of(std::string_view date, std::string_view time) {
+  const int year = digits(date, 0, 4), month = digits(date, 5, 2), day = digits(date, 8, 2);
+  const int h = digits(time, 0, 2), m = digits(time, 3, 2), s = digits(time, 6, 2);
+  if (date.size() != 10 || date[4] != '-' || date[7] != '-' || time.size() < 8 || time[2] != ':' ||
+      time[5] != ':' || h < 0 || h > 23 || m < 0 || m > 59 || s < 0 || s > 60)
+    return std::nullopt;
+  using namespace std::chrono;
+  if (year < 1970 || month < 1 || day < 1) return std::nullopt;
+  const year_month_day on{std::chrono::year{year}, std::chrono::month{static_cast<unsigned>(month)},
+                          std::chrono::day{static_cast<unsigned>(day)}};
+  if (!on.ok()) return std::nullopt;
+  std::int64_t us = 0;
+  if (time.size() > 8) {
+    const std::size_t places = time.size() - 9;
+    const int part = digits(time, 9, std::min<std::size_t>(places, 6));
+    if (time[8] != '.' || places == 0 || places > 9 || part < 0) return std::nullopt;
+    us = part;
+    for (std::size_t i = places; i < 6; ++i) us *= 10;
+  }
+  const auto days = sys_days{on}.time_since_epoch().count();
+  return ((days * 24LL + h) * 60 + m) * 60'000'000LL + s * 1'000'000LL + us;
+}
+
+/// Nothing if the line is none of a camonitor log.
+std::optional<Entry> entry_of(std::string_view line) {
+  const auto fields = by_blanks(line);
+  if (fields.size() < 4) return std::nullopt;
+  const auto time = time_of(fields[1], fields[2]);
+  if (!time) return std::nullopt;
+  return Entry{fields[0], fields[3], *time, 0};
+}
+
+/// All entries of these PVs, by time; lines of one instant stay as they were. A log's first lines
+/// (values at its start) are not in order.
+Expected<std::vector<Entry>> entries_of(std::string_view bytes,
+                                        const std::vector<std::string_view>& pvs) {
+  std::vector<Entry> entries;
+  Lines lines(bytes);
+  std::string_view line;
+  while (lines.next(line)) {
+    const auto fields = by_blanks(line);
+    if (fields.empty() || std::find(pvs.begin(), pvs.end(), fields[0]) == pvs.end()) {
+      if (auto error = not_text(line)) return fail(at_line(lines.number(), error->message));
+      continue;
+    }
+    auto entry = entry_of(line);
+    if (!entry)
+      return fail(at_line(lines.number(),
+                          "expected PV, date, time and value, such as \"AXIS:Pos 2022-04-07 "
+                          "08:23:29.748369 33.46\"; found " +
+                              shown(line)));
+    entry->line = lines.number();
+    entries.push_back(*entry);
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& a, const Entry& b) { return a.time < b.time; });
+  return entries;
+}
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -103,15 +186,15 @@ class Sampler {
  private:
   Expected<void> take(const Entry& e) {
     const bool test = e.pv == wiring_.test;
-    const auto value = numbers_.reading(e.value, e.line, test ? "a test number" : "a position");
-    if (!value) return fail(value.error());
-    if (e.pv == wiring_.target) target_ = *value;
+    NONIO_TRY(const auto value,
+              numbers_.reading(e.value, e.line, test ? "a test number" : "a position"));
+    if (e.pv == wiring_.target) target_ = value;
     if (e.pv == wiring_.reference) {
-      reference_ = *value;
+      reference_ = value;
       reference_line_ = e.line;
       reference_time_ = e.time;
     }
-    return test ? change(e, *value) : Expected<void>{};
+    return test ? change(e, value) : Expected<void>{};
   }
 
   Expected<void> change(const Entry& e, double value) {
@@ -183,11 +266,10 @@ Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, O
                   "the reference runs against the targets (gain " + short_text(line.slope, 6) +
                       "); if the sensor was mounted the other way round, state a negative one"));
   if (std::fabs(line.slope - 1.0) > 0.1)
-    return fail(of_option("reference_gain",
-                          "expected a reference that goes as far as the targets, "
-                          "found " +
-                              short_text(line.slope, 6) +
-                              " times as far; is reference_unit right?"));
+    return fail(
+        of_option("reference_gain", "expected a reference that goes as far as the targets, found " +
+                                        short_text(line.slope, 6) +
+                                        " times as far; is reference_unit right?"));
   obs.notes.push_back({"camonitor.line",
                        {{"scale", line.slope - 1.0, slope_of(rotary)},
                         {"offset", line.offset, position_of(rotary)},
@@ -198,40 +280,30 @@ Expected<void> check_line(const std::vector<Sample>& samples, const Wiring& w, O
 Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   const auto wiring = wiring_of(input, axis.rotary);
   if (!wiring) return fail(wiring.error());
-  const auto entries = entries_of(input.bytes, {wiring->target, wiring->reference, wiring->test});
-  if (!entries) return fail(entries.error());
-  const auto samples = Sampler(*wiring).samples(*entries);
-  if (!samples) return fail(samples.error());
-  if (samples->empty())
+  NONIO_TRY(const auto entries,
+            entries_of(input.bytes, {wiring->target, wiring->reference, wiring->test}));
+  NONIO_TRY(const auto samples, Sampler(*wiring).samples(entries));
+  if (samples.empty())
     return fail("expected test numbers (1101 ...) of PV " + wiring->test + ", found none");
-  const auto targets = targets_of(*samples);
-  if (!targets) return fail(targets.error());
-  if (auto ok = whole(*samples, targets->size()); !ok) return fail(ok.error());
+  NONIO_TRY(const auto targets, targets_of(samples));
+  if (auto ok = whole(samples, targets.size()); !ok) return fail(ok.error());
   std::vector<double> listed;
-  for (const auto& [position, target] : *targets) listed.push_back(target);
+  for (const auto& [position, target] : targets) listed.push_back(target);
   const int sense = sense_of(listed);
   if (sense == 0) return fail("expected two targets or more that only rise or only fall");
   Runs runs(input, axis, axis.rotary);
-  if (auto ok = check_line(*samples, *wiring, runs.observations(), axis.rotary); !ok)
+  if (auto ok = check_line(samples, *wiring, runs.observations(), axis.rotary); !ok)
     return fail(ok.error());
-  for (const Sample& s : *samples) {
+  for (const Sample& s : samples) {
     const double target = s.target * wiring->target_unit;
     const double deviation = wiring->gain * s.reference * wiring->reference_unit - target;
-    const double seconds = 1e-6 * static_cast<double>(s.time - samples->front().time);
+    const double seconds = 1e-6 * static_cast<double>(s.time - samples.front().time);
     if (auto ok = runs.add({s.step.cycle, static_cast<std::int8_t>(s.step.direction * sense),
                             target, deviation, s.line, seconds});
         !ok)
       return fail(ok.error());
   }
   return runs.finish();
-}
-
-Expected<Observations> read(const ReadInput& input) {
-  const auto axis = axis_of(input);
-  if (!axis) return fail(axis.error());
-  auto obs = read_file(input, **axis);
-  if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
-  return obs;
 }
 
 /// Some first lines are all of this form.
@@ -266,7 +338,7 @@ Reader reader() {
         "Factor of the reference; negative where the sensor was mounted the other way round."}}};
   r.recognises = recognises;
   r.reads = [](std::string_view kind) { return kind == "axis"; };
-  r.read = read;
+  r.read = [](const ReadInput& input) { return read_of_axis(input, read_file); };
   return r;
 }
 

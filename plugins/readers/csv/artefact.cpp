@@ -140,8 +140,7 @@ Expected<Observations> certificate_of(const ReadInput& input, const Table& table
   const auto& balls = table.words.find("ball")->second;
   for (std::size_t row = 0; row < table.size(); ++row) {
     if (auto sound = sound_name(balls[row], table, row, "ball"); !sound) return fail(sound.error());
-    const auto u = stated_u(table, row);
-    if (!u) return fail(u.error());
+    NONIO_TRY(const auto u, stated_u(table, row));
     if (lengths) {
       const std::string& other = table.words.find("other")->second[row];
       if (auto sound = sound_name(other, table, row, "other"); !sound) return fail(sound.error());
@@ -154,13 +153,13 @@ Expected<Observations> certificate_of(const ReadInput& input, const Table& table
           !first)
         return fail(first.error());
       obs.lines.push_back({balls[row] + " " + other, {}});
-      put(row, length, *u, static_cast<std::uint32_t>(obs.lines.size() - 1));
+      put(row, length, u, static_cast<std::uint32_t>(obs.lines.size() - 1));
       continue;
     }
     if (auto first = once.see(balls[row], table, row, "a ball"); !first) return fail(first.error());
     const std::uint32_t line = lines.first(balls[row]);
     for (std::size_t k = 0; k < 3; ++k)
-      put(row, coordinate_in(table, k, row), *u, line + static_cast<std::uint32_t>(k));
+      put(row, coordinate_in(table, k, row), u, line + static_cast<std::uint32_t>(k));
   }
   return obs;
 }
@@ -168,12 +167,11 @@ Expected<Observations> certificate_of(const ReadInput& input, const Table& table
 }  // namespace
 
 Expected<Observations> read_artefact(const ReadInput& input) {
-  const auto table = table_of(input, with_common({{"ball", Kind::word, true},
-                                                  {"x_mm", Kind::number},
-                                                  {"y_mm", Kind::number},
-                                                  {"z_mm", Kind::number}}));
-  if (!table) return fail(table.error());
-  auto obs = centres_of(input, *table);
+  NONIO_TRY(const auto table, table_of(input, with_common({{"ball", Kind::word, true},
+                                                           {"x_mm", Kind::number},
+                                                           {"y_mm", Kind::number},
+                                                           {"z_mm", Kind::number}})));
+  auto obs = centres_of(input, table);
   return in_file(obs ? complete(std::move(*obs)) : std::move(obs), input);
 }
 

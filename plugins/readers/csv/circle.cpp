@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
@@ -111,12 +110,12 @@ Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle
   std::uint64_t arcs = 0;
   for (const auto& [key, rows] : runs_of(table)) {
     const auto [run, direction] = key;
-    const auto kept = evaluated(table, rows, direction, m.over_travel.value_or(0.0) / circle_deg);
-    if (!kept) return fail(kept.error());
-    arcs += rows.size() - kept->size();
+    NONIO_TRY(const auto kept,
+              evaluated(table, rows, direction, m.over_travel.value_or(0.0) / circle_deg));
+    arcs += rows.size() - kept.size();
     Observations::Line line{
         m.id + (direction > 0 ? " +" : " -") + (run == 1 ? "" : " run " + std::to_string(run)), {}};
-    for (const std::size_t row : *kept) {
+    for (const std::size_t row : kept) {
       if (!std::isfinite(deviation[row])) {
         ++obs.missing;
         continue;
@@ -137,8 +136,7 @@ Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle
 }  // namespace
 
 Expected<Observations> read_circle(const ReadInput& input) {
-  const auto circle = circle_of(input.measurement);
-  if (!circle) return fail(circle.error());
+  NONIO_TRY(const auto circle, circle_of(input.measurement));
   auto table = read_table(input.bytes, {{"direction", Kind::sign, true},
                                         {"angle_deg", Kind::place, true},
                                         {"deviation_um", Kind::number, true},
@@ -149,7 +147,7 @@ Expected<Observations> read_circle(const ReadInput& input) {
                                         {"pressure_hpa"},
                                         {"humidity_pct"}});
   auto obs =
-      table ? read_rows_of(input, *circle, *table) : Expected<Observations>(fail(table.error()));
+      table ? read_rows_of(input, circle, *table) : Expected<Observations>(fail(table.error()));
   if (!obs) obs.error().file = input.measurement.file;
   return obs;
 }

@@ -352,8 +352,7 @@ bool has_spatial_name(std::string_view line) {
 
 /// Readings over one position: of an axis, or of the distance along a diagonal.
 Expected<Observations> read_runs(const ReadInput& input) {
-  const auto expectation = expectation_of(input);
-  if (!expectation) return fail(expectation.error());
+  NONIO_TRY(const auto expectation, expectation_of(input));
   Lines lines(input.bytes);
   const Ends ends = ends_of(input.bytes);
   const auto in_file = [&](Error error, std::uint64_t line) {
@@ -361,14 +360,14 @@ Expected<Observations> read_runs(const ReadInput& input) {
     if (error.line == 0) error.line = line;
     return fail(std::move(error));
   };
-  const Expected<Header> header = read_header(lines, *expectation);
+  const Expected<Header> header = read_header(lines, expectation);
   if (!header) return in_file(header.error(), lines.number());
-  Observations obs = empty_observations(input.measurement, *expectation);
-  Rows rows(*header, *expectation, obs);
+  Observations obs = empty_observations(input.measurement, expectation);
+  Rows rows(*header, expectation, obs);
   if (auto ok = read_rows(input, lines, *header, rows); !ok)
     return in_file(ok.error(), lines.number());
   if (auto ok = rows.finish(); !ok) return in_file(ok.error(), 0);
-  doubt_comments(input, ends, lines.number(), *header, *expectation, obs);
+  doubt_comments(input, ends, lines.number(), *header, expectation, obs);
   return obs;
 }
 

@@ -147,16 +147,14 @@ bool in_period(const Measurement& m, double time) {
 
 /// Displacements against time, the machine not moving or its spindle turning.
 Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
-  const auto sensors = displacements_of(table);
-  if (!sensors) return fail(sensors.error());
+  NONIO_TRY(const auto sensors, displacements_of(table));
   if (auto error = times_grow(table)) return fail(std::move(*error));
   Observations obs = begin(input.measurement, table);
-  const auto turning = turning_of(table);
-  if (!turning) return fail(turning.error());
+  NONIO_TRY(const auto turning, turning_of(table));
   const auto& time = *table.column("time_s");
   obs.axes = {{"S", true, {}, {}}};
   obs.channels = channels_of(table);
-  for (const Displacement& s : *sensors) {
+  for (const Displacement& s : sensors) {
     const auto number = static_cast<std::uint32_t>(obs.lines.size());
     obs.lines.push_back({s.name, s.sense});
     const auto& deviation = *table.column(s.column);
@@ -169,8 +167,8 @@ Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
       obs.deviation.push_back(deviation[row] * 1e-6);
       obs.line.push_back(number);
       obs.run.push_back(1);
-      obs.axes[0].position.push_back(turning->angle[row]);
-      obs.axes[0].approach.push_back(turning->turns[row]);
+      obs.axes[0].position.push_back(turning.angle[row]);
+      obs.axes[0].approach.push_back(turning.turns[row]);
       put_beside(obs, table, row);
     }
   }
@@ -270,8 +268,7 @@ Expected<std::vector<double>> angles_of(const Table& table, const std::vector<st
 
 Expected<void> put_set_up(Observations& obs, const Table& table, const Sensor& s, const SetUp& at,
                           const std::vector<std::size_t>& rows, std::uint64_t& outside) {
-  const auto angles = angles_of(table, rows);
-  if (!angles) return fail(angles.error());
+  NONIO_TRY(const auto angles, angles_of(table, rows));
   Observations::Line line{set_up_name(s, at), {}};
   // The sensors are turned about the spindle, Z; its own axis stays.
   const double c = std::cos(at.sensor * heat_deg), t = std::sin(at.sensor * heat_deg);
@@ -282,7 +279,7 @@ Expected<void> put_set_up(Observations& obs, const Table& table, const Sensor& s
   obs.lines.push_back(std::move(line));
   const auto& deviation = *table.column(s.column);
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (!std::isfinite((*angles)[k])) {
+    if (!std::isfinite(angles[k])) {
       ++outside;
       continue;
     }
@@ -290,7 +287,7 @@ Expected<void> put_set_up(Observations& obs, const Table& table, const Sensor& s
       ++obs.missing;
       continue;
     }
-    obs.axes[0].position.push_back((*angles)[k]);
+    obs.axes[0].position.push_back(angles[k]);
     obs.axes[1].position.push_back(at.ball * heat_deg);
     obs.axes[2].position.push_back(at.sensor * heat_deg);
     obs.deviation.push_back(deviation[rows[k]] * 1e-6);
@@ -327,8 +324,7 @@ Expected<Observations> read_thermal(const ReadInput& input) {
 namespace {
 
 Expected<Observations> read_turns(const ReadInput& input, const Table& table) {
-  const auto sensors = sensors_of(table);
-  if (!sensors) return fail(sensors.error());
+  NONIO_TRY(const auto sensors, sensors_of(table));
   Observations obs = begin(input.measurement, table);
   obs.axes = {{"S", true, {}, {}}, {"ball", true, {}, {}}, {"sensor", true, {}, {}}};
   const auto *ball = table.column("ball_deg"), *sensor = table.column("sensor_deg");
@@ -342,7 +338,7 @@ Expected<Observations> read_turns(const ReadInput& input, const Table& table) {
                 std::to_string(set_ups.size()));
   std::uint64_t outside = 0;
   for (const auto& [at, rows] : set_ups)
-    for (const Sensor& s : *sensors)
+    for (const Sensor& s : sensors)
       if (auto done = put_set_up(obs, table, s, at, rows, outside); !done)
         return fail(done.error());
   if (outside > 0) obs.notes.push_back({"csv.outside-pulses", {count("readings", outside)}});

@@ -83,9 +83,8 @@ Expected<Observations> read_ball_centres(const ReadInput& input) {
                                   {"direction", Kind::sign}};
   const auto others = other_rotary_axes(input.campaign, m.axis);
   for (const std::string& other : others) columns.push_back({other + "_deg", Kind::place});
-  const auto table = table_of(input, with_common(columns));
-  if (!table) return fail(table.error());
-  Observations obs = begin(m, *table);
+  NONIO_TRY(const auto table, table_of(input, with_common(columns)));
+  Observations obs = begin(m, table);
   obs.axes = {
       {m.axis, true, {}, {}}, {"X", false, {}, {}}, {"Y", false, {}, {}}, {"Z", false, {}, {}}};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -95,21 +94,20 @@ Expected<Observations> read_ball_centres(const ReadInput& input) {
   }
   std::vector<const std::vector<double>*> also;  // angles of the other axes
   for (const std::string& other : others)
-    if (const auto* column = table->column(other + "_deg")) {
+    if (const auto* column = table.column(other + "_deg")) {
       also.push_back(column);
       obs.axes.push_back({other, true, {}, {}});
     }
-  const auto* direction = table->column("direction");
-  for (std::size_t row = 0; row < table->size(); ++row) {
-    const Sense centre{(*table->column("x_mm"))[row] * per_mm,
-                       (*table->column("y_mm"))[row] * per_mm,
-                       (*table->column("z_mm"))[row] * per_mm};
+  const auto* direction = table.column("direction");
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    const Sense centre{(*table.column("x_mm"))[row] * per_mm, (*table.column("y_mm"))[row] * per_mm,
+                       (*table.column("z_mm"))[row] * per_mm};
     if (!std::isfinite(centre[0] + centre[1] + centre[2])) {
       ++obs.missing;
       continue;
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      obs.axes[0].position.push_back((*table->column("angle_deg"))[row] * per_deg);
+      obs.axes[0].position.push_back((*table.column("angle_deg"))[row] * per_deg);
       if (direction != nullptr)
         obs.axes[0].approach.push_back(static_cast<std::int8_t>((*direction)[row]));
       for (std::size_t c = 0; c < 3; ++c) obs.axes[1 + c].position.push_back(centre[c]);
@@ -117,7 +115,7 @@ Expected<Observations> read_ball_centres(const ReadInput& input) {
         obs.axes[4 + c].position.push_back((*also[c])[row] * per_deg);
       obs.deviation.push_back(centre[k]);
       obs.line.push_back(static_cast<std::uint32_t>(k));
-      put_common(obs, *table, row);
+      put_common(obs, table, row);
     }
   }
   return in_file(complete(std::move(obs)), input);
@@ -174,15 +172,14 @@ Expected<Observations> read_general(const ReadInput& input) {
     columns.push_back({coordinate(axis), Kind::place});
     columns.push_back({axis.first + "_dir", Kind::motion});
   }
-  const auto table = table_of(input, with_common(columns));
-  if (!table) return fail(table.error());
-  Observations obs = begin(input.measurement, *table);
+  NONIO_TRY(const auto table, table_of(input, with_common(columns)));
+  Observations obs = begin(input.measurement, table);
   std::vector<std::pair<const std::vector<double>*, const std::vector<double>*>> sources;
   for (const auto& axis : possible)
-    if (const auto* position = table->column(coordinate(axis))) {
+    if (const auto* position = table.column(coordinate(axis))) {
       obs.axes.push_back({axis.first, axis.second, {}, {}});
-      sources.emplace_back(position, table->column(axis.first + "_dir"));
-    } else if (table->column(axis.first + "_dir") != nullptr) {
+      sources.emplace_back(position, table.column(axis.first + "_dir"));
+    } else if (table.column(axis.first + "_dir") != nullptr) {
       return in_file(Expected<Observations>(fail(
                          at_line(0, axis.first + "_dir",
                                  "expected the coordinate \"" + coordinate(axis) + "\" with it"))),
@@ -193,17 +190,17 @@ Expected<Observations> read_general(const ReadInput& input) {
                        fail("missing column: expected a coordinate, such as \"X_mm\", found none")),
                    input);
   GeneralLines lines(obs);
-  for (std::size_t row = 0; row < table->size(); ++row) {
-    const Sense sense{(*table->column("nx"))[row], (*table->column("ny"))[row],
-                      (*table->column("nz"))[row]};
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    const Sense sense{(*table.column("nx"))[row], (*table.column("ny"))[row],
+                      (*table.column("nz"))[row]};
     const double size = std::hypot(sense[0], sense[1], sense[2]);
     if (!(std::fabs(size - 1.0) <= 1e-3))
       return in_file(
           Expected<Observations>(fail(at_line(
-              table->line[row], "nx",
+              table.line[row], "nx",
               "expected nx, ny, nz of length 1, found a length of " + std::to_string(size)))),
           input);
-    const double deviation = (*table->column("deviation_um"))[row];
+    const double deviation = (*table.column("deviation_um"))[row];
     if (!std::isfinite(deviation)) {
       ++obs.missing;
       continue;
@@ -214,11 +211,11 @@ Expected<Observations> read_general(const ReadInput& input) {
       if (direction != nullptr)
         obs.axes[k].approach.push_back(static_cast<std::int8_t>((*direction)[row]));
     }
-    const auto names = table->words.find("line");
-    lines.put(names == table->words.end() ? obs.measurement : names->second[row],
+    const auto names = table.words.find("line");
+    lines.put(names == table.words.end() ? obs.measurement : names->second[row],
               {sense[0] / size, sense[1] / size, sense[2] / size});
     obs.deviation.push_back(deviation * per_um);
-    put_common(obs, *table, row);
+    put_common(obs, table, row);
   }
   lines.finish();
   return in_file(complete(std::move(obs)), input);

@@ -146,21 +146,19 @@ class StepDiagonals {
 }  // namespace
 
 Expected<Observations> read_step_diagonal(const ReadInput& input) {
-  const auto span = span_of(input.campaign, input.measurement);
-  if (!span) return fail(span.error());
-  if (span->sides.size() != 3)
+  NONIO_TRY(const auto span, span_of(input.campaign, input.measurement));
+  if (span.sides.size() != 3)
     return fail("measurement \"" + input.measurement.id +
                 "\": expected `from` and `to` to differ in X, Y and Z");
   std::vector<std::string> names;
   for (const Corner& corner : corners) names.emplace_back(corner.name);
   static const std::vector<std::string> axes{"X", "Y", "Z"};
-  const auto table = table_of(input, with_common({{"diagonal", Kind::word, true, names},
-                                                  {"step", Kind::whole, true},
-                                                  {"moved", Kind::word, true, axes},
-                                                  {"deviation_um", Kind::number, true}}));
-  if (!table) return fail(table.error());
-  Observations obs = begin(input.measurement, *table);
-  if (auto read = StepDiagonals(*table, *span, obs).read(); !read)
+  NONIO_TRY(const auto table, table_of(input, with_common({{"diagonal", Kind::word, true, names},
+                                                           {"step", Kind::whole, true},
+                                                           {"moved", Kind::word, true, axes},
+                                                           {"deviation_um", Kind::number, true}})));
+  Observations obs = begin(input.measurement, table);
+  if (auto read = StepDiagonals(table, span, obs).read(); !read)
     return in_file(Expected<Observations>(fail(read.error())), input);
   return in_file(complete(std::move(obs)), input);
 }

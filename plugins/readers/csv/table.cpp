@@ -2,7 +2,6 @@
 #include "table.h"
 
 #include <algorithm>
-#include <array>
 #include <deque>
 #include <limits>
 #include <optional>

@@ -189,12 +189,11 @@ Expected<Observations> read_tool_centre(const ReadInput& input) {
     columns.push_back({name, Kind::place});
   for (const char* name : {"dx_um", "dy_um", "dz_um", "deviation_um"})
     columns.push_back({name, Kind::number});
-  const auto table = table_of(input, with_common(columns));
-  if (!table) return fail(table.error());
-  Observations obs = begin(m, *table);
+  NONIO_TRY(const auto table, table_of(input, with_common(columns)));
+  Observations obs = begin(m, table);
   obs.axes = {
       {m.axis, true, {}, {}}, {"X", false, {}, {}}, {"Y", false, {}, {}}, {"Z", false, {}, {}}};
-  if (auto read = ToolCentreRows(*table, obs).read(); !read)
+  if (auto read = ToolCentreRows(table, obs).read(); !read)
     return in_file(Expected<Observations>(fail(read.error())), input);
   return in_file(complete(std::move(obs)), input);
 }

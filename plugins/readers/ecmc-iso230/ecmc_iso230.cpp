@@ -63,8 +63,7 @@ class Parser {
     // The tools end every line; a number that was cut would still be a number.
     if (!bytes.ends_with('\n'))
       return fail(at_line(lines.number(),
-                          "expected an end of the last line, found none; was the "
-                          "file cut?"));
+                          "expected an end of the last line, found none; was the file cut?"));
     return std::move(out_);
   }
 
@@ -92,9 +91,8 @@ class Parser {
   Expected<void> target(const Assignment& a, std::uint64_t line) {
     const std::uint32_t position = whole_number(a.index, most_positions);
     if (position == 0) return fail(at_line(line, "expected TGT_DATA[position], found " + index(a)));
-    const auto value = numbers_.number(a.value, line, "a target");
-    if (!value) return fail(value.error());
-    return once(out_.targets, position, *value, line);
+    NONIO_TRY(const auto value, numbers_.number(a.value, line, "a target"));
+    return once(out_.targets, position, value, line);
   }
 
   Expected<void> reading(const Assignment& a, int direction, std::uint64_t line) {
@@ -105,9 +103,8 @@ class Parser {
     if (position == 0 || cycle == 0)
       return fail(
           at_line(line, "expected " + std::string(a.name) + "[position,cycle], found " + index(a)));
-    const auto value = numbers_.reading(a.value, line, "a position");
-    if (!value) return fail(value.error());
-    return once(out_.readings, std::tuple(direction, cycle, position), *value, line);
+    NONIO_TRY(const auto value, numbers_.reading(a.value, line, "a position"));
+    return once(out_.readings, std::tuple(direction, cycle, position), value, line);
   }
 
   template <class Map, class Key>
@@ -193,17 +190,16 @@ void add_line_note(Observations& obs, const Axis& axis) {
 }
 
 Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
-  const auto contents = Parser().parse(input.bytes);
-  if (!contents) return fail(contents.error());
-  if (auto ok = whole(*contents); !ok) return fail(ok.error());
-  const auto unit = unit_of_file(*contents, axis.rotary);
+  NONIO_TRY(const auto contents, Parser().parse(input.bytes));
+  if (auto ok = whole(contents); !ok) return fail(ok.error());
+  const auto unit = unit_of_file(contents, axis.rotary);
   if (!unit) return fail(unit.error());
   std::vector<double> targets;
-  for (const auto& [position, target] : contents->targets) targets.push_back(target.value);
+  for (const auto& [position, target] : contents.targets) targets.push_back(target.value);
   const int listed = sense_of(targets);
   if (listed == 0) return fail("expected targets that only rise or only fall (TGT_DATA)");
   Runs runs(input, axis, axis.rotary);
-  for (const auto& [key, value] : contents->readings) {
+  for (const auto& [key, value] : contents.readings) {
     const auto [direction, cycle, position] = key;
     const double target = targets[position - 1];
     // The difference before the conversion: it is exact there.
@@ -214,14 +210,6 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   }
   auto obs = runs.finish();
   if (obs) add_line_note(*obs, axis);
-  return obs;
-}
-
-Expected<Observations> read(const ReadInput& input) {
-  const auto axis = axis_of(input);
-  if (!axis) return fail(axis.error());
-  auto obs = read_file(input, **axis);
-  if (!obs) obs.error().file = input.measurement.file;
   return obs;
 }
 
@@ -245,7 +233,7 @@ Reader reader() {
   r.info = {"ecmc-iso230", "1.0", "Reference positions extracted by ecmc's tools (_ISO230.dat)."};
   r.recognises = recognises;
   r.reads = [](std::string_view kind) { return kind == "axis"; };
-  r.read = read;
+  r.read = [](const ReadInput& input) { return read_of_axis(input, read_file); };
   return r;
 }
 

@@ -75,9 +75,8 @@ Expected<std::vector<Touch>> touches_of(std::string_view bytes, const Wish& wish
                                               " fields: " + shown(line)));
     std::array<double, columns> values{};
     for (std::size_t k = 0; k < columns; ++k) {
-      const auto value = numbers.number(fields[k], lines.number(), "a number");
-      if (!value) return fail(value.error());
-      values[k] = *value;
+      NONIO_TRY(const auto value, numbers.number(fields[k], lines.number(), "a number"));
+      values[k] = value;
     }
     touches.push_back({{values[0] * wish.unit, values[1] * wish.unit, values[2] * wish.unit},
                        {values[3], values[4], values[5]},
@@ -234,38 +233,32 @@ void put(const std::vector<Centre>& centres, const Wish& wish, const std::vector
 }
 
 Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
-  const auto wish = wish_of(input, axis);
-  if (!wish) return fail(wish.error());
-  const auto touches = touches_of(input.bytes, *wish);
-  if (!touches) return fail(touches.error());
-  const auto also = also_turned(*touches, *wish, input.campaign);
-  if (!also) return fail(also.error());
-  const auto groups = groups_of(*touches, *wish, *also);
-  if (!groups) return fail(groups.error());
+  NONIO_TRY(const auto wish, wish_of(input, axis));
+  NONIO_TRY(const auto touches, touches_of(input.bytes, wish));
+  NONIO_TRY(const auto also, also_turned(touches, wish, input.campaign));
+  NONIO_TRY(const auto groups, groups_of(touches, wish, also));
   std::vector<Centre> centres;
   double rss = 0.0;
   int dof = 0;
-  for (const Group& group : *groups) {
-    auto centre = centre_of(group, *wish);
-    if (!centre) return fail(centre.error());
-    rss += centre->fit.rss;
-    dof += centre->fit.dof;
-    centres.push_back(std::move(*centre));
+  for (const Group& group : groups) {
+    NONIO_TRY(auto centre, centre_of(group, wish));
+    rss += centre.fit.rss;
+    dof += centre.fit.dof;
+    centres.push_back(std::move(centre));
   }
   const double s = std::sqrt(rss / dof);
-  Observations obs = begin(input.measurement, *also);
-  put(centres, *wish, *also, s, obs);
+  Observations obs = begin(input.measurement, also);
+  put(centres, wish, also, s, obs);
   if (!(s > 0.0)) obs.u.clear();  // touches without any scatter say nothing of it
   note_spheres(centres, s, dof, obs);
   return obs;
 }
 
 Expected<Observations> read(const ReadInput& input) {
-  const auto axis = axis_of(input);
-  if (!axis) return fail(axis.error());
-  if (!(*axis)->rotary)
-    return fail("expected a rotary axis, found the linear axis \"" + (*axis)->name + "\"");
-  auto obs = read_file(input, **axis);
+  NONIO_TRY(const auto axis, axis_of(input));
+  if (!axis->rotary)
+    return fail("expected a rotary axis, found the linear axis \"" + axis->name + "\"");
+  auto obs = read_file(input, *axis);
   if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
   return obs;
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 
 #include "lines.h"
@@ -57,12 +56,10 @@ Expected<std::vector<Role>> columns_of(const std::vector<std::string>& texts) {
 
 Expected<Map> map_of(const Settings& options, bool rotary) {
   Map map;
-  auto columns = columns_of(options.texts("columns"));
-  if (!columns) return fail(columns.error());
-  auto table = table_map_of(options, rotary);
-  if (!table) return fail(table.error());
-  static_cast<TableMap&>(map) = std::move(*table);
-  map.columns = std::move(*columns);
+  NONIO_TRY(auto columns, columns_of(options.texts("columns")));
+  NONIO_TRY(auto table, table_map_of(options, rotary));
+  static_cast<TableMap&>(map) = std::move(table);
+  map.columns = std::move(columns);
   for (const RowRange& rows : map.tables)
     if ((rows.way == Way::none) != map.has(Role::direction))
       return fail(of_option("tables", std::string("expected how the axis went, from a column "
@@ -136,10 +133,9 @@ class TableReader {
       return wrong("+, -, forward or reverse");
     if (role != Role::target && role != Role::value) return {};
     const bool target = role == Role::target;
-    const auto number = target ? numbers_.number(text, row.line, in_column("a target"))
-                               : numbers_.reading(text, row.line, in_column("a number"));
-    if (!number) return fail(number.error());
-    (target ? row.target : row.value) = *number;
+    NONIO_TRY(const auto number, target ? numbers_.number(text, row.line, in_column("a target"))
+                                        : numbers_.reading(text, row.line, in_column("a number")));
+    (target ? row.target : row.value) = number;
     return {};
   }
 
@@ -175,11 +171,10 @@ int listed_in(const std::vector<Row>& rows) {
 Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   const auto map = map_of(input.options, axis.rotary);
   if (!map) return fail(map.error());
-  const auto rows = TableReader(*map).read(input.bytes);
-  if (!rows) return fail(rows.error());
-  const int listed = listed_in(*rows);
+  NONIO_TRY(const auto rows, TableReader(*map).read(input.bytes));
+  const int listed = listed_in(rows);
   Runs runs(input, axis, axis.rotary);
-  for (const Row& row : *rows) {
+  for (const Row& row : rows) {
     if ((row.way == Way::forward || row.way == Way::reverse) && listed == 0)
       return fail(at_line(row.line,
                           "expected a first run \"forward\" whose targets only rise or only "
@@ -191,14 +186,6 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
       return fail(ok.error());
   }
   return runs.finish();
-}
-
-Expected<Observations> read(const ReadInput& input) {
-  const auto axis = axis_of(input);
-  if (!axis) return fail(axis.error());
-  auto obs = read_file(input, **axis);
-  if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
-  return obs;
 }
 
 }  // namespace
@@ -215,7 +202,7 @@ Reader reader() {
   // Nobody could tell it from any other table.
   r.recognises = [](std::string_view) { return false; };
   r.reads = [](std::string_view kind) { return kind == "axis"; };
-  r.read = read;
+  r.read = [](const ReadInput& input) { return read_of_axis(input, read_file); };
   return r;
 }
 

@@ -36,22 +36,20 @@ Expected<Units> confirmed(const Settings& options, bool rotary) {
 }
 
 Expected<Observations> read(const ReadInput& input) {
-  const auto axis = axis_of(input);
-  if (!axis) return fail(axis.error());
-  if ((*axis)->rotary == (input.measurement.kind == "angle"))
+  NONIO_TRY(const auto axis, axis_of(input));
+  if (axis->rotary == (input.measurement.kind == "angle"))
     return fail(
         "expected a rotary axis for kind axis, or a linear one for kind angle, found axis \"" +
-        (*axis)->name + "\" with kind " + input.measurement.kind);
+        axis->name + "\" with kind " + input.measurement.kind);
   const auto in_file = [&](Error error) {
     error.file = input.measurement.file;
     return fail(std::move(error));
   };
-  const auto units = confirmed(input.options, (*axis)->rotary);
-  if (!units) return fail(units.error());
+  NONIO_TRY(const auto units, confirmed(input.options, axis->rotary));
   const auto file = parse_run_file(input.bytes, "rta", "");
   if (!file) return in_file(file.error());
-  Runs runs(input, **axis, true);
-  if (auto ok = add_runs(*file, *units, runs); !ok) return in_file(ok.error());
+  Runs runs(input, *axis, true);
+  if (auto ok = add_runs(*file, units, runs); !ok) return in_file(ok.error());
   auto obs = runs.finish();
   if (!obs) return in_file(obs.error());
   if (auto ok = add_user_text(*file, input, *obs); !ok) return in_file(ok.error());

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "air.h"
 #include "nonio/sdk/fields.h"
 #include "runs_of.h"
 
@@ -12,6 +11,34 @@ namespace nonio::renishaw {
 using namespace readers;
 
 namespace {
+
+/// Air as the file's environment gives it.
+struct Air {
+  double temperature = 0.0;  ///< degC
+  double pressure = 0.0;     ///< Pa
+  double humidity = 0.0;     ///< %
+};
+
+/// Half the wavelength of the laser in air, m.
+///
+///   lambda_vac / 2n,  lambda_vac = 632.990577 nm (the value that explains two files to 0.1 ppm)
+///   (n-1)_s 1e8 = 8342.54 + 2406147/(130 - s^2) + 15998/(38.9 - s^2), s = 1/lambda_vac, 1/um
+///   (n-1)_tp    = p (n-1)_s / 96095.43 (1 + 1e-8 (0.601 - 0.00972 t) p) / (1 + 0.0036610 t)
+///   n           = 1 + (n-1)_tp - f (3.7345 - 0.0401 s^2) 1e-10, f: pressure of water vapour, Pa
+///
+/// Birch and Downs, Metrologia 30 (1993) 155 and 31 (1994) 315; f from the relative humidity by
+/// Magnus' formula, 611.2 Pa exp(17.62 t / (243.12 + t)).
+double half_wavelength(const Air& air) {
+  constexpr double lambda = 0.632990577;  // um, vacuum
+  constexpr double s2 = 1.0 / (lambda * lambda);
+  const double t = air.temperature, p = air.pressure;
+  const double standard = 1e-8 * (8342.54 + 2406147.0 / (130.0 - s2) + 15998.0 / (38.9 - s2));
+  const double dry =
+      p * standard / 96095.43 * (1.0 + 1e-8 * (0.601 - 0.00972 * t) * p) / (1.0 + 0.0036610 * t);
+  const double vapour = air.humidity / 100.0 * 611.2 * std::exp(17.62 * t / (243.12 + t));
+  const double n = 1.0 + dry - vapour * (3.7345 - 0.0401 * s2) * 1e-10;
+  return 1e-6 * lambda / (2.0 * n);
+}
 
 constexpr double sure = 1e-6;  ///< two real files agree to 0.1e-6
 
@@ -83,19 +110,18 @@ Expected<Observations> in_file(Expected<Observations> result, const ReadInput& i
 }
 
 Expected<Observations> read_rtl(const ReadInput& input) {
-  const auto axis = axis_of(input);
-  if (!axis) return fail(axis.error());
-  if ((*axis)->rotary)
+  NONIO_TRY(const auto axis, axis_of(input));
+  if (axis->rotary)
     return fail("expected a linear axis for linear measurements, found the rotary axis \"" +
-                (*axis)->name + "\"");
+                axis->name + "\"");
   const auto file = parse_run_file(input.bytes, "rtl", "Linear");
   if (!file) return in_file(fail(file.error()), input);
-  Runs runs(input, **axis, false);
+  Runs runs(input, *axis, false);
   if (auto ok = add_runs(*file, Units{}, runs); !ok) return in_file(fail(ok.error()), input);
   auto obs = runs.finish();
   if (!obs) return in_file(std::move(obs), input);
   if (auto ok = add_user_text(*file, input, *obs); !ok) return in_file(fail(ok.error()), input);
-  if (file->environment) add_environment(*file->environment, **axis, *obs);
+  if (file->environment) add_environment(*file->environment, *axis, *obs);
   return obs;
 }
 

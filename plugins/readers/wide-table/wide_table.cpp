@@ -3,18 +3,138 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
 
-#include "column_map.h"
 #include "lines.h"
+#include "nonio/sdk/column_map.h"
 #include "nonio/sdk/format.h"
 #include "runs.h"
 
 namespace nonio::wide_table {
 using namespace readers;
-using Role = Column::Role;
 
 namespace {
+
+/// What the user says of one column.
+struct Column {
+  enum class Role : std::uint8_t { ignore, target, reading, mean, two_sigma, both, dead_zone };
+  Role role = Role::ignore;
+  Way way = Way::none;
+  std::uint32_t run = 0;  ///< of a reading
+};
+
+using Role = Column::Role;
+
+/// Everything that a table does not say of itself and that nobody guesses.
+struct Map : TableMap {
+  std::vector<Column> columns;
+
+  bool means() const;
+  /// Of one of the tables: columns that say a run only have the way of the table.
+  Map of(const RowRange& table) const;
+};
+
+const char* const roles_help =
+    "\"target\", \"ignore\", a run and how it went (\"1 +\", \"1 -\", or \"1 forward\", \"1 "
+    "reverse\": as the targets are listed; \"1\" where option tables states how it went), or of a "
+    "print \"mean +\", \"mean -\", \"2s +\", \"2s "
+    "-\" (or forward, reverse), \"mean\", \"dead zone\"";
+
+Expected<Column> column_of(const std::string& text) {
+  const auto words = by_blanks(text);
+  const auto wrong = [&] {
+    return fail(
+        of_option("columns", std::string("expected ") + roles_help + "; found " + shown(text)));
+  };
+  if (words.size() == 1 && words[0] == "target") return Column{Role::target};
+  if (words.size() == 1 && words[0] == "ignore") return Column{Role::ignore};
+  if (words.size() == 1 && words[0] == "mean") return Column{Role::both};
+  if (words.size() == 1 && whole_number(words[0], 10000) != 0)
+    return Column{Role::reading, Way::none, whole_number(words[0], 10000)};
+  if (words.size() != 2) return wrong();
+  if (words[0] == "dead" && words[1] == "zone") return Column{Role::dead_zone};
+  Column column;
+  column.way = direction_of_word(words[1]);
+  if (column.way == Way::none) return wrong();
+  if (words[0] == "mean" || words[0] == "2s") {
+    column.role = words[0] == "mean" ? Role::mean : Role::two_sigma;
+    return column;
+  }
+  column.role = Role::reading;
+  column.run = whole_number(words[0], 10000);
+  if (column.run == 0) return wrong();
+  return column;
+}
+
+Expected<std::vector<Column>> columns_of(const std::vector<std::string>& texts) {
+  if (texts.empty())
+    return fail(of_option("columns", std::string("expected what each column is: ") + roles_help +
+                                         "; found none. A table does not state it, and it is not "
+                                         "guessed"));
+  std::vector<Column> columns;
+  std::set<std::tuple<Role, Way, std::uint32_t>> seen;
+  bool readings = false, means = false;
+  for (const std::string& text : texts) {
+    NONIO_TRY(const auto column, column_of(text));
+    if (column.role != Role::ignore && !seen.insert({column.role, column.way, column.run}).second)
+      return fail(of_option("columns", "expected \"" + text + "\" once, found it twice"));
+    readings = readings || column.role == Role::reading;
+    means = means || column.role == Role::mean;
+    columns.push_back(column);
+  }
+  if (!seen.contains({Role::target, Way::none, 0}))
+    return fail(of_option("columns", "expected one \"target\", found none"));
+  if (readings == means)
+    return fail(of_option("columns",
+                          readings ? "expected runs or means, found both; which of them count?"
+                                   : "expected at least one run (\"1 +\") or mean (\"mean +\")"));
+  return columns;
+}
+
+/// Each run has its way, of its column or of its table, and not of both.
+Expected<void> check_ways(const Map& map) {
+  for (const Column& c : map.columns)
+    for (const RowRange& table : map.tables)
+      if (c.role == Role::reading && (c.way == Way::none) == (table.way == Way::none))
+        return fail(of_option("columns",
+                              "expected how the axis went, of each run (\"1 +\") or of "
+                              "each of the tables (\"12-36 forward\"), found it " +
+                                  std::string(c.way == Way::none ? "nowhere" : "twice") +
+                                  " for run " + std::to_string(c.run)));
+  if (map.means() && map.tables.size() > 1)
+    return fail(of_option(
+        "tables", "expected one table of means, found " + std::to_string(map.tables.size())));
+  return {};
+}
+
+bool Map::means() const {
+  return std::any_of(columns.begin(), columns.end(),
+                     [](const Column& c) { return c.role == Role::mean; });
+}
+
+Map Map::of(const RowRange& table) const {
+  Map map = *this;
+  map.tables = {table};
+  for (Column& c : map.columns)
+    if (c.role == Role::reading && c.way == Way::none) c.way = table.way;
+  return map;
+}
+
+Expected<Map> map_of(const Settings& options, bool rotary) {
+  Map map;
+  NONIO_TRY(auto columns, columns_of(options.texts("columns")));
+  NONIO_TRY(auto table, table_map_of(options, rotary));
+  static_cast<TableMap&>(map) = std::move(table);
+  map.columns = std::move(columns);
+  if (map.positions && map.means())
+    return fail(of_option("values", "expected deviations in a table of means, found positions"));
+  if (auto ok = check_ways(map); !ok) return fail(ok.error());
+  return map;
+}
 
 /// The numbers of the table as they stand there; NaN where there is none.
 struct Table {
@@ -71,12 +191,11 @@ class TableReader {
       const bool target = role == Role::target;
       const std::string what =
           (target ? "a target in column " : "a number in column ") + std::to_string(k + 1);
-      const auto value = target ? numbers_.number(fields[k], number, what)
-                                : numbers_.reading(fields[k], number, what);
-      if (!value) return fail(value.error());
-      if (target) table_.targets.push_back(*value);
+      NONIO_TRY(const auto value, target ? numbers_.number(fields[k], number, what)
+                                         : numbers_.reading(fields[k], number, what));
+      if (target) table_.targets.push_back(value);
       if (!target) table_.decimals = std::max(table_.decimals, decimals_of(fields[k]));
-      values.push_back(*value);
+      values.push_back(value);
     }
     table_.rows.push_back(std::move(values));
     table_.lines.push_back(number);
@@ -188,28 +307,19 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   Table last;
   for (const RowRange& rows : all->tables) {
     const Map map = all->of(rows);
-    auto table = TableReader(map, numbers).read(input.bytes);
-    if (!table) return fail(table.error());
-    const int sense = sense_of(table->targets);
+    NONIO_TRY(auto table, TableReader(map, numbers).read(input.bytes));
+    const int sense = sense_of(table.targets);
     if (sense == 0)
-      return fail(at_line(table->lines.front(), "expected targets that only rise or only fall"));
+      return fail(at_line(table.lines.front(), "expected targets that only rise or only fall"));
     if (listed == 0) listed = sense;
-    if (auto ok = map.means() ? check_print(map, *table, listed) : no_average(map, *table, listed);
+    if (auto ok = map.means() ? check_print(map, table, listed) : no_average(map, table, listed);
         !ok)
       return fail(ok.error());
-    if (auto ok = add_rows(map, *table, listed, runs); !ok) return fail(ok.error());
-    last = std::move(*table);
+    if (auto ok = add_rows(map, table, listed, runs); !ok) return fail(ok.error());
+    last = std::move(table);
   }
   auto obs = runs.finish();
   if (obs && all->means()) note_means(*all, last, axis.rotary, *obs);
-  return obs;
-}
-
-Expected<Observations> read(const ReadInput& input) {
-  const auto axis = axis_of(input);
-  if (!axis) return fail(axis.error());
-  auto obs = read_file(input, **axis);
-  if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
   return obs;
 }
 
@@ -229,7 +339,7 @@ Reader reader() {
   // Nobody could tell it from any other table.
   r.recognises = [](std::string_view) { return false; };
   r.reads = [](std::string_view kind) { return kind == "axis"; };
-  r.read = read;
+  r.read = [](const ReadInput& input) { return read_of_axis(input, read_file); };
   return r;
 }
 

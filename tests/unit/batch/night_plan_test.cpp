@@ -22,7 +22,7 @@ class NightPlanTest : public ::testing::Test {
       CampaignState c;
       c.id = "c" + std::to_string(i);
       c.folder = "f\xe9/" + std::to_string(i);
-      c.reason = KeptText::shared("no earlier result");
+      c.reason = "no earlier result";
       campaigns_.push_back(c);
     }
     campaigns_[3].action = CampaignState::Action::unchanged;
@@ -30,8 +30,8 @@ class NightPlanTest : public ::testing::Test {
     campaigns_[3].shows_history = true;
     campaigns_[3].history = "0123";
     campaigns_[5].status = evaluation::Status::failed;
-    campaigns_[5].set_errors({Error{"why"}, Error{"and why"}});
-    campaigns_[7].add_twin({0xfeedULL, 3});
+    campaigns_[5].errors = {Error{"why"}, Error{"and why"}};
+    campaigns_[7].twins.emplace_back(0xfeedULL, 3);
     plan_.night = {4, "2026-01-01"};
     plan_.shards.resize(7);
   }
@@ -58,7 +58,7 @@ TEST_F(NightPlanTest, EveryCampaignIsOnTheListOfItsShardOrOnTheRest) {
     std::string before;
     for (const Listed& one : *part) {
       EXPECT_EQ(shard_of(one.campaign.id, 7), shard);
-      EXPECT_LT(before, one.campaign.id.str());  // in their order
+      EXPECT_LT(before, one.campaign.id);  // in their order
       before = one.campaign.id;
       EXPECT_EQ(one.campaign.folder, "f\xe9/" + before.substr(1));
       EXPECT_EQ(one.campaign.reason, std::string("no earlier result"));
@@ -79,8 +79,8 @@ TEST_F(NightPlanTest, EveryCampaignIsOnTheListOfItsShardOrOnTheRest) {
   EXPECT_EQ(unchanged.status, evaluation::Status::attention);
   EXPECT_TRUE(unchanged.shows_history);
   EXPECT_EQ(unchanged.history, std::string("0123"));
-  ASSERT_EQ((*rest)[1].campaign.errors().size(), 2U);
-  EXPECT_EQ((*rest)[1].campaign.errors()[1].message, "and why");
+  ASSERT_EQ((*rest)[1].campaign.errors.size(), 2U);
+  EXPECT_EQ((*rest)[1].campaign.errors[1].message, "and why");
 }
 
 TEST_F(NightPlanTest, NothingButListsAndPlanIsLeft) {

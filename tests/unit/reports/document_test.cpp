@@ -396,7 +396,7 @@ TEST(Pdf, KeptForLongItSaysColoursPropertiesAndIdentifier) {
   ASSERT_TRUE(one && again);
   EXPECT_EQ(*one, *again);
   for (const char* says :
-       {"<rdf:li xml:lang=\"x-default\">Prüfbericht &lt;7&gt; &amp; &quot;mehr&quot;</rdf:li>",
+       {"<rdf:li xml:lang=\"x-default\">Prüfbericht &lt;7&gt; &amp; \"mehr\"</rdf:li>",
         "<rdf:li>R&amp;D</rdf:li>", "<xmp:CreateDate>2026-11-03T00:00:00Z</xmp:CreateDate>",
         "<pdf:Producer>Haru", "/Subtype /XML", "/DestOutputProfile ", "/S /GTS_PDFA1"})
     EXPECT_EQ(count(*one, says), 1U) << says;

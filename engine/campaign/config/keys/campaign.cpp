@@ -14,20 +14,13 @@ constexpr Key campaign_keys[] = {
      .required = true,
      .wanted = campaign_id_wanted,
      .text = campaign_id_rule},
-    {.name = "customer", .holds = text, .help = "Name of the customer."},
-    {.name = "site", .holds = text, .help = "Location of the machine."},
-    {.name = "operator", .holds = text, .help = "Name of the operator."},
-    {.name = "customer_address",
-     .holds = text,
-     .help = "Address or contact of the customer, for the certificate."},
-    {.name = "date", .holds = date, .help = "Day of the measurements, or the first of them."},
-    {.name = "end_date",
-     .holds = date,
-     .help = "Last day of the measurements, if there was more than one."},
-    {.name = "received",
-     .holds = date,
-     .help = "Day on which the item was received, for the "
-             "certificate."},
+    {"customer", text, "Name of the customer."},
+    {"site", text, "Location of the machine."},
+    {"operator", text, "Name of the operator."},
+    {"customer_address", text, "Address or contact of the customer, for the certificate."},
+    {"date", date, "Day of the measurements, or the first of them."},
+    {"end_date", date, "Last day of the measurements, if there was more than one."},
+    {"received", date, "Day on which the item was received, for the certificate."},
     {.name = "purpose",
      .holds = text,
      .help = "Reason for the measurements. Checks are a series of their own in the machine's "
@@ -62,36 +55,27 @@ constexpr Key certificate_of_campaign[] = {
     procedure_key,
     title_key,
     decision_rule_key,
-    {.name = "deviations",
-     .holds = text,
-     .help = "Additions to the method, deviations from it and exclusions, in addition to those "
-             "that the program finds."},
+    {"deviations", text,
+     "Additions to the method, deviations from it and exclusions, in addition to those "
+     "that the program finds."},
     {.name = "no_other_deviations_by",
      .holds = text,
      .help = "The person who states that, apart from the departures listed in the certificate, the "
              "method was followed. Without it no such statement is printed.",
      .former = "nothing_else_by"},
-    {.name = "conditions",
-     .holds = text,
-     .help = "Conditions that influence the results; required if no readings have temperatures."},
-    {.name = "opinions",
-     .holds = text,
-     .help = "Opinions and interpretations; the certificate marks them as such."},
-    {.name = "amendment",
-     .holds = text,
-     .help = "Reason why an earlier certificate is "
-             "replaced."},
-    {.name = "customer_data",
-     .holds = texts,
-     .help = "Keys of this file with values stated by the customer, [\"machine.serial\"]; the "
-             "certificate marks them."},
+    {"conditions", text,
+     "Conditions that influence the results; required if no readings have temperatures."},
+    {"opinions", text, "Opinions and interpretations; the certificate marks them as such."},
+    {"amendment", text, "Reason why an earlier certificate is replaced."},
+    {"customer_data", texts,
+     "Keys of this file with values stated by the customer, [\"machine.serial\"]; the "
+     "certificate marks them."},
 };
 
 constexpr Key accepted_finding_keys[] = {
     {.name = "finding",
      .holds = text,
-     .help = "Id of a finding that makes readings implausible, "
-             "\"plausibility.passes-identical\".",
+     .help = "Id of a finding that makes readings implausible, \"plausibility.passes-identical\".",
      .required = true,
      .missing = "expected the id of a finding",
      .wanted = "expected the id of a finding, \"plausibility.passes-identical\"; found \"{}\"",
@@ -106,8 +90,7 @@ constexpr Key accepted_finding_keys[] = {
 constexpr Key tables_keys[] = {
     {.name = "accept",
      .holds = tables,
-     .help = "Findings plausibility.* that do not prevent controller tables, each with the "
-             "reason.",
+     .help = "Findings plausibility.* that do not prevent controller tables, each with the reason.",
      .keys = accepted_finding_keys,
      .former = "may_stand"},
 };

@@ -7,22 +7,16 @@
 namespace nonio::config::declared {
 
 inline constexpr Key instrument_keys[] = {
-    {.name = "maker", .holds = text, .help = "Maker of the measuring instrument."},
-    {.name = "model", .holds = text, .help = "Model of the measuring instrument."},
-    {.name = "serial", .holds = text, .help = "Serial number of the measuring instrument."},
-    {.name = "calibrated",
-     .holds = date,
-     .help = "Day on which the measuring instrument was calibrated."},
-    {.name = "certificate",
-     .holds = text,
-     .help = "Number of the calibration certificate of the measuring instrument."},
-    {.name = "issuer",
-     .holds = text,
-     .help = "Laboratory that issued the calibration certificate of the measuring instrument."},
-    {.name = "valid_until",
-     .holds = date,
-     .help = "Last day on which the calibration is valid. Default: two years after it. A "
-             "certificate requires a valid calibration on the day of the measurement."},
+    {"maker", text, "Maker of the measuring instrument."},
+    {"model", text, "Model of the measuring instrument."},
+    {"serial", text, "Serial number of the measuring instrument."},
+    {"calibrated", date, "Day on which the measuring instrument was calibrated."},
+    {"certificate", text, "Number of the calibration certificate of the measuring instrument."},
+    {"issuer", text,
+     "Laboratory that issued the calibration certificate of the measuring instrument."},
+    {"valid_until", date,
+     "Last day on which the calibration is valid. Default: two years after it. A "
+     "certificate requires a valid calibration on the day of the measurement."},
     {.name = "U_fixed_um",
      .holds = number,
      .help = "Expanded uncertainty (k = 2) of the instrument: the part that does not depend on "
@@ -91,17 +85,14 @@ inline constexpr Key sensor_keys[] = {
              "pressure, humidity.",
      .required = true,
      .choices = measured_by_sensor},
-    {.name = "maker", .holds = text, .help = "Maker of the sensor."},
-    {.name = "model", .holds = text, .help = "Model of the sensor."},
-    {.name = "serial", .holds = text, .help = "Serial number of the sensor."},
-    {.name = "calibrated", .holds = date, .help = "Day on which the sensor was calibrated."},
-    {.name = "valid_until",
-     .holds = date,
-     .help = "Last day on which the calibration is valid. Default: two years after it."},
-    {.name = "certificate",
-     .holds = text,
-     .help = "Number of the calibration certificate of the sensor."},
-    {.name = "issuer", .holds = text, .help = "Laboratory that issued the certificate."},
+    {"maker", text, "Maker of the sensor."},
+    {"model", text, "Model of the sensor."},
+    {"serial", text, "Serial number of the sensor."},
+    {"calibrated", date, "Day on which the sensor was calibrated."},
+    {"valid_until", date,
+     "Last day on which the calibration is valid. Default: two years after it."},
+    {"certificate", text, "Number of the calibration certificate of the sensor."},
+    {"issuer", text, "Laboratory that issued the certificate."},
 };
 
 inline constexpr Key square_keys[] = {
@@ -166,19 +157,14 @@ inline constexpr Key environment_keys[] = {
      .wanted = some_arcsec,
      .least = 0.0,
      .most = most_arcsec},
-    {.name = "warm_up",
-     .holds = text,
-     .help = "Warm-up of the machine before the test, for the certificate: \"30 min at half "
-             "feed\"."},
-    {.name = "sensors",
-     .holds = text,
-     .help = "Positions of the temperature sensors, for the certificate."},
-    {.name = "normalised",
-     .holds = flag,
-     .help = "Whether the readings were corrected to the reference temperature 20 degC with "
-             "expansion_um_per_m_K of their axis before they came into the file, for the "
-             "certificate. Default: as the file states; else the certificate states that it is not "
-             "stated."},
+    {"warm_up", text,
+     "Warm-up of the machine before the test, for the certificate: \"30 min at half feed\"."},
+    {"sensors", text, "Positions of the temperature sensors, for the certificate."},
+    {"normalised", flag,
+     "Whether the readings were corrected to the reference temperature 20 degC with "
+     "expansion_um_per_m_K of their axis before they came into the file, for the "
+     "certificate. Default: as the file states; else the certificate states that it is not "
+     "stated."},
     {.name = "drift_minutes",
      .holds = number,
      .help = "Duration of the drift test; for a longer measurement the drift is scaled up.",

@@ -6,8 +6,7 @@ namespace declared {
 
 constexpr Words an_asset_or_serial =
     "The machine as `nonio machine list` names it: its asset, or maker and serial with a space "
-    "between "
-    "them.";
+    "between them.";
 constexpr Key written_by = {
     .name = "by", .holds = text, .help = "Name of the author of this entry.", .required = true};
 constexpr Choice event_kinds[] = {{"crash"},      {"repair"},   {"compensation"}, {"moved"},
@@ -15,9 +14,7 @@ constexpr Choice event_kinds[] = {{"crash"},      {"repair"},   {"compensation"}
 constexpr Key event_keys[] = {
     {.name = "date", .holds = date, .help = "Day on which it happened.", .required = true},
     {.name = "machine", .holds = text, .help = an_asset_or_serial, .required = true},
-    {.name = "axis",
-     .holds = text,
-     .help = "The axis concerned, as the control names it. Default: the whole machine."},
+    {"axis", text, "The axis concerned, as the control names it. Default: the whole machine."},
     {.name = "kind",
      .holds = text,
      .help = "Kind of event: crash, repair, compensation (a table was loaded into the control), "
@@ -28,7 +25,7 @@ constexpr Key event_keys[] = {
      .holds = text,
      .help = "Description in the words of a witness.",
      .required = true},
-    {.name = "by", .holds = text, .help = "Name of the author of this entry."},
+    {"by", text, "Name of the author of this entry."},
 };
 
 constexpr Key acknowledged_keys[] = {
@@ -38,16 +35,15 @@ constexpr Key acknowledged_keys[] = {
      .help = "Id of the finding, or kind of a line of the daily list.",
      .required = true},
     {.name = "machine", .holds = text, .help = an_asset_or_serial, .required = true},
-    {.name = "axis", .holds = text, .help = "The axis. Default: all axes."},
-    {.name = "quantity", .holds = text, .help = "The quantity, such as B_mean. Default: all."},
+    {"axis", text, "The axis. Default: all axes."},
+    {"quantity", text, "The quantity, such as B_mean. Default: all."},
     {.name = "until",
      .holds = date,
      .help = "Last day of the acknowledgement; then the finding is new again.",
      .required = true},
-    {.name = "value",
-     .holds = number,
-     .help = "Value of the quantity on that day, in its unit: the finding is new again if the "
-             "value changes by more than U."},
+    {"value", number,
+     "Value of the quantity on that day, in its unit: the finding is new again if the "
+     "value changes by more than U."},
     {.name = "U",
      .holds = number,
      .help = "Expanded uncertainty (k = 2) of that value.",
@@ -67,10 +63,10 @@ constexpr Key withdrawn_keys[] = {
      .help = "As the acknowledgement above that is withdrawn has it.",
      .required = true},
     {.name = "machine", .holds = text, .help = "As the acknowledgement has it.", .required = true},
-    {.name = "axis", .holds = text, .help = "As the acknowledgement has it."},
-    {.name = "quantity", .holds = text, .help = "As the acknowledgement has it."},
+    {"axis", text, "As the acknowledgement has it."},
+    {"quantity", text, "As the acknowledgement has it."},
     written_by,
-    {.name = "why", .holds = text, .help = "Reason why it does not count any more."},
+    {"why", text, "Reason why it does not count any more."},
 };
 
 constexpr Key forgotten_keys[] = {

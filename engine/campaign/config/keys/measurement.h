@@ -91,10 +91,8 @@ inline constexpr Key measurement_keys[] = {
      .wanted = "expected line numbers of the file, whole and from 1",
      .least = 1.0,
      .most = 4e9},
-    {.name = "exclude_reason",
-     .holds = text,
-     .help = "Reason why the lines of exclude are excluded; without it no certificate is "
-             "issued."},
+    {"exclude_reason", text,
+     "Reason why the lines of exclude are excluded; without it no certificate is issued."},
     {.name = "channel",
      .holds = tables,
      .help = "What is known of a channel that was recorded next to the deviations.",

@@ -53,9 +53,7 @@ inline constexpr Key parameter_keys[] = {
      .required = true,
      .missing = "expected one of {}",
      .choices = unit_choices},
-    {.name = "start",
-     .holds = number,
-     .help = "Start value of the search, in the parameter's unit; required with range."},
+    {"start", number, "Start value of the search, in the parameter's unit; required with range."},
     {.name = "range",
      .holds = span,
      .help = "Range of the search, two values in the parameter's unit. Without start and range "
@@ -107,9 +105,7 @@ inline constexpr TextRule language = {.letters = "a-z", .shortest = 2, .longest 
 inline constexpr Key languages_key = {
     .name = "languages",
     .holds = texts,
-    .help =
-        "One or two languages of the certificate: de, en, es, it, "
-        "zh. Default: en.",
+    .help = "One or two languages of the certificate: de, en, es, it, zh. Default: en.",
     .wanted = "expected one or two languages, [\"it\", \"en\"]",
     .text = language,
     .longest_list = 2,
@@ -129,18 +125,15 @@ inline constexpr Key location_key = {.name = "location",
                                      .otherwise = "customer",
                                      .choices = locations};
 
-inline constexpr Key procedure_key = {.name = "procedure",
-                                      .holds = text,
-                                      .help =
-                                          "The laboratory's own procedure, in addition to the "
-                                          "standards."};
+inline constexpr Key procedure_key = {"procedure", text,
+                                      "The laboratory's own procedure, in addition to the "
+                                      "standards."};
 
 inline constexpr Key title_key = {
     .name = "title",
     .holds = translations,
     .help =
-        "Title of the certificate: a text, or texts by language, { it = \"...\", en = "
-        "\"...\" }.",
+        "Title of the certificate: a text, or texts by language, { it = \"...\", en = \"...\" }.",
     .wanted = "expected a text, or texts by language, { it = \"...\", en = \"...\" }",
     .text = language};
 
@@ -169,11 +162,8 @@ inline constexpr Key required_format() {
 
 inline constexpr Key run_key = {
     .name = "run", .holds = table, .help = "Selected analyses and outputs.", .keys = run_keys};
-inline constexpr Key options_key = {
-    .name = "options",
-    .holds = options,
-    .help =
-        "Options of plugins, [options.iso230-2]; `nonio plugin list` "
-        "lists them."};
+inline constexpr Key options_key = {"options", options,
+                                    "Options of plugins, [options.iso230-2]; `nonio plugin list` "
+                                    "lists them."};
 
 }  // namespace nonio::config::declared

@@ -86,17 +86,14 @@ constexpr Key cmc_keys[] = {
 };
 
 constexpr Key laboratory_keys[] = {
-    {.name = "name", .holds = text, .help = "Name of the laboratory."},
-    {.name = "address", .holds = text, .help = "Address of the laboratory."},
-    {.name = "country", .holds = text, .help = "Country of the laboratory, two letters: \"IT\"."},
-    {.name = "accreditation",
-     .holds = text,
-     .help = "Number of the accreditation; for accredited laboratories only."},
-    {.name = "authoriser",
-     .holds = text,
-     .help = "Name of the person who authorises certificates; several are separated by ';'. "
-             "No other person can approve one."},
-    {.name = "contact", .holds = text, .help = "Contact of the laboratory."},
+    {"name", text, "Name of the laboratory."},
+    {"address", text, "Address of the laboratory."},
+    {"country", text, "Country of the laboratory, two letters: \"IT\"."},
+    {"accreditation", text, "Number of the accreditation; for accredited laboratories only."},
+    {"authoriser", text,
+     "Name of the person who authorises certificates; several are separated by ';'. "
+     "No other person can approve one."},
+    {"contact", text, "Contact of the laboratory."},
     {.name = "cmc",
      .holds = table,
      .help = "The smallest expanded uncertainty (k = 2) that the accreditation covers, a + b L: no "
@@ -167,10 +164,9 @@ constexpr Key database_keys[] = {
      .wanted = "expected postgresql://user@host/name",
      .may_be_secret = true,
      .text = {.begins = "postgresql://"}},
-    {.name = "password_file",
-     .holds = text,
-     .help = "File with the password, for its owner alone (chmod 600). Default: as libpq finds it: "
-             "service, ~/.pgpass, PGPASSFILE, PGPASSWORD."},
+    {"password_file", text,
+     "File with the password, for its owner alone (chmod 600). Default: as libpq finds it: "
+     "service, ~/.pgpass, PGPASSFILE, PGPASSWORD."},
     {.name = "schema",
      .holds = text,
      .help = "Schema of this site's tables; each site of a database has its own.",
@@ -186,10 +182,9 @@ constexpr Key database_keys[] = {
 };
 
 constexpr Key due_keys[] = {
-    {.name = "machine",
-     .holds = text,
-     .help = "The machine, as `nonio machine list` names it; without it, all machines that no "
-             "other entry names."},
+    {"machine", text,
+     "The machine, as `nonio machine list` names it; without it, all machines that no "
+     "other entry names."},
     {.name = "months",
      .holds = whole,
      .help = "From the last campaign to the next.",
@@ -216,43 +211,28 @@ constexpr Key signer_keys[] = {
      .holds = text,
      .help = "Subject of the certificate, or its SHA-256.",
      .required = true},
-    {.name = "from", .holds = date, .help = "First day of its signatures."},
-    {.name = "until", .holds = date, .help = "Last day of its signatures."},
+    {"from", date, "First day of its signatures."},
+    {"until", date, "Last day of its signatures."},
 };
 constexpr Key signing_keys[] = {
-    {.name = "pkcs12",
-     .holds = text,
-     .help = "The key as a file, relative to the site; alternative to pkcs11."},
-    {.name = "pkcs11",
-     .holds = text,
-     .help = "The key on a token, \"pkcs11:token=lab;object=calib\"; alternative to pkcs12."},
-    {.name = "module", .holds = text, .help = "PKCS#11 library of the token."},
-    {.name = "certificates", .holds = text, .help = "PEM file with the intermediate certificates."},
-    {.name = "password_file",
-     .holds = text,
-     .help = "File with the password; alternative to password_env and password_credential."},
-    {.name = "password_env", .holds = text, .help = "Environment variable with the password."},
-    {.name = "password_credential",
-     .holds = text,
-     .help = "Credential of systemd with the password."},
-    {.name = "trust",
-     .holds = text,
-     .help = "PEM file with one root, for signers and for time servers; alternative to "
-             "signer_roots and time_stamp_roots."},
-    {.name = "signer_roots",
-     .holds = text,
-     .help = "PEM file with the roots of signers, for `nonio certificate verify`."},
-    {.name = "time_stamp_roots",
-     .holds = text,
-     .help = "PEM file with the roots of time servers; they make no signer."},
-    {.name = "revocation",
-     .holds = text,
-     .help = "PEM file with revocation lists, for `nonio certificate verify`."},
-    {.name = "signer",
-     .holds = text,
-     .help =
-         "Signer that `nonio certificate verify` expects: subject, or SHA-256 of the certificate; "
-         "alternative to signers."},
+    {"pkcs12", text, "The key as a file, relative to the site; alternative to pkcs11."},
+    {"pkcs11", text,
+     "The key on a token, \"pkcs11:token=lab;object=calib\"; alternative to pkcs12."},
+    {"module", text, "PKCS#11 library of the token."},
+    {"certificates", text, "PEM file with the intermediate certificates."},
+    {"password_file", text,
+     "File with the password; alternative to password_env and password_credential."},
+    {"password_env", text, "Environment variable with the password."},
+    {"password_credential", text, "Credential of systemd with the password."},
+    {"trust", text,
+     "PEM file with one root, for signers and for time servers; alternative to "
+     "signer_roots and time_stamp_roots."},
+    {"signer_roots", text, "PEM file with the roots of signers, for `nonio certificate verify`."},
+    {"time_stamp_roots", text, "PEM file with the roots of time servers; they make no signer."},
+    {"revocation", text, "PEM file with revocation lists, for `nonio certificate verify`."},
+    {"signer", text,
+     "Signer that `nonio certificate verify` expects: subject, or SHA-256 of the certificate; "
+     "alternative to signers."},
     {.name = "signers",
      .holds = tables,
      .help =
@@ -329,20 +309,14 @@ constexpr Key mail_keys[] = {
      .wanted = "expected 1 to 65535",
      .least = 1,
      .most = 65535},
-    {.name = "trust",
-     .holds = text,
-     .help = "PEM file with the roots that the server's certificate must come from; without it "
-             "those of the system."},
-    {.name = "user",
-     .holds = text,
-     .help = "Name at the server; without it the mail is sent without a login."},
-    {.name = "password_file",
-     .holds = text,
-     .help = "File with the password; alternative to password_env and password_credential."},
-    {.name = "password_env", .holds = text, .help = "Environment variable with the password."},
-    {.name = "password_credential",
-     .holds = text,
-     .help = "Credential of systemd with the password."},
+    {"trust", text,
+     "PEM file with the roots that the server's certificate must come from; without it "
+     "those of the system."},
+    {"user", text, "Name at the server; without it the mail is sent without a login."},
+    {"password_file", text,
+     "File with the password; alternative to password_env and password_credential."},
+    {"password_env", text, "Environment variable with the password."},
+    {"password_credential", text, "Credential of systemd with the password."},
 };
 
 constexpr Choice terminal_languages[] = {{"de"}, {"en"}, {"it"}};

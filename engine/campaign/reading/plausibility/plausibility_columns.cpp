@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "campaign/reading/plausibility/plausibility.h"
 #include "campaign/reading/plausibility/plausibility_strokes.h"
 #include "nonio/math/rotary.h"
-#include "nonio/sdk/format.h"
 
 namespace nonio::reading {
 namespace {

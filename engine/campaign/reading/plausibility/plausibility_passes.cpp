@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include "campaign/reading/plausibility/plausibility.h"
 #include "campaign/reading/plausibility/plausibility_strokes.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "nonio/reports/number.h"
 #include "nonio/sdk/format.h"

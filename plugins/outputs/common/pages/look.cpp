@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <set>
 
 namespace nonio::pages {
@@ -167,14 +166,11 @@ Expected<Look> read_look(const Templates& templates, const std::string& name, co
 
 Expected<std::shared_ptr<const reports::Fonts>> fonts_of(const Templates& templates,
                                                          const Look& look) {
-  const auto regular = font_file(templates, look.regular);
-  if (!regular) return fail(regular.error());
-  const auto bold = font_file(templates, look.bold);
-  if (!bold) return fail(bold.error());
-  if (look.wide.empty()) return reports::shared_fonts({*regular, look.regular}, {*bold, look.bold});
-  const auto wide = font_file(templates, look.wide);
-  if (!wide) return fail(wide.error());
-  return reports::shared_fonts({*regular, look.regular}, {*bold, look.bold}, {*wide, look.wide});
+  NONIO_TRY(const auto regular, font_file(templates, look.regular));
+  NONIO_TRY(const auto bold, font_file(templates, look.bold));
+  if (look.wide.empty()) return reports::shared_fonts({regular, look.regular}, {bold, look.bold});
+  NONIO_TRY(const auto wide, font_file(templates, look.wide));
+  return reports::shared_fonts({regular, look.regular}, {bold, look.bold}, {wide, look.wide});
 }
 
 }  // namespace nonio::pages

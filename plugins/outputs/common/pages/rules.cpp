@@ -2,7 +2,6 @@
 #include "rules.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "nonio/reports/number.h"

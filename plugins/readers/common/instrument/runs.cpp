@@ -94,6 +94,14 @@ Expected<const Axis*> axis_of(const ReadInput& input) {
   return axis;
 }
 
+Expected<Observations> read_of_axis(const ReadInput& input,
+                                    Expected<Observations> (*read)(const ReadInput&, const Axis&)) {
+  NONIO_TRY(const Axis* axis, axis_of(input));
+  auto obs = read(input, *axis);
+  if (!obs && obs.error().key.empty()) obs.error().file = input.measurement.file;
+  return obs;
+}
+
 Runs::Runs(const ReadInput& input, const Axis& axis, bool angular) {
   const Measurement& m = input.measurement;
   obs_.measurement = m.id;

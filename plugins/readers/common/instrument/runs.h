@@ -46,6 +46,9 @@ std::uint32_t whole_number(std::string_view text, std::uint32_t most);
 
 /// The axis of the measurement, which must be in the manifest.
 Expected<const Axis*> axis_of(const ReadInput& input);
+/// What `read` gives for that axis. An error that is not one of an option names the file.
+Expected<Observations> read_of_axis(const ReadInput& input,
+                                    Expected<Observations> (*read)(const ReadInput&, const Axis&));
 
 /// Whether a name that a file says is that of an axis of the machine, or of the control on the
 /// other side of a gantry, and of another one than the measurement's.

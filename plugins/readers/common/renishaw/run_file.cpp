@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <limits>
 #include <map>
 
@@ -114,8 +113,7 @@ Expected<Blocks> blocks_of(std::string_view bytes) {
   }
   if (!ended)
     return fail(at_line(lines.number(),
-                        "expected EOF:: at the end, found the end of the file; was "
-                        "it cut?"));
+                        "expected EOF:: at the end, found the end of the file; was it cut?"));
   return blocks;
 }
 
@@ -134,11 +132,10 @@ Expected<FileLine> value_of(const Block& in, std::string_view key) {
 }
 
 Expected<std::uint32_t> count_of(const Block& in, std::string_view key, std::uint32_t most) {
-  const auto value = value_of(in, key);
-  if (!value) return fail(value.error());
-  if (const std::uint32_t n = whole_number(value->text, most); n != 0) return n;
-  return fail(at_line(value->number, std::string(key) + ": expected a whole number from 1 to " +
-                                         std::to_string(most) + ", found " + shown(value->text)));
+  NONIO_TRY(const auto value, value_of(in, key));
+  if (const std::uint32_t n = whole_number(value.text, most); n != 0) return n;
+  return fail(at_line(value.number, std::string(key) + ": expected a whole number from 1 to " +
+                                        std::to_string(most) + ", found " + shown(value.text)));
 }
 
 class Parser {
@@ -156,9 +153,8 @@ class Parser {
 
  private:
   Expected<void> header(std::string_view wanted_type, std::string_view wanted_owner) {
-    const auto in = block(blocks_, "HEADER");
-    if (!in) return fail(in.error());
-    const auto type = value_of(**in, "File type"), owner = value_of(**in, "Owner");
+    NONIO_TRY(const auto in, block(blocks_, "HEADER"));
+    const auto type = value_of(*in, "File type"), owner = value_of(*in, "Owner");
     if (!type) return fail(type.error());
     if (!same_letters(type->text, wanted_type)) {
       Error error = other_type(type->text, wanted_type);
@@ -173,18 +169,16 @@ class Parser {
                                              "instrument's program shows for it"));
     file_.type = type->text;
     file_.owner = owner->text;
-    if (const auto version = value_of(**in, "Version no")) file_.version = version->text;
+    if (const auto version = value_of(*in, "Version no")) file_.version = version->text;
     return {};
   }
 
   Expected<void> targets() {
-    const auto in = block(blocks_, "TARGET DATA");
-    if (!in) return fail(in.error());
-    const auto count = count_of(**in, "Target-count", most_targets);
-    if (!count) return fail(count.error());
+    NONIO_TRY(const auto in, block(blocks_, "TARGET DATA"));
+    NONIO_TRY(const auto count, count_of(*in, "Target-count", most_targets));
     bool list = false;
-    std::uint64_t last = (*in)->line;
-    for (const FileLine& line : (*in)->lines) {
+    std::uint64_t last = in->line;
+    for (const FileLine& line : in->lines) {
       const auto [key, value] = split_key(line.text);
       if (same_letters(key, "Flags") && line.text.find(':') != line.text.npos) {
         flags(value);
@@ -196,8 +190,8 @@ class Parser {
         last = line.number;
       }
     }
-    if (file_.targets.size() != *count)
-      return fail(at_line(last, "expected " + std::to_string(*count) +
+    if (file_.targets.size() != count)
+      return fail(at_line(last, "expected " + std::to_string(count) +
                                     " targets (Target-count), found " +
                                     std::to_string(file_.targets.size())));
     if (sense_of(file_.targets) == 0)
@@ -207,9 +201,8 @@ class Parser {
 
   Expected<void> target_line(const FileLine& line) {
     for (const std::string_view field : by_blanks(line.text)) {
-      const auto target = numbers_.number(field, line.number, "a target");
-      if (!target) return fail(target.error());
-      file_.targets.push_back(*target);
+      NONIO_TRY(const auto target, numbers_.number(field, line.number, "a target"));
+      file_.targets.push_back(target);
     }
     return {};
   }
@@ -274,9 +267,8 @@ class Parser {
     if (row.target == 0)
       return fail(at_line(line.number, "expected a target number from 1 to " + std::to_string(n) +
                                            ", found " + shown(fields[1])));
-    const auto value = numbers_.reading(fields[2], line.number, "a deviation");
-    if (!value) return fail(value.error());
-    row.value = *value;
+    NONIO_TRY(const auto value, numbers_.reading(fields[2], line.number, "a deviation"));
+    row.value = value;
     std::uint64_t& first = seen[(row.run - 1) * n + row.target - 1];
     if (first != 0)
       return fail(at_line(line.number, "run " + std::to_string(row.run) + ", target " +
@@ -344,9 +336,8 @@ Expected<RunFile> parse_run_file(std::string_view bytes, std::string_view type,
                                  std::string_view owner) {
   if (const std::string_view found = type_of(bytes); !found.empty() && !same_letters(found, type))
     return fail(other_type(found, type));
-  const auto blocks = blocks_of(bytes);
-  if (!blocks) return fail(blocks.error());
-  return Parser(*blocks).parse(type, owner);
+  NONIO_TRY(const auto blocks, blocks_of(bytes));
+  return Parser(blocks).parse(type, owner);
 }
 
 }  // namespace nonio::renishaw

@@ -125,8 +125,7 @@ struct Typed {
 Expected<void> add_runs(const RunFile& file, const Units& units, Runs& runs) {
   const auto passes = passes_of(file);
   if (!passes) return fail(passes.error());
-  const auto both = bidirectional(*passes);
-  if (!both) return fail(both.error());
+  NONIO_TRY(const auto both, bidirectional(*passes));
   std::vector<Remark>& notes = runs.observations().notes;
   const bool all_zero =
       std::all_of(passes->begin(), passes->end(), [](const Pass& p) { return p.zero || !p.taken; });
@@ -138,7 +137,7 @@ Expected<void> add_runs(const RunFile& file, const Units& units, Runs& runs) {
     if (pass.zero) notes.push_back(run_note("renishaw.run-zero", i + 1));
     for (const RunFile::Row* row : pass.rows) {
       Reading reading;
-      reading.run = static_cast<std::uint32_t>(*both ? i / 2 + 1 : i + 1);
+      reading.run = static_cast<std::uint32_t>(both ? i / 2 + 1 : i + 1);
       reading.approach = pass.direction;
       reading.target = file.targets[row->target - 1] * units.target;
       reading.deviation = pass.zero ? std::nan("") : row->value * units.value;
@@ -147,7 +146,7 @@ Expected<void> add_runs(const RunFile& file, const Units& units, Runs& runs) {
     }
   }
   // 0: to and fro, 1: one way. Seen in one real file and one imitator's, so it is only a warning.
-  if (file.flags.size() > 1 && passes->size() > 1 && (file.flags[1] == 0) != *both)
+  if (file.flags.size() > 1 && passes->size() > 1 && (file.flags[1] == 0) != both)
     notes.push_back({"renishaw.flag-disagrees"});
   return {};
 }

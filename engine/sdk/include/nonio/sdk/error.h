@@ -29,4 +29,15 @@ inline tl::unexpected<Error> fail(std::string message) {
 
 inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
 
+/// Declares a variable with the value of an Expected; where there is none, returns its error:
+/// NONIO_TRY(const auto axis, axis_of(input));
+#define NONIO_TRY(declaration, ...) \
+  NONIO_TRY_NAMED_(NONIO_JOINED_(tried_in_line_, __LINE__), declaration, __VA_ARGS__)
+#define NONIO_TRY_NAMED_(tried, declaration, ...)             \
+  auto tried = __VA_ARGS__;                                   \
+  if (!tried) return ::nonio::fail(std::move(tried).error()); \
+  declaration = *std::move(tried)
+#define NONIO_JOINED_(a, b) NONIO_JOINED_AS_IT_IS_(a, b)
+#define NONIO_JOINED_AS_IT_IS_(a, b) a##b
+
 }  // namespace nonio
