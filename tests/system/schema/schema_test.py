@@ -37,10 +37,10 @@ ONLY_PROGRAM = [
     (r"mail\.(to|smtp|sendmail|user|password_\w+)(\.\d+)?", "which keys stand together; addresses"),
     (r"certificate\.numbering", "a pattern of numbers"),
     (r"certificate\.register|database\.(register|schema)", "one register, apart from the history"),
-    (r".*\b(travel|range)", "the smaller number first"),
+    (r".*\b(travel|range|grid)", "the smaller number first"),
     (r"asset", "the name of the file"),
     (r"taken(\..*)?", "the smaller number first"),
-    (r"axes\.\w+\.(since|number)", "the day beside table and backlash; no number twice"),
+    (r"axes\.\w+\.(state\.\d+\.)?(since|number)", "the day beside table and backlash; no number twice"),
 ]
 # Where the schema refuses what parsing accepts, as these are names that only a run knows.
 ONLY_SCHEMA = [

@@ -87,7 +87,10 @@ def machine():
                        "resolution_um": 1, "gear": "2:1", "largest_um": 100, "slope_um_per_m": 200.5,
                        "table": "none", "backlash_mm": 0.01, "since": DAY},
                  "C": {"kind": "rotary", "number": 4, "reference_deg": 0, "resolution_arcsec": 0.1,
-                       "largest_arcsec": 20, "slope_arcsec_per_deg": 1, "backlash_deg": "none", "since": DAY}},
+                       "largest_arcsec": 20, "slope_arcsec_per_deg": 1, "backlash_deg": "none", "since": DAY},
+                 "Y": {"kind": "linear", "state": [{"since": DAY, "table": "none", "backlash_mm": 0.01, "source": "backup", "grid": [0, 500.5],
+                                                    "points": 11, "reference": 0.5, "sha256": "0" * 64}]},
+                 "A": {"kind": "rotary", "state": [{"since": DAY, "table": "none", "backlash_deg": "none"}]}},
     }
 
 

@@ -170,7 +170,7 @@ TEST(HistoryStore, OfAnotherVersionIsMadeAgainOrRefused) {
   const std::string newer = rows_of(out.root());
   done = store::update(out.root(), false, {}, told(), nothing);
   ASSERT_FALSE(done);
-  EXPECT_NE(done.error().message.find("is of version 99, this program writes 6"),
+  EXPECT_NE(done.error().message.find("is of version 99, this program writes 7"),
             std::string::npos);
   EXPECT_FALSE(store::query(out.root(), {}));
   EXPECT_EQ(rows_of(out.root()), newer);
