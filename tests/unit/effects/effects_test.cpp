@@ -83,8 +83,9 @@ const std::vector<std::string> kinds_in_space = {
     "line-slope",    "mirror-tilt",       "centre",      "direction", "radial-run-out",
     "axial-run-out", "linear-squareness", "linear-scale"};
 
-const std::vector<std::string> kinds_of_channels = {"heat",        "heat-difference", "heat-growth",  "heat-slow",
-                                                    "heat-source", "heat-source-slow", "settling"};
+const std::vector<std::string> kinds_of_channels = {
+    "heat",        "heat-difference",  "heat-growth", "heat-slow",
+    "heat-source", "heat-source-slow", "settling"};
 const std::vector<std::string> kinds_of_circles = {"circle-centre", "servo-mismatch"};
 const std::vector<std::string> descriptions = {"free-position", "free-reversal", "free-time",
                                                "free-growth"};
