@@ -144,9 +144,10 @@ class LoadedOnAxis {
     for (std::size_t i = 0; i + 1 < all_.size(); ++i) {
       const Taken &before = all_[i], &after = all_[i + 1];
       const std::vector<Known> those = known(i, after);
-      if ((before.active && after.active) || those.empty()) continue;
+      if (before.active && after.active) continue;
       out.push_back(of_pair(before, after));
-      out.back().kind = "unknown", out.back().table = those.back().day;
+      out.back().kind = "unknown";
+      if (!those.empty()) out.back().table = those.back().day;
       const Taken& open = after.active ? before : after;
       out.back().before_campaign = m_.stored.campaigns[open.campaign].id;
     }

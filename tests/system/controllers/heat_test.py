@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Thermal compensations as the program writes them: emulators of their own run the recorded channels through each file, and what
-the axis is told to add is the opposite of what the model says."""
+each makes the axis add is the opposite of what the model says."""
 import csv
 import math
 import random
