@@ -211,7 +211,7 @@ def many_sensors():
             "campaign.toml": manifest(story, "49-spindle-sensors", "Esempio Quarantanove S.r.l.", "Padova", "2026-06-22",
                                       dict(MACHINE, serial="S-0149"), AXES,
                                       [{"id": "steps", "kind": "thermal", "file": "spindle.csv"}], instrument=SENSORS,
-                                      analyses=["thermal"])}
+                                      analyses=["thermal", "model-fit"])}
 
 
 STORIES = {"42-heat": heat, "43-spindle": spindle_turns, "44-lengths": gauge, "48-warm-axis": warm_axis,

@@ -235,6 +235,10 @@ std::vector<Remark> unevaluated(const reading::ReadCampaign& read, const Results
     if (read.observations[i].size() != 0 && !seen.contains(m.id))
       notes.push_back({"measurement.not-evaluated", {}, {{"kind", m.kind}}, m.id});
   }
+  const bool fitted =
+      std::any_of(results.analyses.begin(), results.analyses.end(),
+                  [](const auto& a) { return a.plugin == reading::model_fit_name; });
+  if (!read.manifest->campaign.model.empty() && !fitted) notes.push_back({"model.not-asked"});
   return notes;
 }
 
