@@ -146,24 +146,24 @@ class Truth(unittest.TestCase):
     def check_show(self, folder, results):
         """2. `show` prints every value with the U of results.json, each once for a measurement and analysis."""
         shown = run("show", folder, "--all", "--quiet").stdout
-        measurement = plugin = None
+        measurement = plugin = part = None
         printed = {}
         known = {a["plugin"] for a in results["analyses"]}
         for line in shown.splitlines():
             if line.startswith("Measurement "):
                 measurement = line.split(" ", 1)[1].strip()
-            head = re.match(r"  (\S+) \d+\.\d+\.\d+$", line)
+            head = re.match(r"  (\S+) \d+\.\d+\.\d+(?: (\S+))?$", line)
             if head:
-                plugin = head[1] if head[1] in known else None
+                plugin, part = head[1] if head[1] in known else None, head[2]
             row = re.match(r"    (?:!  |\?  |ok |   )(\S+)\s+(-?\d[\d.]*(?:e[-+]?\d+)?)\s+(\d[\d.]*)\s+(\S+)", line)
             if row and plugin:
-                key = (measurement, plugin, row[1])
+                key = (measurement, plugin, part, row[1])
                 self.assertNotIn(key, printed)
                 printed[key] = (row[2], row[3], row[4])
         for a, name, v in values_of(results):
             if "U" not in v or not v["U"] > 0:
                 continue
-            key = (a.get("measurement"), a["plugin"], name)
+            key = (a.get("measurement"), a["plugin"], a.get("part"), name)
             if key not in printed:
                 continue
             value, U, unit = printed[key]
