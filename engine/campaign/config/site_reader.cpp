@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* ways[] = {"smtp", "tls", "port", "trust", "user"};
 
-/// What stands in one of several keys, or needs another one.
+/// Keys that exclude each other, and keys that need another one.
 void check_mail(TableReader& reader, const Mail& m) {
   if (reader.raw().contains("to") && m.to.empty())
     reader.error("to", "expected at least one address");
@@ -71,7 +71,7 @@ Mail read_mail(TableReader& reader) {
 
 constexpr double cmc_length = 1e-6, cmc_angle = 1.0 / arcsec_per_rad;
 
-/// What stands in one of several keys, or needs another one.
+/// Keys that exclude each other, and keys that need another one.
 void check_signing(TableReader& reader, const Signing& s) {
   if (s.pkcs12.empty() == s.pkcs11.empty())
     reader.error("pkcs12", "expected the key in either pkcs12 (a file) or pkcs11 (a token)");

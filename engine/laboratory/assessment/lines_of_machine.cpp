@@ -33,7 +33,7 @@ struct AxisChange {
   bool told = false;       ///< in the line of what does not conform
 };
 
-bool is_mended(const HistoryChange& c) {
+bool is_correction(const HistoryChange& c) {
   return c.cause == "table" || c.event.starts_with("repair") || c.event.starts_with("compensation");
 }
 
@@ -79,12 +79,12 @@ class OfMachine {
   /// The changes of each axis that were not repaired since.
   void causes_by_axis() {
     for (const HistorySeries& s : d_.series) {
-      std::string mended;
+      std::string repaired;
       for (const HistoryChange& c : s.changes)
-        if (is_mended(c) && !is_fault(s.axis, c)) mended = std::max(mended, c.before);
+        if (is_correction(c) && !is_fault(s.axis, c)) repaired = std::max(repaired, c.before);
       for (const HistoryChange& c : s.changes)
-        if (c.cause != "instrument" && !is_mended(c) && !is_fault(s.axis, c) && c.before > mended &&
-            !is_repaired(s.axis, c.before))
+        if (c.cause != "instrument" && !is_correction(c) && !is_fault(s.axis, c) &&
+            c.before > repaired && !is_repaired(s.axis, c.before))
           put_change(axis_of(s.axis, s.quantity), s, c);
     }
     for (auto& [axis, all] : causes_)

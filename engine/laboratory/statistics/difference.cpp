@@ -136,9 +136,9 @@ Expected<CurveDifference> difference(const Curve& before, const Curve& after,
 
 Expected<TableCheck> check_table(const Point& as_found, const Point& as_left, double promised,
                                  double u_promised) {
-  NONIO_TRY(const auto beside, difference(as_found, as_left, promised, u_promised));
-  TableCheck out{beside};
-  out.as_promised = !(beside.p < named_below);
+  NONIO_TRY(const auto compared, difference(as_found, as_left, promised, u_promised));
+  TableCheck out{compared};
+  out.as_promised = !(compared.p < named_below);
   double variance = as_found.u * as_found.u;
   for (const Common& c : as_found.common) variance += c.u * c.u;
   if (std::fabs(as_found.value) > 2.0 * std::sqrt(variance))

@@ -22,7 +22,7 @@ namespace {
 /// In which order the readings of one axis were taken.
 struct Order {
   std::vector<std::uint32_t> rows;  ///< of the table, first reading first
-  bool known = true;                ///< false: nobody knows; nothing is to be concluded from time
+  bool known = true;                ///< false: unknown; nothing follows from the time
   bool assumed = false;             ///< the cycle of the standard, since the file's cannot be it
 };
 

@@ -207,7 +207,7 @@ std::vector<Term> certain_terms(const Explanation& out) {
   return terms;
 }
 
-/// Effects that are certain beside the model and do not repeat at a place; their candidates.
+/// Effects that are certain in addition to the model and do not repeat at a place; their candidates.
 std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& model,
                                   const std::vector<Term>& catalogue, std::uint64_t seed) {
   std::vector<Candidate> out;
@@ -227,8 +227,8 @@ std::vector<Candidate> certain_in(const Part& part, const std::vector<Term>& mod
   return out;
 }
 
-/// An effect that is certain beside descriptions only.
-void take_over(Candidate found, const std::vector<std::string>& beside, Explanation& out) {
+/// An effect that is certain only together with descriptions.
+void take_over(Candidate found, const std::vector<std::string>& descriptions, Explanation& out) {
   const std::string name = found.term.name();
   if (std::find(out.certain.begin(), out.certain.end(), name) != out.certain.end()) return;
   const auto known = std::find_if(out.candidates.begin(), out.candidates.end(),
@@ -236,43 +236,43 @@ void take_over(Candidate found, const std::vector<std::string>& beside, Explanat
   if (known == out.candidates.end()) return;
   found.rms = known->rms;
   found.cv_rms = known->cv_rms;
-  found.beside = beside;
+  found.beside = descriptions;
   *known = std::move(found);
   out.certain.push_back(name);
 }
 
 /// What is left with all that is certain in the model.
-double rms_beside(const Finding& finding, const Explanation& out) {
+double rms_with_certain(const Finding& finding, const Explanation& out) {
   std::vector<Term> terms = finding.of_model.fit.terms;
   for (Term& term : certain_terms(out)) terms.push_back(std::move(term));
   const double rms = rms_with(finding.part.table, terms, finding.weight);
   return std::isfinite(rms) ? rms : finding.of_model.fit.rms;
 }
 
-/// Where the search is worth doing again beside free values of place: with few targets, in which
+/// Where the search is worth repeating with free values of place: with few targets, in which
 /// the catalogue cannot say what repeats there. More would cost more than they tell.
 bool few_places(const Finding& finding) {
   constexpr std::uint32_t most_targets = 60;
   return finding.part.kind == Part::Kind::axis && finding.repeats.targets <= most_targets;
 }
 
-/// Where the verdict is `unknown`: explained again beside descriptions of place alone (a value for
+/// Where the verdict is `unknown`: explained again with descriptions of place alone (a value for
 /// each target, a reversal for each), which hold whatever of the rest repeats at a place and cannot
 /// stand for what time does. What is certain there is certain; it comes into `out.certain`, and its
-/// candidate says beside what. Then what is left beside all that is certain is described.
+/// candidate names them. Then what all certain effects leave is described.
 void describe(const Finding& finding, const std::vector<Term>& catalogue, Explanation& out) {
   out.descriptions = described(finding, certain_terms(out));
   std::vector<Term> model = finding.of_model.fit.terms;
-  std::vector<std::string> beside;
+  std::vector<std::string> descriptions;
   const std::size_t before = out.certain.size();
   for (const Description& description : out.descriptions) {
     if (!few_places(finding) || !of_place(finding, description.term)) continue;
     model.push_back(description.term);
-    beside.push_back(description.term.name());
+    descriptions.push_back(description.term.name());
     for (Candidate& found : certain_in(finding.part, model, catalogue, finding.seed))
-      take_over(std::move(found), beside, out);
+      take_over(std::move(found), descriptions, out);
   }
-  out.significant_rms = rms_beside(finding, out);
+  out.significant_rms = rms_with_certain(finding, out);
   if (out.certain.size() == before) return;
   std::stable_sort(out.candidates.begin(), out.candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });

@@ -42,7 +42,7 @@ Derivatives derivatives_of(const Judged& judged, bool use_angles) {
       for (const double sign : {1.0, -1.0}) {
         centres[i].at[k] = judged.centres[i].at[k] + sign * step;
         const auto fit = math::fit_rotary(centres, use_angles);
-        if (!fit) continue;  // a fit that ended ends beside it too
+        if (!fit) continue;  // where one fit ended, this one ends too
         const double by = sign / (2.0 * step);
         for (std::size_t c = 0; c < 3; ++c) {
           d.centre[c][at] += by * fit->centre[c];
@@ -59,7 +59,7 @@ Derivatives derivatives_of(const Judged& judged, bool use_angles) {
   return d;
 }
 
-/// The errors of the coordinates of one circle, or of several in one frame, one behind the other:
+/// The errors of the coordinates of one circle, or of several in one frame, one after the other:
 /// the lines are x, y and z. linear_axes: bound of squareness and scale difference, if known, rad.
 math::ReadingModel coordinate_model(const Campaign& c, const Environment& e,
                                     const std::vector<const Judged*>& circles,

@@ -29,7 +29,7 @@ struct Column {
 
 using Role = Column::Role;
 
-/// Everything that a table does not say of itself and that nobody guesses.
+/// What a table does not state itself and what is not guessed.
 struct Map : TableMap {
   std::vector<Column> columns;
 

@@ -40,7 +40,7 @@ ONLY_PROGRAM = [
     (r".*\b(travel|range|grid)", "the smaller number first"),
     (r"asset", "the name of the file"),
     (r"taken(\..*)?", "the smaller number first"),
-    (r"axes\.\w+\.(state\.\d+\.)?(since|number)", "the day beside table and backlash; no number twice"),
+    (r"axes\.\w+\.(state\.\d+\.)?(since|number)", "the day of table and backlash; no number twice"),
 ]
 # Where the schema refuses what parsing accepts, as these are names that only a run knows.
 ONLY_SCHEMA = [
