@@ -21,10 +21,12 @@ const Reader* reader_of(const Measurement& m, const Method* method, std::string_
                         const std::vector<Reader>& readers) {
   const Reader* of_columns = nullptr;
   for (const Reader& r : readers) {
-    if (m.reader.empty() ? r.reads(m.kind) && r.recognises(reading::head_of(bytes))
+    if (m.reader.empty() ? reading::reads(r, m, method) && r.recognises(reading::head_of(bytes))
                          : r.info.name == m.reader)
       return &r;
-    if (m.reader.empty() && reading::reads_columns_of(r, method)) of_columns = &r;
+    if (!m.reader.empty() || !reading::reads_columns_of(r, method)) continue;
+    if (r.recognises(reading::head_of(bytes))) return &r;
+    if (of_columns == nullptr) of_columns = &r;
   }
   return of_columns;
 }
@@ -32,8 +34,9 @@ const Reader* reader_of(const Measurement& m, const Method* method, std::string_
 }  // namespace
 
 const Method* method_of(const Measurement& m, const std::vector<Method>& methods) {
-  const auto found = std::find_if(methods.begin(), methods.end(),
-                                  [&](const Method& one) { return one.info.name == m.kind; });
+  const auto found = std::find_if(methods.begin(), methods.end(), [&](const Method& one) {
+    return one.info.name == method_name(m);
+  });
   return found == methods.end() ? nullptr : &*found;
 }
 

@@ -30,7 +30,7 @@ std::vector<Measured> measured_with(const Method& m, const Bench& bench) {
   std::vector<Measured> all;
   for (const Sample& s : bench.samples)
     for (const Measurement& one : s.campaign.measurements)
-      if (one.kind == m.info.name && one.reader.empty()) all.push_back({s, one, s.of(one)});
+      if (method_name(one) == m.info.name && one.reader.empty()) all.push_back({s, one, s.of(one)});
   return all;
 }
 
@@ -44,6 +44,18 @@ Verdict each_measured(const Method& m, const Bench& bench,
     if (const std::string why = law(one); !why.empty()) return failed(one.where() + ": " + why);
   }
   return passed();
+}
+
+Verdict method_kind(const Method& m, const Bench& bench) {
+  if (m.observed_as.empty()) return skipped("it is a kind of its own");
+  const bool known =
+      m.observed_as != m.info.name &&
+      std::any_of(bench.methods.begin(), bench.methods.end(), [&](const Method& one) {
+        return one.info.name == m.observed_as && one.observed_as.empty();
+      });
+  return known ? passed()
+               : failed("expected the name of another method in observed_as; found \"" +
+                        m.observed_as + "\"");
 }
 
 Verdict method_keys(const Method& m, const Bench&) {
@@ -200,6 +212,7 @@ Verdict fingerprint(const Method& m, const Bench& bench) {
 
 const std::vector<Check<Method>>& method_checks() {
   static const std::vector<Check<Method>> checks = {
+      {"kind", "What it observes is the kind of another method.", method_kind},
       {"keys", "Keys of [[measurement]] have help and units, and can be checked.", method_keys},
       {"columns", "Names, quantities and roles of the columns are consistent.", method_columns},
       {"round-trip", "Observations, simulated as readings, are observed again.", method_round_trip},

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "campaign/config/manifest.h"
+#include "campaign/reading/checked_read.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/digest.h"
 #include "plugin_check/plugin_check_truth.h"
@@ -45,7 +46,9 @@ std::vector<ReadFile> files_of(const Reader& r, const Bench& bench) {
     const Campaign& c = manifest->campaign;
     for (std::size_t i = 0; i < c.measurements.size(); ++i) {
       const Measurement& m = c.measurements[i];
-      if (!m.reader.empty() ? m.reader != r.info.name : !r.reads(m.kind)) continue;
+      if (!m.reader.empty() ? m.reader != r.info.name
+                            : !reading::reads(r, m, method_of(m, bench.methods)))
+        continue;
       for (const Artifact& f : source.files)
         if (f.name == m.file && (!m.reader.empty() || r.recognises(f.bytes.substr(0, 4096))))
           files.push_back({source.name, c, i,

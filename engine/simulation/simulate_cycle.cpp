@@ -62,16 +62,17 @@ class CycleReader {
     }
     static constexpr std::array made{"axis",         "straightness", "diagonal", "step-diagonal",
                                      "ball-centres", "rtcp",         "circle"};
-    if (std::find(made.begin(), made.end(), c_.measurement.kind) == made.end()) {
+    if (std::find(made.begin(), made.end(), method_name(c_.measurement)) == made.end()) {
       const auto method = std::find_if(methods.begin(), methods.end(), [&](const Method& m) {
-        return c_.is(m.info.name) && !m.columns.empty() && !c_.measurement.axis.empty();
+        return method_name(c_.measurement) == m.info.name && !m.columns.empty() &&
+               !c_.measurement.axis.empty();
       });
       if (method == methods.end()) {
         reader_.error("measurement",
                       "expected a measurement of kind axis, straightness, diagonal, "
                       "step-diagonal, ball-centres, rtcp or circle, or of a method with columns "
                       "and an axis; found " +
-                          c_.measurement.kind);
+                          method_name(c_.measurement));
         return false;
       }
       c_.method = &*method;

@@ -328,6 +328,10 @@ Measurement read_measurement(TableReader& common, const std::vector<Method>* met
   read_common(reader, m);
   for (const Option& option : method->info.options)
     m.settings.values[option.name] = read_setting(reader, option);
+  if (!method->observed_as.empty()) {
+    m.method = m.kind;
+    m.kind = method->observed_as;
+  }
   fill_members(reader, m);
   check_members(reader, m);
   fill_circle(reader, m);

@@ -233,7 +233,7 @@ std::vector<Remark> unevaluated(const reading::ReadCampaign& read, const Results
   for (std::size_t i = 0; i < read.observations.size(); ++i) {
     const Measurement& m = read.manifest->campaign.measurements[i];
     if (read.observations[i].size() != 0 && !seen.contains(m.id))
-      notes.push_back({"measurement.not-evaluated", {}, {{"kind", m.kind}}, m.id});
+      notes.push_back({"measurement.not-evaluated", {}, {{"kind", method_name(m)}}, m.id});
   }
   const bool fitted =
       std::any_of(results.analyses.begin(), results.analyses.end(),

@@ -15,6 +15,13 @@ inline bool reads_columns_of(const Reader& reader, const Method* method) {
   return reader.reads_columns && method != nullptr && !method->columns.empty();
 }
 
+/// Whether it reads a measurement of this method: one with columns of its own is asked for by its
+/// name, any other by what it observes.
+inline bool reads(const Reader& reader, const Measurement& m, const Method* method) {
+  const bool of_its_own = method != nullptr && !method->columns.empty();
+  return reader.reads(of_its_own ? method_name(m) : m.kind);
+}
+
 /// What a reader makes of a file, if all that comes later may rely on it.
 inline Expected<Observations> checked_read(const Reader& reader, const ReadInput& input) {
   const std::string who = "reader " + reader.info.name;

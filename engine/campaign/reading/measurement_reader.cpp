@@ -104,7 +104,7 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
     return fail(key_error(from, out, "measurement." + m.id + ".reader",
                           from.context.plugins->absence("reader", m.reader)));
   }
-  const Method* method = from.context.plugins->method(m.kind);
+  const Method* method = from.context.plugins->method(method_name(m));
   const Reader* of_columns = nullptr;
   bool any = false;
   if (bytes.find_first_not_of(" \t\r\n") == bytes.npos)
@@ -112,14 +112,18 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
   for (const Reader& r : readers) {
     const std::string who = "reader " + r.info.name;
     from.stage(who + " (measurement " + m.id + "), asked whether it reads this file");
-    const auto reads = process::guarded_answer(who, [&] { return r.reads(m.kind); });
+    const auto reads = process::guarded_answer(who, [&] { return reading::reads(r, m, method); });
     if (!reads) return fail(reads.error());
     any = any || *reads;
     const auto recognised =
         process::guarded_answer(who, [&] { return *reads && r.recognises(head_of(bytes)); });
     if (!recognised) return fail(recognised.error());
     if (*recognised) return &r;
-    if (reads_columns_of(r, method)) of_columns = &r;
+    if (!reads_columns_of(r, method)) continue;
+    const auto knows = process::guarded_answer(who, [&] { return r.recognises(head_of(bytes)); });
+    if (!knows) return fail(knows.error());
+    if (*knows) return &r;
+    if (of_columns == nullptr) of_columns = &r;
   }
   if (of_columns != nullptr) return of_columns;
   const std::string refused = from.context.plugins->refusals();
@@ -130,11 +134,11 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
                   (refused.empty() ? "" : "; of the plugins " + refused),
               m.file, first_content_line(bytes)});
   if (!refused.empty())
-    return fail(key_error(
-        from, out, "measurement." + m.id + ".kind",
-        "no reader takes measurements of kind \"" + m.kind + "\", and of the plugins " + refused));
+    return fail(key_error(from, out, "measurement." + m.id + ".kind",
+                          "no reader takes measurements of kind \"" + method_name(m) +
+                              "\", and of the plugins " + refused));
   out.unread.push_back(m.id);
-  out.notes.push_back({"measurement.unread", {}, {{"kind", m.kind}}, m.id});
+  out.notes.push_back({"measurement.unread", {}, {{"kind", method_name(m)}}, m.id});
   return nullptr;
 }
 
@@ -241,7 +245,7 @@ Expected<void> read_one_measurement(const CampaignSource& from, const Measuremen
                                               [&](std::size_t offset) {
                                                 if (!*converted) file->release(offset);
                                               },
-                                              from.context.plugins->method(m.kind)});
+                                              from.context.plugins->method(method_name(m))});
   if (!observations) {
     Error error = observations.error();
     if (error.message.starts_with(who + ": ")) error.message.erase(0, who.size() + 2);

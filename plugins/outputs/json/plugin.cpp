@@ -107,7 +107,7 @@ void measurement(JsonWriter& json, const Measurement& m, const Observations& obs
                  const Templates& templates) {
   json.begin_object();
   json.member("id", m.id);
-  json.member("kind", m.kind);
+  json.member("kind", method_name(m));
   if (!m.axis.empty()) json.member("axis", m.axis);
   if (!m.lateral.empty())
     json.member(m.kind.starts_with("artefact") ? "artefact" : "lateral", m.lateral);

@@ -441,9 +441,9 @@ bool reads(std::string_view kind) {
 }
 
 Expected<Observations> read(const ReadInput& input) {
+  if (input.method != nullptr && !input.method->columns.empty()) return read_declared(input);
   for (const Way& way : ways)
     if (way.kind == input.measurement.kind) return way.read(input);
-  if (input.method != nullptr && !input.method->columns.empty()) return read_declared(input);
   return read_runs(input);
 }
 

@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import pathlib
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -41,14 +42,29 @@ class ForeignMethod(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
         cls.work = pathlib.Path(cls.folder.name)
         subprocess.run([NONIO, "plugin", "new", "method", "lever-gauge"], cwd=cls.work, check=True, capture_output=True)
-        cmake, plugin = os.environ["NONIO_CMAKE"], cls.work / "lever-gauge"
+        cls.plugins = cls.build(cls.work / "lever-gauge")
+
+    @staticmethod
+    def build(plugin):
+        cmake = os.environ["NONIO_CMAKE"]
         for command in ([cmake, "-S", plugin, "-B", plugin / "build", "-G", "Ninja",
                          f"-DCMAKE_PREFIX_PATH={os.environ['NONIO_PACKAGE']}",
                          f"-DCMAKE_CXX_COMPILER={os.environ['NONIO_COMPILER']}"],
                         [cmake, "--build", plugin / "build"]):
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             assert done.returncode == 0, done.stdout + done.stderr
-        cls.plugins = plugin / "build"
+        return plugin / "build"
+
+    @classmethod
+    def plugins_observed_as(cls, kind):
+        """The plugin, built again as a method that observes a known kind."""
+        plugin = cls.work / ("as-" + kind)
+        shutil.copytree(cls.work / "lever-gauge", plugin, ignore=shutil.ignore_patterns("build"))
+        source = next(plugin.glob("*.cpp"))
+        text = source.read_text()
+        assert '  // m.observed_as = "axis"' in text
+        source.write_text(text.replace('  // m.observed_as = "axis"', f'  m.observed_as = "{kind}"; //'))
+        return cls.build(plugin)
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="nonio-method-site-")
@@ -63,8 +79,8 @@ class ForeignMethod(unittest.TestCase):
         (folder / "x.csv").write_text(readings() if rows is None else rows)
         return folder
 
-    def nonio(self, *arguments, status=0):
-        done = subprocess.run([NONIO, *map(str, arguments), "--plugin-path", self.plugins], capture_output=True,
+    def nonio(self, *arguments, status=0, plugins=None):
+        done = subprocess.run([NONIO, *map(str, arguments), "--plugin-path", plugins or self.plugins], capture_output=True,
                               text=True, check=False)
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
         return done.stdout + done.stderr
@@ -145,6 +161,25 @@ class ForeignMethod(unittest.TestCase):
         measurement = json.loads(self.nonio("schema", "campaign"))["properties"]["measurement"]["items"]
         self.assertIn("lever-gauge", measurement["properties"]["kind"]["enum"])
         self.assertEqual(measurement["properties"]["ratio"]["minimum"], 0.001)
+
+    def test_a_method_that_observes_an_axis_is_evaluated_as_one(self):
+        plugins = self.plugins_observed_as("axis")
+        self.campaign(manifest().replace("[[measurement]]", 'active_table = "none"\nactive_backlash_mm = "none"\n[[measurement]]').replace(
+            'outputs = ["json"', 'outputs = ["linuxcnc", "json"'))
+        self.nonio("run", self.site, "--out", self.out, plugins=plugins)
+        results = json.loads((self.out / "a/results.json").read_text())
+        iso = next(a for a in results["analyses"] if a["plugin"] == "iso230-2")
+        # Half of the gauge: + at 1 + 1/3 um ... and 10 um more in -, so B = +(20 / 2) um in every target.
+        self.assertAlmostEqual(iso["values"]["B"]["value"], 10.0, places=6)
+        self.assertAlmostEqual(iso["values"]["M"]["value"], 4.0, places=6)
+        self.assertIn("linuxcnc", {o["plugin"] for o in results["outputs"]})
+        self.assertEqual(json.loads((self.out / "a/readings.json").read_text())["measurements"][0]["kind"], "lever-gauge")
+        with sqlite3.connect(self.out / "history.sqlite") as history:
+            followed = {q for q, in history.execute("SELECT quantity FROM result")}
+        self.assertIn("B_mean", followed)
+        words = self.nonio("plugin", "check", plugins, "--cases", self.work / "lever-gauge/cases", "--json", plugins=plugins)
+        checks = {(c["plugin"], c["check"]): c["state"] for c in json.loads(words[:words.rindex("}") + 1])["checks"]}
+        self.assertEqual(checks["method lever-gauge", "kind"], "passed")
 
     def test_its_checks(self):
         words = self.nonio("plugin", "check", self.plugins, "--cases", self.work / "lever-gauge/cases", "--json")

@@ -134,7 +134,7 @@ inline std::string tolerance_key(Quantity q) {
 /// from, to, order, side, reversal_of, square, foot) are empty where its method has no such key.
 struct Measurement {
   std::string id;
-  std::string kind;  ///< name of the method
+  std::string kind;  ///< what was observed: name of the method, or its `Method::observed_as`
   std::string axis;
   std::string lateral;  ///< direction of a straightness; axis about which an angle turns (`about`)
   std::string file;
@@ -170,7 +170,12 @@ struct Measurement {
   std::vector<Tolerance> tolerances{};
   /// The keys that the method declares, in the unit of the file, each with its value or its default.
   Settings settings{};
+  std::string method{};  ///< its name, the key `kind`; empty: `kind` is the name
 };
+
+inline const std::string& method_name(const Measurement& m) {
+  return m.method.empty() ? m.kind : m.method;
+}
 
 /// State of the machine in which something was measured: "final". Empty: it holds for every state.
 /// A manifest without key `state` says it behind the first space of the id ("D1 final").

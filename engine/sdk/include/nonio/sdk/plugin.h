@@ -132,6 +132,9 @@ struct Method {
   /// name: the `kind` of [[measurement]]. options: the keys that it adds there, next to those of all
   /// methods. The host fills `Measurement::axis`, `lateral`, `from` and `to` from keys of that name.
   Info info;
+  /// Optional: the kind whose observations these are, "axis". What applies to that kind (analyses,
+  /// checks, tables, history) then applies to this one. Empty: a kind of its own.
+  std::string observed_as{};
   std::vector<Column> columns{};  ///< none: readers of their own read its files
   /// Optional: readings -> observations. Without it, the roles of the columns determine them
   /// (`observe` in sdk/method.h).
@@ -320,7 +323,7 @@ class Registry {
 };
 
 /// The version of this interface: the one place that it stands in.
-#define NONIO_SDK_VERSION 16
+#define NONIO_SDK_VERSION 17
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
