@@ -3,7 +3,9 @@
 #include <iostream>
 #include <utility>
 
+#include "campaign/reading/names.h"
 #include "campaign_verb.h"
+#include "explain_together.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -14,7 +16,8 @@ namespace {
 constexpr std::size_t most_steps = 24;  // for each part
 
 struct ExplainOptions {
-  std::string folder;
+  TogetherOptions together;
+  std::string folder;  ///< of the one campaign
   bool automatic = false;
   bool what_if = false, all = false, library = false;
   std::uint64_t seed = 1;
@@ -35,6 +38,7 @@ class Explain {
       return status;
     }
     if (options_.automatic) add_missing();
+    if (!steps_.empty()) warn_of_run();
     show();
     return failed_ ? exit_failed : exit_done;
   }
@@ -54,6 +58,17 @@ class Explain {
       }
       explain();
     }
+  }
+
+  /// A model that the run does not fit, because the analyses are listed without it.
+  void warn_of_run() {
+    const reading::Context& context = open_.place->context;
+    const auto& own = open_.read.manifest->run.analyses;
+    const auto& names = own ? own : context.site.run.analyses;
+    if (names && std::find(names->begin(), names->end(), reading::model_fit_name) == names->end())
+      warnings_.push_back(remark_text(context.templates,
+                                      common_.json ? "en" : context.site.language,
+                                      Remark{"model.not-asked"}));
   }
 
   static void tell(const std::string& text) { complain(text); }
@@ -135,6 +150,18 @@ class Explain {
   bool failed_ = false;
 };
 
+int explain(ExplainOptions& options, const Common& common) {
+  if (!is_single(options.together)) {
+    for (const auto& [given, name] : {std::pair{options.automatic, "--auto"},
+                                      {options.what_if, "--what-if"},
+                                      {options.library, "--library"}})
+      if (given) return complain(std::string(name) + " is for one campaign; found several");
+    return explain_together(options.together, common, options.seed);
+  }
+  options.folder = options.together.folders.front();
+  return Explain(options, common).run();
+}
+
 }  // namespace
 
 Verb explain_verb(Common& common) {
@@ -143,8 +170,17 @@ Verb explain_verb(Common& common) {
       .name = "explain",
       .summary = "Finds the effect that is missing from the model: ranked candidates and a verdict",
       .arguments = joined(
-          campaign_arguments(options->folder, common),
-          {{"--all", &options->all, "Every candidate, and why an effect could not be tested"},
+          {required(existing(Argument::Takes::folder,
+                             {"CAMPAIGN", &options->together.folders,
+                              "Folder of a campaign. Several, or a folder with campaigns below it: "
+                              "they are explained together"})),
+           templates_argument(common)},
+          common_arguments(common),
+          {{"--machine", &options->together.machine,
+            "Of several campaigns those of this machine: asset, serial number or model"},
+           {"--since", &options->together.since, "Of several campaigns those from this date on"},
+           {"--until", &options->together.until, "Of several campaigns those up to this date"},
+           {"--all", &options->all, "Every candidate, and why an effect could not be tested"},
            {"--library", &options->library,
             "Also tries the causes of the library where no effect explains: it names more causes, "
             "and more wrong ones"},
@@ -164,7 +200,7 @@ Verb explain_verb(Common& common) {
           "explains the remaining error; it states where), unrepeatable (the readings contradict "
           "each other: check the machine first).",
       .examples = {"nonio model explain samples/site/02-constant-reversal"},
-      .run = [options, &common] { return Explain(*options, common).run(); }};
+      .run = [options, &common] { return explain(*options, common); }};
 }
 
 }  // namespace nonio::app

@@ -15,6 +15,14 @@
 
 namespace nonio::app {
 
+void line(std::ostream& out, const std::string& name, const std::string& value) {
+  out << "  " << padded(name, 18) << wrapped(value, 20, sentence_width(STDOUT_FILENO)).substr(20);
+}
+
+void sentence(std::ostream& out, std::size_t indent, const std::string& text) {
+  if (!text.empty()) out << wrapped(text, indent, sentence_width(STDOUT_FILENO), 2);
+}
+
 namespace {
 
 constexpr std::size_t bar_width = 40;
@@ -32,14 +40,6 @@ std::string bar(double part, double whole, std::size_t width, std::optional<doub
     text[at] = '|';
   }
   return text;
-}
-
-void line(std::ostream& out, const std::string& name, const std::string& value) {
-  out << "  " << padded(name, 18) << wrapped(value, 20, sentence_width(STDOUT_FILENO)).substr(20);
-}
-
-void sentence(std::ostream& out, std::size_t indent, const std::string& text) {
-  if (!text.empty()) out << wrapped(text, indent, sentence_width(STDOUT_FILENO), 2);
 }
 
 std::string p_text(double p) { return short_text(p, 2); }

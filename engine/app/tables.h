@@ -10,6 +10,9 @@ namespace nonio::app {
 
 /// "0.71 um"
 std::string with_unit(double value, Quantity quantity);
+/// A name and its value; a sentence, wrapped to the terminal.
+void line(std::ostream& out, const std::string& name, const std::string& value);
+void sentence(std::ostream& out, std::size_t indent, const std::string& text);
 
 void print_comparison(std::ostream& out, const modelling::Compared& compared,
                       const Campaign& campaign, const modelling::ModelWords& words);

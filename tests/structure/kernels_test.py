@@ -13,10 +13,12 @@ MAY = {
         "rotary": {"statistics"}, "circles": {"statistics"}, "heat": {"statistics", "uncertainty"}, "compensation": {"statistics", "axis"}, "followed": {"statistics", "axis"}},
     "engine/model": {
         "data": set(), "course": {"data"}, "fit": {"data", "course"}, "search": {"data", "fit"},
-        "diagnosis": {"data", "course", "fit", "search"}},
+        "diagnosis": {"data", "course", "fit", "search"}, "joint": {"data", "fit", "search", "diagnosis"}},
 }
 # folders that belong to no other and that all of a part may include
 OPEN = {"include", "eigen", "common"}
+# A reader that hands its table on to another one.
+READ_BY = {"spreadsheet": ["csv"]}
 
 
 def files(folder):
@@ -63,7 +65,8 @@ for path in files(readers):
         if "/" in name:
             continue
         seen += 1
-        if not (path.parent / name).exists() and not list((readers / "common").glob(f"*/{name}")):
+        read_by = [path.parent, *(readers / other for other in READ_BY.get(path.parent.name, ()))]
+        if not any((folder / name).exists() for folder in read_by) and not list((readers / "common").glob(f"*/{name}")):
             complain(path, number, f'"{name}" is no header of {path.parent.name}: readers share only what stands in common')
 print("\n".join(wrong) or f"{seen} includes keep the walls")
 sys.exit(bool(wrong) or seen < 100)

@@ -12,9 +12,13 @@ namespace {
 
 constexpr double k = 2.0;  // ISO 230-2 since 1997
 
-/// About the weighted mean of each line: the zero of a line is unknown before and after a table.
-double rms_about_zeros(const Observations& o, const std::vector<double>& values,
-                       const std::vector<double>& weight) {
+/// About the weighted mean of each line, without what the set-up does: zeros, slopes and turns are
+/// unknown before and after a table.
+double rms_about_zeros(const Observations& o, std::vector<double> values, const model::Fit& fit) {
+  const std::vector<double>& weight = fit.weight;
+  for (std::size_t t = 0; t < fit.terms.size(); ++t)
+    if (fit.terms[t].effect->is_nuisance)
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] -= fit.part[t][i];
   const auto weight_of = [&](std::size_t i) { return i < weight.size() ? weight[i] : 1.0; };
   std::vector<double> sum(std::max<std::size_t>(o.lines.size(), 1)), weights(sum.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -64,8 +68,8 @@ AfterTable after_table(const PartModel& model, const model::Fit& fit) {
     out.effects.push_back(fit.terms[t].name());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] -= fit.part[t][i];
   }
-  out.rms_before = rms_about_zeros(part.table, measured, fit.weight);
-  out.rms = rms_about_zeros(part.table, left, fit.weight);
+  out.rms_before = rms_about_zeros(part.table, measured, fit);
+  out.rms = rms_about_zeros(part.table, left, fit);
   if (part.kind != model::Part::Kind::axis) return out;
   for (std::size_t m = 0; m < part.measurements.size(); ++m)
     out.tests.push_back({part.measurements[m], positioning(readings_of(part, m, measured)),

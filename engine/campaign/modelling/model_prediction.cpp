@@ -8,20 +8,22 @@ namespace nonio::modelling {
 
 namespace {
 
+/// Of a displacement over time the one of that name; else the part of that name and kind.
 const PartModel* same_part(const std::vector<PartModel>& parts, const PartModel& wanted) {
   const PartModel* found = nullptr;
   for (const PartModel& part : parts) {
-    if (part.part.kind != model::Part::Kind::course) continue;
+    if (part.part.kind != wanted.part.kind || part.part.kind == model::Part::Kind::balls) continue;
     if (part.part.name == wanted.part.name) return &part;
-    if (part.part.displacement == wanted.part.displacement && found == nullptr) found = &part;
+    if (part.part.kind == model::Part::Kind::course &&
+        part.part.displacement == wanted.part.displacement && found == nullptr)
+      found = &part;
   }
   return found;
 }
 
 std::string listed_parts(const std::vector<PartModel>& parts) {
   std::vector<std::string> names;
-  for (const PartModel& part : parts)
-    if (part.part.kind == model::Part::Kind::course) names.push_back(part.part.name);
+  for (const PartModel& part : parts) names.push_back(part.part.name);
   return names.empty() ? "none" : storage::listed(names);
 }
 
@@ -35,17 +37,24 @@ Expected<std::vector<Predicted>> predictions(const reading::ReadCampaign& seen,
   std::vector<PartModel> others = bare_parts(unseen);
   std::vector<Predicted> out;
   for (PartModel& other : others) {
-    if (other.part.kind != model::Part::Kind::course) continue;
     const PartModel* part = same_part(known, other);
     if (part == nullptr) continue;
-    auto predicted = model::predict(part->part, part->terms, other.part, zero_kept);
+    const bool course = other.part.kind == model::Part::Kind::course;
+    if (!course) {
+      if (zero_kept)
+        return fail(other.part.name + ": expected --zero free; its lines have zeros of their own");
+      set_model(other, {}, unseen);
+    }
+    auto predicted = course
+                         ? model::predict(part->part, part->terms, other.part, zero_kept)
+                         : model::predict_places(part->part, part->terms, other.part, other.terms);
     if (!predicted) return fail(other.part.name + ": " + predicted.error().message);
     out.push_back({*part, std::move(other), std::move(*predicted)});
   }
   if (out.empty())
-    return fail("no displacement over time is in both campaigns: " + seen.manifest->campaign.id +
-                " has " + listed_parts(known) + ", " + unseen.manifest->campaign.id + " has " +
-                listed_parts(others));
+    return fail("nothing that a model explains is in both campaigns: " +
+                seen.manifest->campaign.id + " has " + listed_parts(known) + ", " +
+                unseen.manifest->campaign.id + " has " + listed_parts(others));
   return out;
 }
 
@@ -71,7 +80,7 @@ std::string predict_json(const std::vector<Predicted>& all, const Campaign& seen
     storage::put(part, "U", 2.0 * u, q);
     if (p.fails_from)
       storage::put(part, "holds_until", *p.fails_from, Quantity::time);
-    else
+    else if (one.unseen.part.kind == model::Part::Kind::course)
       part["holds_until_s"] = nullptr;
     part["outside_range"] = p.outside;
     part["says"] = words.prediction(p, one.unseen);

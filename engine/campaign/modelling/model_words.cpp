@@ -306,7 +306,10 @@ std::string ModelWords::prediction(const model::Prediction& p, const PartModel& 
   std::string text = says("prediction", numbers, {{"part", part.part.name}});
   if (p.fails_from)
     text += " " + says("prediction.fails", {{"from", *p.fails_from, Quantity::time}}, {});
-  if (p.outside) text += " " + says("prediction.outside", {}, {});
+  if (p.outside)
+    text += " " + says(part.part.kind == model::Part::Kind::course ? "prediction.outside"
+                                                                   : "prediction.outside-places",
+                       {}, {});
   return text;
 }
 

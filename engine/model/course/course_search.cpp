@@ -490,6 +490,9 @@ class CourseExplanation {
       }
       v.kind = Verdict::Kind::missing;
       v.effect = certain_.empty() ? best_.second : out_.certain.front();
+      // The verdict and its numbers are those of the first candidate.
+      std::stable_partition(out_.candidates.begin(), out_.candidates.end(),
+                            [&](const Candidate& c) { return c.term.name() == v.effect; });
       return;
     }
     out_.sensors = sensors_of(data_.part(), out_.comparison.fit);

@@ -21,10 +21,6 @@ namespace nonio::model {
 
 namespace {
 
-// docs/dev/constants.md, M4.
-constexpr double least_left = 0.25;  // of the noise: smaller structure is not worth a verdict
-// docs/dev/constants.md, M35.
-constexpr double lacks_fit_p = 1e-4;
 // What is left in the same place, of what the candidate says: beyond, the candidate is not it.
 // docs/dev/constants.md, M6.
 constexpr double unexplained_share = 0.04;

@@ -10,6 +10,12 @@ namespace nonio::model {
 // docs/dev/constants.md, M5.
 inline constexpr double serious_p = 0.005;
 
+// docs/dev/constants.md, M4.
+inline constexpr double least_left =
+    0.25;  ///< of the noise: smaller structure is not worth a verdict
+// docs/dev/constants.md, M35.
+inline constexpr double lacks_fit_p = 1e-4;
+
 /// More suspects than this, of the readings and in number: then they do not repeat.
 inline constexpr double most_suspects = 0.06;
 inline constexpr std::size_t few_suspects = 2;

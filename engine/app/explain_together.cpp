@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "explain_together.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+#include "campaign/config/manifest.h"
+#include "campaign/modelling/joint_model.h"
+#include "campaign_verb.h"
+#include "nonio/sdk/format.h"
+#include "tables.h"
+
+namespace nonio::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_candidates = 5;
+
+/// The campaigns at or below a folder, in the order of their paths. Links are not followed.
+std::vector<fs::path> campaigns_in(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / config::manifest_name, error)) return {folder};
+  std::vector<fs::path> out;
+  fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name.starts_with('.') && it->is_directory(error)) it.disable_recursion_pending();
+    if (name == config::manifest_name && it->is_regular_file(error))
+      out.push_back(it->path().parent_path());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+class ExplainTogether {
+ public:
+  ExplainTogether(const TogetherOptions& options, const Common& common, std::uint64_t seed)
+      : options_(options), common_(common), seed_(seed) {}
+
+  int run() {
+    for (const std::string& folder : options_.folders) {
+      const auto found = campaigns_in(folder);
+      if (found.empty()) return complain(folder + ": there is no campaign.toml in it or below it");
+      for (const fs::path& campaign : found)
+        if (const int status = open(campaign); status != exit_done) return status;
+    }
+    if (read_.size() < 2)
+      return complain("expected two campaigns or more; found " + std::to_string(read_.size()) +
+                      (passed_over_ > 0 ? " (" + std::to_string(passed_over_) +
+                                              " are not of this machine or period)"
+                                        : ""));
+    std::vector<const reading::ReadCampaign*> all;
+    for (const auto& one : read_) all.push_back(one.get());
+    progress("explaining " + std::to_string(all.size()) + " campaigns together");
+    std::vector<std::string> left_out;
+    const auto found = modelling::explain_together(all, seed_, left_out);
+    if (!found) {
+      complain(text_of(found.error()));
+      return exit_failed;
+    }
+    const reading::Context& context = place_->context;
+    const config::TerminalWords say(context.templates, common_.json ? "en" : context.site.language);
+    if (common_.json)
+      std::cout << modelling::together_json(*found, say, seed_, left_out, errors_);
+    else
+      for (const modelling::Together& t : *found) print(t, say);
+    if (!common_.json && !left_out.empty() && !common_.quiet)
+      complain("not explained together: " + storage::listed(left_out));
+    return errors_.empty() ? exit_done : exit_failed;
+  }
+
+ private:
+  void progress(const std::string& text) const {
+    if (!common_.quiet) complain(text);
+  }
+
+  /// Campaigns of one folder share their plugins and templates.
+  int open(const fs::path& folder) {
+    const fs::path parent = fs::absolute(folder).lexically_normal().parent_path();
+    if (!place_ || parent != parent_) {
+      auto place =
+          reading::open_workplace(folder, common_.plugin_folders(), common_.template_folders(),
+                                  NONIO_VERSION, reading::TemplatesFor::terminal);
+      if (!place) return complain(text_of(place.error()));
+      if (place_) earlier_.push_back(std::move(place_));
+      place_ = std::move(*place);
+      parent_ = parent;
+    }
+    auto read = std::make_unique<reading::ReadCampaign>(
+        reading::read_campaign(folder, place_->context, [](const std::string&) {}));
+    for (Error error : read->errors) {
+      error.message = folder.string() + ": " + error.message;
+      complain(text_of(errors_.emplace_back(std::move(error))));
+    }
+    if (!read->manifest) return exit_done;  // one bad campaign does not stop the others
+    if (!wanted(read->manifest->campaign))
+      ++passed_over_;
+    else
+      read_.push_back(std::move(read));
+    return exit_done;
+  }
+
+  bool wanted(const Campaign& c) const {
+    const Machine& m = c.machine;
+    const std::string& name = options_.machine;
+    return (name.empty() || name == m.asset || name == m.serial || name == m.model) &&
+           (options_.since.empty() || c.date >= options_.since) &&
+           (options_.until.empty() || (!c.date.empty() && c.date <= options_.until));
+  }
+
+  void print(const modelling::Together& t, const config::TerminalWords& say) const {
+    const model::JointExplanation& x = t.explanation;
+    const Quantity q = t.deviation();
+    std::size_t readings = 0;
+    for (const auto& one : x.campaigns) readings += one.readings;
+    sentence(std::cout, 0,
+             say("joint.head", {{"part", t.part},
+                                {"count", std::to_string(t.campaigns.size())},
+                                {"first", t.campaigns.front()},
+                                {"last", t.campaigns.back()},
+                                {"readings", std::to_string(readings)}}));
+    line(std::cout, "RMS", with_unit(x.rms, q));
+    line(std::cout, say("floor"), with_unit(x.noise, q));
+    sentence(std::cout, 2, modelling::sentence_of(t, say));
+    for (const model::JointEffect& e : x.effects) {
+      sentence(std::cout, 2, modelling::sentence_of(e, t, say));
+      if (!e.aliases.empty())
+        sentence(std::cout, 4, say("joint.aliases", {{"effects", storage::listed(e.aliases)}}));
+    }
+    print_candidates(x, q, say);
+  }
+
+  static void print_candidates(const model::JointExplanation& x, Quantity q,
+                               const config::TerminalWords& say) {
+    if (x.candidates.empty() || !(x.candidates.front().evidence > 0.0)) return;
+    std::cout << "  " << padded(say("candidate"), 22) << padded(say("evidence.alone"), 12)
+              << padded(say("rms-after"), 15) << say("joint.values") << "\n";
+    for (std::size_t k = 0; k < std::min(most_candidates, x.candidates.size()); ++k) {
+      const model::JointEffect& e = x.candidates[k];
+      if (!(e.evidence > 0.0)) break;
+      std::cout << "  " << padded(e.effect, 22) << padded(short_text(e.evidence, 4), 12)
+                << padded(with_unit(e.rms, q), 15)
+                << say(e.holds == model::Holds::shared ? "joint.is-shared" : "joint.is-own")
+                << "\n";
+    }
+  }
+
+  const TogetherOptions& options_;
+  const Common& common_;
+  std::uint64_t seed_;
+  std::unique_ptr<reading::Workplace> place_;
+  std::vector<std::unique_ptr<reading::Workplace>> earlier_;  ///< their effects are in use
+  fs::path parent_;
+  std::vector<std::unique_ptr<reading::ReadCampaign>> read_;
+  std::vector<Error> errors_;
+  std::size_t passed_over_ = 0;
+};
+
+}  // namespace
+
+bool is_single(const TogetherOptions& options) {
+  std::error_code error;
+  return options.folders.size() == 1 && options.machine.empty() && options.since.empty() &&
+         options.until.empty() &&
+         (fs::exists(fs::path(options.folders.front()) / config::manifest_name, error) ||
+          campaigns_in(options.folders.front()).empty());
+}
+
+int explain_together(const TogetherOptions& options, const Common& common, std::uint64_t seed) {
+  return ExplainTogether(options, common, seed).run();
+}
+
+}  // namespace nonio::app

@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/model/joint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "diagnosis/verdict.h"
+#include "joint/system.h"
+#include "nonio/math/distributions.h"
+#include "search/finding.h"
+
+namespace nonio::model {
+
+namespace {
+
+constexpr std::size_t most_effects = 8;
+// docs/dev/constants.md, M46.
+constexpr double least_joint_rms = 0.1;  ///< of the noise: smaller effects are not worth a name
+// docs/dev/constants.md, M47.
+constexpr double differs_below = 0.001, as_much_as_noise = 0.01;
+constexpr Index shuffles = 200;  // half of them of stretches, half of whole passes
+// Of many campaigns the date of a change is looked for in steps, then between them.
+constexpr std::size_t most_dates = 32;
+
+class JointSearch {
+ public:
+  JointSearch(const JointReadings& readings, std::uint64_t seed)
+      : r_(readings), system_(readings), seed_(seed) {
+    for (const MemberReadings& m : r_.members) {
+      y_.emplace_back(m.y);
+      dof_ += m.dof;
+      noise2_ += m.readings * m.s * m.s;
+    }
+    noise2_ /= system_.readings();
+  }
+
+  JointExplanation run() {
+    JointExplanation out;
+    put_candidates(out);
+    find();
+    prune();
+    settle_differences();
+    put_effects(out);
+    put_campaigns(out);
+    judge(out);
+    return out;
+  }
+
+ private:
+  using Choices = std::vector<Choice>;
+  struct Scored {
+    Choice choice;
+    double evidence = -std::numeric_limits<double>::infinity();
+  };
+
+  /// The best block and way of each effect that is not in `choices`, or of one only.
+  std::map<std::string, Scored> scored(const Choices& choices, const std::string& only = "") const {
+    const auto gains = system_.gains(choices, y_);
+    std::map<std::string, Scored> best;
+    for (std::size_t b = 0; b < r_.blocks.size(); ++b) {
+      const JointBlock& block = r_.blocks[b];
+      if (block.count == 0 || (!only.empty() && block.effect != only)) continue;
+      const auto row = static_cast<Index>(b);
+      const double price = system_.price_of(block);
+      Scored& known = best[block.effect];
+      const auto offer = [&](Holds holds, double evidence) {
+        if (evidence > known.evidence) known = {{b, holds}, evidence};
+      };
+      offer(Holds::shared, gains.shared(row, 0) - price -
+                               static_cast<double>(block.count) * std::log(system_.readings()));
+      offer(Holds::own, gains.own(row, 0) - price - gains.own_price[b]);
+    }
+    for (const Choice& c : choices) best.erase(r_.blocks[c.block].effect);
+    return best;
+  }
+
+  /// The best; of those that are as good the one with the fewest unknowns.
+  Scored simplest(const std::map<std::string, Scored>& all) const {
+    Scored best;
+    for (const auto& [effect, one] : all)
+      if (one.evidence > best.evidence) best = one;
+    const double least = best.evidence - alias_evidence;
+    const auto unknowns = [&](const Scored& one) {
+      const JointBlock& block = r_.blocks[one.choice.block];
+      return block.count + block.searched;
+    };
+    for (const auto& [effect, one] : all)
+      if (one.evidence > least && unknowns(one) < unknowns(best)) best = one;
+    return best;
+  }
+
+  void find() {
+    while (choices_.size() < most_effects) {
+      const Scored best = simplest(scored(choices_));
+      if (!(best.evidence > 0.0)) return;
+      choices_.push_back(best.choice);
+      if (!system_.solve(choices_).sound) {
+        choices_.pop_back();
+        return;
+      }
+      settle();
+      prefer_simpler();
+    }
+  }
+
+  /// An effect with fewer unknowns in the place of one that is no better.
+  void prefer_simpler() {
+    const auto unknowns = [&](std::size_t b) { return r_.blocks[b].count + r_.blocks[b].searched; };
+    for (std::size_t i = 0; i < choices_.size(); ++i)
+      for (const auto& [effect, one] : scored(without(choices_, i))) {
+        if (unknowns(one.choice.block) >= unknowns(choices_[i].block)) continue;
+        const Choices before = choices_;
+        const double least = criterion(choices_) + alias_evidence;
+        choices_[i] = one.choice;
+        settle(i);
+        if (!(criterion(choices_) < least)) choices_ = before;
+      }
+  }
+
+  static Choices without(Choices choices, std::size_t i) {
+    choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(i));
+    return choices;
+  }
+
+  double criterion(const Choices& choices) const {
+    const auto s = system_.solve(choices);
+    return s.sound ? s.criterion() : std::numeric_limits<double>::infinity();
+  }
+
+  /// Shapes, and whether an effect is shared, looked for again while the others stay.
+  void settle() {
+    for (int round = 0; round < 4; ++round) {
+      bool any = false;
+      for (std::size_t i = 0; i < choices_.size(); ++i) any = settle(i) || any;
+      if (!any) return;
+    }
+  }
+
+  /// The best shape of one effect; then whether its campaigns differ, and since when. Returns whether
+  /// something changed.
+  bool settle(std::size_t i) {
+    const Choice before = choices_[i];
+    const std::string effect = r_.blocks[before.block].effect;
+    const auto best = scored(without(choices_, i), effect);
+    if (const auto found = best.find(effect); found != best.end())
+      choices_[i] = found->second.choice;
+    if (criterion(choices_) > 1e300) choices_[i] = before;
+    choices_[i].holds = Holds::shared;
+    const bool differs = p_same(i) < differs_below;
+    if (differs || criterion(choices_) > 1e300) {
+      choices_[i].holds = Holds::own;
+      if (differs) look_for_date(i);
+    }
+    const Choice& now = choices_[i];
+    return now.block != before.block || now.holds != before.holds || now.after != before.after;
+  }
+
+  /// One change between two campaigns, if values in each say no more.
+  void look_for_date(std::size_t i) {
+    const std::size_t n = r_.members.size();
+    const Choice own = choices_[i];
+    if (n < 3) return;
+    double least = criterion(choices_);
+    const auto offer = [&](std::size_t after) {
+      Choices other = choices_;
+      other[i].holds = Holds::changed, other[i].after = after;
+      const double now = criterion(other);
+      if (now < least) choices_ = std::move(other), least = now;
+    };
+    const std::size_t step = std::max<std::size_t>(1, (n - 1) / most_dates);
+    for (std::size_t after = 1; after < n; after += step) offer(after);
+    if (choices_[i].holds != Holds::changed) return;
+    const std::size_t about = choices_[i].after;
+    for (std::size_t k = 1; k < step; ++k) {
+      if (about > k) offer(about - k);
+      if (about + k < n) offer(about + k);
+    }
+    if (p_same(i) < differs_below) choices_[i] = own;
+  }
+
+  /// Chance of such differences of an effect between the campaigns where there are none but those that
+  /// its choice has.
+  double p_same(std::size_t i) const { return p_same(choices_, i); }
+  double p_same(const Choices& choices, std::size_t i) const {
+    Choices own = choices;
+    own[i].holds = Holds::own;
+    const auto a = system_.solve(choices), b = system_.solve(own);
+    const auto q = static_cast<double>(b.parameters - a.parameters);
+    if (!a.sound || !b.sound || !(q >= 1.0)) return 1.0;
+    return math::f_upper((a.squares - b.squares) / q, q, dof_);
+  }
+
+  /// F-test of one effect against the noise of the repeats; not corrected for the search.
+  double p_of(const Choices& choices, std::size_t i) const {
+    const auto all = system_.solve(choices), rest = system_.solve(without(choices, i));
+    const JointBlock& block = r_.blocks[choices[i].block];
+    const auto q = static_cast<double>(all.parameters - rest.parameters + block.searched);
+    const double p = math::f_upper((rest.squares - all.squares) / q, q, dof_);
+    const auto dates = static_cast<double>(r_.members.size() - 1);
+    return choices[i].holds == Holds::changed ? std::min(1.0, dates * p) : p;
+  }
+
+  double size_of(const Choices& choices, std::size_t i) const {
+    const double fall = system_.solve(without(choices, i)).squares - system_.solve(choices).squares;
+    return std::sqrt(std::max(fall, 0.0) * noise2_ / system_.readings());
+  }
+
+  /// What is left, with the signs of short stretches or of whole passes flipped at random.
+  std::vector<MatrixXd> flipped() const {
+    const auto left = system_.residuals(choices_, system_.solve(choices_));
+    std::mt19937_64 random(seed_);
+    std::vector<MatrixXd> out;
+    for (std::size_t m = 0; m < left.size(); ++m) {
+      const MemberReadings& member = r_.members[m];
+      const double free = std::max(member.readings - static_cast<double>(member.unknowns), 1.0);
+      const VectorXd e = left[m] * std::sqrt(member.readings / free);
+      MatrixXd noise(e.size(), shuffles);
+      for (Index k = 0; k < shuffles; ++k) {
+        const std::size_t stretch = k % 2 == 0 ? stretch_of_signs : whole_pass;
+        std::map<std::pair<std::uint32_t, std::size_t>, double> sign;
+        std::map<std::uint32_t, std::size_t> in_pass;
+        for (Index i = 0; i < e.size(); ++i) {
+          const std::uint32_t pass = member.pass[static_cast<std::size_t>(i)];
+          const auto [at, is_new] = sign.try_emplace({pass, in_pass[pass]++ / stretch}, 0.0);
+          if (is_new) at->second = (random() & 1) != 0 ? 1.0 : -1.0;
+          noise(i, k) = at->second * e(i);
+        }
+      }
+      out.push_back(std::move(noise));
+    }
+    return out;
+  }
+
+  /// Independent tests that give as small a p as the flipped readings do, at their median and in one
+  /// of twenty, of stretches or of passes: whichever are more.
+  double trials_of(const JointSystem::Gains& gains) const {
+    std::vector<double> least[2];
+    for (Index k = 0; k < shuffles; ++k) {
+      double p = 1.0;
+      for (std::size_t b = 0; b < r_.blocks.size(); ++b) {
+        const auto row = static_cast<Index>(b);
+        const auto test = [&](double fall, Index parameters) {
+          const auto q = static_cast<double>(parameters + r_.blocks[b].searched);
+          if (std::isfinite(fall) && q >= 1.0) p = std::min(p, math::f_upper(fall / q, q, dof_));
+        };
+        test(gains.shared(row, k), r_.blocks[b].count);
+        test(gains.own(row, k), gains.own_parameters[b]);
+      }
+      least[k % 2].push_back(p);
+    }
+    double trials = 1.0;
+    for (auto& list : least) {
+      std::sort(list.begin(), list.end());
+      for (const double share : {0.05, 0.5}) {
+        const double p = list[static_cast<std::size_t>(share * static_cast<double>(list.size()))];
+        trials = std::max(trials, std::log1p(-share) / std::log1p(-std::clamp(p, 1e-15, 0.999)));
+      }
+    }
+    return trials;
+  }
+
+  /// Effects that noise could have given, or too small to matter, go.
+  void prune() {
+    while (true) {
+      chance_.trials = trials_of(system_.gains(choices_, flipped()));
+      std::size_t weakest = choices_.size();
+      double largest = 0.0;
+      for (std::size_t i = 0; i < choices_.size(); ++i) {
+        const double p = chance_.corrected(p_of(choices_, i));
+        const bool small = size_of(choices_, i) < least_joint_rms * std::sqrt(noise2_);
+        if ((p >= named_below || small) && p >= largest) weakest = i, largest = p;
+      }
+      if (weakest == choices_.size()) return;
+      choices_ = without(choices_, weakest);
+      settle();
+    }
+  }
+
+  /// Differences that the flipped readings give as well are none.
+  void settle_differences() {
+    for (std::size_t i = 0; i < choices_.size(); ++i) {
+      if (choices_[i].holds == Holds::shared) continue;
+      const auto gains = system_.gains(without(choices_, i), flipped());
+      Choices shared = choices_, own = choices_;
+      shared[i] = {choices_[i].block, Holds::shared}, own[i] = {choices_[i].block, Holds::own};
+      const auto a = system_.solve(shared), b = system_.solve(own);
+      if (!a.sound || !b.sound) continue;
+      const auto row = static_cast<Index>(choices_[i].block);
+      double as_much = 0.0;
+      for (Index k = 0; k < shuffles; ++k)
+        as_much += gains.own(row, k) - gains.shared(row, k) >= a.squares - b.squares ? 1.0 : 0.0;
+      if (as_much > as_much_as_noise * static_cast<double>(shuffles)) choices_ = shared;
+    }
+  }
+
+  void put_candidates(JointExplanation& out) const {
+    for (const auto& [effect, one] : scored({})) {
+      if (!(one.evidence > -1e300)) continue;
+      out.candidates.push_back(described({one.choice}, 0));
+      out.candidates.back().evidence = one.evidence;
+    }
+    std::stable_sort(
+        out.candidates.begin(), out.candidates.end(),
+        [](const JointEffect& a, const JointEffect& b) { return a.evidence > b.evidence; });
+  }
+
+  /// Of what is left of readings over their standard deviation; m or rad.
+  double rms_of(const std::vector<VectorXd>& left) const {
+    double squares = 0.0;
+    for (std::size_t m = 0; m < left.size(); ++m)
+      squares += left[m].squaredNorm() * r_.members[m].s * r_.members[m].s;
+    return std::sqrt(squares / system_.readings());
+  }
+
+  JointEffect described(const Choices& choices, std::size_t i) const {
+    const Choice& c = choices[i];
+    const JointBlock& block = r_.blocks[c.block];
+    const auto solution = system_.solve(choices);
+    JointEffect out{.effect = block.effect, .holds = c.holds, .after = c.after};
+    out.size = size_of(choices, i);
+    out.rms = rms_of(system_.residuals(choices, solution));
+    out.p = p_of(choices, i);
+    const std::size_t groups = c.holds == Holds::shared    ? 1
+                               : c.holds == Holds::changed ? 2
+                                                           : r_.members.size();
+    for (std::size_t g = 0; g < groups; ++g) {
+      const auto [value, covariance] = system_.values(choices, solution, i, g);
+      std::vector<Parameter> list;
+      for (Index k = 0; k < value.size(); ++k) {
+        const Effect& e = *block.is;
+        const Effect::Parameter& p = e.linear[e.curve ? 0 : static_cast<std::size_t>(k)];
+        list.push_back({block.effect, e.curve ? p.name + std::to_string(k + 1) : p.name, value(k),
+                        std::sqrt(covariance(k, k)), quantity_of(p, block.axis)});
+      }
+      out.groups.push_back(std::move(list));
+    }
+    for (std::size_t k = 0; k < block.shape.size(); ++k) {
+      const Effect::Parameter& p = block.is->shapes[k].parameter;
+      if (!out.groups.empty())
+        out.groups.front().push_back({block.effect, p.name, block.shape[k],
+                                      std::numeric_limits<double>::quiet_NaN(),
+                                      quantity_of(p, block.axis), true});
+    }
+    return out;
+  }
+
+  void put_effects(JointExplanation& out) const {
+    const double all = criterion(choices_);
+    for (std::size_t i = 0; i < choices_.size(); ++i) {
+      JointEffect effect = described(choices_, i);
+      effect.p = chance_.corrected(effect.p);
+      Choices shared = choices_;
+      shared[i].holds = Holds::shared;
+      effect.p_same = p_same(shared, i);
+      const Choices rest = without(choices_, i);
+      const double before = criterion(rest);
+      effect.evidence = before - all;
+      for (const auto& [name, one] : scored(rest))
+        if (name != effect.effect && one.evidence > effect.evidence - alias_evidence)
+          effect.aliases.push_back(name);
+      out.effects.push_back(std::move(effect));
+    }
+  }
+
+  void put_campaigns(JointExplanation& out) const {
+    const auto left = system_.residuals(choices_, system_.solve(choices_));
+    std::vector<VectorXd> before;
+    for (std::size_t m = 0; m < left.size(); ++m) {
+      const MemberReadings& member = r_.members[m];
+      JointExplanation::Campaign one;
+      one.readings = static_cast<std::size_t>(member.readings);
+      one.floor = member.floor;
+      before.push_back(member.y);
+      one.rms = member.s * std::sqrt(member.y.squaredNorm() / member.readings);
+      one.rms_after = member.s * std::sqrt(left[m].squaredNorm() / member.readings);
+      for (Index i = 0; i < left[m].size(); ++i)
+        one.residual.push_back(left[m](i) * member.scale(i));
+      out.campaigns.push_back(std::move(one));
+    }
+    out.rms = rms_of(before);
+    out.rms_after = rms_of(left);
+    out.noise = std::sqrt(noise2_);
+    out.trials = chance_.trials;
+  }
+
+  /// Squares of the means of the cells, over all campaigns.
+  VectorXd of_cells(const std::vector<MatrixXd>& y) const {
+    VectorXd out = VectorXd::Zero(y.front().cols());
+    for (std::size_t m = 0; m < y.size(); ++m) {
+      const MemberReadings& member = r_.members[m];
+      MatrixXd sum = MatrixXd::Zero(static_cast<Index>(member.cells), y[m].cols());
+      VectorXd n = VectorXd::Zero(sum.rows());
+      for (Index i = 0; i < y[m].rows(); ++i) {
+        if (!(member.scale(i) > 0.0)) continue;
+        const auto cell = static_cast<Index>(member.cell[static_cast<std::size_t>(i)]);
+        sum.row(cell) += y[m].row(i), n(cell) += 1.0;
+      }
+      for (Index k = 0; k < n.size(); ++k)
+        if (n(k) > 1.0) out += sum.row(k).cwiseAbs2().transpose() / n(k);
+    }
+    return out;
+  }
+
+  /// Whether the means of the cells differ from the model by more than what the passes scatter.
+  void judge(JointExplanation& out) const {
+    std::vector<MatrixXd> left;
+    for (const VectorXd& e : system_.residuals(choices_, system_.solve(choices_)))
+      left.emplace_back(e);
+    const double found = of_cells(left)(0);
+    const VectorXd chance = of_cells(flipped());
+    double mean = 0.0, squares = 0.0, n = 0.0;
+    for (Index k = 1; k < shuffles; k += 2) mean += chance(k), ++n;  // of whole passes
+    mean /= n;
+    for (Index k = 1; k < shuffles; k += 2) squares += std::pow(chance(k) - mean, 2);
+    const double s = std::sqrt(squares / (n - 1.0));
+    const double t = math::test_ratio(found - mean, s);
+    out.p_left = t > 0.0 ? 0.5 * math::t_two_sided(t, n - 1.0) : 1.0;
+    const double size = std::sqrt(std::max(found - mean, 0.0) / system_.readings());
+    out.explains_all = !(out.p_left < lacks_fit_p && size > least_left);
+    if (!out.effects.empty())
+      out.verdict = Verdict::Kind::missing;
+    else if (!out.explains_all)
+      out.verdict = Verdict::Kind::unknown;
+  }
+
+  const JointReadings& r_;
+  JointSystem system_;
+  std::uint64_t seed_;
+  std::vector<MatrixXd> y_;
+  double dof_ = 0.0, noise2_ = 0.0;
+  Choices choices_;
+  Chance chance_;
+};
+
+}  // namespace
+
+Expected<JointExplanation> explain_together(const std::vector<Member>& members,
+                                            std::uint64_t seed) {
+  NONIO_TRY(const auto readings, read_together(members));
+  return JointSearch(readings, seed).run();
+}
+
+}  // namespace nonio::model

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// The model of an axis or of several, applied to readings that it was not fitted to.
+#include "nonio/model/prediction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/design.h"
+#include "nonio/model/comparison.h"
+
+namespace nonio::model {
+
+namespace {
+
+const char* const mark = "unseen ";
+
+/// Both tables as one, so that curves and levers have the same places in both. Lines and bodies of the
+/// second have a name of their own.
+Expected<Observations> joined(const Observations& seen, const Observations& unseen) {
+  Observations out = seen;
+  if (seen.angular != unseen.angular) return fail("one is in um, the other in arcsec");
+  if (out.lines.empty() || unseen.lines.empty()) return fail("expected lines of sensing");
+  for (auto& axis : out.axes) {
+    const auto* more = unseen.axis(axis.axis);
+    if (more == nullptr)
+      return fail("axis " + axis.axis + " is not among what was measured in both campaigns");
+    const std::size_t before = axis.position.size();
+    axis.position.insert(axis.position.end(), more->position.begin(), more->position.end());
+    axis.approach.resize(before, 0);
+    axis.approach.insert(axis.approach.end(), more->approach.begin(), more->approach.end());
+    axis.approach.resize(axis.position.size(), 0);
+  }
+  const auto first = static_cast<std::uint32_t>(seen.lines.size());
+  if (out.line.empty()) out.line.assign(seen.size(), 0);
+  for (std::size_t i = 0; i < unseen.size(); ++i) out.line.push_back(first + line_of(unseen, i));
+  for (Observations::Line line : unseen.lines) {
+    line.name = mark + line.name;
+    if (!line.body.empty()) line.body = mark + line.body;
+    out.lines.push_back(std::move(line));
+  }
+  if (!seen.sense.empty() || !unseen.sense.empty()) {
+    out.sense.clear();
+    for (std::size_t i = 0; i < seen.size(); ++i) out.sense.push_back(seen.sense_of(i));
+    for (std::size_t i = 0; i < unseen.size(); ++i) out.sense.push_back(unseen.sense_of(i));
+  }
+  append_measured(out, unseen);
+  return out;
+}
+
+Expected<MatrixXd> columns_of_terms(const Observations& o, const std::vector<Term>& terms) {
+  MatrixXd out(static_cast<Index>(o.size()), 0);
+  for (const Term& term : terms) {
+    NONIO_TRY(const auto columns, columns_of(o, term, term.shape));
+    out.conservativeResize(Eigen::NoChange, out.cols() + columns.cols());
+    out.rightCols(columns.cols()) = columns;
+  }
+  return out;
+}
+
+/// One column for the zero of each line of these rows.
+MatrixXd zeros_of(const Observations& o, Index first, Index rows) {
+  std::vector<std::uint32_t> lines;
+  for (Index i = first; i < first + rows; ++i) {
+    const std::uint32_t line = line_of(o, static_cast<std::size_t>(i));
+    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+  }
+  MatrixXd out = MatrixXd::Zero(rows, static_cast<Index>(lines.size()));
+  for (Index i = 0; i < rows; ++i) {
+    const auto at =
+        std::find(lines.begin(), lines.end(), line_of(o, static_cast<std::size_t>(first + i)));
+    out(i, at - lines.begin()) = 1.0;
+  }
+  return out;
+}
+
+MatrixXd with(const MatrixXd& a, const MatrixXd& b) {
+  MatrixXd out(a.rows(), a.cols() + b.cols());
+  out << a, b;
+  return out;
+}
+
+}  // namespace
+
+Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& model,
+                                    const Part& unseen, const std::vector<Term>& set_up) {
+  NONIO_TRY(const auto compared, compare(seen, model));
+  NONIO_TRY(const Observations both, joined(seen.table, unseen.table));
+  std::vector<Term> named, own, others = set_up;
+  for (const Term& term : compared.fit.terms)
+    (term.effect->is_nuisance ? own : named).push_back(term);
+  std::erase_if(others, [](const Term& t) { return !t.effect->is_nuisance; });
+  for (Term& term : others) term.axis.name = mark + term.axis.name;
+  NONIO_TRY(const MatrixXd of_model, columns_of_terms(both, named));
+  NONIO_TRY(const MatrixXd of_seen, columns_of_terms(both, own));
+  NONIO_TRY(const MatrixXd of_unseen, columns_of_terms(both, others));
+  const auto n = static_cast<Index>(seen.table.size()), m = static_cast<Index>(unseen.table.size());
+  const VectorXd y = Eigen::Map<const VectorXd>(both.deviation.data(), n + m);
+
+  // The fit to what was seen.
+  VectorXd root(n);
+  for (Index i = 0; i < n; ++i)
+    root(i) = std::sqrt(
+        compared.fit.weight.empty() ? 1.0 : compared.fit.weight[static_cast<std::size_t>(i)]);
+  const MatrixXd a =
+      root.asDiagonal() * with(of_model.topRows(n), with(of_seen.topRows(n), zeros_of(both, 0, n)));
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
+  if (qr.rank() < a.cols())
+    return fail(
+        "the readings of the first campaign cannot determine its model in the places of both");
+  const VectorXd weighted = root.cwiseProduct(y.head(n));
+  const VectorXd x = math::solution(qr, weighted);
+  const double dof = root.cwiseAbs2().sum() - static_cast<double>(a.cols());
+  if (!(dof >= 1.0))
+    return fail("the model has as many unknowns as the first campaign has readings");
+  const double s2 = (weighted - a * x).squaredNorm() / dof;
+  const Index k = of_model.cols();
+  const MatrixXd cofactor = Eigen::LLT<MatrixXd>(math::transposed_product(a, a))
+                                .solve(MatrixXd::Identity(a.cols(), a.cols()));
+  const MatrixXd covariance = s2 * cofactor.topLeftCorner(k, k);
+
+  // What it predicts; zeros and set-up of the other readings are new.
+  const MatrixXd free = with(of_unseen.bottomRows(m), zeros_of(both, n, m));
+  const Eigen::ColPivHouseholderQR<MatrixXd> decomposed(free);
+  const MatrixXd q = MatrixXd(decomposed.householderQ() * MatrixXd::Identity(m, decomposed.rank()));
+  VectorXd error = y.tail(m) - of_model.bottomRows(m) * x.head(k);
+  VectorXd readings = y.tail(m);
+  MatrixXd from = of_model.bottomRows(m);
+  math::take_out(q, error), math::take_out(q, readings), math::take_out(q, from);
+  const MatrixXd spread = math::product(from, covariance);
+  Prediction out;
+  std::size_t inside = 0;
+  for (Index i = 0; i < m; ++i) {
+    out.error.push_back(error(i));
+    const double own_share = std::max(1.0 - q.row(i).squaredNorm(), 0.0);
+    out.u.push_back(std::sqrt(s2 * own_share + spread.row(i).dot(from.row(i))));
+    if (std::fabs(error(i)) <= 2.0 * out.u.back()) ++inside;
+  }
+  out.rms = std::sqrt(error.squaredNorm() / static_cast<double>(m));
+  out.sd = std::sqrt(readings.squaredNorm() / static_cast<double>(m));
+  out.inside = static_cast<double>(inside) / static_cast<double>(m);
+  for (const auto& axis : unseen.table.axes) {
+    const auto* known = seen.table.axis(axis.axis);
+    const auto [low, high] = std::minmax_element(known->position.begin(), known->position.end());
+    const auto [least, most] = std::minmax_element(axis.position.begin(), axis.position.end());
+    constexpr double margin = 0.02;
+    const double more = margin * (*high - *low);
+    out.outside = out.outside || *least < *low - more || *most > *high + more;
+  }
+  return out;
+}
+
+}  // namespace nonio::model

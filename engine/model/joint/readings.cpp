@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "joint/readings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/noise.h"
+#include "data/repeats.h"
+#include "data/whitening.h"
+#include "fit/compare.h"
+
+namespace nonio::model {
+
+namespace {
+
+/// Share of a column that must not be explained by the zeros and the member's own model.
+constexpr double shown = 1e-4;
+
+/// The stretch that all members together measured, as two readings more: a curve has its knots, and a
+/// period its grid, in the same places in each.
+struct Stretch {
+  double low = 0.0, high = 0.0;
+};
+
+Observations with_ends(const Observations& o, const Stretch& stretch) {
+  Observations out = o;
+  for (const double end : {stretch.low, stretch.high}) {
+    const std::size_t row = 0;
+    const auto again = [&](auto& column) {
+      if (!column.empty()) column.push_back(column[row]);
+    };
+    again(out.deviation), again(out.source_line), again(out.time), again(out.material);
+    again(out.air), again(out.pressure), again(out.humidity), again(out.run), again(out.line);
+    again(out.u);
+    for (auto& axis : out.axes) again(axis.position), again(axis.approach);
+    again(out.sense);
+    out.axes.front().position.back() = end;
+  }
+  return out;
+}
+
+bool joins(const Term& t) {
+  return !t.grouping && !t.effect->description && !t.effect->is_nuisance && !t.library;
+}
+
+/// The same at every reading of a target from one side: it does not depend on time.
+bool is_of_place(const MatrixXd& columns, const std::vector<std::uint32_t>& cell) {
+  std::map<std::uint32_t, Index> first;
+  for (Index i = 0; i < columns.rows(); ++i) {
+    const auto [at, is_new] = first.emplace(cell[static_cast<std::size_t>(i)], i);
+    if (!is_new && columns.row(i) != columns.row(at->second)) return false;
+  }
+  return true;
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::vector<Member>& members) : members_(members) {}
+
+  Expected<JointReadings> run() {
+    measure_stretch();
+    list_blocks();
+    for (const Member& member : members_) {
+      auto read = of_member(member);
+      if (!read) {
+        if (read.error().file.empty()) read.error().file = member.campaign;
+        return fail(read.error());
+      }
+      out_.members.push_back(std::move(*read));
+    }
+    const double passes = offsets_of_passes();
+    for (std::size_t m = 0; m < members_.size(); ++m)
+      if (auto put = put_columns(members_[m], passes, grounds_[m], out_.members[m]); !put)
+        return fail(put.error());
+    drop_rare();
+    return std::move(out_);
+  }
+
+ private:
+  void measure_stretch() {
+    stretch_ = {1e300, -1e300};
+    for (const Member& m : members_)
+      for (const double x : m.part->table.axes.front().position)
+        stretch_.low = std::min(stretch_.low, x), stretch_.high = std::max(stretch_.high, x);
+  }
+
+  /// Shapes from the member with the most readings that has the effect.
+  void list_blocks() {
+    std::map<std::string, std::pair<const Term*, const Member*>> all;
+    std::vector<std::string> order;
+    for (const Member& m : members_)
+      for (const Term& t : m.catalogue) {
+        if (!joins(t) || in_a_model(t.of_all())) continue;
+        auto& known = all[t.of_all()];
+        if (known.first == nullptr) order.push_back(t.of_all());
+        if (known.first == nullptr || m.part->table.size() > known.second->part->table.size())
+          known = {&t, &m};
+      }
+    for (const std::string& name : order) {
+      const auto [term, member] = all[name];
+      const auto shapes = shapes_of(with_ends(member->part->table, stretch_), *term);
+      const auto tried = static_cast<double>(shapes.size());
+      const bool curve = term->effect->curve;
+      for (const auto& shape : shapes) {
+        JointBlock block{name, term->effect, term->axis, shape};
+        block.cost = term->price;
+        if (tried > 1.0 && !are_usual(*term, shape)) {
+          block.cost += 2.0 * std::log(std::max(curve ? tried : tried / 3.0, 2.0));
+          if (!curve) block.searched = static_cast<Index>(shape.size());
+        }
+        out_.blocks.push_back(std::move(block));
+      }
+    }
+  }
+
+  bool in_a_model(const std::string& effect) const {
+    return std::any_of(members_.begin(), members_.end(), [&](const Member& m) {
+      return std::any_of(m.model.begin(), m.model.end(),
+                         [&](const Term& t) { return t.of_all() == effect; });
+    });
+  }
+
+  struct Kept {
+    GroundworkOf groundwork;
+    std::vector<Term> terms;
+    const Ground& ground() const { return groundwork->whole; }
+  };
+
+  Expected<MemberReadings> of_member(const Member& member) {
+    const Observations& o = member.part->table;
+    NONIO_TRY(const auto compared, compare(*member.part, member.model));
+    grounds_.emplace_back(GroundworkOf(*member.part, member.model, nullptr), compared.fit.terms);
+    const Ground& ground = grounds_.back().ground();
+    MemberReadings out;
+    out.pass = ground.repeats.pass, out.cell = ground.repeats.cell;
+    out.cells = ground.repeats.cells;
+    out.floor = compared.floor;
+    const bool floor = compared.floor && compared.floor->dof >= least_dof;
+    out.s = floor ? compared.floor->s : compared.fit.s;
+    out.dof = floor ? compared.floor->dof : static_cast<double>(compared.fit.redundancy);
+    if (!(out.s > 0.0) || !(out.dof >= 1.0))
+      return fail("expected readings that scatter, and more of them than the model has unknowns");
+    sum_offsets(ground, o.deviation, out.s);
+    return out;
+  }
+
+  /// Differences of the means of passes that follow each other on one side, without the means of the
+  /// targets: 2 (offset^2 + s^2/n). A drift is hardly in them.
+  void sum_offsets(const Ground& ground, const std::vector<double>& y, double s) {
+    const Repeats& r = ground.repeats;
+    std::vector<double> cell(r.cells, 0.0), in_cell(r.cells, 0.0), mean(r.passes, 0.0),
+        n(r.passes, 0.0);
+    for (std::size_t i = 0; i < y.size(); ++i)
+      if (ground.weight[i] > 0.0) cell[r.cell[i]] += y[i], in_cell[r.cell[i]] += 1.0;
+    for (std::size_t i = 0; i < y.size(); ++i)
+      if (ground.weight[i] > 0.0 && in_cell[r.cell[i]] > 1.0)
+        mean[r.pass[i]] += y[i] - cell[r.cell[i]] / in_cell[r.cell[i]], n[r.pass[i]] += 1.0;
+    std::map<std::uint32_t, std::size_t> last;
+    for (std::size_t p = 0; p < r.passes; ++p) {
+      if (!(n[p] >= 3.0)) continue;
+      if (const auto before = last.find(r.side[p]); before != last.end()) {
+        const std::size_t q = before->second;
+        const double d = mean[p] / n[p] - mean[q] / n[q];
+        offsets_ += 0.5 * d * d / (s * s) - 0.5 * (1.0 / n[p] + 1.0 / n[q]);
+        differences_ += 1.0;
+      }
+      last[r.side[p]] = p;
+    }
+  }
+
+  /// Variance of the offsets of passes over that of a reading, the same in all campaigns.
+  double offsets_of_passes() const {
+    return differences_ > 0.0 ? std::max(offsets_ / differences_, 0.0) : 0.0;
+  }
+
+  /// Takes from the rows of each pass so much of their mean that what is left is independent: generalised
+  /// least squares with a random offset of each pass.
+  static void take_out_offsets(const MemberReadings& m, double variance, MatrixXd& columns) {
+    if (!(variance > 0.0)) return;
+    std::map<std::uint32_t, std::vector<Index>> passes;
+    for (Index i = 0; i < columns.rows(); ++i)
+      if (m.scale(i) > 0.0) passes[m.pass[static_cast<std::size_t>(i)]].push_back(i);
+    for (const auto& [pass, rows] : passes) {
+      const auto n = static_cast<double>(rows.size());
+      const double share = 1.0 - 1.0 / std::sqrt(1.0 + n * variance);
+      const Eigen::RowVectorXd mean = columns(rows, Eigen::all).colwise().sum() * (share / n);
+      for (const Index i : rows) columns.row(i) -= mean;
+    }
+  }
+
+  /// Orthonormal columns of the zeros and of the member's own model.
+  static Expected<MatrixXd> of_model(const MemberReadings& m, const Whitening& white,
+                                     const Observations& o, const std::vector<Term>& terms,
+                                     double offsets) {
+    std::vector<MatrixXd> parts;
+    MatrixXd zeros = MatrixXd::Zero(static_cast<Index>(o.size()), static_cast<Index>(lines_of(o)));
+    for (std::size_t i = 0; i < o.size(); ++i)
+      zeros(static_cast<Index>(i), static_cast<Index>(line_of(o, i))) = 1.0;
+    parts.push_back(std::move(zeros));
+    for (const Term& term : terms) {
+      NONIO_TRY(auto columns, columns_of(o, term, term.shape));
+      parts.push_back(std::move(columns));
+    }
+    MatrixXd all(static_cast<Index>(o.size()), 0);
+    for (const MatrixXd& part : parts)
+      for (Index k = 0; k < part.cols(); ++k) {
+        MatrixXd one = white(part.col(k));
+        take_out_offsets(m, offsets, one);
+        const double before = one.norm();
+        math::take_out(all, one), math::take_out(all, one);
+        if (!(one.norm() > shown * before)) continue;
+        all.conservativeResize(Eigen::NoChange, all.cols() + 1);
+        all.rightCols(1) = one / one.norm();
+      }
+    return all;
+  }
+
+  Expected<void> put_columns(const Member& member, double offsets, const Kept& kept,
+                             MemberReadings& out) {
+    const Observations& o = member.part->table;
+    const Ground& ground = kept.ground();
+    const Whitening white(o, ground.weight, Whitening::of_repeats(ground.noise));
+    out.readings = static_cast<double>((white.root().array() > 0.0).count());
+    out.scale = white.root();
+    for (double& w : out.scale) w = w > 0.0 ? out.s / w : 0.0;
+    NONIO_TRY(const MatrixXd model, of_model(out, white, o, kept.terms, offsets));
+    out.unknowns = model.cols();
+    const auto whitened = [&](const MatrixXd& columns, VectorXd* before = nullptr) {
+      MatrixXd part = white(columns);
+      take_out_offsets(out, offsets, part);
+      if (before != nullptr) *before = part.colwise().norm().transpose();
+      math::take_out(model, part), math::take_out(model, part);
+      return part;
+    };
+    out.y = whitened(Eigen::Map<const VectorXd>(o.deviation.data(), static_cast<Index>(o.size())))
+                .col(0) /
+            out.s;
+    const Observations wide = with_ends(o, stretch_);
+    std::vector<MatrixXd> parts;
+    Index columns = 0;
+    out.first.assign(out_.blocks.size(), -1);
+    out.own.resize(out_.blocks.size());
+    for (std::size_t b = 0; b < out_.blocks.size(); ++b) {
+      JointBlock& block = out_.blocks[b];
+      const auto term =
+          std::find_if(member.catalogue.begin(), member.catalogue.end(),
+                       [&](const Term& t) { return joins(t) && t.of_all() == block.effect; });
+      if (term == member.catalogue.end()) continue;
+      auto made = columns_of(o, *term, block.shape);
+      if (made && is_of_place(*made, out.cell)) made = columns_of(wide, *term, block.shape);
+      if (!made || made->cols() == 0 || (block.count > 0 && made->cols() != block.count)) continue;
+      VectorXd before;
+      MatrixXd part = whitened(made->topRows(static_cast<Index>(o.size())), &before);
+      const VectorXd after = part.colwise().norm().transpose();
+      if (!(after.array() > shown * before.array()).all()) continue;
+      part /= out.s;
+      block.count = part.cols();
+      out.first[b] = columns;
+      columns += part.cols();
+      out.own[b] = math::transposed_product(part, part);
+      parts.push_back(std::move(part));
+    }
+    out.x.resize(out.y.size(), columns);
+    columns = 0;
+    for (const MatrixXd& part : parts) {
+      out.x.middleCols(columns, part.cols()) = part;
+      columns += part.cols();
+    }
+    return {};
+  }
+
+  /// What fewer than two campaigns show is a question to each alone.
+  void drop_rare() {
+    for (std::size_t b = 0; b < out_.blocks.size(); ++b) {
+      const auto shows = std::count_if(out_.members.begin(), out_.members.end(),
+                                       [&](const MemberReadings& m) { return m.first[b] >= 0; });
+      if (shows >= 2) continue;
+      for (MemberReadings& m : out_.members) m.first[b] = -1;
+      out_.blocks[b].count = 0;
+    }
+  }
+
+  // docs/dev/constants.md, M5.
+  static constexpr double least_dof = 8.0;
+  const std::vector<Member>& members_;
+  Stretch stretch_;
+  std::vector<Kept> grounds_;
+  double offsets_ = 0.0, differences_ = 0.0;
+  JointReadings out_;
+};
+
+}  // namespace
+
+Expected<JointReadings> read_together(const std::vector<Member>& members) {
+  if (members.size() < 2) return fail("expected two campaigns or more that measured the same");
+  return Reader(members).run();
+}
+
+}  // namespace nonio::model

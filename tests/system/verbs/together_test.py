@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`nonio model explain` of several campaigns together: effects below the noise of each, by which campaigns they have."""
+import json
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.append(str(ROOT / "bench"))
+import fleet
+
+NONIO = os.environ["NONIO"]
+SEED = int(os.environ.get("NONIO_SEED") or random.SystemRandom().randrange(10 ** 6))
+
+
+def explain(*arguments, status=0):
+    done = subprocess.run([NONIO, "model", "explain", *map(str, arguments)], capture_output=True, text=True, check=False)
+    assert done.returncode == status, (done.returncode, done.stdout, done.stderr)
+    return done
+
+
+class Together(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        print(f"seed {SEED} (NONIO_SEED)", file=sys.stderr)
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="nonio-together-")
+        self.addCleanup(folder.cleanup)
+        self.site = pathlib.Path(folder.name) / "site"
+        self.rng = random.Random(SEED)
+
+    def answer(self, *arguments):
+        return json.loads(explain(*(arguments or [self.site]), "--json", "--quiet").stdout)
+
+    def reversals(self):
+        """Mean over the campaigns of mean(+) - mean(-), um."""
+        each = []
+        for file in sorted(self.site.glob("*/x.csv")):
+            rows = [line.split(",") for line in file.read_text().splitlines()[1:]]
+            mean = {way: [float(r[3]) for r in rows if r[1] == way] for way in "+-"}
+            each.append(sum(mean["+"]) / len(mean["+"]) - sum(mean["-"]) / len(mean["-"]))
+        return each
+
+    def test_an_effect_of_half_the_noise_that_all_have(self):
+        fleet.fleet(self.site, "shared", "backlash:X", 0.5, 12, 0.0, self.rng)
+        answer = self.answer()
+        effect, = answer["effects"]
+        self.assertEqual((effect["effect"], effect["per_campaign"]), ("backlash:X", "shared"))
+        self.assertEqual(answer["verdict"]["kind"], "missing")
+        self.assertEqual((answer["verdict"]["same"], answer["verdict"]["differs"]), (["backlash:X"], []))
+        self.assertEqual(answer["observations"], 12 * 210)
+        self.assertEqual([c["campaign"] for c in answer["campaigns"]], [f"c{n:04d}" for n in range(12)])
+        b, = effect["parameters"]
+        mean = sum(self.reversals()) / 12  # of equal weight, up to the noise floor of each campaign
+        self.assertLess(abs(b["value"] - mean), 0.5 * b["u"])
+        self.assertLess(answer["rms_after_um"], answer["model"]["rms_um"])
+        self.assertAlmostEqual(answer["rms_after_um"] / answer["noise_floor_um"], 1.0, delta=0.1)
+
+    def test_one_campaign_alone_does_not_show_what_all_show(self):
+        fleet.fleet(self.site, "shared", "periodic:X", 0.25, 24, 0.0, self.rng)
+        alone = [json.loads(explain(c, "--json", "--quiet").stdout)["verdict"]["kind"] for c in sorted(self.site.iterdir())]
+        self.assertLess(alone.count("missing"), 24)
+        self.assertEqual([e["effect"] for e in self.answer()["effects"]], ["periodic:X"])
+
+    def test_an_effect_that_appears(self):
+        first = fleet.fleet(self.site, "appears", "pitch-curve:X", 0.8, 12, 0.0, self.rng)
+        effect, = self.answer()["effects"]
+        self.assertEqual((effect["effect"], effect["per_campaign"]), ("pitch-curve:X", "changed"))
+        self.assertEqual([effect["values"][0]["to"], effect["values"][1]["from"]], [f"c{first - 1:04d}", f"c{first:04d}"])
+        self.assertIn("appears between", effect["says"])
+
+    def test_an_effect_that_differs(self):
+        fleet.fleet(self.site, "differs", "backlash:X", 0.8, 12, 0.0, self.rng)
+        effect, = self.answer()["effects"]
+        if effect["per_campaign"] == "own":  # a sample of halves can be a first and a last half
+            values = [v["parameters"][0] for v in effect["values"]]
+            for one, mean in zip(values, self.reversals()):
+                self.assertLess(abs(one["value"] - mean), 0.5 * one["u"])
+        self.assertIn(effect["per_campaign"], ("own", "changed"))
+        self.assertEqual(self.answer()["verdict"]["differs"], ["backlash:X"])
+
+    def test_nothing_is_found_where_there_is_nothing(self):
+        fleet.fleet(self.site, "none", "", 0.0, 10, 0.3, random.Random(5))
+        answer = self.answer()
+        self.assertEqual((answer["verdict"]["kind"], answer["effects"]), ("nothing", []))
+
+    def test_the_model_of_each_campaign_is_taken_off(self):
+        fleet.fleet(self.site, "shared", "backlash:X", 1.0, 6, 0.0, self.rng)
+        for manifest in self.site.glob("*/campaign.toml"):
+            manifest.write_text(manifest.read_text() + '[model]\neffects = ["backlash:X"]\n')
+        answer = self.answer()
+        self.assertEqual((answer["model"]["effects"], answer["verdict"]["kind"]), (["backlash:X"], "nothing"))
+
+    def test_machine_and_period_choose_campaigns(self):
+        fleet.fleet(self.site, "shared", "backlash:X", 1.0, 8, 0.0, self.rng)
+        for manifest in sorted(self.site.glob("*/campaign.toml"))[:3]:
+            manifest.write_text(manifest.read_text().replace('"M-1"', '"M-2"'))
+        of = self.answer(self.site, "--machine", "M-2")
+        self.assertEqual([c["campaign"] for c in of["campaigns"]], ["c0000", "c0001", "c0002"])
+        of = self.answer(self.site, "--since", "2020-03-01", "--until", "2020-05-31")
+        self.assertEqual([c["campaign"] for c in of["campaigns"]], ["c0002", "c0003", "c0004"])
+
+    def test_screens_and_refusals(self):
+        fleet.fleet(self.site, "shared", "backlash:X", 1.0, 3, 0.0, self.rng)
+        text = explain(self.site / "c0000", self.site / "c0001").stdout
+        self.assertIn("X in 2 campaigns, c0000 to c0001: 420 readings", text)
+        self.assertIn("backlash:X: the same in all campaigns", text)
+        self.assertIn("--auto is for one campaign", explain(self.site, "--auto", status=2).stderr)
+        self.assertIn("expected two campaigns or more; found 0 (3 are not of this machine or period)",
+                      explain(self.site, "--machine", "M-9", status=2).stderr)
+        (self.site / "c0001/x.csv").write_text("run,direction\n1,+\n")
+        answer = explain(self.site, "--json", "--quiet", status=1)
+        self.assertEqual(len(json.loads(answer.stdout)["campaigns"]), 2)
+        self.assertIn("c0001", json.loads(answer.stdout)["errors"][0]["message"])
+        shutil.rmtree(self.site / "c0001"), shutil.rmtree(self.site / "c0002")
+        (self.site / "empty").mkdir()
+        self.assertIn("no campaign.toml in it or below it", explain(self.site / "c0000", self.site / "empty", status=2).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
