@@ -113,6 +113,8 @@ def of_neighbour(path, name):
     part = longest(path, MAY)
     if part.startswith("plugins/") and not (source.parent / name).exists():
         others = [p for p in (ROOT / part).rglob(name) if not SHARED & set(p.parts)]
+        if any((source.parent.name, p.parent.name) == ("spreadsheet", "csv") for p in others):  # which reads its table
+            return None
         if others and not list((ROOT / part).rglob(f"common/**/{name}")):
             return f'"{name}" belongs to {others[0].parent.relative_to(ROOT)}: plugins share only what is in common'
     return None

@@ -8,7 +8,7 @@ ROOT = pathlib.Path(sys.argv[1])
 # Names of plugins that are also words of the field or of the program, as keys and kinds.
 WORDS = {"circle", "thermal", "spindle", "lengths", "json", "csv", "dcc", "straightness", "square", "rtcp", "temperature", "scale",
          "step-diagonal", "certificate", "squareness", "descriptions", "periodic", "backlash", "pitch-curve", "eccentricity",
-         "artefacts", "circles", "diagonals", "heat", "observations", "rotary", "runs"}
+         "artefacts", "circles", "diagonals", "heat", "observations", "parts", "rotary", "runs", "spreadsheet"}
 # (file, name) -> why it is there.
 KNOWN = {
     ("engine/model/diagnosis/verdict.cpp", "growth-drift"): "two effects that are one growth from another place",

@@ -4,6 +4,9 @@
 //                  was not parallel to the axis; q: way along the travel, m; a: rad
 //     mirror-tilt  of a step diagonal: (a t1 + b t2) . P, the mirror was not square to the beam;
 //                  t1, t2: unit vectors across the beam, P: commanded point, m; a, b: rad
+//     body-turn    of a part on the table: (w x P) . n; w: turn about one axis, rad; n: direction of
+//                  sensing
+//     body-size    of a part of unknown temperature: a P . n; a: m/m
 #include <algorithm>
 
 #include "nonio/sdk/space_readings.h"
@@ -36,7 +39,7 @@ std::vector<std::string> lines_that(const Observations& o, bool (*is)(const Spac
     const bool one_sense = std::all_of(way.rows.begin(), way.rows.end(), [&](std::size_t i) {
       return SpaceLine::dot(o.sense_of(i), way.sense) > 1.0 - 1e-9;
     });
-    if (one_sense && is(way)) names.push_back(o.lines[line].name);
+    if (one_sense && o.lines[line].body.empty() && is(way)) names.push_back(o.lines[line].name);
   }
   return names;
 }
@@ -82,6 +85,77 @@ Expected<Effect::Columns> tilt(const Observations& o, const Axis& place,
   return ways_along(o, line, {level, SpaceLine::cross(line.sense, level)});
 }
 
+/// "<body> Z": the part and the axis about which it is turned.
+struct Turn {
+  std::string body;
+  std::size_t about = 0;
+};
+std::string name_of(const Turn& turn) { return turn.body + " " + "XYZ"[turn.about]; }
+
+std::vector<std::string> bodies(const Observations& o, bool of_unknown_size) {
+  std::vector<std::string> out;
+  for (const auto& line : o.lines)
+    if (!line.body.empty() && !(of_unknown_size && line.body_size_known) &&
+        std::find(out.begin(), out.end(), line.body) == out.end())
+      out.push_back(line.body);
+  return out;
+}
+
+/// What `of` says of the readings of a body: of the point and the direction of sensing.
+template <class Of>
+std::vector<double> column_of(const Observations& o, const std::string& body, Of of) {
+  const SpaceReadings s = space_of(o);
+  std::vector<double> out(o.size(), 0.0);
+  for (std::size_t i = 0; i < o.size(); ++i)
+    if (!o.lines.empty() && o.lines[o.line_of(i)].body == body)
+      out[i] = of(Vector{s.lever(0, i), s.lever(1, i), s.lever(2, i)}, o.sense_of(i));
+  return out;
+}
+
+std::vector<double> column_of(const Observations& o, const Turn& turn) {
+  Vector w{};
+  w[turn.about] = 1.0;
+  return column_of(o, turn.body, [&](const Vector& at, const Vector& sense) {
+    return SpaceLine::dot(SpaceLine::cross(w, at), sense);
+  });
+}
+
+/// Whether a column says something that the zeros of the lines do not.
+bool varies_in_a_line(const Observations& o, const std::vector<double>& column) {
+  std::vector<double> first(o.lines.size(), std::nan(""));
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    double& known = first[o.line_of(i)];
+    if (std::isnan(known)) known = column[i];
+    if (column[i] != known) return true;
+  }
+  return false;
+}
+
+std::vector<std::string> turns(const Observations& o) {
+  std::vector<std::string> out;
+  for (const std::string& body : bodies(o, false))
+    for (std::size_t about = 0; about < 3; ++about)
+      if (const Turn turn{body, about}; varies_in_a_line(o, column_of(o, turn)))
+        out.push_back(name_of(turn));
+  return out;
+}
+
+Expected<Effect::Columns> turn(const Observations& o, const Axis& place,
+                               const std::vector<double>&) {
+  for (const std::string& body : bodies(o, false))
+    for (std::size_t about = 0; about < 3; ++about)
+      if (const Turn one{body, about}; name_of(one) == place.name)
+        return Effect::Columns{column_of(o, one)};
+  return fail("body-turn: no part " + place.name);
+}
+
+Expected<Effect::Columns> size(const Observations& o, const Axis& place,
+                               const std::vector<double>&) {
+  return Effect::Columns{column_of(o, place.name, [](const Vector& at, const Vector& sense) {
+    return SpaceLine::dot(at, sense);
+  })};
+}
+
 }  // namespace
 
 NONIO_PLUGIN(registry) {
@@ -107,6 +181,22 @@ NONIO_PLUGIN(registry) {
                    return lines_that(o, [](const SpaceLine& line) { return line.is_stepwise(); });
                  },
              .is_nuisance = true});
+  registry.add(Effect{
+      .info = {"body-turn", "1.0.0", "Turn of a part on the table: in every model of its features"},
+      .linear = {{"a", "turn of the part", Quantity::small_angle}},
+      .shapes = {},
+      .applies = always,
+      .columns = turn,
+      .instances = turns,
+      .is_nuisance = true});
+  registry.add(Effect{
+      .info = {"body-size", "1.0.0", "Size of a part of unknown temperature: in every model of it"},
+      .linear = {{"a", "stretch of the part", Quantity::deviation_per_length}},
+      .shapes = {},
+      .applies = always,
+      .columns = size,
+      .instances = [](const Observations& o) { return bodies(o, true); },
+      .is_nuisance = true});
 }
 
 }  // namespace nonio::set_up

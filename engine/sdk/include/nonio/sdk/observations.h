@@ -38,6 +38,9 @@ struct Observations {
   struct Line {
     std::string name;
     std::array<double, 3> sense{};  ///< unit vector; all 0 on a rotary axis (deviation is an angle)
+    /// Lines of one rigid body whose place and turn in the machine are unknown have its name.
+    std::string body{};
+    bool body_size_known = true;  ///< false: its temperature is unknown, too
   };
 
   /// What was recorded next to the deviations: a temperature at some place, a speed, a load. With

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// A part that the machine made, with the features that a coordinate measuring machine found on it.
+//     d = R (m - p (1 + alpha (T2 - T1)))
+// p, m: nominal and measured place of a feature in the part, m; R: turn of the part on the table,
+// turned about Z; d: error of the machine where it made the feature, origin + R p; T1, T2: temperature
+// of the part while it was made, and to which the measurement refers.
+// Place and turn of the part are unknown; without temperatures its size is, too (effects body-turn and
+// body-size). Signs: a hole is where the machine really was.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "nonio/sdk/method.h"
+
+namespace nonio::parts_method {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+constexpr const char* coordinates[] = {"X", "Y", "Z"};
+constexpr const char* nominal[] = {"nominal_x", "nominal_y", "nominal_z"};
+constexpr const char* measured[] = {"measured_x", "measured_y", "measured_z"};
+constexpr double largest = 0.01;  // m
+
+/// Whether coordinates stay coordinates.
+bool is_quarter(double angle) {
+  return std::fabs(std::remainder(angle, std::numbers::pi / 2)) < 1e-9;
+}
+
+Vector turned(const Vector& v, double angle) {
+  double c = std::cos(angle), s = std::sin(angle);
+  if (is_quarter(angle)) c = std::round(c), s = std::round(s);
+  return {v[0] * c - v[1] * s, v[0] * s + v[1] * c, v[2]};
+}
+
+/// Growth of the part between its machining and its measurement, and whether it is known.
+Expected<std::pair<double, bool>> growth_of(const Measurement& m) {
+  const auto temperatures = m.settings.numbers("temperatures_c");
+  const double expansion = m.settings.number("expansion_um_per_m_K") * 1e-6;
+  if (temperatures.empty()) return std::pair{0.0, false};
+  if (temperatures.size() != 2 || !(expansion > 0.0))
+    return fail("measurement." + m.id +
+                ".temperatures_c: expected two temperatures (while the part was made, and to which "
+                "its measurement refers) together with expansion_um_per_m_K");
+  return std::pair{expansion * (temperatures[1] - temperatures[0]), true};
+}
+
+/// The three lines of a part, of which those without readings go.
+class Rows {
+ public:
+  Rows(const Measurement& m, std::array<bool, 3> places, bool size_known) {
+    o_.measurement = m.id;
+    for (std::size_t k = 0; k < 3; ++k) {
+      axis_[k] = o_.axes.size();
+      if (places[k]) o_.axes.push_back({coordinates[k], false, {}, {}});
+      o_.lines.push_back({m.id + " " + coordinates[k], {}});
+      o_.lines[k].sense[k] = 1.0;
+      o_.lines[k].body = m.id;
+      o_.lines[k].body_size_known = size_known;
+    }
+    places_ = places;
+  }
+
+  void add(const Vector& at, std::size_t line, double deviation, std::uint32_t source) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (places_[k]) {
+        o_.axes[axis_[k]].position.push_back(at[k]);
+        o_.axes[axis_[k]].approach.push_back(1);  // not known: the same for all
+      }
+    o_.line.push_back(static_cast<std::uint32_t>(line));
+    o_.deviation.push_back(deviation);
+    o_.source_line.push_back(source);
+  }
+
+  Observations made() {
+    std::array<std::uint32_t, 3> number{};
+    std::vector<Observations::Line> lines;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      number[k] = static_cast<std::uint32_t>(lines.size());
+      if (std::find(o_.line.begin(), o_.line.end(), k) != o_.line.end())
+        lines.push_back(o_.lines[k]);
+    }
+    for (std::uint32_t& line : o_.line) line = number[line];
+    o_.lines = std::move(lines);
+    return std::move(o_);
+  }
+
+ private:
+  Observations o_;
+  std::array<bool, 3> places_{};
+  std::array<std::size_t, 3> axis_{};
+};
+
+Expected<Observations> observations_of(const MethodInput& in) {
+  const Measurement& m = in.measurement;
+  const Readings& r = in.readings;
+  NONIO_TRY(const auto growth, growth_of(m));
+  const double angle = m.settings.number("turned_deg") * std::numbers::pi / 180.0;
+  const NumberTable origin = m.settings.table("origin");
+  Vector from{};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (const auto at = origin.find(coordinates[k]); at != origin.end())
+      from[k] = at->second * 1e-3;
+  const std::vector<double>* z = r.column(nominal[2]);
+  Rows rows(m, {true, true, z != nullptr}, growth.second);
+  std::uint64_t missing = 0;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const Vector p{(*r.column(nominal[0]))[i], (*r.column(nominal[1]))[i],
+                   z == nullptr ? 0.0 : (*z)[i]};
+    if (std::isnan(p[2]))
+      return fail("nominal_z: expected a number in each row, or no such column");
+    Vector d{};
+    std::array<bool, 3> has{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto* found = r.column(measured[k]);
+      if (found == nullptr) continue;
+      has[k] = !std::isnan((*found)[i]) && (k < 2 || z != nullptr);
+      if (!has[k]) {
+        ++missing;
+        continue;
+      }
+      d[k] = (*found)[i] - p[k] * (1.0 + growth.first);
+      if (std::fabs(d[k]) > largest)
+        return fail(
+            Error{std::string(measured[k]) + ": expected a place within 10 mm of the nominal one",
+                  m.file, r.source_line[i]});
+    }
+    if (has[0] != has[1] && !is_quarter(angle))
+      return fail(
+          Error{"expected both coordinates of a feature of a part that was not turned by a "
+                "multiple of 90 deg",
+                m.file, r.source_line[i]});
+    const Vector at = turned(p, angle), error = turned(d, angle);
+    const Vector which = turned({has[0] ? 1.0 : 0.0, has[1] ? 1.0 : 0.0, 0.0}, angle);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool sensed = k == 2 ? has[2] : (has[0] && has[1]) || std::fabs(which[k]) > 0.5;
+      if (sensed)
+        rows.add({from[0] + at[0], from[1] + at[1], from[2] + at[2]}, k, error[k],
+                 r.source_line[i]);
+    }
+  }
+  Observations o = rows.made();
+  o.missing = missing;
+  o.order_known = false;  // features are measured in another order than they were made in
+  return o;
+}
+
+/// A feature for each place at which all sensed coordinates are there.
+Expected<Readings> readings_of_part(const SimulationInput& in) {
+  const Measurement& m = in.measurement;
+  NONIO_TRY(const auto growth, growth_of(m));
+  const double angle = m.settings.number("turned_deg") * std::numbers::pi / 180.0;
+  const NumberTable origin = m.settings.table("origin");
+  const Observations& o = in.observations;
+  struct Feature {
+    Vector at{}, error{};
+    std::array<bool, 3> has{};
+  };
+  std::map<std::uint32_t, Feature> features;
+  for (std::size_t i = 0; i < o.size(); ++i) {
+    Feature& f = features[o.source_line_of(i)];
+    const auto& sense = o.sense_of(i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto from = origin.find(coordinates[k]);
+      if (const auto* axis = o.axis(coordinates[k]))
+        f.at[k] = axis->position[i] - (from == origin.end() ? 0.0 : from->second * 1e-3);
+      if (sense[k] > 0.5) f.error[k] = o.deviation[i], f.has[k] = true;
+    }
+  }
+  Readings out;
+  const double nothing = std::nan("");
+  for (const auto& [line, f] : features) {
+    const Vector p = turned(f.at, -angle), d = turned(f.error, -angle);
+    const Vector which = turned({f.has[0] ? 1.0 : 0.0, f.has[1] ? 1.0 : 0.0, 0.0}, -angle);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool sensed = k == 2 ? f.has[2] : (f.has[0] && f.has[1]) || std::fabs(which[k]) > 0.5;
+      if (k < 2 || o.axis("Z") != nullptr) out.columns[nominal[k]].push_back(p[k]);
+      if (k < 2 || o.axis("Z") != nullptr)
+        out.columns[measured[k]].push_back(sensed ? p[k] * (1.0 + growth.first) + d[k] : nothing);
+    }
+    out.source_line.push_back(line);
+  }
+  return out;
+}
+
+Method part() {
+  Method m;
+  m.info = {
+      "part",
+      "1.0",
+      "Features of a part that the machine made: nominal and measured places",
+      {{.name = "origin",
+        .default_value = NumberTable{},
+        .unit = "mm",
+        .help = "Where the zero of the part was in the machine. Default: in its zero."},
+       {.name = "turned_deg",
+        .default_value = 0.0,
+        .unit = "deg",
+        .help = "By how much the part was turned about Z on the machine, from X to Y: errors of "
+                "the machine turn against the part, those of a fixture and of the measuring "
+                "machine with it.",
+        .min = -360.0,
+        .max = 360.0},
+       {.name = "temperatures_c",
+        .default_value = std::vector<double>{},
+        .unit = "degC",
+        .help = "Temperature of the part while it was made, and the one to which its "
+                "measurement refers. Without them its size is unknown."},
+       {.name = "expansion_um_per_m_K",
+        .default_value = 0.0,
+        .unit = "um/m/K",
+        .help = "Coefficient of expansion of the part; needed with temperatures_c.",
+        .min = 0.0,
+        .max = 100.0}}};
+  using Role = Method::Column::Role;
+  m.columns = {{nominal[0], Quantity::length, Role::none, "Nominal place of the feature, X."},
+               {nominal[1], Quantity::length, Role::none, "The same, Y."},
+               {nominal[2], Quantity::length, Role::none, "The same, Z.", false},
+               {measured[0], Quantity::length, Role::none,
+                "Measured place, X; blank where it was not measured.", false},
+               {measured[1], Quantity::length, Role::none, "The same, Y.", false},
+               {measured[2], Quantity::length, Role::none, "The same, Z.", false}};
+  m.observe = observations_of;
+  m.simulate = readings_of_part;
+  return m;
+}
+
+}  // namespace
+
+NONIO_PLUGIN(registry) { registry.add(part()); }
+
+}  // namespace nonio::parts_method

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spreadsheet.h"
+
+#include <algorithm>
+
+#include "csv.h"
+#include "nonio/sdk/format.h"
+#include "sheet.h"
+
+namespace nonio::spreadsheet {
+
+namespace {
+
+using Row = std::vector<std::string>;
+
+/// A row as a line of a file with tabs.
+std::string line_of(const Row& row) {
+  std::string out;
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    if (k > 0) out += '\t';
+    for (const char c : row[k]) out += c == '\t' || c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return out;
+}
+
+bool is_blank(const Row& row) {
+  return std::all_of(row.begin(), row.end(), [](const std::string& cell) {
+    return cell.find_first_not_of(" \t\r\n") == cell.npos;
+  });
+}
+
+/// Whether a row has the names of columns: those of csv, or those that the method declares.
+bool is_header(const Row& row, const Method* method) {
+  if (is_blank(row)) return false;
+  if (method == nullptr || method->columns.empty()) return csv::recognises(line_of(row) + "\n");
+  return std::any_of(row.begin(), row.end(), [&](const std::string& cell) {
+    return std::any_of(method->columns.begin(), method->columns.end(), [&](const auto& column) {
+      return cell == column.name || cell.starts_with(column.name + "_");
+    });
+  });
+}
+
+struct Table {
+  const Sheet* sheet = nullptr;
+  std::size_t first = 0, after = 0;  ///< rows, the header first
+};
+
+Table table_of(const Sheet& sheet, const Method* method) {
+  const auto& rows = sheet.rows();
+  const auto header = std::find_if(rows.begin(), rows.end(),
+                                   [&](const Row& row) { return is_header(row, method); });
+  if (header == rows.end()) return {};
+  const auto end = std::find_if(header, rows.end(), is_blank);
+  return {&sheet, static_cast<std::size_t>(header - rows.begin()),
+          static_cast<std::size_t>(end - rows.begin())};
+}
+
+std::string names_of(const std::vector<Sheet>& sheets) {
+  std::string out;
+  for (const Sheet& sheet : sheets) out += (out.empty() ? "\"" : ", \"") + sheet.name + "\"";
+  return out;
+}
+
+/// The table of the sheet that is named, or of the only one with readings.
+Expected<Table> chosen(const Book& book, const ReadInput& input) {
+  const std::string wanted = input.options.text("sheet");
+  std::vector<Table> found;
+  for (const Sheet& sheet : book.sheets) {
+    if (!wanted.empty() && sheet.name != wanted) continue;
+    const Table table = table_of(sheet, input.method);
+    if (table.sheet != nullptr) found.push_back(table);
+  }
+  if (found.size() == 1) return found.front();
+  const std::string option = "[options.spreadsheet] sheet";
+  if (found.size() > 1) {
+    std::vector<Sheet> several;
+    for (const Table& t : found) several.push_back(*t.sheet);
+    return fail("expected one sheet with readings, found " + names_of(several) + "; name one in " +
+                option);
+  }
+  if (!wanted.empty() && std::none_of(book.sheets.begin(), book.sheets.end(),
+                                      [&](const Sheet& s) { return s.name == wanted; }))
+    return fail(option + ": there is no sheet \"" + wanted + "\"; found " + names_of(book.sheets));
+  return fail("no row with the names of columns was found in " +
+              (wanted.empty() ? names_of(book.sheets) : "\"" + wanted + "\"") +
+              "; expected names such as target_mm and deviation_um");
+}
+
+}  // namespace
+
+bool recognises(std::string_view head) { return head.starts_with("PK\x03\x04"); }
+
+Expected<Observations> read(const ReadInput& input) {
+  const auto book = is_ods(input.bytes) ? read_ods(input.bytes) : read_xlsx(input.bytes);
+  if (!book) return fail(book.error());
+  NONIO_TRY(const Table table, chosen(*book, input));
+  const auto& rows = table.sheet->rows();
+  std::string text;  // one line for each row, so that errors name rows of the sheet
+  for (std::size_t r = 0; r < table.after; ++r)
+    text += (r < table.first ? "#" : line_of(rows[r])) + "\n";
+  const ReadInput as_csv{.bytes = text,
+                         .campaign = input.campaign,
+                         .measurement = input.measurement,
+                         .options = input.options,
+                         .method = input.method};
+  auto read = csv::read(as_csv);
+  if (!read) {
+    Error error = read.error();
+    error.message = "sheet \"" + table.sheet->name + "\": " + error.message;
+    return fail(std::move(error));
+  }
+  const bool more = std::any_of(rows.begin() + static_cast<std::ptrdiff_t>(table.after), rows.end(),
+                                [](const Row& row) { return !is_blank(row); });
+  read->notes.push_back({more ? "spreadsheet.rows-below" : "spreadsheet.sheet",
+                         {{"first", static_cast<double>(table.first + 1), Quantity::count},
+                          {"last", static_cast<double>(table.after), Quantity::count}},
+                         {{"sheet", table.sheet->name}}});
+  return read;
+}
+
+}  // namespace nonio::spreadsheet

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A part as a measurement: holes of a plate that the machine made name its errors."""
+import json
+import math
+import os
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.append(str(ROOT / "bench"))
+import plates
+
+NONIO = os.environ["NONIO"]
+SEED = int(os.environ.get("NONIO_SEED") or random.SystemRandom().randrange(10 ** 6))
+
+
+class Part(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        print(f"seed {SEED} (NONIO_SEED)", file=sys.stderr)
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="nonio-part-")
+        self.addCleanup(folder.cleanup)
+        self.top = pathlib.Path(folder.name)
+        self.rng = random.Random(SEED)
+
+    def campaign(self, name, story, size=4.0, holes=100, parts=(("P1", 0), ("P2", 90)), known=False, temperature=0.0):
+        folder = self.top / name
+        folder.mkdir()
+        for part, turned in parts:
+            plates.plate(folder / f"{part}.csv", plates.grid(holes), plates.errors(story, size), 1.0,
+                         math.radians(turned), self.rng, temperature)
+        plates.write(folder, parts, known=known)
+        return folder
+
+    def explain(self, folder):
+        return plates.explain(NONIO, folder)
+
+    def test_squareness_of_the_machine(self):
+        answer = self.explain(self.campaign("a", "squareness:XY"))
+        self.assertEqual(answer["verdict"]["kind"], "missing")
+        self.assertEqual(answer["together"], ["squareness:XY"])
+        times = {"zero-drift", "warm-up", "growth-drift", "run-jump"}  # the order of the rows is that of the measuring machine
+        self.assertFalse(times & {c["effect"].split(":")[0] for c in answer["candidates"]})
+        candidate = next(c for c in answer["candidates"] if c["effect"] == "squareness:XY")
+        c, = candidate["parameters"]
+        truth = 4.0 * math.sqrt(12) / plates.SIZE * 1e3  # urad: -size sqrt(12) y / SIZE is -c y
+        self.assertLess(abs(c["value"] - truth), 4 * c["u"])
+
+    def test_a_plate_without_errors_is_complete(self):
+        rng = self.rng
+        self.rng = random.Random(11)
+        answer = self.explain(self.campaign("a", "none"))
+        self.rng = rng
+        self.assertEqual((answer["verdict"]["kind"], answer.get("together", [])), ("nothing", []))
+
+    def test_place_turn_and_temperature_of_a_plate_are_no_errors(self):
+        self.rng = random.Random(12)
+        answer = self.explain(self.campaign("a", "none", temperature=7.0))
+        self.assertEqual(answer["verdict"]["kind"], "nothing")
+        # With temperatures that are stated, and wrong, the size is one of the axes.
+        answer = self.explain(self.campaign("b", "none", known=True, temperature=7.0))
+        self.assertTrue({"scale:X", "scale:Y"} <= set(answer["together"]), answer["together"])
+
+    def test_an_error_of_the_plate_turns_with_it(self):
+        """What is in both plates at the same holes, however they lay, is no effect of the machine."""
+        folder = self.campaign("a", "straightness:EYX", parts=(("P1", 0), ("P2", 0)))
+        self.assertEqual(self.explain(folder)["together"], ["straightness:EYX"])
+        plates.write(folder, [("P1", 0), ("P2", 90)])  # the same files, said to lie across each other
+        self.assertNotEqual(self.explain(folder)["together"], ["straightness:EYX"])
+
+    def test_an_unseen_plate_is_predicted(self):
+        seen = self.campaign("seen", "pitch-curve:Y")
+        other = self.campaign("other", "pitch-curve:Y")
+        plates.write(seen, [("P1", 0), ("P2", 90)], self.explain(seen)["together"])
+        done = subprocess.run([NONIO, "model", "compare", other, "--model-of", seen, "--json"], capture_output=True, text=True, check=True)
+        part, = json.loads(done.stdout)["parts"]
+        self.assertLess(part["rms_um"], 1.2)
+        self.assertGreater(part["sd_um"], 2.0)
+        self.assertGreater(part["inside_U"], 0.9)
+        text = subprocess.run([NONIO, "model", "compare", other, "--model-of", seen], capture_output=True, text=True, check=True).stdout
+        self.assertIn("lie within the mean uncertainty", text)
+
+    def test_mistakes(self):
+        folder = self.campaign("a", "none")
+        manifest = folder / "campaign.toml"
+        text = manifest.read_text()
+        for change, wanted in ((("turned_deg = 90", "turned_deg = 30\ntemperatures_c = [20.0]"), "expected two temperatures"),
+                               (("turned_deg = 90", "turnd_deg = 90"), 'nearest: "turned_deg"')):
+            manifest.write_text(text.replace(*change))
+            done = subprocess.run([NONIO, "model", "explain", folder], capture_output=True, text=True, check=False)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(wanted, done.stderr)
+        manifest.write_text(text)
+        rows = (folder / "P1.csv").read_text().splitlines()
+        rows[4] = rows[4].replace(rows[4].split(",")[2], "999.0")
+        (folder / "P1.csv").write_text("\n".join(rows) + "\n")
+        done = subprocess.run([NONIO, "model", "explain", folder], capture_output=True, text=True, check=False)
+        self.assertIn("P1.csv:5: measured_x: expected a place within 10 mm of the nominal one", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
