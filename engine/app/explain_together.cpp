@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
+#include <set>
 
 #include "campaign/config/manifest.h"
 #include "campaign/modelling/joint_model.h"
@@ -79,7 +81,9 @@ class ExplainTogether {
 
   /// Campaigns of one folder share their plugins and templates.
   int open(const fs::path& folder) {
-    const fs::path parent = fs::absolute(folder).lexically_normal().parent_path();
+    const fs::path whole = fs::weakly_canonical(folder);
+    if (!seen_.insert(whole.string()).second) return exit_done;
+    const fs::path parent = whole.parent_path();
     if (!place_ || parent != parent_) {
       auto place =
           reading::open_workplace(folder, common_.plugin_folders(), common_.template_folders(),
@@ -96,6 +100,11 @@ class ExplainTogether {
       complain(text_of(errors_.emplace_back(std::move(error))));
     }
     if (!read->manifest) return exit_done;  // one bad campaign does not stop the others
+    const std::string& id = read->manifest->campaign.id;
+    const auto [known, is_new] = folder_of_.emplace(id, folder.string());
+    if (!is_new)
+      return complain("campaign " + id + " is in " + known->second + " and in " + folder.string() +
+                      ": its readings would count twice");
     if (!wanted(read->manifest->campaign))
       ++passed_over_;
     else
@@ -154,6 +163,8 @@ class ExplainTogether {
   std::unique_ptr<reading::Workplace> place_;
   std::vector<std::unique_ptr<reading::Workplace>> earlier_;  ///< their effects are in use
   fs::path parent_;
+  std::set<std::string> seen_;
+  std::map<std::string, std::string> folder_of_;  ///< of an id
   std::vector<std::unique_ptr<reading::ReadCampaign>> read_;
   std::vector<Error> errors_;
   std::size_t passed_over_ = 0;

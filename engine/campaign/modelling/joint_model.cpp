@@ -16,6 +16,8 @@ namespace {
 using model::Holds;
 using storage::Json;
 
+constexpr std::size_t most_readings = 20000;  // of one campaign: its columns are kept
+
 const char* name_of(Holds holds) {
   switch (holds) {
     case Holds::shared:
@@ -45,6 +47,9 @@ std::map<std::string, std::vector<std::pair<const reading::ReadCampaign*, PartMo
     for (PartModel& part : *parts) {
       if (part.part.kind != model::Part::Kind::axis)
         left_out.push_back(campaign.id + " " + part.part.name);
+      else if (part.part.table.size() > most_readings)
+        left_out.push_back(campaign.id + " " + part.part.name + " (more than " +
+                           std::to_string(most_readings) + " readings)");
       else if (!part.unfit.empty())
         left_out.push_back(campaign.id + " " + part.part.name + " (" + part.unfit + ")");
       else

@@ -193,16 +193,23 @@ Saturated saturate(const Repeats& r, const std::vector<double>& y,
 
 namespace {
 
-/// What readings are held against each other in: cells where these have four readings each, so that
-/// a reversal that differs from target to target is no scatter; else targets.
+/// Readings that are compared with each other: those of a target; where each of its cells has four
+/// readings those of a cell, so that a reversal that differs from target to target is no scatter.
 struct Groups {
-  const std::vector<std::uint32_t>& of;
+  std::vector<std::uint32_t> of;
   std::size_t count;
-  explicit Groups(const Repeats& r)
-      : of(by_cell(r) ? r.cell : r.target), count(by_cell(r) ? r.cells : r.targets) {}
-
- private:
-  static bool by_cell(const Repeats& r) { return r.cell.size() >= 4 * r.cells; }
+  bool any_repeats = false;  ///< three readings or more in one of them
+  explicit Groups(const Repeats& r) : of(r.target), count(r.targets + r.cells) {
+    std::vector<std::size_t> in_cell(r.cells, 0), in_group(count, 0);
+    for (const std::uint32_t cell : r.cell) ++in_cell[cell];
+    std::vector<char> by_cell(r.targets, 1);
+    for (std::size_t i = 0; i < of.size(); ++i)
+      if (in_cell[r.cell[i]] < 4) by_cell[r.target[i]] = 0;
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      if (by_cell[r.target[i]] != 0) of[i] = static_cast<std::uint32_t>(r.targets) + r.cell[i];
+      any_repeats = ++in_group[of[i]] >= 3 || any_repeats;
+    }
+  }
 };
 
 /// What is left when the median of its target or cell and the running median of its pass are taken
@@ -256,10 +263,12 @@ std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::u
     const auto own =
         static_cast<std::size_t>(std::lower_bound(v.begin(), v.end(), e[i]) - v.begin());
     const auto other = [&](std::size_t k) { return v[k < own ? k : k + 1]; };
-    out.push_back(others == 0 ? e[i]
-                              : e[i] - (others % 2 == 1
-                                            ? other(others / 2)
-                                            : (other(others / 2 - 1) + other(others / 2)) / 2.0));
+    // One or two next to targets that were repeated: neither contradicts its repeats.
+    const bool alone = others < (groups.any_repeats ? 2U : 1U);
+    out.push_back(alone ? (groups.any_repeats ? 0.0 : e[i])
+                        : e[i] - (others % 2 == 1
+                                      ? other(others / 2)
+                                      : (other(others / 2 - 1) + other(others / 2)) / 2.0));
   }
   return out;
 }

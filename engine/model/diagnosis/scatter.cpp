@@ -90,16 +90,16 @@ bool two_valued(const Repeats& repeats, const std::vector<double>& residual,
 
 namespace {
 
-/// Rows of lines with more than one run: of the others nobody knows whether a run is wild.
-std::vector<char> on_repeated_lines(const Observations& o) {
-  std::vector<std::uint32_t> first(lines_of(o), 0);
-  std::vector<char> several(lines_of(o), 0), out(o.size(), 0);
+/// Rows of cells that more than one run read: of the others it is not known whether a run is wild.
+std::vector<char> in_repeated_cells(const Observations& o, const Repeats& repeats) {
+  std::vector<std::uint32_t> first(repeats.cells, 0);
+  std::vector<char> several(repeats.cells, 0), out(o.size(), 0);
   for (std::size_t i = 0; i < o.size() && !o.run.empty(); ++i) {
-    std::uint32_t& run = first[line_of(o, i)];
+    std::uint32_t& run = first[repeats.cell[i]];
     if (run == 0) run = o.run_of(i);
-    if (run != o.run_of(i)) several[line_of(o, i)] = 1;
+    if (run != o.run_of(i)) several[repeats.cell[i]] = 1;
   }
-  for (std::size_t i = 0; i < o.size(); ++i) out[i] = several[line_of(o, i)];
+  for (std::size_t i = 0; i < o.size(); ++i) out[i] = several[repeats.cell[i]];
   return out;
 }
 
@@ -150,7 +150,7 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
   const double display = noise.digit * noise.digit / 12.0;
   std::vector<std::vector<double>> of_run;
   const std::vector<double> e_of = within_passes(repeats, residual, weight);
-  const std::vector<char> repeated = on_repeated_lines(o);
+  const std::vector<char> repeated = in_repeated_cells(o, repeats);
   for (std::size_t i = 0; i < o.size(); ++i) {
     const std::size_t run = o.run.empty() ? 0 : o.run[i];
     if (run >= of_run.size()) of_run.resize(run + 1);

@@ -53,6 +53,16 @@ bool is_of_place(const MatrixXd& columns, const std::vector<std::uint32_t>& cell
   return true;
 }
 
+/// Whether the shapes are known here, and other ones: the pitch of another screw.
+bool is_of_another(const Observations& o, const Term& term, const std::vector<double>& shape) {
+  for (std::size_t k = 0; k < shape.size(); ++k) {
+    const std::vector<double> grid = term.effect->shapes[k].grid(o, term.axis);
+    if (grid.size() == 1 && std::fabs(grid.front() - shape[k]) > 1e-6 * std::fabs(shape[k]))
+      return true;
+  }
+  return false;
+}
+
 class Reader {
  public:
   explicit Reader(const std::vector<Member>& members) : members_(members) {}
@@ -245,7 +255,7 @@ class Reader {
       const auto term =
           std::find_if(member.catalogue.begin(), member.catalogue.end(),
                        [&](const Term& t) { return joins(t) && t.of_all() == block.effect; });
-      if (term == member.catalogue.end()) continue;
+      if (term == member.catalogue.end() || is_of_another(o, *term, block.shape)) continue;
       auto made = columns_of(o, *term, block.shape);
       if (made && is_of_place(*made, out.cell)) made = columns_of(wide, *term, block.shape);
       if (!made || made->cols() == 0 || (block.count > 0 && made->cols() != block.count)) continue;

@@ -114,6 +114,10 @@ class Together(unittest.TestCase):
         self.assertIn("--auto is for one campaign", explain(self.site, "--auto", status=2).stderr)
         self.assertIn("expected two campaigns or more; found 0 (3 are not of this machine or period)",
                       explain(self.site, "--machine", "M-9", status=2).stderr)
+        once = self.answer(self.site / "c0000", self.site / "c0001")
+        self.assertEqual(self.answer(self.site / "c0000", self.site / "c0001", self.site / "c0000/"), once)
+        shutil.copytree(self.site / "c0001", self.site.parent / "copy")
+        self.assertIn("its readings would count twice", explain(self.site, self.site.parent / "copy", status=2).stderr)
         (self.site / "c0001/x.csv").write_text("run,direction\n1,+\n")
         answer = explain(self.site, "--json", "--quiet", status=1)
         self.assertEqual(len(json.loads(answer.stdout)["campaigns"]), 2)
