@@ -493,6 +493,8 @@ class CourseExplanation {
       // The verdict and its numbers are those of the first candidate.
       std::stable_partition(out_.candidates.begin(), out_.candidates.end(),
                             [&](const Candidate& c) { return c.term.name() == v.effect; });
+      for (const Candidate& c : out_.candidates)
+        out_.candidates.front().score = std::max(out_.candidates.front().score, c.score);
       return;
     }
     out_.sensors = sensors_of(data_.part(), out_.comparison.fit);

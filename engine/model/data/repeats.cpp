@@ -217,6 +217,10 @@ struct Groups {
 std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
   const Groups groups(r);
   const Members targets(groups.of, groups.count), passes(r.pass, r.passes);
+  // Where some are repeated, the others have their error still, and no neighbour is measured by it.
+  const auto is_usable = [&](std::uint32_t i) {
+    return !groups.any_repeats || targets[groups.of[i]].size() >= 3;
+  };
   std::vector<double> e = y, some, smooth;
   for (int round = 0; round < 3; ++round) {
     for (std::size_t t = 0; t < groups.count; ++t) {
@@ -233,8 +237,8 @@ std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
       for (std::size_t k = 0; k < rows.size(); ++k) {
         some.clear();
         for (std::size_t j = k >= 3 ? k - 3 : 0; j < std::min(k + 4, rows.size()); ++j)
-          if (j != k || rows.size() == 1) some.push_back(e[rows[j]]);
-        smooth[k] = median_of(some);
+          if ((j != k || rows.size() == 1) && is_usable(rows[j])) some.push_back(e[rows[j]]);
+        smooth[k] = some.empty() ? 0.0 : median_of(some);
       }
       for (std::size_t k = 0; k < rows.size(); ++k) e[rows[k]] -= smooth[k];
     }

@@ -149,8 +149,14 @@ std::optional<Place> wild_run(const Observations& o, const Repeats& repeats,
                               const std::vector<double>& weight, const Noise& noise) {
   const double display = noise.digit * noise.digit / 12.0;
   std::vector<std::vector<double>> of_run;
-  const std::vector<double> e_of = within_passes(repeats, residual, weight);
   const std::vector<char> repeated = in_repeated_cells(o, repeats);
+  std::vector<double> of_repeats = weight;
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    if (repeated[i] == 0) of_repeats[i] = 0.0;
+  // Of what repeats: what a model makes of targets that one run alone has read is no scatter of it.
+  const bool some = std::find(repeated.begin(), repeated.end(), 0) != repeated.end();
+  const std::vector<double> e_of = some ? saturate(repeats, o.deviation, of_repeats).e
+                                        : within_passes(repeats, residual, weight);
   for (std::size_t i = 0; i < o.size(); ++i) {
     const std::size_t run = o.run.empty() ? 0 : o.run[i];
     if (run >= of_run.size()) of_run.resize(run + 1);

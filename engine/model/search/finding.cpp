@@ -276,9 +276,12 @@ class Finder {
     for (std::uint32_t i = 0; i < n; ++i)
       if (std::fabs(e[i]) >= least * s) high.push_back(i);
     const std::vector<double> apart = apart_from_others(f_.repeats, high, e);
+    // Also as it was read: what the explanation makes of one run is no misreading.
+    const std::vector<double> as_read =
+        apart_from_others(f_.repeats, high, f_.part.table.deviation);
     std::vector<Suspect> now;
     for (std::size_t k = 0; k < high.size(); ++k)
-      if (std::fabs(apart[k]) >= least * s)
+      if (std::fabs(apart[k]) >= least * s && std::fabs(as_read[k]) >= least * s)
         now.push_back({high[k], e[high[k]], e[high[k]] / s, least * s});
     if (now.size() > n / 8) return false;
     const bool changed =

@@ -40,6 +40,24 @@ class Explain(VerbTest):
     def explain(self, *args, **kwargs):
         return self.check(self.json_of("explain", self.folder, *args, **kwargs))
 
+    def test_targets_that_were_read_once_contradict_no_repeats(self):
+        """A report of an actuator: all targets once each way, then ten runs of three of them; no smooth error."""
+        seed = random.SystemRandom().randrange(2**31)
+        print("seed", seed)
+        truth = random.Random(seed)
+        error = {target: truth.uniform(-25, 25) for target in range(10, 65, 5)}
+        rows = ["run,direction,target_mm,deviation_um"]
+        for run in range(1, 12):
+            targets = list(error) if run == 1 else [15, 35, 55]
+            for way in "+-":
+                for target in targets if way == "+" else reversed(targets):
+                    rows.append(f"{run},{way},{target},{error[target] + truth.gauss(0, 0.6):.1f}")
+        self.campaign(manifest([]), x="\n".join(rows) + "\n")
+        answer = self.explain()
+        self.assertNotEqual(answer["verdict"]["kind"], "unrepeatable", answer["verdict"])
+        self.assertNotEqual(answer["verdict"]["kind"], "nothing")
+        self.assertEqual(answer["verdict"].get("suspects_share", 0), 0)
+
     def test_the_predicted_error_is_the_one_obtained(self):
         """Also where shapes of the model and of the candidate are searched: each depends on the others."""
         seed = random.SystemRandom().randrange(2**31)
