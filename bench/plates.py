@@ -46,7 +46,8 @@ def plate(path, holes, error, noise, turned, rng, temperature=0.0):
 def grid(number):
     """About so many holes over the plate, around its middle."""
     n = max(3, round(math.sqrt(number)))
-    return [(SIZE * (i / (n - 1) - 0.5), SIZE * (k / (n - 1) - 0.5)) for i in range(n) for k in range(n)]
+    places = [round(SIZE * (i / (n - 1) - 0.5), 3) for i in range(n)]  # as they are written: a rounded place is an error
+    return [(x, y) for x in places for y in places]
 
 
 def write(folder, parts, model=(), known=False):

@@ -329,6 +329,7 @@ void append_space(Part& part, const Campaign& campaign, const std::vector<Observ
       axis.position.insert(axis.position.end(), column.position.begin(), column.position.end());
       axis.approach.insert(axis.approach.end(), column.approach.begin(), column.approach.end());
     }
+    to.order_known = to.order_known && more.order_known;
     append_lines(to, more, campaign.measurements[m].id);
     append_places(part, more, campaign.measurements[m]);
     append_readings(part, more, campaign.measurements[m].id);
