@@ -6,6 +6,7 @@
 
 #include "axis_argument.h"
 #include "campaign/planning/plan.h"
+#include "later_campaigns.h"
 #include "platform/storage/files.h"
 #include "state_record.h"
 #include "table_common.h"
@@ -72,6 +73,22 @@ Expected<std::string> record(const tables::MergedTables& merged, const Loaded& p
   return add_states(open, axis, states);
 }
 
+/// That the axis was measured again after this campaign; none: it was not.
+std::vector<Finding> older_measurement(const OpenCampaign& open, const std::string& axis) {
+  const auto later = later_campaigns(open, axis);
+  if (later.empty() || later.back().date == open.campaign().date) return {};
+  return {{"table.older-measurement",
+           true,
+           {},
+           {{"axis", axis},
+            {"date", open.campaign().date},
+            {"newest", later.back().date},
+            {"campaign", later.back().id},
+            {"folder", later.back().folder.string()}},
+           {},
+           {}}};
+}
+
 int tell_merged(const tables::MergedTables& merged, const Loaded& present, const std::string& axis,
                 const MergeWish& w, const std::string& recorded, const OpenCampaign& open,
                 const Common& common) {
@@ -121,6 +138,7 @@ int merge(const MergeWish& w, const Common& common) {
   const auto merged = tables::merge_tables(open.read, *present->control,
                                            *options(present->control->info), present->files, *axis);
   if (!merged) return complain(text_of(merged.error()), exit_failed);
+  tell_findings(open, older_measurement(open, *axis));
   tell_findings(open, merged->findings);
   if (merged->files.empty()) return complain("nothing was written", exit_failed);
   if (!w.out.empty())
@@ -163,7 +181,8 @@ Verb insert_verb(Common& common) {
           "from this campaign or from a later one, or contradicts the record, the command ends "
           "with "
           "an error. It prints the differences, and E, B and M as measured and with all files "
-          "loaded.\n\nFiles with several axes (FANUC's parameters and pitch data, SINUMERIK's "
+          "loaded, and warns if a later campaign of the site measured this axis of the "
+          "machine.\n\nFiles with several axes (FANUC's parameters and pitch data, SINUMERIK's "
           "archives, HEIDENHAIN's CONFIG.CMA, lists of TwinCAT, Aerotech) keep every other byte; "
           "the new table gets the numbers that the axis has in the backup, or free ones. If the "
           "control would read a different table for another axis, nothing is written. For other "

@@ -11,6 +11,7 @@
 #include "campaign_verb.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/files.h"
+#include "probe.h"
 #include "table_common.h"
 #include "tables.h"
 #include "verbs.h"
@@ -20,12 +21,6 @@ namespace nonio::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct ProbeWish {
-  std::string folder, axis, out, control;
-  std::vector<std::string> settings;
-  double feed = 1000.0;
-};
 
 /// The writer of part programs for a control of this name: heidenhain-tnc has that of heidenhain,
 /// a control without one of its own plain G-code.
@@ -41,26 +36,6 @@ bool runs_gcode(const std::string& control, const loader::Plugins& plugins) {
   for (const Controller& c : plugins.controllers())
     if (c.info.name == control) return c.table.runs_gcode;
   return true;
-}
-
-/// The readings without the tables that were active. An error where it is not known whether there
-/// were any: what the probe shows without a table would be wrong by them.
-Expected<std::vector<Observations>> raw_readings(const OpenCampaign& open) {
-  const Campaign& campaign = open.campaign();
-  for (const Measurement& m : campaign.measurements)
-    if (auto known = knows_active(campaign, m); !known) return fail(known.error());
-  if (open.read.active_tables.empty()) return open.read.observations;
-  for (const Controller& c : open.place->plugins.controllers()) {
-    if (c.info.name != campaign.machine.control) continue;
-    const auto options = campaign_options(open, c.info, {});
-    if (!options) return fail(options.error().front());
-    const auto on = tables::active_compensation(open.read, c, *options);
-    if (!on) return fail(on.error());
-    return *on ? (*on)->readings : open.read.observations;
-  }
-  return fail(
-      "the campaign states an active table and not of which control it is: state control "
-      "in [machine] of campaign.toml");
 }
 
 /// What options and the record of the machine say of its axes.
@@ -98,7 +73,41 @@ Expected<void> within_travel(const tables::SignProbe& p, const Axis* axis, const
   return {};
 }
 
-/// The part program of a probe, by the writer of all part programs.
+}  // namespace
+
+Expected<std::vector<Observations>> raw_readings(const OpenCampaign& open,
+                                                 const std::string& axis) {
+  const Campaign& campaign = open.campaign();
+  for (const Measurement& m : campaign.measurements)
+    if (!axis.empty() && control_axis(campaign.machine, m) != axis)
+      continue;
+    else if (auto known = knows_active(campaign, m); !known)
+      return fail(known.error());
+  if (open.read.active_tables.empty()) return open.read.observations;
+  for (const Controller& c : open.place->plugins.controllers()) {
+    if (c.info.name != campaign.machine.control) continue;
+    const auto options = campaign_options(open, c.info, {});
+    if (!options) return fail(options.error().front());
+    const auto on = tables::active_compensation(open.read, c, *options);
+    if (!on) return fail(on.error());
+    return *on ? (*on)->readings : open.read.observations;
+  }
+  return fail(
+      "the campaign states an active table and not of which control it is: state control "
+      "in [machine] of campaign.toml");
+}
+
+Expected<tables::SignProbe> probe_of(const OpenCampaign& open, std::size_t measurement,
+                                     const std::vector<Observations>& raw) {
+  const Measurement& m = open.campaign().measurements[measurement];
+  auto p = tables::sign_probe(m, raw[measurement], open.read.observations[measurement]);
+  if (!p) return p;
+  if (auto inside = within_travel(*p, open.campaign().machine.axis(m.axis), said_of_axes(open));
+      !inside)
+    return fail(inside.error());
+  return p;
+}
+
 Expected<Artifact> program_of(const tables::SignProbe& p, const Machine& machine,
                               const ProbeWish& w, const std::map<std::string, std::string>& given,
                               const loader::Plugins& plugins) {
@@ -128,6 +137,8 @@ Expected<Artifact> program_of(const tables::SignProbe& p, const Machine& machine
   program.name = "sign-probe-" + p.axis + ending;
   return std::move(program);
 }
+
+namespace {
 
 Json probe_json(const tables::SignProbe& p, const std::string& file) {
   const Quantity q = deviation_of(p.rotary);
@@ -178,8 +189,7 @@ int probe(const ProbeWish& w, const Common& common) {
     return complain("--axis: the campaign has no axis " + w.axis);
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
-  const Settings said = said_of_axes(open);
-  const auto raw = raw_readings(open);
+  const auto raw = raw_readings(open, w.axis);
   if (!raw) return complain(text_of(raw.error()));
   Json all = Json::array();
   std::vector<Artifact> files;
@@ -190,15 +200,10 @@ int probe(const ProbeWish& w, const Common& common) {
         (!w.axis.empty() && m.axis != w.axis))
       continue;
     measured = true;
-    const auto p = tables::sign_probe(m, (*raw)[i], open.read.observations[i]);
+    const auto p = probe_of(open, i, *raw);
     if (!p) {
       good = false;
       complain(p.error().message);
-      continue;
-    }
-    if (auto inside = within_travel(*p, campaign.machine.axis(m.axis), said); !inside) {
-      good = false;
-      complain(inside.error().message);
       continue;
     }
     std::string file;

@@ -10,6 +10,7 @@
 
 #include "axis_argument.h"
 #include "campaign/planning/plan.h"
+#include "campaign/tables/control_state.h"
 #include "campaign/tables/table_check.h"
 #include "campaign_verb.h"
 #include "nonio/sdk/format.h"
@@ -61,16 +62,22 @@ int tell_differences(const std::string& control, const std::vector<tables::Table
 /// What is in the control against what the campaign would write: of the campaign's axes only.
 int diff_with_campaign(const std::string& backup, const std::string& folder, const TableWish& w,
                        const Texts& settings, const Common& common) {
-  const auto opened = open_campaign(folder, common);
+  auto opened = open_campaign(folder, common);
   if (!opened) return opened.error();
-  const OpenCampaign& open = *opened;
+  OpenCampaign& open = *opened;
   const auto options = [&](const Info& info) { return campaign_options(open, info, settings); };
   const std::string control = w.control.empty() ? open.campaign().machine.control : w.control;
   const auto present =
       load(open.place->plugins, backup, control, open.campaign(), settings, options);
   if (!present) return complain(text_of(present.error()));
-  auto next =
-      tables::tables_of_campaign(open.read, *present->control, *options(present->control->info));
+  Settings settled = *options(present->control->info);
+  std::vector<Finding> findings;
+  if (auto stated =
+          tables::state_by_backup(open.read, *present->control, present->files, settled, findings);
+      !stated)
+    return complain(text_of(stated.error()), exit_failed);
+  tell_findings(open, findings);
+  auto next = tables::tables_of_campaign(open.read, *present->control, settled);
   if (!next) return complain(text_of(next.error()), exit_failed);
   tell_findings(open, next->findings);
   if (next->tables.empty()) return complain("the campaign has no table", exit_failed);

@@ -10,12 +10,7 @@
 #include "nonio/sdk/format.h"
 
 namespace nonio::evaluation {
-namespace {
 
-/// Of a scan with more targets than any table has points nothing is kept.
-constexpr std::size_t most_targets = 500;
-
-/// What these tables add together, at all of their points.
 AxisCorrection correction_of(const std::vector<LoadedTable>& tables, const std::string& axis) {
   AxisCorrection out;
   const auto own = tables::own_tables(tables, axis);
@@ -35,6 +30,11 @@ AxisCorrection correction_of(const std::vector<LoadedTable>& tables, const std::
   }
   return out;
 }
+
+namespace {
+
+/// Of a scan with more targets than any table has points nothing is kept.
+constexpr std::size_t most_targets = 500;
 
 /// Standard uncertainty of a mean at a target, of the scatter of its readings; 0 with one run.
 double u_of_mean(const math::AxisTest& test) {

@@ -10,6 +10,9 @@
 
 namespace nonio::evaluation {
 
+/// What the tables of an axis by its own position add together, at all of their points.
+AxisCorrection correction_of(const std::vector<LoadedTable>& tables, const std::string& axis);
+
 /// Member `control_tables` of results.json: by it the history recognizes a table that was loaded
 /// between two campaigns.
 std::vector<ControlTables> control_tables(const reading::ReadCampaign& read, const Results& results,

@@ -62,6 +62,36 @@ class Stated {
   const Axis& axis_;
 };
 
+/// A grid that would fit the measurement in inch, and does not in mm: most formats do not state
+/// their unit.
+Expected<void> check_unit(const std::vector<LoadedTable>& own, const Campaign& campaign,
+                          const std::vector<Observations>& readings, const std::string& axis,
+                          const std::string& files, const std::string& by_hand) {
+  constexpr double inch = 25.4;
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    if (campaign.measurements[i].kind == "axis" &&
+        control_axis(campaign.machine, campaign.measurements[i]) == axis && readings[i].size() > 0)
+      for (const double x : readings[i].axes.front().position)
+        low = std::min(low, x), high = std::max(high, x);
+  for (const LoadedTable& t : own) {
+    if (t.rotary || !(high > low)) continue;
+    const double span = t.position.front().back() - t.position.front().front();
+    const auto equal = [&](double one, double other) { return std::fabs(one / other - 1.0) < 0.1; };
+    const bool smaller = equal(inch * span, high - low), larger = equal(span, inch * (high - low));
+    if (!smaller && !larger) continue;
+    return fail(
+        files + ": the table of " + axis + " covers " + fixed_text(1e3 * span, 1) +
+        " mm, the measurement " + fixed_text(1e3 * (high - low), 1) + " mm, which is " +
+        (smaller ? "25.4 times as much" : "the 25.4th part") +
+        ": one of them seems to be in inch. Save the backup in mm; or state the unit of the "
+        "control, if it has an option for that (`nonio table controls NAME`); or, if both "
+        "are in mm, " +
+        by_hand);
+  }
+  return {};
+}
+
 std::vector<LoadedTable> opposite(std::vector<LoadedTable> tables) {
   for (LoadedTable& t : tables)
     for (auto* values : {&t.plus, &t.minus})
@@ -206,6 +236,10 @@ Expected<MeasuredWith> measured_with(const reading::ReadCampaign& read,
                 " of axis " + name +
                 ", which was active during the measurement: give its file too, or state " +
                 stated.backlash_key());
+  if (auto fits =
+          check_unit(in_backup, campaign, read.observations, name, names_of(backup), by_hand);
+      !fits)
+    return fail(fits.error());
   out.tables = in_backup;
   out.from_backup = true;
   out.files = names_of(backup);
@@ -217,6 +251,29 @@ Expected<MeasuredWith> measured_with(const reading::ReadCampaign& read,
                       {},
                       {}});
   return out;
+}
+
+Expected<void> state_by_backup(reading::ReadCampaign& read, const Controller& controller,
+                               const std::vector<Artifact>& backup, Settings& options,
+                               std::vector<Finding>& findings) {
+  const auto in_backup = tables_in(controller, backup, read.manifest->campaign, options);
+  if (!in_backup) return fail(in_backup.error());
+  for (Axis& axis : read.manifest->campaign.machine.axes) {
+    const auto& measurements = read.manifest->campaign.measurements;
+    const bool is_open =
+        std::any_of(measurements.begin(), measurements.end(), [&](const Measurement& m) {
+          return m.kind == "axis" && m.compensation != "off" &&
+                 control_axis(read.manifest->campaign.machine, m) == axis.name;
+        });
+    if (axis.active_table || !is_open || own_tables(*in_backup, axis.name).empty()) continue;
+    const auto with = measured_with(read, controller, backup, axis.name, options, findings);
+    if (!with) return fail(with.error());
+    axis.active_table = with->files;
+    axis.active_backlash = with->backlash;
+    if (with->backlash) state_backlash(options, axis.name, axis.rotary, *with->backlash);
+    read.active_tables[axis.name] = backup;
+  }
+  return {};
 }
 
 }  // namespace nonio::tables

@@ -37,4 +37,11 @@ Expected<MeasuredWith> measured_with(const reading::ReadCampaign&, const Control
                                      const std::vector<Artifact>& backup, const std::string& axis,
                                      const Settings& options, std::vector<Finding>& findings);
 
+/// Fills in the state of the axes that were measured with a table of the backup and of which nothing
+/// else states what was active; axes of which the backup contains no table stay as they are. An error
+/// as of `measured_with`.
+Expected<void> state_by_backup(reading::ReadCampaign&, const Controller&,
+                               const std::vector<Artifact>& backup, Settings& options,
+                               std::vector<Finding>& findings);
+
 }  // namespace nonio::tables

@@ -152,6 +152,19 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   return out;
 }
 
+/// Parameter 1001#0 (INM): the linear axes of the machine count in inch. The units of the options are then to be stated.
+Expected<void> check_units(const Memory& m, const Settings& o) {
+  const auto common = m.parameter.find(0);
+  if (common == m.parameter.end()) return {};
+  const auto bits = common->second.find(1001);
+  if (bits == common->second.end() || bits->second % 10 != 1) return {};
+  if (o.number("detection_unit_um", 1.0) != 1.0 && o.number("interval_unit_um", 1.0) != 1.0)
+    return {};
+  return fail(
+      "parameter 1001#0 (INM) is 1, so the machine counts in inch: state detection_unit_um and "
+      "interval_unit_um under [options.fanuc], 2.54 if the least increment is 0.0001 inch");
+}
+
 /// A backup has these parameters of every axis, 0 where there is no table.
 bool has_table(const ParameterValues& p) {
   const auto interval = p.find(3624);
@@ -173,6 +186,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     if (auto done = punched(memory, f.bytes); !done) return tl::unexpected<Error>(done.error());
   }
   if (!any) return fail("not a punched text: it does not begin with %");
+  if (auto fits = check_units(memory, o); !fits) return tl::unexpected<Error>(fits.error());
   std::vector<LoadedTable> tables;
   for (const auto& [number, parameters] : memory.parameter) {
     if (!has_table(parameters)) continue;

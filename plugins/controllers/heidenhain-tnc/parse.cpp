@@ -106,6 +106,9 @@ Expected<std::vector<LoadedTable>> com(std::string_view bytes, const std::vector
                                        std::size_t most, const Owners& owners) {
   const Lines lines = controllers::lines_of(bytes);
   if (lines.size() < 4) return fail("not a .COM table");
+  if (column_of(lines[0], "INCH") != std::string_view::npos)
+    return fail("line 1 states INCH: " + std::string(lines[0].substr(0, 60)) +
+                "; only tables in mm are read: save it from a control that is set to mm");
   const bool with_datum = lines[0].find("DATUM:") != std::string_view::npos;
   std::size_t end = lines.size();
   while (!with_datum && end > 2 && lines[end - 1] != "[END]") --end;

@@ -157,6 +157,7 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
 /// The settings of a joint beside its table say how the table is meant.
 Expected<void> check_type(const TableInput& in) {
   const std::int64_t type = in.options.integer("type");
+  const std::string units = in.options.text("units", "mm");
   for (const Artifact& f : in.files)
     for (const std::string_view line : controllers::lines_of(f.bytes)) {
       const auto w = controllers::words_of(line, " \t\r=");
@@ -164,6 +165,12 @@ Expected<void> check_type(const TableInput& in) {
         return fail(f.name + " has COMP_FILE_TYPE = " + std::string(w[1]) + ", option type is " +
                     std::to_string(type) + ": state type = " + std::string(w[1]) +
                     " for the tables of this file");
+      if (w.size() != 2 || w[0] != "LINEAR_UNITS") continue;
+      const bool inch = w[1] == "inch" || w[1] == "in" || w[1] == "imperial";
+      if (inch != (units == "inch"))
+        return fail(f.name + " has LINEAR_UNITS = " + std::string(w[1]) + ", option units is " +
+                    units + ": state units = \"" + (inch ? "inch" : "mm") +
+                    "\" under [options.linuxcnc]");
     }
   return {};
 }

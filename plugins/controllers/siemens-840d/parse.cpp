@@ -45,6 +45,10 @@ std::string axis_word(const std::string& s) {
 
 Expected<Assignment> assignment(std::string_view line) {
   const std::size_t open = line.find('['), close = line.find(']'), equals = line.find('=');
+  if (line.starts_with("$MN_") && open == std::string::npos && equals != std::string::npos)
+    return Assignment{std::string(trimmed(line.substr(1, equals - 1))),
+                      {},
+                      std::string(trimmed(line.substr(equals + 1)))};
   if (line[0] != '$' || open == std::string::npos || close == std::string::npos ||
       equals == std::string::npos || !(open < close && close < equals))
     return fail("not an assignment: " + std::string(line));
@@ -93,7 +97,19 @@ Expected<void> put_entry(Table& table, const std::string& index, const Assignmen
   return {};
 }
 
+/// MD10240 of the control and MD32711 of an axis: 0 where positions and entries are in inch.
+Expected<void> put_unit(const Assignment& a) {
+  const auto v = real(a.value);
+  if (v && *v == 1.0) return {};
+  return fail("$" + a.name + " = " + a.value +
+              ": the tables of this backup are in inch; only tables in mm are read and written: "
+              "save the backup from a control that is set to metric ($" +
+              a.name + " = 1)");
+}
+
 Expected<void> put(Memory& memory, const Assignment& a) {
+  if (a.name == "MN_SCALING_SYSTEM_IS_METRIC" || a.name == "MA_CEC_SCALING_SYSTEM_METRIC")
+    return put_unit(a);
   const std::string lec = "AA_ENC_COMP", cec = "AN_CEC";
   if (a.name == "MA_BACKLASH" && a.index.size() == 2) {
     const auto v = real(a.value);

@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What a backup says of the state of its control: for `table diff`, against later campaigns, and in inch."""
+import os
+import pathlib
+import re
+import unittest
+
+from parsers import OPTIONS, TABLE
+from truth import FOUR, StateBench, Truth
+
+
+class Backup(StateBench):
+    def prepared(self, control, seed, **more):
+        truth = Truth(seed, "wave")
+        before, backup = self.backup(control, truth)
+        return truth, before, backup, self.campaign_of("now", "2024-11-20", control, truth.readings(1, before), **more)
+
+    def test_diff_takes_the_state_from_the_backup(self):
+        """Both tables by the independent parsers: their largest difference is what diff prints."""
+        for control in FOUR:
+            truth, before, backup, now = self.prepared(control, 11)
+            self.nonio("table", "insert", backup, "--with", now, "--out", self.site / "load")
+            new = TABLE[control](self.files(control, self.site / "load"))
+            largest = max(abs(new.added(x, d) - before.added(x, d) -
+                              (new.backlash - before.backlash) * (0.5 if d == "+" else -0.5))
+                          for x, _ in new.plus + before.plus for d in "+-")
+            for order in ((backup, now), (now, backup)):
+                done = self.nonio("table", "diff", *order, "--json")
+                self.assertIn("were taken as the ones that were active during the measurement", done.stderr)
+            (table,) = self.json_of("table", "diff", backup, now)["tables"]
+            self.assertAlmostEqual(table["largest_um"], largest, delta=0.02, msg=control)
+            self.tearDown(), self.setUp()
+
+    def test_diff_refuses_what_insert_refuses(self):
+        truth, before, backup, now = self.prepared("siemens-840d", 12)
+        mine = self.site / "mine"
+        mine.mkdir()
+        for f in backup.split(","):
+            text = pathlib.Path(f).read_text().replace("2022-11-01, campaign old", "2024-11-20, campaign now")
+            (mine / os.path.basename(f)).write_text(text)
+        files = ",".join(str(mine / os.path.basename(f)) for f in backup.split(","))
+        said = self.nonio("table", "diff", files, now, expect=1).stderr
+        self.assertIn("made from campaign now", said)
+        self.assertIn("active_table in [machine.axes.X] of campaign.toml", said)
+        said = self.nonio("table", "diff", backup.split(",")[0], now, expect=1).stderr
+        self.assertIn("MD32450", said)
+
+    def test_insert_names_a_later_measurement_of_the_axis(self):
+        control = "linuxcnc"
+        truth, before, backup, now = self.prepared(control, 13)
+        quiet = lambda: self.assertNotIn("measured again later", self.nonio("table", "insert", backup, "--with", now).stderr)
+        quiet()
+        later = self.campaign_of("later", "2024-12-01", control, truth.readings(1, before))
+        text = (later / "campaign.toml").read_text()
+        said = self.nonio("table", "insert", backup, "--with", now).stderr
+        self.assertIn("measurement of 2024-11-20 that is used is older than that of campaign later of 2024-12-01", said)
+        self.assertIn(str(later.resolve()), said)
+        self.assertNotIn("measured again", self.nonio("table", "insert", backup, "--with", later).stderr)
+        # Of another machine, of another axis, without a file of readings, of an earlier day, not readable.
+        for one, other in (('asset = "S-1"', 'asset = "S-2"'), ('axis = "X"', 'axis = "Y"'), ('file = "x.csv"', 'file = "y.csv"'),
+                           ("2024-12-01", "2024-11-19"), ("format = 1", "format = ")):
+            (later / "campaign.toml").write_text(text.replace(one, other))
+            quiet()
+        # By maker and serial of the record; in another folder of the site.
+        self.record([], 'maker = "Rossi"\nserial = "7"\n[axes.X]\nnumber = 0\n')
+        (later / "campaign.toml").write_text(text.replace('asset = "S-1"', 'maker = "Rossi"\nserial = "7"'))
+        deep = self.site / "2024" / "rossi"
+        deep.parent.mkdir()
+        later.rename(deep)
+        self.assertIn(str(deep.resolve()), self.nonio("table", "insert", backup, "--with", now).stderr)
+
+    def in_inch(self, text):
+        """The same table of LinuxCNC in inch."""
+        return "".join(" ".join("%.9f" % (float(w) / 25.4) for w in l.split()) + "\n" for l in text.splitlines())
+
+    def test_a_backup_in_inch_is_read_or_refused_by_name(self):
+        control = "linuxcnc"
+        truth, before, backup, now = self.prepared(control, 14)
+        file = pathlib.Path(backup)
+        promised = self.json_of("table", "insert", backup, "--with", now)
+        inch = self.site / "inch"
+        inch.mkdir()
+        comp, ini = inch / file.name, inch / "machine.ini"
+        comp.write_text(self.in_inch(file.read_text()))
+        said = self.nonio("table", "insert", comp, "--with", now, expect=1).stderr
+        self.assertIn("25.4 times as much", said)
+        self.assertIn("active_table in [machine.axes.X] of campaign.toml", said)
+        ini.write_text("[TRAJ]\nLINEAR_UNITS = inch\n")
+        said = self.nonio("table", "insert", "%s,%s" % (comp, ini), "--with", now, expect=None)
+        self.assertNotEqual(said.returncode, 0)
+        self.assertIn('LINEAR_UNITS = inch, option units is mm: state units = "inch" under [options.linuxcnc]', said.stderr)
+        (now / "campaign.toml").write_text((now / "campaign.toml").read_text() + '[options.linuxcnc]\nunits = "inch"\n')
+        load = self.site / "load"
+        read = self.json_of("table", "insert", "%s,%s" % (comp, ini), "--with", now, "--out", load)
+        for key in ("E_um", "M_um"):
+            self.assertAlmostEqual(read["predictions"][0]["after"][key], promised["predictions"][0]["after"][key], delta=0.02)
+        # What is written is in inch too, and leaves what was promised on the axis.
+        rows = [[25.4 * float(w) for w in l.split()] for l in (load / file.name).read_text().splitlines()]
+        table = TABLE[control]({file.name: "".join("%.9f %.9f %.9f\n" % tuple(r) for r in rows)})
+        self.assertLess(truth.E(1, table), 1.7)
+        self.assertIn("25.4", self.nonio("table", "insert", backup, "--with", now, expect=1).stderr, "mm read as inch")
+
+    def test_inch_of_siemens_heidenhain_and_fanuc(self):
+        truth, before, backup, now = self.prepared("siemens-840d", 15)
+        eec, md = map(pathlib.Path, backup.split(","))
+        extra = self.site / "MD.INI"
+        for name in ("$MN_SCALING_SYSTEM_IS_METRIC", "$MA_CEC_SCALING_SYSTEM_METRIC[AX1]"):
+            for value in (1, 0):
+                extra.write_text("%%_N_INITIAL_INI\nCHANDATA(1)\n%s=%d\nM17\n" % (name, value))
+                done = self.nonio("table", "insert", "%s,%s,%s" % (eec, md, extra), "--with", now, expect=None)
+                self.assertEqual(done.returncode == 0, value == 1, done.stderr)
+                if value == 0:
+                    self.assertIn(name.split("[")[0] + " = 0", done.stderr)
+                    self.assertIn("in inch", done.stderr)
+        self.tearDown(), self.setUp()
+        truth, before, backup, now = self.prepared("heidenhain-tnc", 15)
+        files = backup.split(",")
+        com = next(pathlib.Path(f) for f in files if f.endswith(".COM"))
+        text = com.read_text()
+        com.write_text(re.sub(r"^(BEGIN \S+) MM", r"\1 INCH", text))
+        self.assertIn("line 1 states INCH", self.nonio("table", "insert", backup, "--with", now, expect=2).stderr)
+        self.tearDown(), self.setUp()
+        truth, before, backup, now = self.prepared("fanuc", 15)
+        prm = next(pathlib.Path(f) for f in backup.split(",") if f.endswith(".prm"))
+        text = prm.read_text()
+        for bits, good in (("00000000", True), ("00000001", False), ("10000000", True)):
+            prm.write_text(text.replace("%\n", "%%\nN1001P%s\n" % bits, 1))
+            done = self.nonio("table", "insert", backup, "--with", now, expect=None)
+            self.assertEqual(done.returncode == 0, good, bits + done.stderr)
+            if not good:
+                self.assertIn("parameter 1001#0 (INM) is 1", done.stderr)
+                self.assertIn("detection_unit_um", done.stderr)
+        # With the units of an inch machine the numbers are pulses of 2.54 um.
+        (now / "campaign.toml").write_text((now / "campaign.toml").read_text().replace(
+            OPTIONS["fanuc"], OPTIONS["fanuc"] + "detection_unit_um = 2.54\ninterval_unit_um = 2.54\n"))
+        prm.write_text(text.replace("%\n", "%\nN1001P00000001\n", 1))
+        (table,) = self.json_of("table", "diff", prm, prm, "--axis", "X", "--control", "fanuc", "--set", "extended=true",
+                                "--set", "detection_unit_um=2.54", "--set", "interval_unit_um=2.54")["tables"]
+        self.assertAlmostEqual(table["present"]["backlash_um"], 2.54 * int(re.search(r"N1851A1P(-?\d+)", text)[1]), places=6)
+        largest = max(abs(v) for _, v in before.plus)
+        self.assertAlmostEqual(table["present"]["largest_um"], 2.54 * largest, places=6)
+
+
+if __name__ == "__main__":
+    unittest.main()
