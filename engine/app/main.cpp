@@ -144,7 +144,7 @@ std::vector<Verb> table_of_commands(Common& common, const Program& program) {
                     apart(model_verb(common)),
                     apart(group("table", "Compensation tables of controls",
                                 {controls_verb(common), diff_verb(common), predict_verb(common),
-                                 insert_verb(common), probe_verb(common)}))});
+                                 insert_verb(common), probe_verb(common), session_verb(common)}))});
   add("Program", {apart(plugin_verb(common)), help_verb(program)});
   add("", {version_verb(common), completion_verb(program), apart(schema_verb(common)),
            upgrade_verb(common)});

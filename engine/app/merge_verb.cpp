@@ -6,6 +6,7 @@
 
 #include "axis_argument.h"
 #include "campaign/planning/plan.h"
+#include "insert.h"
 #include "later_campaigns.h"
 #include "platform/storage/files.h"
 #include "state_record.h"
@@ -14,21 +15,13 @@
 
 namespace nonio::app {
 
-namespace {
-
-struct MergeWish {
-  std::string backup, folder, control, axis, out, loaded;
-  std::vector<std::string> settings;
-};
-
-/// The axis that is said, or the only one that was measured.
-Expected<std::string> merged_axis(const MergeWish& w, const Campaign& campaign) {
-  if (!w.axis.empty()) return w.axis;
+Expected<std::string> merged_axis(const std::string& axis, const Campaign& campaign) {
+  if (!axis.empty()) return axis;
   std::vector<std::string> measured;
   for (const Measurement& m : campaign.measurements) {
-    const std::string axis = control_axis(campaign.machine, m);
-    if (m.kind == "axis" && std::find(measured.begin(), measured.end(), axis) == measured.end())
-      measured.push_back(axis);
+    const std::string of = control_axis(campaign.machine, m);
+    if (m.kind == "axis" && std::find(measured.begin(), measured.end(), of) == measured.end())
+      measured.push_back(of);
   }
   if (measured.size() == 1) return measured.front();
   std::string list;
@@ -37,32 +30,29 @@ Expected<std::string> merged_axis(const MergeWish& w, const Campaign& campaign) 
                                : "expected --axis, one of " + list);
 }
 
-/// That the day of loading is not before that of the measurement.
-Expected<void> check_day(const MergeWish& w, const std::string& day) {
-  if (w.loaded.empty()) return {};
+Expected<void> check_day(const std::string& loaded, const std::string& day) {
+  if (loaded.empty()) return {};
   if (day.empty())
     return fail(
         "--loaded: campaign.toml does not state date in [campaign], so the order of "
         "measurement and loading is not known");
-  if (w.loaded < day)
-    return fail("--loaded " + w.loaded + " is before the measurement of " + day +
+  if (loaded < day)
+    return fail("--loaded " + loaded + " is before the measurement of " + day +
                 ": expected the day on which the new table was loaded");
   return {};
 }
 
-/// What the control had while the axis was measured, where only the backup states it, and what is
-/// loaded now.
-Expected<std::string> record(const tables::MergedTables& merged, const Loaded& present,
-                             const Settings& options, const std::string& axis, const MergeWish& w,
-                             const OpenCampaign& open) {
-  if (w.loaded.empty()) return std::string();
+Expected<std::string> record_loading(const tables::MergedTables& merged, const Loaded& present,
+                                     const Settings& options, const std::string& axis,
+                                     const std::string& loaded, const OpenCampaign& open) {
+  if (loaded.empty()) return std::string();
   const std::string& day = open.campaign().date;
   std::vector<NewState> states;
   if (merged.with.from_backup)
     states.push_back({day, "backup",
                       merged.with.files.empty() ? std::vector<Artifact>{} : present.files,
                       merged.with.backlash, merged.with.tables});
-  NewState next{w.loaded, "nonio", merged.whole, merged.with.backlash, merged.next};
+  NewState next{loaded, "nonio", merged.whole, merged.with.backlash, merged.next};
   const NumberTables axes = options.tables("axes");
   if (const auto of = axes.find(axis); of != axes.end())
     for (const char* key : {"reference_mm", "reference_deg"})
@@ -73,7 +63,6 @@ Expected<std::string> record(const tables::MergedTables& merged, const Loaded& p
   return add_states(open, axis, states);
 }
 
-/// That the axis was measured again after this campaign; none: it was not.
 std::vector<Finding> older_measurement(const OpenCampaign& open, const std::string& axis) {
   const auto later = later_campaigns(open, axis);
   if (later.empty() || later.back().date == open.campaign().date) return {};
@@ -88,6 +77,13 @@ std::vector<Finding> older_measurement(const OpenCampaign& open, const std::stri
            {},
            {}}};
 }
+
+namespace {
+
+struct MergeWish {
+  std::string backup, folder, control, axis, out, loaded;
+  std::vector<std::string> settings;
+};
 
 int tell_merged(const tables::MergedTables& merged, const Loaded& present, const std::string& axis,
                 const MergeWish& w, const std::string& recorded, const OpenCampaign& open,
@@ -126,9 +122,9 @@ int merge(const MergeWish& w, const Common& common) {
   const auto opened = open_campaign(w.folder, common);
   if (!opened) return opened.error();
   const OpenCampaign& open = *opened;
-  if (const auto day = check_day(w, open.campaign().date); !day)
+  if (const auto day = check_day(w.loaded, open.campaign().date); !day)
     return complain(text_of(day.error()));
-  const auto axis = merged_axis(w, open.campaign());
+  const auto axis = merged_axis(w.axis, open.campaign());
   if (!axis) return complain(axis.error().message);
   const auto options = [&](const Info& info) { return campaign_options(open, info, *settings); };
   const std::string control = w.control.empty() ? open.campaign().machine.control : w.control;
@@ -144,7 +140,8 @@ int merge(const MergeWish& w, const Common& common) {
   if (!w.out.empty())
     if (auto done = storage::publish(std::filesystem::absolute(w.out), merged->files); !done)
       return complain(text_of(done.error()), exit_failed);
-  const auto recorded = record(*merged, *present, *options(present->control->info), *axis, w, open);
+  const auto recorded =
+      record_loading(*merged, *present, *options(present->control->info), *axis, w.loaded, open);
   if (!recorded) return complain(text_of(recorded.error()), exit_failed);
   return tell_merged(*merged, *present, *axis, w, *recorded, open, common);
 }

@@ -91,15 +91,23 @@ void print_forecast(const tables::TableForecast& f) {
 Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,
                       const std::string& control, const Campaign& campaign, const Texts& settings,
                       const std::function<config::Checked<Settings>(const Info&)>& options_of) {
-  auto read = config::read_table_files(files);
-  if (!read) return tl::unexpected<Error>(read.error());
-  const auto found = tables::control_of(plugins, control, *read, campaign, settings);
-  if (!found) return tl::unexpected<Error>(found.error());
-  const auto options = options_of((*found)->info);
+  NONIO_TRY(auto read, config::read_table_files(files));
+  return understood(plugins, std::move(read), control, campaign, settings, options_of);
+}
+
+Expected<Loaded> understood(
+    const loader::Plugins& plugins, std::vector<Artifact> files, const std::string& control,
+    const Campaign& campaign, const Texts& settings,
+    const std::function<config::Checked<Settings>(const Info&)>& options_of) {
+  NONIO_TRY(const Controller* const found,
+            tables::control_of(plugins, control, files, campaign, settings));
+  const auto options = options_of(found->info);
   if (!options) return tl::unexpected<Error>(options.error().front());
-  auto tables = tables::tables_in(**found, *read, campaign, *options);
-  if (!tables) return fail(files + ": " + tables.error().message);
-  return Loaded{*found, std::move(*tables), std::move(*read)};
+  auto tables = tables::tables_in(*found, files, campaign, *options);
+  if (tables) return Loaded{found, std::move(*tables), std::move(files)};
+  std::string names;
+  for (const Artifact& f : files) names += (names.empty() ? "" : ",") + f.name;
+  return fail(names + ": " + tables.error().message);
 }
 
 config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,

@@ -35,6 +35,12 @@ Expected<Loaded> load(const loader::Plugins& plugins, const std::string& files,
                       const std::string& control, const Campaign& campaign, const Texts& settings,
                       const std::function<config::Checked<Settings>(const Info&)>& options_of);
 
+/// The same of files that were read.
+Expected<Loaded> understood(
+    const loader::Plugins& plugins, std::vector<Artifact> files, const std::string& control,
+    const Campaign& campaign, const Texts& settings,
+    const std::function<config::Checked<Settings>(const Info&)>& options_of);
+
 /// Options of a control for a campaign: site, record of the machine, manifest, then `settings`.
 config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info& info,
                                            const Texts& settings);

@@ -35,6 +35,7 @@ Verb diff_verb(Common& common);
 Verb predict_verb(Common& common);
 Verb insert_verb(Common& common);
 Verb probe_verb(Common& common);
+Verb session_verb(Common& common);
 Verb plan_verb(Common& common);
 Verb plan_rotary_verb(Common& common);
 Verb plan_table_verb(Common& common);

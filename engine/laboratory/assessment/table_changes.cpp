@@ -19,11 +19,6 @@ using store::StoredTables;
 
 namespace {
 
-/// Machines change their scale between campaigns by this much without any cause that is worth a
-/// name, um/m or arcsec/deg.
-constexpr double usual_scale_change_um_per_m = 0.5, usual_scale_change_arcsec_per_deg = 0.002;
-/// What two campaigns of an instrument repeat, um or arcsec.
-constexpr double resolution = 0.1;
 /// The last tables of an axis; older ones are not loaded again.
 constexpr std::size_t most_known = 8;
 
@@ -103,25 +98,7 @@ bool is_same(const kernel::TableCurve& a, const kernel::TableCurve& b) {
         const double d = a.at(x, direction) - b.at(x, direction);
         low = std::min(low, d), high = std::max(high, d);
       }
-  return high - low < resolution;
-}
-
-const char* name_of(kernel::Loading loading) {
-  switch (loading) {
-    case kernel::Loading::loaded:
-      return "loaded";
-    case kernel::Loading::removed:
-      return "removed";
-    case kernel::Loading::wrong_sign:
-      return "wrong-sign";
-    case kernel::Loading::twice:
-      return "twice";
-    case kernel::Loading::in_addition:
-      return "in-addition";
-    case kernel::Loading::offset:
-      break;
-  }
-  return "offset";
+  return high - low < change_resolution;
 }
 
 class LoadedOnAxis {
@@ -189,14 +166,13 @@ class LoadedOnAxis {
     if (all_known.empty()) return std::nullopt;
     std::vector<kernel::TableCurve> curves;
     for (const Known& k : all_known) curves.push_back(k.table);
-    const double usual =
-        before.rotary ? usual_scale_change_arcsec_per_deg : usual_scale_change_um_per_m * 1e-3;
+    const double usual = usual_scale_change(before.rotary);
     const auto found =
         kernel::recognize(before.curve, after.curve, before.active, curves,
-                          std::hypot(before.u_slope, after.u_slope, usual), resolution);
+                          std::hypot(before.u_slope, after.u_slope, usual), change_resolution);
     if (!found) return stated(before, after, all_known);
     reports::TableLoaded out = of_pair(before, after);
-    out.kind = name_of(found->loading), out.points = found->points;
+    out.kind = loading_name(found->loading), out.points = found->points;
     const double per = unit_of(out.unit).per_si;
     out.rms = found->rms / per, out.left = found->left / per;
     if (found->loading != kernel::Loading::removed) out.table = all_known[found->table].day;
@@ -245,6 +221,26 @@ std::map<std::string, std::vector<Taken>> by_axis(const AssessedMachine& m) {
 }
 
 }  // namespace
+
+const char* loading_name(statistics::Loading loading) {
+  switch (loading) {
+    case kernel::Loading::loaded:
+      return "loaded";
+    case kernel::Loading::removed:
+      return "removed";
+    case kernel::Loading::wrong_sign:
+      return "wrong-sign";
+    case kernel::Loading::twice:
+      return "twice";
+    case kernel::Loading::in_addition:
+      return "in-addition";
+    case kernel::Loading::offset:
+      break;
+  }
+  return "offset";
+}
+
+double usual_scale_change(bool rotary) { return rotary ? 0.002 : 0.5e-3; }
 
 std::vector<reports::TableLoaded> tables_loaded(const AssessedMachine& m) {
   std::vector<reports::TableLoaded> out;

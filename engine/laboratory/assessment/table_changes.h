@@ -4,9 +4,18 @@
 #include <vector>
 
 #include "laboratory/assessment/series.h"
+#include "laboratory/statistics/table_change.h"
 #include "nonio/reports/site.h"
 
 namespace nonio::assessment {
+
+/// Machines change their scale between campaigns by this much without any cause that is worth a
+/// name: standard uncertainty, um/mm or arcsec/deg.
+double usual_scale_change(bool rotary);
+/// As in the ids of findings: wrong-sign, in-addition.
+const char* loading_name(statistics::Loading loading);
+/// What two campaigns of an instrument repeat, um or arcsec.
+inline constexpr double change_resolution = 0.1;
 
 /// The changes between two campaigns of an axis that are tables: of each pair of neighbours whose
 /// results.json has `control_tables`. Known tables are those that the campaigns before the later one

@@ -124,9 +124,13 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
   if (was.kind == Kind::unknown || is.kind == Kind::unknown) return {};
   const double u_before = u_of_reversal(in, environment, before),
                u_after = u_of_reversal(in, environment, after);
-  // A value that was not made from these readings has no part of their error: it counts `share` times.
+  // A value that was not made from these readings has no part of their error: it counts `share` times. A new one is
+  // rounded to the step of the control.
+  const double step =
+      in.control == nullptr ? 0.0 : in.control->value_step.of(in.observations.angular);
   const auto u_of = [&](double share) {
-    return std::hypot(std::max(1.0, share) * u_before, u_after);
+    const double u_rounded = share == 1.0 ? 0.0 : step / std::sqrt(12.0);
+    return std::hypot(std::max(1.0, share) * u_before, u_after, u_rounded);
   };
   constexpr double level = 0.01;
   const auto fits = [&](double share) {
@@ -155,7 +159,7 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
                                 .evidence = {{"before", was.mean, q},
                                              {"after", is.mean, q},
                                              {"predicted", wanted * was.mean, q},
-                                             {"u", u_of(1.0), q},
+                                             {"u", u_of(wanted), q},
                                              {"right", taken ? -was.mean : 0.0, q},
                                              {"change", -(is.mean - wanted * was.mean), q}}}};
 }

@@ -324,6 +324,34 @@ TEST(BeforeAfter, JudgesTheReversalApartFromThePitch) {
     }
 }
 
+/// A control that takes whole steps of the backlash value leaves up to half a step: that is what was predicted.
+TEST(BeforeAfter, AReversalIsRoundedToTheStepOfTheControl) {
+  std::cout << "seed " << seed << "\n";
+  constexpr double step = 2 * um;
+  int rounded = 0, exact = 0, wrong = 0, campaigns = 0;
+  for (int c = 0; c < 60; ++c) {
+    for (const double left : {-0.9 * um, 0.6 * um, 5 * um}) {
+      Shop shop;
+      shop.rng.seed(seed + static_cast<unsigned>(c));
+      shop.scatter = 0.1 * um;
+      shop.half_reversal = -4.5 * um;
+      shop.line("before", error_of);
+      shop.half_reversal = left / 2.0;
+      shop.line("after", [](double) { return 0.0; });
+      const bool is_exact = finding_of(shop.evaluate(), "reversal-as-predicted") != nullptr;
+      shop.control.emplace();
+      shop.control->value_step.linear = step;
+      const bool is_rounded = finding_of(shop.evaluate(), "reversal-as-predicted") != nullptr;
+      (std::fabs(left) > step ? wrong : rounded) += is_rounded;
+      exact += is_exact;
+      campaigns += std::fabs(left) < step;
+    }
+  }
+  EXPECT_GE(rounded, campaigns * 97 / 100);
+  EXPECT_EQ(exact, 0);
+  EXPECT_EQ(wrong, 0);
+}
+
 TEST(BeforeAfter, ADiagonalIsALineFromItsFirstCorner) {
   Shop shop;
   shop.scatter = 0.01 * um;
