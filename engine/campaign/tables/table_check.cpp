@@ -256,6 +256,29 @@ std::vector<Observations> without_tables(const Campaign& campaign,
   return raw;
 }
 
+Results without_tables(const Results& results, const Tables& tables) {
+  Results out = results;
+  for (Results::Analysed& a : out.analyses) {
+    std::map<char, std::string> axis_of;  // by the letter of ISO 230-1
+    const auto is_curve = [](const Series& s) {
+      return s.name.size() >= 3 && s.name[0] == 'E' && s.quantity == Quantity::deviation;
+    };
+    for (const Series& s : a.evaluation.series)
+      if (is_curve(s)) axis_of.emplace(s.name[2], s.over);
+    for (Series& s : a.evaluation.series) {
+      const auto output = axis_of.find(is_curve(s) ? s.name[1] : '\0');
+      if (output == axis_of.end()) continue;
+      for (const LoadedTable& t : tables)
+        for (std::size_t i = 0;
+             t.output == output->second && t.input == std::vector{s.over} && i < s.position.size();
+             ++i)
+          for (const int direction : {1, -1})
+            s.value[i] -= math::added(t, std::span(&s.position[i], 1), direction) / 2.0;
+    }
+  }
+  return out;
+}
+
 Campaign with_one(Campaign campaign, Measurement m) {
   m.axis = control_axis(campaign.machine, m);
   m.side.clear();
@@ -275,7 +298,8 @@ Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaig
         "the compensation that was active while axis " + axis + " was measured: ";
     auto tables = tables_in(controller, files, campaign, options);
     if (!tables) return fail(who + tables.error().message);
-    if (!corrects(*tables, axis))
+    if (std::none_of(tables->begin(), tables->end(),
+                     [&](const LoadedTable& t) { return t.output == axis; }))
       return fail(who + "its files hold no table of " + axis +
                   (tables->empty() ? "" : ", but of " + tables->front().output) +
                   "; which number has the axis in the control?");

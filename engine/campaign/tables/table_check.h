@@ -71,6 +71,9 @@ Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaig
 /// The same readings, or what a model says of them, without these tables; the backlash stays.
 std::vector<Observations> without_tables(const Campaign&, const std::vector<Observations>&,
                                          const std::vector<LoadedTable>&);
+/// The same of the curves of one axis over another (EYX, EXY_even ...): without what these tables
+/// add, the mean of both directions. Results were computed from readings with them.
+Results without_tables(const Results&, const std::vector<LoadedTable>&);
 /// A table was made of readings without what was on: before it, the axis is as it was measured.
 void compare_with_measured(const reading::ReadCampaign&, OutputResult&);
 

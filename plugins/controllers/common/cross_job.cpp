@@ -250,6 +250,34 @@ bool both_sides(CrossJob& job, SecondSide rule, const Campaign& campaign, Output
   return true;
 }
 
+bool is_by_slave_zero(const ControllerInput& in, bool volume) {
+  return !volume && in.options.has("squareness") && in.options.text("squareness") == "slave-zero";
+}
+
+/// "+0.0123 mm"
+std::string shift_words(const SlaveZero& z) {
+  return (z.shift < 0.0 ? "" : "+") + decimal(z.shift * 1e3, 4) + " mm";
+}
+
+/// The shift as a drawing, with the driven axis to the right.
+std::vector<std::string> drawing(const SlaveZero& z) {
+  const bool plus = z.shift > 0.0;
+  const auto place = [&](const std::string& side, double at) {
+    return plain(side) + ", at " + plain(z.along) + " " + decimal(at * 1e3, 1);
+  };
+  std::string one = place(z.axis, z.at_axis), other = place(z.slave, z.at_slave);
+  const std::size_t width = std::max(one.size(), other.size());
+  one.resize(width, ' '), other.resize(width, ' ');
+  std::vector<std::string> lines{
+      "  " + other + (plus ? "     |==>|   " : " |<==|       ") + "zero moves by " + shift_words(z),
+      "  " + std::string(width, ' ') + (plus ? "     |  /    " : "  \\  |       ") +
+          "the beam turns",
+      "  " + one + "     |       zero stays"};
+  if (z.at_slave < z.at_axis) std::swap(lines.front(), lines.back());
+  lines.push_back("  " + std::string(width, ' ') + "  ----------->  +" + plain(z.axis));
+  return lines;
+}
+
 /// A cross table replaces the active one too; a backlash value has no part in it.
 bool all_active_stated(const ControllerInput& in, const CrossJob& job, OutputResult& result) {
   bool all = true;
@@ -283,7 +311,16 @@ std::vector<CrossJob> cross_jobs(const ControllerInput& in, SecondSide rule, Out
     const bool volume =
         of != measurements.end() && of->kind == "step-diagonal" && index < in.observations.size();
     if (auto job = volume ? of_volume(in, a, index) : of_diagonals(in, a)) {
-      if (!volume && rule == SecondSide::own_table) turn_to_reference(in, *job, settings);
+      if (is_by_slave_zero(in, volume)) {
+        const Value* square = value_of(a.evaluation, "C0Y");
+        if (square == nullptr || !shift_slave(in, *job, square->value, settings)) {
+          result.findings.push_back(
+              {"table.slave-zero-unknown", true, {}, {}, job->measurement, {}});
+          continue;
+        }
+      } else if (!volume && rule == SecondSide::own_table) {
+        turn_to_reference(in, *job, settings);
+      }
       for (CrossCurve& curve : job->curves) make_zero(curve, settings);
       if (any_unresolved(in, *job, result)) continue;
       if (both_sides(*job, rule, in.campaign, result) && all_active_stated(in, *job, result))
@@ -339,6 +376,13 @@ std::vector<std::string> set_words(const CrossJob& job) {
         "separate; "
         "q_odd is up to " +
         decimal(*job.odd_left * 1e6, 3) + " um and stays on both diagonals");
+  if (job.slave_zero) {
+    const SlaveZero& z = *job.slave_zero;
+    lines.push_back("the squareness is NOT in these tables: shift the zero of " + plain(z.slave) +
+                    " by " + shift_words(z) + ", so that at the same command it is that far " +
+                    (z.shift < 0.0 ? "towards minus" : "towards plus") + " of where it is now:");
+    for (std::string& line : drawing(z)) lines.push_back(std::move(line));
+  }
   if (job.yaw_at_reference != 0.0)
     lines.push_back(
         "the squareness is that of the beam where the pitch tables of both sides are zero: C0Y and "
@@ -356,6 +400,11 @@ void note_cross(const CrossJob& job, OutputResult& result) {
                              {"slope", size.slope, Quantity::deviation_per_length}},
                             {{"axis", curve.output}, {"input", curve.input}}});
   }
+  if (job.slave_zero)
+    result.notes.push_back({"table.slave-zero",
+                            {{"shift", job.slave_zero->shift, Quantity::deviation}},
+                            {{"slave", job.slave_zero->slave}, {"axis", job.slave_zero->axis}},
+                            job.measurement});
   if (job.yaw_at_reference != 0.0)
     result.notes.push_back({"table.cross-yaw-at-reference",
                             {{"yaw", job.yaw_at_reference, Quantity::small_angle}},
@@ -369,6 +418,16 @@ void note_cross(const CrossJob& job, OutputResult& result) {
          {{"axes", job.axes()}},
          job.measurement,
          "Measure a third diagonal, or one straightness directly, and write the tables again."});
+}
+
+Option squareness_option() {
+  return {
+      "squareness",
+      std::string("table"),
+      "",
+      "Where the squareness of a gantry goes: into the cross table, or into a shift of the zero "
+      "of its second side, which the file states.",
+      {"table", "slave-zero"}};
 }
 
 bool together(const CrossJob& set, const AxisJob& job, const Campaign& campaign) {

@@ -64,6 +64,16 @@ std::optional<double> left_on_side(const ControllerInput& in, const CrossJob& jo
   return std::nullopt;
 }
 
+/// By how much the beam is turned where the pitch tables of its sides are zero, against the first stop, rad.
+std::optional<double> turn_of(const ControllerInput& in, const CrossJob& job, const Beam& beam,
+                              const NumberTables& settings) {
+  const double x0 = job.lines.front().at.front().at(beam.axis);
+  const auto one = left_on_side(in, job, beam.axis, x0, settings),
+             other = left_on_side(in, job, beam.slave, x0, settings);
+  if (!one || !other) return std::nullopt;
+  return (*other - *one) / (beam.at_slave - beam.at_axis);
+}
+
 /// Several runs of a line: the worst of them.
 void keep_worst(std::vector<Prediction>& all, const Prediction& one) {
   const auto known =
@@ -100,15 +110,31 @@ void turn_to_reference(const ControllerInput& in, CrossJob& job, const NumberTab
   for (const Beam& beam : beams_of(in.campaign))
     for (CrossCurve& curve : job.curves) {
       if (curve.output != beam.axis || curve.input != beam.along) continue;
-      const double x0 = job.lines.front().at.front().at(beam.axis);
-      const auto one = left_on_side(in, job, beam.axis, x0, settings),
-                 other = left_on_side(in, job, beam.slave, x0, settings);
-      if (!one || !other) continue;
-      const double turn = (*other - *one) / (beam.at_slave - beam.at_axis);
+      const auto turn = turn_of(in, job, beam, settings);
+      if (!turn) continue;
       for (std::size_t i = 0; i < curve.value.size(); ++i)
-        curve.value[i] += turn * (curve.position[i] - curve.position.front());
-      job.yaw_at_reference = beam.along.front() == 'X' ? turn : -turn;  // +X turns towards +Y
+        curve.value[i] += *turn * (curve.position[i] - curve.position.front());
+      job.yaw_at_reference = beam.along.front() == 'X' ? *turn : -*turn;  // +X turns towards +Y
     }
+}
+
+bool shift_slave(const ControllerInput& in, CrossJob& job, double C0Y,
+                 const NumberTables& settings) {
+  for (const Beam& beam : beams_of(in.campaign)) {
+    const bool carries = std::any_of(job.curves.begin(), job.curves.end(), [&](const auto& curve) {
+      return curve.output == beam.axis && curve.input == beam.along;
+    });
+    if (!carries) continue;
+    CrossCurve& along_y = job.curves.back();  // EXY alone has C0Y
+    for (std::size_t i = 0; i < along_y.value.size(); ++i)
+      along_y.value[i] += C0Y * (along_y.position[i] - along_y.position.front());
+    const double turn = turn_of(in, job, beam, settings).value_or(0.0);
+    job.slave_zero =
+        SlaveZero{beam.axis,    beam.slave,    beam.along,
+                  beam.at_axis, beam.at_slave, (beam.at_slave - beam.at_axis) * (C0Y - turn)};
+    return true;
+  }
+  return false;
 }
 
 std::optional<double> Replay::moved(const std::string& axis, std::map<std::string, double> at,
@@ -117,6 +143,7 @@ std::optional<double> Replay::moved(const std::string& axis, std::map<std::strin
     if (at.contains(b.axis)) at[b.slave] = at[b.axis], direction[b.slave] = direction[b.axis];
   const auto of = [&](const std::string& one) {
     double sum = math::added(tables, one, at, direction);
+    if (const auto zero = shift.find(one); zero != shift.end()) sum += zero->second;
     const auto was = backlash.find(one);
     for (const LoadedTable& t : tables)
       if (t.output == one && t.backlash)
@@ -138,13 +165,16 @@ std::optional<double> Replay::moved(const std::string& axis, std::map<std::strin
 Replay replay_of(const CrossJob& set, const std::vector<AxisJob>& pitch,
                  const ControllerInput& input) {
   Replay replay{.tables = {}, .beams = beams_of(input.campaign)};
+  if (set.slave_zero) replay.shift[set.slave_zero->slave] = set.slave_zero->shift;
   for (const AxisJob& job : pitch) {
     if (!job.loaded || !together(set, job, input.campaign)) continue;
     for (const LoadedTable& t : *job.loaded) replay.tables.push_back(t);
     replay.backlash[job.axis] = job.present_backlash();
-    const Axis* axis = input.campaign.machine.axis(job.axis);
+  }
+  for (const std::string& name : set.moving()) {
+    const Axis* axis = input.campaign.machine.axis(name);
     if (axis != nullptr && axis->active_table && !axis->active_table->empty())
-      replay.replaces = job.axis;
+      replay.replaces = name;
   }
   return replay;
 }

@@ -69,13 +69,16 @@ std::string file_text(const CrossJob& job, const ControllerInput& input, std::in
           controllers::plain(input.campaign.id),
       job.volume ? "pitch itself is not in these tables"
                  : "the same points as the pitch tables; pitch itself is not in these tables",
-      std::string("the squareness is in them: do not ") +
-          (job.volume ? "enter it elsewhere too" : "shift the zero of a gantry's second side too"),
       "entries are the error of the output axis with its own sign:",
       "a positive entry moves the output axis towards minus",
       "MD18342[t] >= " + std::to_string(points) + "; enable MD32710 of " + outputs(job, name.axes) +
           " and SD41300[t]",
       chosen_words(number, job.curves.size())};
+  if (!job.slave_zero)
+    words.insert(words.begin() + 2,
+                 std::string("the squareness is in them: do not ") +
+                     (job.volume ? "enter it elsewhere too"
+                                 : "shift the zero of a gantry's second side too"));
   for (std::string& line : controllers::set_words(job)) words.push_back(std::move(line));
   std::string out = "%_N_NC_CEC_INI\nCHANDATA(1)\n" + controllers::comments(words, "; ");
   for (const CrossCurve& curve : job.curves) out += table(curve, number++, name);
@@ -85,8 +88,11 @@ std::string file_text(const CrossJob& job, const ControllerInput& input, std::in
 /// What has to be enabled, once where several sets have the same axes.
 void note_enabling(const CrossJob& job, const std::vector<controllers::KnownAxis>& axes,
                    std::vector<Remark>& notes) {
-  const Remark note{
-      job.volume ? "siemens.cross-volume" : "siemens.cross", {}, {{"axes", outputs(job, axes)}}};
+  const Remark note{job.volume       ? "siemens.cross-volume"
+                    : job.slave_zero ? "siemens.cross-straight"
+                                     : "siemens.cross",
+                    {},
+                    {{"axes", outputs(job, axes)}}};
   if (notes.empty() || notes.back().id != note.id || notes.back().texts != note.texts)
     notes.push_back(note);
 }

@@ -160,6 +160,7 @@ std::vector<Option> options() {
        {"taken", std::vector<std::string>{}, "",
         "Numbers of CEC tables that are in use in the control, \"0\", \"4-9\": none of them is "
         "written."},
+       controllers::squareness_option(),
        {"quoted_axes", false, "", "CEC axes as \"AX1\" (newer) and not as (AX1)."}});
   return list;
 }

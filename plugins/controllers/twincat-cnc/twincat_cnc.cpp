@@ -261,7 +261,8 @@ std::vector<Option> options() {
         "What an entry of kw.crosscomp is, as a sign probe showed it: the error, or the "
         "correction; "
         "no cross tables before it is said.",
-        {"", "error", "correction"}}});
+        {"", "error", "correction"}},
+       controllers::squareness_option()});
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// values.csv and one file of points for each analysis, for spreadsheets.
+// values.csv, and files of the points and curves of each analysis, for spreadsheets.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -129,14 +129,31 @@ std::string file_name(const std::string& kind, const Results::Analysed& a,
   return name;
 }
 
+/// Curves of one axis over another (EYX, EXX), one row for each point.
+std::string series_file(const std::vector<Series>& all) {
+  std::string out = "curve,over,position,position_unit,value,unit,U,k\n";
+  for (const Series& s : all)
+    for (std::size_t i = 0; i < s.position.size(); ++i)
+      add_row(out, {csv_text(s.name), csv_text(s.over), number(s.position[i], s.position_quantity),
+                    csv_text(unit_of(s.position_quantity).symbol), number(s.value[i], s.quantity),
+                    csv_text(unit_of(s.quantity).symbol),
+                    i < s.U.size() ? number(s.U[i], s.quantity) : "",
+                    i < s.U.size() ? number(s.k, Quantity::ratio) : ""});
+  return out;
+}
+
 Expected<OutputResult> write(const OutputInput& input) {
   OutputResult result;
   result.artifacts.push_back({"values.csv", values_file(input.results)});
-  for (const Results::Analysed& a : input.results.analyses)
+  for (const Results::Analysed& a : input.results.analyses) {
     for (const auto& [kind, table] :
          {std::pair{"points", &a.evaluation.points}, {"rows", &a.evaluation.rows}})
       if (!table->columns.empty())
         result.artifacts.push_back({file_name(kind, a, result.artifacts), table_file(*table)});
+    if (!a.evaluation.series.empty())
+      result.artifacts.push_back(
+          {file_name("curves", a, result.artifacts), series_file(a.evaluation.series)});
+  }
   return result;
 }
 
@@ -144,7 +161,8 @@ Expected<OutputResult> write(const OutputInput& input) {
 
 NONIO_PLUGIN(registry) {
   Output output;
-  output.info = {"csv", "1.0", "Values and points by target as CSV files, for spreadsheets."};
+  output.info = {"csv", "1.0",
+                 "Values, points by target and curves as CSV files, for spreadsheets."};
   output.applies = [](const Campaign&) { return true; };
   output.write = write;
   registry.add(std::move(output));

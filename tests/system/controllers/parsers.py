@@ -42,6 +42,18 @@ def siemens(files, axis=1):
     return Table(points, backlash=1e3 * float(backlash[1]) if backlash else 0.0)
 
 
+def cec(text):
+    """Cross tables of SINUMERIK, as (input, output, Table): axis numbers, what is added to the output by the input."""
+    word = lambda name, t: re.search(r"^\$AN_CEC_%s\[%s\]=(\S+)" % (name, t), text, re.M)[1]
+    tables = []
+    for t in sorted(set(re.findall(r"^\$AN_CEC\[(\d+),", text, re.M)), key=int):
+        step, low = float(word("STEP", t)), float(word("MIN", t))
+        points = [(low + step * int(i), -1e3 * float(v))
+                  for i, v in re.findall(r"^\$AN_CEC\[%s,(\d+)\]=(\S+)" % t, text, re.M)]
+        tables.append((int(re.search(r"\d+", word("INPUT_AXIS", t))[0]), int(re.search(r"\d+", word("OUTPUT_AXIS", t))[0]), Table(points)))
+    return tables
+
+
 def heidenhain(files, axis=None):
     lines = one({n: t for n, t in files.items() if not t.startswith("BEGIN CONFIG")}, ".COM").splitlines()
     assert " MM" in lines[0] or "DATUM" in lines[0], lines[0]

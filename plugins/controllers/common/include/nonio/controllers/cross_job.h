@@ -43,6 +43,14 @@ struct ReadLine {
                         -1};  ///< read along `sense`, against it: `deviation` is the mean of these
 };
 
+/// The squareness as a shift of the zero of a gantry's second side, in place of a part of a table: at the same command
+/// that side is `shift` further towards plus.
+struct SlaveZero {
+  std::string axis, slave, along;        ///< along: the axis of the beam
+  double at_axis = 0.0, at_slave = 0.0;  ///< where the sides are along the beam, m
+  double shift = 0.0;                    ///< m
+};
+
 /// The curves of one evaluation: EYX over X, EXY with squareness over Y, and so on.
 struct CrossJob {
   std::string measurement;        ///< the first one of the set
@@ -52,6 +60,7 @@ struct CrossJob {
   bool volume = false;  ///< of step diagonals
   /// Two diagonals alone: the curves are the even parts of the straightnesses. Size of what is in no table, q_odd.
   std::optional<double> odd_left{};
+  std::optional<SlaveZero> slave_zero{};  ///< where option squareness is "slave-zero"
   double yaw_at_reference =
       0.0;  ///< rad, in the squareness: the beam of a gantry where its pitch tables are zero
 
@@ -69,6 +78,9 @@ std::vector<CrossJob> cross_jobs(const ControllerInput&, SecondSide, OutputResul
 
 /// A finding: no such table on a gantry, as nobody says what the second side does.
 void refuse_second_side(const Axis&, const std::string& measurement, OutputResult& result);
+
+/// Option squareness: where the squareness of a gantry goes.
+Option squareness_option();
 
 /// Whether this pitch table and these curves are of one state of the machine.
 bool together(const CrossJob&, const AxisJob&, const Campaign&);

@@ -31,11 +31,16 @@ std::vector<Beam> beams_of(const Campaign&);
 /// first stop, so the yaw between both places is added to what the cross table takes.
 void turn_to_reference(const ControllerInput&, CrossJob&, const NumberTables& settings);
 
+/// The squareness of these curves, C0Y, becomes a shift of the zero of the second side, with that yaw. False where there
+/// is no gantry among the axes, or the places of its sides are not stated (`at`).
+bool shift_slave(const ControllerInput&, CrossJob&, double C0Y, const NumberTables& settings);
+
 /// Tables in the control.
 struct Replay {
   std::vector<LoadedTable> tables;
   std::vector<Beam> beams{};                 ///< of a control whose tables move one side each
   std::map<std::string, double> backlash{};  ///< parameter while measured, by axis
+  std::map<std::string, double> shift{};     ///< of the zero of an axis, m
   /// An axis whose new table takes the place of one that was active while the diagonals were read: what that did to
   /// them is not known here, so nothing is predicted of them. Empty: there is none.
   std::string replaces{};
