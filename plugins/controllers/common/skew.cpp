@@ -31,7 +31,9 @@ double travel_of(const ControllerInput& in, const std::string& measurement,
   return 0.1;  // the factor knows no lengths
 }
 
-LoadedTable linear(std::string output, std::string input, double per_length) {
+}  // namespace
+
+LoadedTable linear_table(std::string output, std::string input, double per_length) {
   return {.output = std::move(output),
           .input = {std::move(input)},
           .position = {{0.0, 1.0}},
@@ -39,8 +41,6 @@ LoadedTable linear(std::string output, std::string input, double per_length) {
           .minus = {},
           .outside = LoadedTable::Outside::continues};
 }
-
-}  // namespace
 
 std::vector<Face> faces_of(const ControllerInput& in, OutputResult& result) {
   std::vector<Face> faces;
@@ -89,9 +89,9 @@ std::vector<LoadedTable> skew_tables(const std::map<std::string, double>& factor
   };
   const double xy = factor("XY"), xz = factor("XZ"), yz = factor("YZ");
   std::vector<LoadedTable> tables;
-  if (factors.count("XY") != 0) tables.push_back(linear("X", "Y", -xy));
-  if (factors.count("XZ") != 0) tables.push_back(linear("X", "Z", -(xz - xy * yz)));
-  if (factors.count("YZ") != 0) tables.push_back(linear("Y", "Z", -yz));
+  if (factors.count("XY") != 0) tables.push_back(linear_table("X", "Y", -xy));
+  if (factors.count("XZ") != 0) tables.push_back(linear_table("X", "Z", -(xz - xy * yz)));
+  if (factors.count("YZ") != 0) tables.push_back(linear_table("Y", "Z", -yz));
   return tables;
 }
 

@@ -330,6 +330,24 @@ class Planes(BenchTest):
         self.assertAlmostEqual(xy, -self.SQUARE, delta=2e-8)
         self.assertNotIn("FOR_Z", self.file("marlin-skew.cfg"))
 
+    def test_reprapfirmware(self):
+        """x moves by y X/S, which must undo -C0Y y; the firmware changes X and nothing else."""
+        self.gantry("reprapfirmware")
+        text = self.file("reprapfirmware-skew.cfg")
+        found = re.fullmatch(r"M556 S(\d+) X(-?[\d.]+)\n", text)
+        self.assertAlmostEqual(float(found[2]) / float(found[1]), self.SQUARE, delta=2e-8)
+        path = self.site / "reprapfirmware-config.g"
+        for line, why in (("M556 S100 X0.1 P1", "M556 with P1"), ("M556 X0.1", "without a positive S"), ("M557 S1", "no M556"),
+                          ("M556 S100 X", "M556 with X"), ("M556 S100", "without X, Y or Z")):
+            path.write_text("G21\n" + line + " ; skew\n")
+            self.assertIn(why, self.nonio("table", "diff", path, path, "--control", "reprapfirmware", expect=2).stderr)
+        # An edge of 100 mm: each pair in its own axes.
+        path.write_text("M556 S100 X0.1 Y-0.2 Z0.3\n")
+        (self.site / "zero.g").write_text("M556 S100 X0 Y0 Z0\n")
+        tables = self.json_of("table", "diff", self.site / "zero.g", path, "--control", "reprapfirmware")["tables"]
+        self.assertEqual({(t["output"], *t["by"]): t["new"]["largest_slope_um_per_m"] for t in tables},
+                         {("X", "Y"): 1000.0, ("Y", "Z"): 2000.0, ("X", "Z"): 3000.0})
+
 
 class Chosen(BenchTest):
     def test_only_the_four_are_tried_where_nobody_says_the_control(self):
@@ -340,7 +358,7 @@ class Chosen(BenchTest):
 
 
 NEW = {"fagor-8055", "haas-classic", "mitsubishi", "twincat-nc-ptp", "twincat-cnc", "twincat-volumetric",
-       "ecmc", "aerotech", "pmac", "klipper", "marlin"}
+       "ecmc", "aerotech", "pmac", "klipper", "marlin", "reprapfirmware"}
 
 if __name__ == "__main__":
     unittest.main()

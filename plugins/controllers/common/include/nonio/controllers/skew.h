@@ -27,6 +27,9 @@ bool has_squareness(const Campaign&);
 /// (2 side AD))).
 double skew_factor(double AC, double BD, double AD);
 
+/// What is added to `output`: `per_length` times the position of `input`, wherever it is.
+LoadedTable linear_table(std::string output, std::string input, double per_length);
+
 /// x - y xy - z (xz - xy yz), y - z yz: what the firmware adds.
 std::vector<LoadedTable> skew_tables(const std::map<std::string, double>& factors);
 
