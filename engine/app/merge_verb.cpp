@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include "axis_argument.h"
+#include "campaign/config/table_files.h"
+#include "campaign/config/terminal_words.h"
 #include "campaign/planning/plan.h"
+#include "campaign/tables/control_state.h"
 #include "insert.h"
 #include "later_campaigns.h"
 #include "platform/storage/files.h"
+#include "questions.h"
 #include "state_record.h"
 #include "table_common.h"
 #include "verbs.h"
@@ -114,14 +120,57 @@ int tell_merged(const tables::MergedTables& merged, const Loaded& present, const
   return exit_done;
 }
 
+/// Number with a point or a decimal comma, in mm or deg, or none.
+Expected<double> backlash_of(std::string text) {
+  if (text == "none") return 0.0;
+  std::replace(text.begin(), text.end(), ',', '.');
+  double value = 0.0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end.ec == std::errc() && end.ptr == text.data() + text.size() && std::fabs(value) <= 10.0)
+    return value;
+  return fail("expected the backlash value in mm or deg, or none, found \"" + text + "\"");
+}
+
+/// Asks a person for the state that nothing states. An error if there is no answer.
+Expected<void> ask_for_state(OpenCampaign& open, const Controller& control,
+                             const std::string& name) {
+  const config::TerminalWords say(open.place->context.templates, open.place->context.site.language);
+  const Axis* const axis = open.campaign().machine.axis(name);
+  const bool rotary = axis != nullptr && axis->rotary;
+  Questions ask(true);
+  std::string table, backlash;
+  const auto question = [&](const char* key) {
+    return say(key, {{"axis", name},
+                     {"date", open.campaign().date},
+                     {"unit", rotary ? "deg" : "mm"},
+                     {"parameter", control.table.backlash}});
+  };
+  if (auto done = ask.text(question("insert.ask.table").c_str(), table, ""); !done) return done;
+  if (table.empty()) return fail(say("insert.ask.unanswered"));
+  tables::StateAnswer answer;
+  if (table != "none") {
+    NONIO_TRY(answer.files, config::read_table_files(table));
+    answer.table = table;
+  }
+  if (!control.table.backlash.empty() && axis != nullptr && !axis->active_backlash) {
+    if (auto done = ask.text(question("insert.ask.backlash").c_str(), backlash, ""); !done)
+      return done;
+    if (backlash.empty()) return fail(say("insert.ask.unanswered"));
+    NONIO_TRY(const auto value, backlash_of(backlash));
+    answer.backlash = value / (rotary ? deg_per_rad : 1e3);
+  }
+  tables::state_by_answer(open.read, name, answer);
+  return {};
+}
+
 int merge(const MergeWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
   if (!w.loaded.empty() && !is_day(w.loaded))
     return complain("--loaded: expected a day as YYYY-MM-DD, found \"" + w.loaded + "\"");
-  const auto opened = open_campaign(w.folder, common);
+  auto opened = open_campaign(w.folder, common);
   if (!opened) return opened.error();
-  const OpenCampaign& open = *opened;
+  OpenCampaign& open = *opened;
   if (const auto day = check_day(w.loaded, open.campaign().date); !day)
     return complain(text_of(day.error()));
   const auto axis = merged_axis(w.axis, open.campaign());
@@ -131,8 +180,18 @@ int merge(const MergeWish& w, const Common& common) {
   const auto present =
       load(open.place->plugins, w.backup, control, open.campaign(), *settings, options);
   if (!present) return complain(text_of(present.error()));
-  const auto merged = tables::merge_tables(open.read, *present->control,
-                                           *options(present->control->info), present->files, *axis);
+  const auto merge_now = [&] {
+    return tables::merge_tables(open.read, *present->control, *options(present->control->info),
+                                present->files, *axis);
+  };
+  auto merged = merge_now();
+  if (const Axis* const of = open.campaign().machine.axis(*axis);
+      !merged && of != nullptr && !of->active_table && !common.json && Questions::on_terminal()) {
+    complain(text_of(merged.error()));
+    if (auto asked = ask_for_state(open, *present->control, *axis); !asked)
+      return complain(text_of(asked.error()), exit_failed);
+    merged = merge_now();
+  }
   if (!merged) return complain(text_of(merged.error()), exit_failed);
   tell_findings(open, older_measurement(open, *axis));
   tell_findings(open, merged->findings);
@@ -177,7 +236,8 @@ Verb insert_verb(Common& common) {
           "made "
           "from this campaign or from a later one, or contradicts the record, the command ends "
           "with "
-          "an error. It prints the differences, and E, B and M as measured and with all files "
+          "an error; on a terminal it asks for a state that nothing states. It prints the "
+          "differences, and E, B and M as measured and with all files "
           "loaded, and warns if a later campaign of the site measured this axis of the "
           "machine.\n\nFiles with several axes (FANUC's parameters and pitch data, SINUMERIK's "
           "archives, HEIDENHAIN's CONFIG.CMA, lists of TwinCAT, Aerotech) keep every other byte; "

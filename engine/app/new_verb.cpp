@@ -18,6 +18,7 @@
 #include "platform/storage/files.h"
 #include "platform/storage/nearest.h"
 #include "platform/storage/scratch_folder.h"
+#include "questions.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -37,35 +38,6 @@ struct NewWish {
 struct NewFiles {
   fs::path folder;
   std::vector<Artifact> files;
-};
-
-/// Asks on stderr, with the default in brackets, for what is still empty. An empty line takes the
-/// default; an error if there is no answer any more (^D).
-class Questions {
- public:
-  explicit Questions(bool asks) : asks_(asks) {}
-  bool asks() const { return asks_; }
-  /// Of a verb that ends with an error.
-  int status() const { return ended_ ? exit_interrupted : exit_usage; }
-
-  Expected<void> text(const char* question, std::string& to, const std::string& otherwise) {
-    if (!to.empty()) return {};
-    to = otherwise;
-    if (!asks_) return {};
-    std::cerr << question << (otherwise.empty() ? "" : " [" + otherwise + "]") << ": "
-              << std::flush;
-    std::string line;
-    if (!std::getline(std::cin, line)) {
-      ended_ = true;
-      std::cerr << "\n";
-      return fail("no answer; nothing was written");
-    }
-    if (!line.empty()) to = line;
-    return {};
-  }
-
- private:
-  bool asks_, ended_ = false;
 };
 
 /// The nearest folder at or above this one that holds a site.toml, or a campaign beside the new
@@ -430,7 +402,7 @@ Expected<void> settle_certificates(const fs::path& folder, Values& values, Quest
 
 int new_site(const NewWish& wish, const fs::path& folder, const Common& common) {
   NewSite site{wish.laboratory, wish.address, wish.country};
-  Questions ask(!wish.defaults && ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1);
+  Questions ask(!wish.defaults && Questions::on_terminal());
   for (const auto& [question, to] : {std::pair{"Laboratory, name", &site.laboratory},
                                      {"Laboratory, address", &site.address},
                                      {"Country (two letters)", &site.country}}) {
@@ -460,7 +432,7 @@ int new_site(const NewWish& wish, const fs::path& folder, const Common& common) 
 }
 
 int new_campaign(const NewWish& wish, const fs::path& folder, const Common& common) {
-  Questions ask(!wish.defaults && ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1);
+  Questions ask(!wish.defaults && Questions::on_terminal());
   bool example = false;
   const auto campaign = campaign_files(wish, folder, site_above(folder), ask, example, common);
   if (!campaign) return complain(campaign.error().message, ask.status());

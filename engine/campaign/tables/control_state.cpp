@@ -50,8 +50,8 @@ class Stated {
   }
   std::string place() const {
     if (!in_manifest("active_table")) return read_.machine ? read_.machine->file : "campaign.toml";
-    return "campaign.toml:" +
-           std::to_string(read_.manifest->lines.at("machine.axes." + axis_.name + ".active_table"));
+    const auto line = read_.manifest->lines.at("machine.axes." + axis_.name + ".active_table");
+    return line == 0 ? "the answer on the terminal" : "campaign.toml:" + std::to_string(line);
   }
   std::string text() const {
     return axis_.active_table->empty() ? "\"none\"" : "\"" + *axis_.active_table + "\"";
@@ -251,6 +251,17 @@ Expected<MeasuredWith> measured_with(const reading::ReadCampaign& read,
                       {},
                       {}});
   return out;
+}
+
+void state_by_answer(reading::ReadCampaign& read, const std::string& name,
+                     const StateAnswer& answer) {
+  for (Axis& axis : read.manifest->campaign.machine.axes) {
+    if (axis.name != name) continue;
+    axis.active_table = answer.table;
+    if (answer.backlash) axis.active_backlash = answer.backlash;
+    if (!answer.files.empty()) read.active_tables[name] = answer.files;
+    read.manifest->lines["machine.axes." + name + ".active_table"] = 0;
+  }
 }
 
 Expected<void> state_by_backup(reading::ReadCampaign& read, const Controller& controller,

@@ -29,6 +29,14 @@ struct Origin {
 };
 std::optional<Origin> origin_of(const std::vector<Artifact>& files, const std::string& axis);
 
+/// What a person answers of the state during the measurement, in place of the manifest.
+struct StateAnswer {
+  std::string table;  ///< list of files; empty: none
+  std::vector<Artifact> files{};
+  std::optional<double> backlash{};  ///< m or rad; 0: none
+};
+void state_by_answer(reading::ReadCampaign&, const std::string& axis, const StateAnswer&);
+
 /// Settles what was active while `axis` was measured. The manifest applies first, then the record of
 /// the machine, then the backup. An error, which names the key or the file that ends it, where they
 /// contradict each other, or where the table of the backup was made from this campaign or from a

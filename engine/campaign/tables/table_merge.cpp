@@ -87,6 +87,33 @@ Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh
   return there ? Expected<void>{} : fail("the merged file holds no table of " + axis);
 }
 
+/// That the backup has the last tables of the other axes: its whole file is loaded.
+Expected<void> not_outdated(const reading::ReadCampaign& read, const Controller& controller,
+                            const ReadTables& present, const std::string& axis,
+                            const Settings& options) {
+  if (!read.machine) return {};
+  for (const auto& [name, recorded] : read.machine->axes) {
+    const auto own = own_tables(present, name);
+    if (name == axis || own.empty() || recorded.states.empty()) continue;
+    const config::ControlState& last = recorded.states.back();
+    const auto files = read.state_files.find(last.files);
+    if (!last.table || (!last.table->empty() && files == read.state_files.end())) continue;
+    ReadTables stated;
+    if (!last.table->empty()) {
+      const auto in = tables_in(controller, files->second, read.manifest->campaign, options);
+      if (!in) continue;
+      stated = own_tables(*in, name);
+    }
+    if (same_correction(own, stated, name)) continue;
+    return fail("the backup contains another table of " + name + " than " + read.machine->file +
+                " states since " + last.since +
+                ", and loading the whole file would replace that one: save the backup again, or "
+                "correct [[axes." +
+                name + ".state]]");
+  }
+  return {};
+}
+
 }  // namespace
 
 Expected<CampaignTables> tables_of_campaign(const reading::ReadCampaign& read,
@@ -159,6 +186,9 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
              fresh = tables_in(controller, written->artifacts, campaign, options);
   for (const auto* tables : {&present, &next, &fresh})
     if (!*tables) return fail(tables->error());
+  if (merges)
+    if (auto ok = not_outdated(read, controller, *present, axis, options); !ok)
+      return fail(ok.error());
   if (auto only = only_this_axis(*present, *fresh, *next, axis); !only) return fail(only.error());
   out.files = std::move(*changed);
   out.whole = std::move(whole);

@@ -3,9 +3,13 @@
 """What a backup says of the state of its control: for `table diff`, against later campaigns, and in inch."""
 import os
 import pathlib
+import pty
 import re
+import shutil
+import time
 import unittest
 
+from bench import NONIO
 from parsers import OPTIONS, TABLE
 from truth import FOUR, StateBench, Truth
 
@@ -69,6 +73,56 @@ class Backup(StateBench):
         deep.parent.mkdir()
         later.rename(deep)
         self.assertIn(str(deep.resolve()), self.nonio("table", "insert", backup, "--with", now).stderr)
+
+    def answered(self, args, answers):
+        """What `insert` says on a terminal, and its status; one answer for each question, which ends with a colon."""
+        child, terminal = pty.fork()
+        if child == 0:
+            os.execv(NONIO, [NONIO, *map(str, args)])
+        shown, seen = b"", 0
+        limit = time.monotonic() + 60
+        while time.monotonic() < limit:
+            try:
+                shown += os.read(terminal, 4096)
+            except OSError:
+                break
+            if answers and re.search(rb"(none\)|oder none\)): $", shown[seen:]):
+                seen = len(shown)
+                os.write(terminal, answers.pop(0).encode() + b"\n")
+        os.close(terminal)
+        return shown.decode(), os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+    def test_on_a_terminal_the_state_is_asked_for(self):
+        control = "siemens-840d"
+        truth, before, backup, now = self.prepared(control, 16)
+        mine = self.site / "mine"
+        mine.mkdir()
+        for f in backup.split(","):  # loaded after the measurement: what was active is not known
+            text = pathlib.Path(f).read_text().replace("2022-11-01, campaign old", "2024-11-20, campaign now")
+            (mine / os.path.basename(f)).write_text(text)
+        files = ",".join(str(mine / os.path.basename(f)) for f in backup.split(","))
+        args = ["table", "insert", files, "--with", now, "--out", self.site / "load"]
+        self.assertIn("active_table in [machine.axes.X]", self.nonio(*args, expect=1).stderr, "no terminal, no question")
+        said, status = self.answered(args, [backup.split(",")[0], "%.6f" % (before.backlash * 1e-3)])
+        self.assertEqual(status, 0, said)
+        self.assertIn("Value of MD32450 of X then, mm (or none)", said)
+        table = TABLE[control](self.files(control, self.site / "load"))
+        self.assertLess(truth.E(1, table), 1.7)
+        shutil.rmtree(self.site / "load")
+        # "none" is an answer: then the table is that of the readings as they are.
+        said, status = self.answered(args, ["none", "none"])
+        self.assertEqual(status, 0, said)
+        table = TABLE[control](self.files(control, self.site / "load"))
+        self.assertLess(max(truth.error(1, x, d, before) + table.added(x, d) for x in truth.targets for d in "+-") -
+                        min(truth.error(1, x, d, before) + table.added(x, d) for x in truth.targets for d in "+-"), 1.7)
+        shutil.rmtree(self.site / "load")
+        for answers, word in ((["nothing.ini"], "nothing.ini"), ([""], "no answer"), (["none", "1 mm"], "expected the backlash value")):
+            said, status = self.answered(args, answers)
+            self.assertEqual(status, 1, said)
+            self.assertIn(word, said)
+            self.assertFalse((self.site / "load").exists())
+        (self.site / "site.toml").write_text('language = "de"\n')
+        self.assertIn("Tabelle, die bei der Messung von X am 2024-11-20 wirksam war", self.answered(args, ["none", "none"])[0])
 
     def in_inch(self, text):
         """The same table of LinuxCNC in inch."""

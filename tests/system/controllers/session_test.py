@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """`table session`: from a backup and readings to the verdict by the commands that it prints, on axes of known errors whose
 control is replayed by independent parsers."""
+import math
 import os
 import pathlib
 import shlex
 import shutil
 import unittest
 
-from parsers import OPTIONS, STEP, TABLE, Table
+from bench import axis_csv
+from parsers import OPTIONS, STEP, TABLE, Table, siemens
 from truth import FOUR, StateBench, Truth
 
 SEEDS = [int(s) for s in os.environ.get("SEEDS", "21,22").split(",")]
@@ -154,6 +156,49 @@ class Session(StateBench):
         answer = self.json_of(*shlex.split(first)[1:], "--check", self.check_file(truth, table), "--checked", "2024-11-22")
         self.assertEqual(answer["verdict"]["answer"], "worked")
         self.assertEqual(self.json_of(*shlex.split(first)[1:])["verdict"]["answer"], "worked")
+
+    def test_one_axis_of_several_and_a_rotary_one(self):
+        """X, and a rotary axis whose angles are in arcsec over deg: each has its own path, and the check campaign one axis."""
+        self.record(["X", "Y", "C"], "", asset="S-1")
+        targets = [30.0 * i for i in range(13)]
+        of = {"C": lambda t: 9.0 * math.sin(math.radians(t)), "X": lambda t: 5.0 * math.sin(t / 60.0)}
+        folder = self.site / "now"
+        folder.mkdir()
+        text = 'format = 1\n[campaign]\nid = "now"\ndate = 2024-11-20\n[machine]\nasset = "S-1"\ncontrol = "siemens-840d"\n'
+        for axis, unit in (("X", "mm"), ("C", "deg")):
+            (folder / (axis + ".csv")).write_text(axis_csv(targets, of[axis], lambda t, a=axis: of[a](t) + 4.0, unit))
+            text += '[machine.axes.%s]\nkind = "%s"\nactive_table = "none"\nactive_backlash_%s = "none"\n' % (axis, "rotary" if axis == "C" else "linear", unit)
+            text += '[[measurement]]\nid = "%s 1"\nkind = "axis"\naxis = "%s"\nfile = "%s.csv"\n' % (axis, axis, axis)
+        (folder / "campaign.toml").write_text(text)
+        saved = self.site.parent / "saved.ini"
+        saved.write_text("%_N_NC_TEA_INI\nCHANDATA(1)\n$MA_BACKLASH[0,AX1]=0\n$MA_BACKLASH[0,AX3]=0\n" + "".join(
+            "$AA_ENC_COMP[0,0,AX{0}]=0\n$AA_ENC_COMP[0,1,AX{0}]=0\n$AA_ENC_COMP_STEP[0,AX{0}]=360\n$AA_ENC_COMP_MIN[0,AX{0}]=0\n"
+            "$AA_ENC_COMP_MAX[0,AX{0}]=360\n$AA_ENC_COMP_IS_MODULO[0,AX{0}]=0\n".format(n) for n in (1, 3)) + "M17\n")
+        args = ["table", "session", folder, "--backup", saved]
+        self.assertIn("expected --axis, one of X, C", self.nonio(*args, expect=2).stderr)
+        for axis, unit, scale, day in (("C", "deg", 3.6, "2024-11-22"), ("X", "mm", 1.0, "2024-11-23")):
+            if axis == "X":  # the file saved before C was loaded would bring its old table back
+                answer = self.json_of(*args, "--axis", axis, expect=1)
+                self.assertIn("another table of C than machines/S-1.toml states since 2024-11-21", answer["steps"][-1]["says"])
+                self.assertIn("save the backup again", answer["steps"][-1]["says"])
+                saved.write_text((folder / "load" / "saved.ini").read_text())
+            answer = self.json_of(*args, "--axis", axis)
+            self.assertEqual(self.step(answer, "loading"), "missing", answer)
+            table = siemens({"t": "\n".join(p.read_text() for p in (folder / "load").glob("*.ini"))}, {"X": 1, "C": 3}[axis])
+            # Ends of the scale: the table in um over mm, or 1e-3 deg over deg.
+            left = {d: [of[axis](t) + (4.0 if d == "-" else 0.0) + scale * table.added(t, d) for t in targets] for d in "+-"}
+            self.assertLess(max(left["+"] + left["-"]) - min(left["+"] + left["-"]), 1.0)
+            after = self.site.parent / ("%s-after.csv" % axis)
+            after.write_text(axis_csv(targets, *(lambda t, d=d, l=left: dict(zip(targets, l[d]))[t] + 1e-6 for d in "+-"), unit))
+            answer = self.json_of(*args, "--axis", axis, "--loaded", "2024-11-21", "--check", after, "--checked", day)
+            self.assertEqual(answer["verdict"]["answer"], "worked", answer)
+            check = (self.site / "now-check" / "campaign.toml").read_text()
+            self.assertEqual(check.count("[[measurement]]"), 1)
+            self.assertIn("active_backlash_" + unit, check)
+            (self.site / "now-check").rename(self.site / ("now-check-" + axis))
+            path = self.site / ("now-check-" + axis) / "campaign.toml"
+            path.write_text(path.read_text().replace('"now-check"', '"now-check-%s"' % axis.lower()))
+        self.nonio("check", self.site)
 
     def test_on_the_terminal_in_three_languages(self):
         truth, before, first = self.begin("linuxcnc", 51)

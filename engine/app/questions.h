@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <unistd.h>
+
+#include <iostream>
+#include <string>
+
+#include "common.h"
+
+namespace nonio::app {
+
+/// Asks on stderr, with the default in brackets, for what is still empty. An empty line takes the
+/// default; an error if there is no answer any more (^D).
+class Questions {
+ public:
+  explicit Questions(bool asks) : asks_(asks) {}
+  /// Whether a person reads and answers.
+  static bool on_terminal() { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }
+  bool asks() const { return asks_; }
+  /// Of a verb that ends with an error.
+  int status() const { return ended_ ? exit_interrupted : exit_usage; }
+
+  Expected<void> text(const char* question, std::string& to, const std::string& otherwise) {
+    if (!to.empty()) return {};
+    to = otherwise;
+    if (!asks_) return {};
+    std::cerr << question << (otherwise.empty() ? "" : " [" + otherwise + "]") << ": "
+              << std::flush;
+    std::string line;
+    if (!std::getline(std::cin, line)) {
+      ended_ = true;
+      std::cerr << "\n";
+      return fail("no answer; nothing was written");
+    }
+    if (!line.empty()) to = line;
+    return {};
+  }
+
+ private:
+  bool asks_, ended_ = false;
+};
+
+}  // namespace nonio::app
