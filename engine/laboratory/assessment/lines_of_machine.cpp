@@ -166,13 +166,17 @@ class OfMachine {
     put_text(l, "table", t.table);
     put_text(l, "campaign", t.before_campaign);
     put_text(l, "axis", t.axis);
+    if (!(t.rms > 0.0)) return;
+    l.finding.evidence.push_back({"rms", t.rms, t.unit});
+    l.finding.evidence.push_back({"left", t.left, t.unit});
   }
 
   MorningLine changed(const std::string& axis, const AxisChange& cause) const {
     const AxisChange::Seen& first = cause.seen.front();
     const reports::TableLoaded* const table = unstated(axis, cause);
     MorningLine l = line(Kind::changed,
-                         table != nullptr   ? "morning.changed-table-unknown"
+                         table != nullptr   ? (table->rms > 0.0 ? "morning.changed-table-likely"
+                                                                : "morning.changed-table-unknown")
                          : has_event(cause) ? "morning.changed-event"
                                             : "morning.changed",
                          "");
@@ -334,7 +338,8 @@ class OfMachine {
     }
     if (explains != nullptr) {
       const reports::TableLoaded* const table = unstated(axis, *explains);
-      l.finding.id = table != nullptr       ? "morning.out-changed-table-unknown"
+      l.finding.id = table != nullptr       ? (table->rms > 0.0 ? "morning.out-changed-table-likely"
+                                                                : "morning.out-changed-table-unknown")
                      : has_event(*explains) ? "morning.out-changed-event"
                                             : "morning.out-changed";
       if (table != nullptr) put_table(l, *table);

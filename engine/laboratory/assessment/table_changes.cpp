@@ -125,6 +125,7 @@ class LoadedOnAxis {
       out.push_back(of_pair(before, after));
       out.back().kind = "unknown";
       if (!those.empty()) out.back().table = those.back().day;
+      put_nearest(before, after, those, out.back());
       const Taken& open = after.active ? before : after;
       out.back().before_campaign = m_.stored.campaigns[open.campaign].id;
     }
@@ -132,6 +133,20 @@ class LoadedOnAxis {
   }
 
  private:
+  /// The table that explains most of a change, if that is more than half of it: what remains is stated with it.
+  static void put_nearest(const Taken& before, const Taken& after, const std::vector<Known>& those,
+                          reports::TableLoaded& out) {
+    constexpr double most_left = 0.5;
+    std::vector<kernel::TableCurve> curves;
+    for (const Known& k : those) curves.push_back(k.table);
+    const auto near =
+        kernel::nearest(before.curve, after.curve, before.active, curves, change_resolution);
+    if (!near || near->left > most_left * near->rms) return;
+    out.table = those[near->table].day;
+    out.rms = near->rms / unit_of(out.unit).per_si,
+    out.left = near->left / unit_of(out.unit).per_si;
+  }
+
   const std::string& day(const Taken& t) const { return m_.stored.campaigns[t.campaign].day; }
   std::tuple<const std::string&, bool, std::size_t> key(const Taken& t) const {
     return {day(t), t.state == "as-left", t.campaign};

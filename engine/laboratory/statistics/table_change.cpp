@@ -243,6 +243,19 @@ class Recognizing {
                        rms_of(d_, left, 0.0), p};
   }
 
+  std::optional<TableChange> nearest() const {
+    std::optional<TableChange> out;
+    for (const Candidate& c : all_) {
+      if (c.loading != Loading::loaded) continue;
+      std::vector<double> left = d_.value;
+      for (std::size_t i = 0; i < left.size(); ++i) left[i] -= c.h[i];
+      const double rms = rms_of(d_, left, 0.0);
+      if (!out || rms < out->left)
+        out = TableChange{c.loading, c.table, 0, rms_of(d_, d_.value, 0.0), rms, NAN};
+    }
+    return out;
+  }
+
  private:
   std::vector<double> values(const TableCurve& t) const {
     std::vector<double> out;
@@ -315,14 +328,21 @@ TableCurve TableCurve::shifted(int points) const {
   return out;
 }
 
-std::optional<TableChange> recognize(const MeasuredCurve& before, const MeasuredCurve& after,
-                                     const std::optional<TableCurve>& active,
-                                     const std::vector<TableCurve>& known, double u_slope,
-                                     double resolution) {
+namespace {
+
+/// The change at enough places over enough of the axis.
+std::optional<CurveChange> comparable(const MeasuredCurve& before, const MeasuredCurve& after,
+                                      double resolution) {
   if (before.position.size() < 2 || after.position.size() < 2) return std::nullopt;
-  const CurveChange d = change_of(before, after, resolution);
+  CurveChange d = change_of(before, after, resolution);
   if (d.x.size() < fewest_places) return std::nullopt;
   if (!(d.length > 0.5 * (after.position.back() - after.position.front()))) return std::nullopt;
+  return d;
+}
+
+/// All that these tables can have done to what was active.
+Recognizing with_bases(const CurveChange& d, const std::optional<TableCurve>& active,
+                       const std::vector<TableCurve>& known, double u_slope) {
   Recognizing all(d, known, u_slope);
   if (active) {
     all.with_base(*active);
@@ -330,7 +350,24 @@ std::optional<TableChange> recognize(const MeasuredCurve& before, const Measured
     all.with_base({});
     for (const TableCurve& one : known) all.with_base(one);
   }
-  return all.best();
+  return all;
+}
+
+}  // namespace
+
+std::optional<TableChange> recognize(const MeasuredCurve& before, const MeasuredCurve& after,
+                                     const std::optional<TableCurve>& active,
+                                     const std::vector<TableCurve>& known, double u_slope,
+                                     double resolution) {
+  const auto d = comparable(before, after, resolution);
+  return d ? with_bases(*d, active, known, u_slope).best() : std::nullopt;
+}
+
+std::optional<TableChange> nearest(const MeasuredCurve& before, const MeasuredCurve& after,
+                                   const std::optional<TableCurve>& active,
+                                   const std::vector<TableCurve>& known, double resolution) {
+  const auto d = comparable(before, after, resolution);
+  return d ? with_bases(*d, active, known, HUGE_VAL).nearest() : std::nullopt;
 }
 
 }  // namespace nonio::statistics

@@ -56,4 +56,10 @@ std::optional<TableChange> recognize(const MeasuredCurve& before, const Measured
                                      const std::vector<TableCurve>& known, double u_slope,
                                      double resolution);
 
+/// The known table that leaves least of the change if it was loaded, with what remains, whatever the rest is: for a
+/// change without a name. None if no table changes the axis at these places. `p` is NaN.
+std::optional<TableChange> nearest(const MeasuredCurve& before, const MeasuredCurve& after,
+                                   const std::optional<TableCurve>& active,
+                                   const std::vector<TableCurve>& known, double resolution);
+
 }  // namespace nonio::statistics

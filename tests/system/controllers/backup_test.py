@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """What a backup says of the state of its control: for `table diff`, against later campaigns, and in inch."""
+import json
+import math
 import os
 import pathlib
 import pty
@@ -123,6 +125,24 @@ class Backup(StateBench):
             self.assertFalse((self.site / "load").exists())
         (self.site / "site.toml").write_text('language = "de"\n')
         self.assertIn("Tabelle, die bei der Messung von X am 2024-11-20 wirksam war", self.answered(args, ["none", "none"])[0])
+
+    def test_wear_in_addition_to_a_table_that_is_not_stated(self):
+        """The worklist names the table that would explain the change, and what would remain of it."""
+        control, truth = "linuxcnc", Truth(17, "line")
+        old = truth.e[0] = lambda x: 0.03 * x + 6.0 * math.sin(x / 150.0)
+        wear = lambda x: 3.0 * math.sin(x / 90.0)
+        truth.e[1] = lambda x: old(x) + wear(x)
+        table, _ = self.backup(control, truth)
+        self.campaign_of("later", "2024-11-20", control, truth.readings(1, table))
+        self.run_all(None)
+        lines = json.loads((self.out / "summary.json").read_text())["lines"]
+        said = [l["says"] for l in lines if "If the table of" in l["says"]]
+        self.assertEqual(len(said), 1, [l["says"] for l in lines])
+        of = re.search(r"the table of 2022-11-01 was loaded, it explains the change of the curve \(([\d.]+) um rms\) but for ([\d.]+) um rms", said[0])
+        left = [wear(x) for x in truth.targets]
+        rms = lambda v: math.sqrt(sum((a - sum(v) / len(v)) ** 2 for a in v) / len(v))
+        self.assertAlmostEqual(float(of[2]), rms(left), delta=0.3)
+        self.assertAlmostEqual(float(of[1]), rms([wear(x) + table.added(x) for x in truth.targets]), delta=0.5)
 
     def in_inch(self, text):
         """The same table of LinuxCNC in inch."""

@@ -84,6 +84,23 @@ TEST(TableChange, WhatIsNoTableHasNoName) {
   EXPECT_FALSE(found(error, [](double x) { return error(x) + T.at(x, 1); }, none, {}));
 }
 
+/// Wear in addition to a table that was loaded: no name, but the table that explains most, and what remains.
+TEST(TableChange, WearInAdditionToATableIsWhatRemains) {
+  const auto wear = [](double x) { return 2.0 * std::sin(x / 40.0); };
+  const auto before = measured(error, 1);
+  const auto after = measured([&](double x) { return error(x) + T.at(x, 1) + wear(x); }, 2);
+  EXPECT_FALSE(recognize(before, after, TableCurve{}, {S, T}, 5e-4, 0.1));
+  const auto near = nearest(before, after, TableCurve{}, {S, T}, 0.1);
+  ASSERT_TRUE(near);
+  EXPECT_EQ(near->table, 1U);
+  double mean = 0.0, squares = 0.0;
+  for (const double x : places) mean += wear(x) / static_cast<double>(places.size());
+  for (const double x : places)
+    squares += (wear(x) - mean) * (wear(x) - mean) / static_cast<double>(places.size());
+  EXPECT_NEAR(near->left, std::sqrt(squares), 0.15);
+  EXPECT_GT(near->rms, 2.0 * near->left);
+}
+
 TEST(TableChange, AConstantAndTheUncertaintyOfTheScaleAreNoRest) {
   const auto one = found(error, [](double x) { return 7.0 + 4e-4 * x; }, TableCurve{}, {T});
   ASSERT_TRUE(one);

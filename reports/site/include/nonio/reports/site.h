@@ -100,7 +100,7 @@ struct MachineHistory {
   std::vector<ErrorCurve> curves;  ///< by day
   std::vector<TableLoaded> tables_loaded{};
   /// Between which campaigns a table may have been loaded, because one of them (`before_campaign`)
-  /// does not state what was active; kind "unknown".
+  /// does not state what was active; kind "unknown". `rms` 0: no table explains more than half of it.
   std::vector<TableLoaded> tables_unstated{};
   std::vector<TableKept> tables{};  ///< the last one of each axis, where it can be told
   std::string due{}, why_due{};     ///< next calibration; which rule says so
