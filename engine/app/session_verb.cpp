@@ -76,7 +76,7 @@ class Session {
     if (auto day = check_day(w_.loaded, open_->campaign().date); !day)
       return complain(text_of(day.error()));
     const bool is_done = backup() && table() && probe() && loading() && check() && verdict();
-    tell();
+    print();
     if (!is_done) return is_refused_ ? exit_failed : exit_done;
     return answer_ == Answer::worked ? exit_done : exit_failed;
   }
@@ -164,9 +164,9 @@ class Session {
     if (merged_.files.empty()) return refused("table", Error{say("session.table.refused")});
     // The probe and the verdict work with the state as well.
     Settings settled = options();
-    std::vector<Finding> told;
-    if (auto stated =
-            tables::state_by_backup(open_->read, *present_.control, present_.files, settled, told);
+    std::vector<Finding> repeated;
+    if (auto stated = tables::state_by_backup(open_->read, *present_.control, present_.files,
+                                              settled, repeated);
         !stated)
       return refused("state", stated.error());
     out_ = w_.out.empty() ? fs::path(w_.folder) / "load" : fs::path(w_.out);
@@ -328,7 +328,7 @@ class Session {
             {}};
   }
 
-  void tell() const {
+  void print() const {
     const Templates& templates = open_->place->context.templates;
     const std::string language = words_->language();
     if (common_.json) {

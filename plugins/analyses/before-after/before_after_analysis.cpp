@@ -124,7 +124,7 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
   if (was.kind == Kind::unknown || is.kind == Kind::unknown) return {};
   const double u_before = u_of_reversal(in, environment, before),
                u_after = u_of_reversal(in, environment, after);
-  // A value that was not made from these readings has no part of their error: it counts `share` times. A new one is
+  // A value that was not made from these readings has no part of their error: it is multiplied by `share`. A new one is
   // rounded to the step of the control.
   const double step =
       in.control == nullptr ? 0.0 : in.control->value_step.of(in.observations.angular);

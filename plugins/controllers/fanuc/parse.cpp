@@ -152,7 +152,7 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   return out;
 }
 
-/// Parameter 1001#0 (INM): the linear axes of the machine count in inch. The units of the options are then to be stated.
+/// Parameter 1001#0 (INM): the linear axes of the machine work in inch. The units of the options are then to be stated.
 Expected<void> check_units(const Memory& m, const Settings& o) {
   const auto common = m.parameter.find(0);
   if (common == m.parameter.end()) return {};
@@ -161,7 +161,7 @@ Expected<void> check_units(const Memory& m, const Settings& o) {
   if (o.number("detection_unit_um", 1.0) != 1.0 && o.number("interval_unit_um", 1.0) != 1.0)
     return {};
   return fail(
-      "parameter 1001#0 (INM) is 1, so the machine counts in inch: state detection_unit_um and "
+      "parameter 1001#0 (INM) is 1, so the machine works in inch: state detection_unit_um and "
       "interval_unit_um under [options.fanuc], 2.54 if the least increment is 0.0001 inch");
 }
 

@@ -36,7 +36,7 @@ std::string text(const std::vector<controllers::Face>& faces) {
 }
 
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
-  std::map<char, double> said;
+  std::map<char, double> given;
   for (const Artifact& f : in.files)
     for (const auto line : controllers::lines_of(f.bytes)) {
       const auto words = controllers::words_of(line.substr(0, line.find(';')));
@@ -46,15 +46,15 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
         if (!v || std::string_view("SXYZ").find(word.front()) == std::string_view::npos)
           return fail(f.name + ": M556 with " + std::string(word) +
                       ", which is not understood; expected S, X, Y and Z with numbers");
-        said[word.front()] = *v;
+        given[word.front()] = *v;
       }
     }
-  if (said.empty()) return fail("no M556");
-  const auto of = said.find('S');
-  if (of == said.end() || !(of->second > 0.0)) return fail("M556 without a positive S");
+  if (given.empty()) return fail("no M556");
+  const auto of = given.find('S');
+  if (of == given.end() || !(of->second > 0.0)) return fail("M556 without a positive S");
   std::vector<LoadedTable> tables;
   for (const Pair& pair : pairs)
-    if (const auto found = said.find(pair.letter); found != said.end())
+    if (const auto found = given.find(pair.letter); found != given.end())
       tables.push_back(
           controllers::linear_table(pair.output, pair.input, found->second / of->second));
   if (tables.empty()) return fail("M556 without X, Y or Z");

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What a backup says of the state of its control: for `table diff`, against later campaigns, and in inch."""
+"""What a backup states about the state of its control: for `table diff`, against later campaigns, and in inch."""
 import json
 import math
 import os
@@ -77,7 +77,7 @@ class Backup(StateBench):
         self.assertIn(str(deep.resolve()), self.nonio("table", "insert", backup, "--with", now).stderr)
 
     def answered(self, args, answers):
-        """What `insert` says on a terminal, and its status; one answer for each question, which ends with a colon."""
+        """What `insert` prints on a terminal, and its status; one answer for each question, which ends with a colon."""
         child, terminal = pty.fork()
         if child == 0:
             os.execv(NONIO, [NONIO, *map(str, args)])
