@@ -50,6 +50,7 @@ Verdict check_names(const Info& info, const Bench&) {
 std::string unit_in_name(std::string_view name) {
   static constexpr std::string_view units[] = {"mm",   "um",     "deg", "arcsec", "urad", "s",
                                                "degC", "kelvin", "K",   "rad",    "m",    "h"};
+  if (name.ends_with("_um_per_m_K")) return "um/(m K)";
   for (const std::string_view unit : units)
     if (name.size() > unit.size() + 1 && name.ends_with(unit) &&
         name[name.size() - unit.size() - 1] == '_')

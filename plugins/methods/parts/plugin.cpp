@@ -210,7 +210,7 @@ Method part() {
                 "measurement refers. Without them its size is unknown."},
        {.name = "expansion_um_per_m_K",
         .default_value = 0.0,
-        .unit = "um/m/K",
+        .unit = "um/(m K)",
         .help = "Coefficient of expansion of the part; needed with temperatures_c.",
         .min = 0.0,
         .max = 100.0}}};
