@@ -56,7 +56,7 @@ class Numbers {
 
   /// "-4.35 ± 0.27"; of a scatter "0.48 (0.35 to 0.66)", with both ends of the interval.
   std::string value(double si, double u, const reports::Wording& words) const {
-    if (is_log_) return interval(si, u, words);
+    if (is_log_) return reports::scatter_text(words, si, u);
     const double scale = unit_of(quantity_).per_si;
     const auto rounded = rounded_result(si * scale, twice * u * scale);
     return rounded ? localised(rounded->value + " ± " + rounded->U, language_) : number(si);
@@ -72,24 +72,15 @@ class Numbers {
   /// A difference of two values: of a scatter the factor between them.
   std::string difference(double si, double u, const reports::Wording& words) const {
     if (!is_log_) return value(si, u, words) + blank_unit();
-    return words.get("site.factor", {{"factor", factor(si)},
-                                     {"low", factor(si - twice * u)},
-                                     {"high", factor(si + twice * u)}});
+    return reports::factor_text(words, si, u);
   }
-  std::string size(double si) const {
-    return is_log_ ? "× " + factor(std::fabs(si)) : number(si) + blank_unit();
+  std::string size(double si, const reports::Wording& words) const {
+    return is_log_ ? "× " + reports::factor_text(words, std::fabs(si)) : number(si) + blank_unit();
   }
 
   std::string blank_unit() const { return unit_.empty() ? "" : " " + unit_; }
 
  private:
-  std::string interval(double ln, double u, const reports::Wording& words) const {
-    return words.get(
-        "history.interval",
-        {{"value", factor(ln)}, {"low", factor(ln - twice * u)}, {"high", factor(ln + twice * u)}});
-  }
-  std::string factor(double ln) const { return localised(short_text(std::exp(ln), 3), language_); }
-
   Quantity quantity_;
   bool is_log_;
   std::string unit_, language_;
@@ -165,19 +156,10 @@ class SeriesChart {
 
   std::string line(const std::string& text) const { return wrapped(text, 2, width_, 2); }
 
-  std::string title() const {
-    if (!reports::is_log_of_scatter(s_.quantity))
-      return reports::followed_quantity(words_, s_.quantity);
-    const auto dot = s_.quantity.find('.');
-    const std::string scatter = words_.get("history.scatter");
-    return dot == std::string::npos
-               ? scatter
-               : reports::followed_quantity(words_, s_.quantity.substr(0, dot)) + ", " + scatter;
-  }
-
   std::string head() const {
-    std::string text = printable(s_.axis) + (s_.axis.empty() ? "" : "  ") + printable(title()) +
-                       " (" + printable(s_.quantity) + ")" +
+    std::string text = printable(s_.axis) + (s_.axis.empty() ? "" : "  ") +
+                       printable(reports::followed_quantity(words_, s_.quantity)) + " (" +
+                       printable(s_.quantity) + ")" +
                        (numbers_.unit().empty() ? "" : ", " + numbers_.unit());
     if (!s_.model.empty())
       text +=
@@ -270,7 +252,8 @@ class SeriesChart {
         std::any_of(s_.changes.begin(), s_.changes.end(),
                     [](const HistoryChange& c) { return c.cause == "undeclared"; });
     if (s_.smallest_change && !changed)
-      out += line(words_.get("history.no_change", {{"size", numbers_.size(*s_.smallest_change)}}));
+      out += line(
+          words_.get("history.no_change", {{"size", numbers_.size(*s_.smallest_change, words_)}}));
     return out + forecast();
   }
 

@@ -7,6 +7,7 @@
 
 #include "nonio/reports/drawing.h"
 #include "nonio/reports/number.h"
+#include "nonio/reports/quantity_words.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::reports::site {
@@ -100,13 +101,16 @@ double scaled(double v, Quantity q) { return v * unit_of(q).per_si; }
 class HistoryPlot {
  public:
   HistoryPlot(const Page& page, const MachineHistory& machine, const HistorySeries& series)
-      : page_(page), machine_(machine), series_(series) {
+      : page_(page),
+        machine_(machine),
+        series_(series),
+        numbers_(series, machine.series, page.words) {
     fit();
   }
 
   Html svg() {
     if (x_.empty()) return {};
-    plot_.y_title = unit_text(series_.unit);
+    plot_.y_title = unit_text(numbers_.quantity());
     plot_.language = page_.words.language();
     plot_.zero_line = false;
     plot_.x_range = x_.ends(), plot_.range = y_.ends();
@@ -153,7 +157,7 @@ class HistoryPlot {
     double value, u;
   };
 
-  double value(double si) const { return scaled(si, series_.unit); }
+  double value(double followed) const { return numbers_.in_unit(followed); }
   double x_of(std::string_view date) const {
     const auto day = day_of(date);
     return day ? days(*day) : x_.low;
@@ -205,10 +209,15 @@ class HistoryPlot {
   void add_model(const At& a, const At& b, Dash dash, Colour shade) {
     Curve area{.kind = Curve::Kind::band, .x = {}, .y = {}, .colour = shade, .width = 0};
     Curve line{.x = {}, .y = {}, .colour = ink::measured, .width = 1.7, .dash = dash};
-    for (const At& at : {a, b}) {
-      area.x.push_back(x_of(at.date)), line.x.push_back(x_of(at.date));
-      line.y.push_back(value(at.value));
-      area.y.push_back(value(at.value + 2 * at.u)), area.y2.push_back(value(at.value - 2 * at.u));
+    // A line of logarithms is a curve of the scatter.
+    const int steps = numbers_.is_scatter() ? 16 : 1;
+    for (int i = 0; i <= steps; ++i) {
+      const double t = static_cast<double>(i) / steps;
+      const double x = std::lerp(x_of(a.date), x_of(b.date), t), y = std::lerp(a.value, b.value, t),
+                   u = std::lerp(a.u, b.u, t);
+      area.x.push_back(x), line.x.push_back(x);
+      line.y.push_back(value(y));
+      area.y.push_back(value(y + 2 * u)), area.y2.push_back(value(y - 2 * u));
     }
     plot_.curves.push_back(std::move(area));
     plot_.curves.push_back(std::move(line));
@@ -228,8 +237,7 @@ class HistoryPlot {
   }
 
   std::string title_of(const HistoryPoint& p) const {
-    std::string out =
-        p.date + ' ' + p.campaign + ": " + value_text(page_, p.value, u_of_value(p), series_.unit);
+    std::string out = p.date + ' ' + p.campaign + ": " + numbers_.value(p.value, u_of_value(p));
     if (!p.joined)
       out += " (" + page_.words.get_or("site.not_joined." + p.why_not, p.why_not) + ")";
     return out;
@@ -258,6 +266,7 @@ class HistoryPlot {
   const Page& page_;
   const MachineHistory& machine_;
   const HistorySeries& series_;
+  FollowedNumbers numbers_;
   Range x_{}, y_{};
   std::vector<double> limits_;
   Plot plot_;
@@ -338,9 +347,10 @@ Html difference_chart(const Page& page, const MachineHistory& machine, const std
 }
 
 Html comparison_chart(const Page& page, const ModelComparison& comparison) {
+  const FollowedNumbers numbers = numbers_of(page, comparison);
   Plot plot;
   plot.language = page.words.language();
-  plot.y_title = unit_text(comparison.unit);
+  plot.y_title = unit_text(numbers.quantity());
   plot.zero_line = false;
   plot.x_range = {-0.7, static_cast<double>(comparison.machines.size()) - 0.3};
   Curve bars{.kind = Curve::Kind::bars, .x = {}, .y = {}, .colour = ink::accent, .width = 1.2};
@@ -353,11 +363,11 @@ Html comparison_chart(const Page& page, const ModelComparison& comparison) {
     const auto x = static_cast<double>(i);
     plot.ticks.emplace_back(x, m.machine);
     bars.x.push_back(x);
-    bars.y.push_back(scaled(m.value - 2 * m.u, comparison.unit));
-    bars.y2.push_back(scaled(m.value + 2 * m.u, comparison.unit));
+    bars.y.push_back(numbers.in_unit(m.value - 2 * m.u));
+    bars.y2.push_back(numbers.in_unit(m.value + 2 * m.u));
     Curve& marks = std::fabs(m.z) > 3 ? far : inside;
     marks.x.push_back(x);
-    marks.y.push_back(scaled(m.value, comparison.unit));
+    marks.y.push_back(numbers.in_unit(m.value));
   }
   if (std::none_of(bars.y.begin(), bars.y.end(), [](double v) { return std::isfinite(v); }))
     return {};

@@ -84,14 +84,8 @@ std::string proposal_text(const Page& page, const IntervalProposal& proposal) {
 
 bool shows_value(const MorningLine& l) { return l.value && !is_log_of_scatter(l.quantity); }
 
-std::string factor_text(const Page& page, double difference, double u) {
-  constexpr double k = 2.0;
-  const auto three = [&](double x) {
-    return localised(short_text(std::exp(x), 3), page.words.language());
-  };
-  return page.words.get("site.factor", {{"factor", three(difference)},
-                                        {"low", three(difference - k * u)},
-                                        {"high", three(difference + k * u)}});
+FollowedNumbers numbers_of(const Page& page, const ModelComparison& c) {
+  return {c.quantity, c.unit, c.travel && c.travel->rotary, page.words};
 }
 
 std::string line_text(const Page& page, const MorningLine& l, const char* part) {

@@ -42,12 +42,12 @@ inline std::string from_root(const Page& page, const std::string& link) {
 std::string value_text(const Page&, double value, std::optional<double> u, Quantity);
 /// "6 months. Why.", or why there is none; empty where none is required.
 std::string proposal_text(const Page&, const IntervalProposal&);
-/// What a line says or advises ("says", "advice"), with kinds of events in words; not yet typeset.
+/// How the values of a comparison of machines are printed.
+FollowedNumbers numbers_of(const Page&, const ModelComparison&);
 /// Whether the value of a line is printed: that of a scatter is a logarithm, and its sentence states
 /// the factor.
 bool shows_value(const MorningLine&);
-/// "a factor of 1.37 (1.22 to 1.53)", of a difference of logarithms.
-std::string factor_text(const Page&, double difference, double u);
+/// What a line states or advises ("says", "advice"), with kinds of events in words; not yet typeset.
 std::string line_text(const Page&, const MorningLine&, const char* part);
 /// "Also out: A 15.5 ± 1.9 µm (limit 5)."; empty where the line has one value.
 std::string also_text(const Page&, const MorningLine&);

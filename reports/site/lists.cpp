@@ -136,21 +136,21 @@ Expected<std::string> compare_page(const Page& page) {
   View view = page_view(page, page.words.get("site.compare"));
   view.flag("any", !page.site.comparisons.empty());
   for (const ModelComparison& c : page.site.comparisons) {
+    const FollowedNumbers numbers = numbers_of(page, c);
     View& model = view.add("model");
     const std::string title = c.model + " · " + c.axis + " · " + quantity_text(page, c.quantity);
     model.set("model", c.travel ? title + " · " + travel_text(page, *c.travel) : title);
     model.set("chart", comparison_chart(page, c));
     if (c.count > c.machines.size())
       model.set("note",
-                page.words.get("site.compare_some",
-                               {{"shown", std::to_string(c.machines.size())},
-                                {"count", std::to_string(c.count)},
-                                {"median", value_text(page, c.median, std::nullopt, c.unit)},
-                                {"spread", value_text(page, c.spread, std::nullopt, c.unit)}}));
+                page.words.get("site.compare_some", {{"shown", std::to_string(c.machines.size())},
+                                                     {"count", std::to_string(c.count)},
+                                                     {"median", numbers.value(c.median, 0.0)},
+                                                     {"spread", numbers.size(c.spread)}}));
     for (const auto& m : c.machines)
       model.add("machine")
           .set("id", m.machine)
-          .set("value", value_text(page, m.value, m.u, c.unit))
+          .set("value", numbers.value(m.value, m.u))
           .set("distance", short_number(page, m.z, Quantity::number));
   }
   return written(page, "compare", view);

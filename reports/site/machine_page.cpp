@@ -68,9 +68,8 @@ void add_tables(View& view, const Page& page, const MachineHistory& m) {
 }
 
 /// As found and as left on one day has words of its own.
-std::string change_text(const Page& page, const HistorySeries& s, const HistoryChange& c) {
-  const std::string size = is_log_of_scatter(s.quantity) ? factor_text(page, c.size, c.u)
-                                                         : value_text(page, c.size, c.u, s.unit);
+std::string change_text(const Page& page, const FollowedNumbers& numbers, const HistoryChange& c) {
+  const std::string size = numbers.difference(c.size, c.u);
   if (c.cause == "table" && c.after == c.before)
     return page.words.get("site.change.adjusted", {{"size", size}, {"date", c.before}});
   return page.words.get(
@@ -82,22 +81,21 @@ std::string change_text(const Page& page, const HistorySeries& s, const HistoryC
        {"p", localised(evidence_text({"p", c.p, Quantity::probability}), page.words.language())}});
 }
 
-void add_changes(View& view, const Page& page, const HistorySeries& s) {
+void add_changes(View& view, const Page& page, const HistorySeries& s,
+                 const FollowedNumbers& numbers) {
   if (const auto& over = s.compared_over)
     view.set("compared_over",
              page.words.get("site.compared_over",
                             {{"from", short_number(page, over->from, Quantity::length)},
                              {"to", short_number(page, over->to, Quantity::length)}}));
   for (const HistoryChange& c : s.changes)
-    view.add("change").set("change", with_whole_days(change_text(page, s, c)));
+    view.add("change").set("change", with_whole_days(change_text(page, numbers, c)));
   if (s.changes.empty() && s.smallest_change)
     view.set("no_change",
-             page.words.get("site.no_change",
-                            {{"smallest", short_number(page, *s.smallest_change, s.unit)},
-                             {"unit", unit_text(s.unit)}}));
+             page.words.get("site.no_change", {{"smallest", numbers.size(*s.smallest_change)}}));
 }
 
-std::string forecast(const Page& page, const HistorySeries& s) {
+std::string forecast(const Page& page, const HistorySeries& s, const FollowedNumbers& numbers) {
   if (!s.forecast) return {};
   const HistoryForecast& f = *s.forecast;
   constexpr double least_printed = 1e-4;
@@ -106,22 +104,26 @@ std::string forecast(const Page& page, const HistorySeries& s) {
                             : short_number(page, 100 * f.p_out, Quantity::number);
   if (!std::isfinite(f.value)) return page.words.get("site.forecast.out_now", {{"date", f.date}});
   const bool asked = s.limit || f.answer == "cannot-say";
-  std::string text = page.words.get(
-      "site.forecast." + (asked ? f.answer : "expected"),
-      {{"date", f.date}, {"value", value_text(page, f.value, f.u, s.unit)}, {"p", p}});
+  std::string text =
+      page.words.get("site.forecast." + (asked ? f.answer : "expected"),
+                     {{"date", f.date}, {"value", numbers.value(f.value, f.u)}, {"p", p}});
   if (!asked && f.answer == "act")
     text += " " + page.words.get("site.forecast.out_now", {{"date", f.date}});
   if (!f.leaves.empty()) text += " " + page.words.get("site.leaves", {{"date", f.leaves}});
   return text;
 }
 
-/// U of comparison, rounded as the value with it is.
-std::string comparison_text(const Page& page, const HistoryPoint& p, Quantity q) {
-  return printed_result(p.value, 2.0 * p.u, q, page.words.language()).U;
+/// U of comparison, rounded as the value with it is; of a scatter the interval.
+std::string comparison_text(const Page& page, const HistoryPoint& p,
+                            const FollowedNumbers& numbers) {
+  return numbers.is_scatter()
+             ? numbers.number(p.value, p.u)
+             : printed_result(p.value, 2.0 * p.u, numbers.quantity(), page.words.language()).U;
 }
 
 /// The numbers of the chart; where it is drawn from.
-void add_numbers(View& view, const Page& page, const HistorySeries& s) {
+void add_numbers(View& view, const Page& page, const HistorySeries& s,
+                 const FollowedNumbers& numbers) {
   view.flag("followed", !s.model.empty());
   constexpr const char* states[] = {"as_found", "as_left", "check"};
   for (const HistoryPoint& p : s.points) {
@@ -131,8 +133,8 @@ void add_numbers(View& view, const Page& page, const HistorySeries& s) {
       state += " (" + page.words.get_or("site.not_joined." + p.why_not, p.why_not) + ")";
     View& point = view.add("point");
     point.set("date", with_whole_days(p.date)).set("state", std::move(state));
-    point.set("value", value_text(page, p.value, u_of_value(p), s.unit));
-    point.set("comparison", comparison_text(page, p, s.unit));
+    point.set("value", numbers.value(p.value, u_of_value(p)));
+    point.set("comparison", comparison_text(page, p, numbers));
     point.set("campaign", p.campaign).set("link", from_root(page, p.link));
   }
 }
@@ -145,11 +147,12 @@ std::string title_of(const Page& page, const HistorySeries& s) {
 }
 
 void add_series(View& view, const Page& page, const MachineHistory& m, const HistorySeries& s) {
+  const FollowedNumbers numbers(s, m.series, page.words);
   View& series = view.add("series");
   series.set("series", title_of(page, s)).set("chart", history_chart(page, m, s));
-  add_changes(series, page, s);
-  series.set("forecast", forecast(page, s));
-  add_numbers(series, page, s);
+  add_changes(series, page, s, numbers);
+  series.set("forecast", forecast(page, s, numbers));
+  add_numbers(series, page, s, numbers);
 }
 
 void add_curves(View& view, const Page& page, const MachineHistory& m) {

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/reports/quantity_words.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "nonio/reports/number.h"
+#include "nonio/sdk/format.h"
+
 namespace nonio::reports {
 
 std::string followed_quantity(const Wording& site, const std::string& quantity) {
@@ -24,6 +30,78 @@ std::string followed_quantity(const Wording& site, const std::string& quantity) 
 
 bool is_log_of_scatter(const std::string& quantity) {
   return quantity == "ln_s" || quantity.ends_with(".ln_s");
+}
+
+namespace {
+
+constexpr double twice = 2.0;
+
+std::string with_unit(const std::string& number, Quantity q) {
+  const std::string unit = unit_text(q);
+  return unit.empty() ? number : number + " " + unit;
+}
+
+/// Straightness and squareness of every axis are lengths.
+bool has_angles(const HistorySeries& s, const std::vector<HistorySeries>& of_machine) {
+  return s.quantity.find(':') == std::string::npos &&
+         std::any_of(of_machine.begin(), of_machine.end(), [&](const HistorySeries& other) {
+           return other.axis == s.axis && (other.unit == Quantity::angular_deviation ||
+                                           other.unit == Quantity::deviation_per_angle);
+         });
+}
+
+}  // namespace
+
+std::string scatter_text(const Wording& site, double log_of_scatter, double u) {
+  return site.get("site.interval", {{"value", factor_text(site, log_of_scatter)},
+                                    {"low", factor_text(site, log_of_scatter - twice * u)},
+                                    {"high", factor_text(site, log_of_scatter + twice * u)}});
+}
+
+std::string factor_text(const Wording& site, double difference) {
+  return localised(short_text(std::exp(difference), 3), site.language());
+}
+
+std::string factor_text(const Wording& site, double difference, double u) {
+  return site.get("site.factor", {{"factor", factor_text(site, difference)},
+                                  {"low", factor_text(site, difference - twice * u)},
+                                  {"high", factor_text(site, difference + twice * u)}});
+}
+
+FollowedNumbers::FollowedNumbers(const std::string& quantity, Quantity unit, bool of_angles,
+                                 const Wording& site)
+    : quantity_(unit), is_scatter_(is_log_of_scatter(quantity)), site_(site) {
+  if (is_scatter_) quantity_ = of_angles ? Quantity::angular_deviation : Quantity::deviation;
+}
+
+FollowedNumbers::FollowedNumbers(const HistorySeries& series,
+                                 const std::vector<HistorySeries>& of_machine, const Wording& site)
+    : FollowedNumbers(series.quantity, series.unit, has_angles(series, of_machine), site) {}
+
+double FollowedNumbers::in_unit(double value) const {
+  return is_scatter_ ? std::exp(value) : value * unit_of(quantity_).per_si;
+}
+
+std::string FollowedNumbers::number(double value, double u) const {
+  if (is_scatter_) return u > 0.0 ? scatter_text(site_, value, u) : factor_text(site_, value);
+  const Printed shown = printed_result(value, u > 0.0 ? std::optional(twice * u) : std::nullopt,
+                                       quantity_, site_.language());
+  return shown.U.empty() ? shown.value : shown.value + " ± " + shown.U;
+}
+
+std::string FollowedNumbers::value(double value, double u) const {
+  return with_unit(number(value, u), quantity_);
+}
+
+std::string FollowedNumbers::difference(double size, double u) const {
+  return is_scatter_ ? factor_text(site_, size, u) : value(size, u);
+}
+
+std::string FollowedNumbers::size(double size) const {
+  if (is_scatter_) return "× " + factor_text(site_, std::fabs(size));
+  std::string out = localised(short_text(size * unit_of(quantity_).per_si), site_.language());
+  if (out.starts_with('-')) out.replace(0, 1, "\u2212");
+  return with_unit(out, quantity_);
 }
 
 std::string event_text(const Wording& site, const std::string& event) {

@@ -12,7 +12,6 @@
 #include "nonio/reports/number.h"
 #include "nonio/reports/quantity_words.h"
 #include "nonio/reports/text.h"
-#include "nonio/sdk/format.h"
 #include "report.h"
 
 namespace nonio::pdf_report {
@@ -108,24 +107,9 @@ class HistoryPage {
     return is_largest(s) ? symbol(s.quantity) : followed_quantity(source_.site, s.quantity);
   }
 
-  static std::string with_U(const Printed& shown) {
-    return shown.U.empty() ? shown.value : shown.value + " ± " + shown.U;
-  }
-  std::string printed(double value, double u, Quantity q) const {
-    return with_U(printed_result(value, u > 0.0 ? std::optional(2.0 * u) : std::nullopt, q,
-                                 source_.language()));
-  }
-  std::string printed(const HistoryPoint& p, Quantity q) const {
-    return printed(p.value, reports::u_of_value(p), q);
-  }
-  std::string brief(double value, Quantity q) const {
-    return localised(short_text(value * unit_of(q).per_si), source_.language());
-  }
-
-  /// With its unit, where it has one.
-  static std::string with_unit(const std::string& number, Quantity q) {
-    const std::string unit = unit_text(q);
-    return unit.empty() ? number : number + " " + unit;
+  FollowedNumbers numbers(const HistorySeries& s) const { return {s, h_.series, source_.site}; }
+  std::string printed(const HistorySeries& s, const HistoryPoint& p) const {
+    return numbers(s).number(p.value, reports::u_of_value(p));
   }
 
   std::string kind(const std::string& kind) const {
@@ -141,9 +125,9 @@ class HistoryPage {
 
   std::string change(const HistorySeries& s, const HistoryChange& c) const {
     if (c.cause == "table" && c.after == c.before)
-      return w_.get("history.adjusted", {{"size", with_unit(printed(c.size, c.u, s.unit), s.unit)},
-                                         {"date", c.before}});
-    return w_.get("history.changed", {{"size", with_unit(printed(c.size, c.u, s.unit), s.unit)},
+      return w_.get("history.adjusted",
+                    {{"size", numbers(s).difference(c.size, c.u)}, {"date", c.before}});
+    return w_.get("history.changed", {{"size", numbers(s).difference(c.size, c.u)},
                                       {"after", c.after},
                                       {"before", c.before},
                                       {"cause", cause(c)}});
@@ -151,8 +135,7 @@ class HistoryPage {
 
   std::string statement(const HistorySeries& s) const {
     const std::string limit =
-        s.limit ? w_.get("history.limit", {{"limit", with_unit(brief(*s.limit, s.unit), s.unit)}})
-                : "";
+        s.limit ? w_.get("history.limit", {{"limit", numbers(s).size(*s.limit)}}) : "";
     if (is_largest(s)) return limit.empty() ? "–" : limit;
     std::string says;
     if (!s.changes.empty())
@@ -160,14 +143,12 @@ class HistoryPage {
     else if (s.model == "drift" && !s.segments.empty())
       says = w_.get(
           "history.drift",
-          {{"slope", with_unit(printed(s.segments.back().slope, s.segments.back().u_slope, s.unit),
-                               s.unit)}});
+          {{"slope", numbers(s).difference(s.segments.back().slope, s.segments.back().u_slope)}});
     else if (std::count_if(s.points.begin(), s.points.end(),
                            [](const HistoryPoint& p) { return p.joined; }) < 3)
       says = w_.get("history.few");
     else if (s.smallest_change)
-      says = w_.get("history.no_change",
-                    {{"smallest", with_unit(brief(*s.smallest_change, s.unit), s.unit)}});
+      says = w_.get("history.no_change", {{"smallest", numbers(s).size(*s.smallest_change)}});
     else
       says = w_.get(s.model == "none" ? "history.cannot_say" : "history.no_change_said");
     return limit.empty() ? says : says + "; " + limit;
@@ -192,14 +173,20 @@ class HistoryPage {
       for (std::size_t k = point; k-- > 0;)
         if (const HistoryPoint& p = s.points[k];
             p.campaign != id_ || p.state != s.points[point].state)
-          return {printed(p, s.unit), p.date, "–", true};
+          return {printed(s, p), p.date, "–", true};
       return {};
     }
     for (const HistoryStep& step : h_.steps)
       if (step.series == series && step.point == point)
-        return {printed(s.points[point - 1], s.unit), step.before_date,
-                printed(step.size, step.u, s.unit), true};
+        return {printed(s, s.points[point - 1]), step.before_date, step_text(s, step), true};
     return {};
+  }
+
+  /// The unit is in a column of the table; a factor has none.
+  std::string step_text(const HistorySeries& s, const HistoryStep& step) const {
+    const FollowedNumbers shown = numbers(s);
+    return shown.is_scatter() ? "× " + scatter_text(source_.site, step.size, step.u)
+                              : shown.number(step.size, step.u);
   }
 
   void add_table(Blocks& blocks) const {
@@ -217,13 +204,14 @@ class HistoryPage {
         if (s.points[k].campaign == id_) own.push_back(k);
       for (const std::size_t k : own) {
         const Before b = before(i, k);
+        const std::string unit = unit_text(numbers(s).quantity());
         const bool last = k == own.back();
         table.rows.push_back(
             {{s.axis.empty() ? "–" : s.axis},
              {name(s)},
              {w_.get("history." + std::string(states[static_cast<int>(s.points[k].state)]))},
-             {printed(s.points[k], s.unit), true},
-             {unit_text(s.unit).empty() ? "–" : unit_text(s.unit)},
+             {printed(s, s.points[k]), true},
+             {unit.empty() ? "–" : unit},
              {b.value},
              {b.since},
              {b.difference},
@@ -260,12 +248,12 @@ class HistoryPage {
 
   Plot plot(const HistorySeries& s, const Time& time, double height) const {
     const Style& style = source_.look.style;
-    const double per_si = unit_of(s.unit).per_si;
+    const FollowedNumbers shown = numbers(s);
     Plot out;
     out.title = (s.axis.empty() ? "" : s.axis + " · ") + name(s);
     out.x_title = time.years ? w_.get("history.year")
                              : w_.get("history.months_since", {{"date", first_day(time)}});
-    out.y_title = unit_text(s.unit);
+    out.y_title = unit_text(shown.quantity());
     out.language = source_.language();
     out.whole = time.years;
     out.zero_line = false;
@@ -274,12 +262,14 @@ class HistoryPage {
     double low = INFINITY, high = -INFINITY;
     const auto widen = [&](double y) { low = std::min(low, y), high = std::max(high, y); };
     for (const HistoryPoint& p : s.points) {
-      const double x = time.at(p.date), y = p.value * per_si, U = 2.0 * p.u * per_si;
+      const double x = time.at(p.date), y = shown.in_unit(p.value);
+      const double low_end = shown.in_unit(p.value - 2.0 * p.u),
+                   high_end = shown.in_unit(p.value + 2.0 * p.u);
       Curve& mark = marks[p.joined ? static_cast<int>(p.state) : 3];
       Curve& bar = bars[p.joined ? 0 : 1];
       mark.x.push_back(x), mark.y.push_back(y);
-      bar.x.push_back(x), bar.y.push_back(y - U), bar.y2.push_back(y + U);
-      widen(y - U), widen(y + U);
+      bar.x.push_back(x), bar.y.push_back(low_end), bar.y2.push_back(high_end);
+      widen(low_end), widen(high_end);
     }
     const double left = time.at(first_day(time)), right = time.at(h_.day);
     const double margin = std::max(0.04 * (right - left), 0.01);
@@ -289,8 +279,8 @@ class HistoryPage {
           line({left - margin, right + margin}, {y, y}, style.failed, Dash::solid));
     };
     if (s.limit) {
-      across(*s.limit * per_si);
-      if (!is_largest(s)) across(-*s.limit * per_si);
+      across(shown.in_unit(*s.limit));
+      if (!is_largest(s)) across(-shown.in_unit(*s.limit));
     }
     const double edge = std::max(0.06 * (high - low), 1e-9);
     out.range = {low - edge, high + edge};
@@ -302,9 +292,16 @@ class HistoryPage {
           x >= left && x <= right && (e.axis.empty() || e.axis == s.axis))
         out.curves.push_back(
             line({x, x}, {out.range->first, out.range->second}, style.muted, Dash::dotted));
-    for (const HistorySegment& g : s.segments)
-      out.curves.push_back(line({time.at(g.from), time.at(g.to)},
-                                {g.first * per_si, g.last * per_si}, style.plus, Dash::solid));
+    for (const HistorySegment& g : s.segments) {
+      std::vector<double> x, y;
+      const int steps = shown.is_scatter() ? 8 : 1;  // a line of logarithms is a curve
+      for (int i = 0; i <= steps; ++i) {
+        const double t = static_cast<double>(i) / steps;
+        x.push_back(std::lerp(time.at(g.from), time.at(g.to), t));
+        y.push_back(shown.in_unit(std::lerp(g.first, g.last, t)));
+      }
+      out.curves.push_back(line(std::move(x), std::move(y), style.plus, Dash::solid));
+    }
     for (Curve& c : bars) {
       c.kind = Curve::Kind::bars, c.colour = &c == bars ? style.accent : style.rule, c.width = 0.7;
       if (!c.x.empty()) out.curves.push_back(std::move(c));

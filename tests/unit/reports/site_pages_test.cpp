@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "content_policy.h"
 #include "fixtures.h"
@@ -59,6 +60,23 @@ TEST(SitePages, NumbersAreThoseOfTheValues) {
                   "<span class=\"day\">2025-01-14</span>"));
   EXPECT_TRUE(has(machine, "−9.60 ± 0.80 µm expected, 98.0 % beyond the limit"));
   EXPECT_TRUE(has(machine, "Detection limit: 1.30 µm"));
+}
+
+TEST(SitePages, AScatterIsPrintedAsAScatterAndItsChangeAsAFactor) {
+  // 0.48 um and its double, each times or divided by e^0.3 (k = 2): 1.35.
+  SiteHistory site = made_site();
+  HistorySeries s{
+      .axis = "X", .quantity = "ln_s", .unit = Quantity::number, .points = {}, .model = "step"};
+  for (int i = 0; i < 4; ++i)
+    s.points.push_back({"2023-" + std::to_string(i), day(2023 + i, 1, 14), "",
+                        HistoryPoint::State::as_found, std::log(i < 2 ? 0.48 : 0.96), 0.15});
+  s.changes = {{"2024-01-14", "2025-01-14", std::log(2.0), 0.15, 1e-6, "undeclared"}};
+  site.machines.front().series.push_back(s);
+  const std::string page = pages_of(site).at("machines/" + site.machines.front().file);
+  EXPECT_TRUE(has(page, "X · Scatter of the readings"));
+  EXPECT_TRUE(has(page, "0.480 (0.356 to 0.648) µm"));
+  EXPECT_TRUE(has(page, "a factor of 2.00 (1.48 to 2.70)")) << page;
+  EXPECT_FALSE(has(page, "ln(s)"));
 }
 
 TEST(SitePages, ADecimalCommaWhereTheLanguageHasOne) {
