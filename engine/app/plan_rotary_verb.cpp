@@ -11,6 +11,7 @@
 #include "axis_argument.h"
 #include "campaign/planning/plan_rotary.h"
 #include "nonio/sdk/format.h"
+#include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"
 
@@ -19,7 +20,7 @@ namespace nonio::app {
 namespace {
 
 struct RotaryWish {
-  std::string axis, radius;
+  std::string axis, radius, language = "en";
   double arc = 360.0, probe_u = 0.0, want_centre = 0.0, want_direction = 0.0;
   std::int64_t balls = 4, trials = 2000;
   std::uint64_t seed = 1;
@@ -29,7 +30,7 @@ using planning::RotaryRow;
 
 constexpr double um_of_m = 1e6;
 
-std::vector<std::string> cells_of(const RotaryRow& row) {
+std::vector<std::string> cells_of(const RotaryRow& row, const std::string& language) {
   const math::RotaryPlanU& u = row.u;
   std::vector<std::string> cells{std::to_string(row.plan.balls),
                                  evidence_text({"", row.plan.radius, Quantity::length})};
@@ -37,6 +38,7 @@ std::vector<std::string> cells_of(const RotaryRow& row) {
     cells.push_back(fixed_text(um_of_m * m, 2));
   for (const double rad : {2.0 * u.tilt, u.direction_rms, u.direction_mean})
     cells.push_back(fixed_text(um_of_m * rad, 1));
+  for (std::string& cell : cells) cell = localised(std::move(cell), language);
   return cells;
 }
 
@@ -67,33 +69,30 @@ void print_rotary_json(const RotaryWish& wish, const std::vector<RotaryRow>& row
 }
 
 void print_plans_of(const RotaryWish& wish, const std::vector<RotaryRow>& rows, double two_points,
-                    const Fewest& fewest) {
+                    const Fewest& fewest, const config::TerminalWords& say) {
   const std::size_t width = line_width(STDOUT_FILENO);
-  std::cout << wrapped("Axis " + wish.axis + ", every coordinate of a ball with u = " +
-                           fixed_text(wish.probe_u, 2) + " um, balls evenly over " +
-                           fixed_text(wish.arc, 1) + " deg; " + std::to_string(wish.trials) +
-                           " simulated measurements, seed " + std::to_string(wish.seed),
+  const auto number = [&](double x, int decimals) {
+    return localised(fixed_text(x, decimals), say.language());
+  };
+  std::cout << wrapped(say("rotary.wish", {{"axis", wish.axis},
+                                           {"u", number(wish.probe_u, 2)},
+                                           {"arc", number(wish.arc, 1)},
+                                           {"count", std::to_string(wish.trials)},
+                                           {"seed", std::to_string(wish.seed)}}),
                        0, width)
             << "\n";
-  std::vector<std::vector<std::string>> cells{{"balls", "R mm", "U across", "U along", "rms 3D",
-                                               "mean 3D", "U tilt", "rms dir", "mean dir"}};
-  for (const RotaryRow& row : rows) cells.push_back(cells_of(row));
+  std::vector<std::vector<std::string>> cells{
+      {say("rotary.balls"), "R mm", say("rotary.across"), say("rotary.along"), say("rotary.rms"),
+       say("rotary.mean"), say("rotary.tilt"), say("rotary.rms-direction"),
+       say("rotary.mean-direction")}};
+  for (const RotaryRow& row : rows) cells.push_back(cells_of(row, say.language()));
   const std::vector<std::string> lines = table_rows(cells, width);
   for (std::size_t i = 0; i < lines.size(); ++i) std::cout << lines[i] << (i == 1 ? "\n" : "");
   std::cout << "\n"
-            << wrapped(
-                   "The first row is your plan. Point of the axis in um (across it: the worse "
-                   "coordinate), direction in urad; U with k = 2. Two places half a turn apart: "
-                   "U across " +
-                       fixed_text(two_points, 2) + " um, no direction, and run-out is not visible.",
-                   0, width)
-            << wrapped(
-                   "These figures do not contain: squareness and scales of the linear axes "
-                   "(three balls move the centre by R/2 times the squareness and show nothing "
-                   "of it), drift, the form of the ball.",
-                   0, width);
+            << wrapped(say("rotary.legend", {{"U", number(two_points, 2)}}), 0, width)
+            << wrapped(say("rotary.not-contained"), 0, width);
   if (fewest && *fewest)
-    std::cout << "Fewest balls for the wanted U at this radius: " << **fewest << "\n";
+    std::cout << wrapped(say("rotary.fewest", {{"count", std::to_string(**fewest)}}), 0, width);
 }
 
 int plan_rotary(const RotaryWish& wish, const Common& common) {
@@ -116,7 +115,7 @@ int plan_rotary(const RotaryWish& wish, const Common& common) {
   if (common.json)
     print_rotary_json(wish, *rows, two_points, fewest);
   else
-    print_plans_of(wish, *rows, two_points, fewest);
+    print_plans_of(wish, *rows, two_points, fewest, SiteWords(common, wish.language).get());
   if (fewest && !*fewest) return complain(fewest->error().message, exit_failed);
   return exit_done;
 }
@@ -144,7 +143,9 @@ Verb plan_rotary_verb(Common& common) {
                    "Wanted U (k = 2) of the direction, urad: prints the fewest balls"}),
            within(10, 1000000,
                   {"--trials", &wish->trials, "Simulated measurements (default 2000)"}),
-           {"--seed", &wish->seed, "Seed of the simulation (default 1)"}},
+           {"--seed", &wish->seed, "Seed of the simulation (default 1)"},
+           one_of({"de", "en", "it"}, {"--language", &wish->language, "Language of the text"}),
+           templates_argument(common)},
           common_arguments(common)),
       .footer =
           "A larger radius helps the direction only; more balls help both, with the root of their "

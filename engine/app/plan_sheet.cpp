@@ -16,7 +16,8 @@ std::vector<Argument> sheet_arguments(SheetWish& wish, Common& common) {
   return {
       takes(Argument::Takes::file,
             {"--pdf", &wish.file, "The same as a PDF to take to the machine"}),
-      one_of({"de", "en", "it"}, {"--language", &wish.language, "Language of the PDF"}),
+      one_of({"de", "en", "it"},
+             {"--language", &wish.language, "Language of the text and of the PDF"}),
       within(0, 100,
              {"--stops", &wish.stops, "So many plans with all their stops in the PDF (default 1)"}),
       templates_argument(common)};

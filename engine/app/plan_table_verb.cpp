@@ -16,6 +16,7 @@
 #include "nonio/sdk/format.h"
 #include "plan_sheet.h"
 #include "platform/storage/files.h"
+#include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"
 
@@ -50,39 +51,43 @@ double minutes_of(const math::TriplePlan& p, const TableWish& w) {
   return math::measuring_time(p, cost_of(w)) / 60.0;
 }
 
-std::vector<std::string> cells_of(const TableRow& row, bool fits) {
+std::vector<std::string> cells_of(const TableRow& row, bool fits, const std::string& language) {
   std::vector<std::string> cells{std::to_string(row.triple.a), std::to_string(row.triple.b),
-                                 std::to_string(row.triple.c), fixed_text(row.ratio(), 3)};
+                                 std::to_string(row.triple.c),
+                                 localised(fixed_text(row.ratio(), 3), language)};
   if (!fits) return cells;
   const math::TriplePlan& p = row.plan;
   const auto mm = [](double m) { return evidence_text({"", m, Quantity::length}); };
   for (std::string text : {std::to_string(p.q), std::to_string(p.n), mm(p.step_x), mm(p.step_y),
                            mm(p.step_d), fixed_text(100.0 * p.cover_x, 2),
                            fixed_text(100.0 * p.cover_y, 2), fixed_text(row.minutes, 1)})
-    cells.push_back(row.fits() ? std::move(text) : "");
+    cells.push_back(row.fits() ? localised(std::move(text), language) : "");
   return cells;
 }
 
-void print_table_rows(const std::vector<TableRow>& rows, const TableWish& wish) {
+void print_table_rows(const std::vector<TableRow>& rows, const TableWish& wish,
+                      const config::TerminalWords& say) {
   const std::size_t width = line_width(STDOUT_FILENO);
+  const std::string step = say("triples.step") + " ";
   std::vector<std::vector<std::string>> cells{{"a", "b", "c", "b/a"}};
   if (wish.fits())
-    for (const char* head : {"q", "n", "step X", "step Y", "step D", "X %", "Y %", "minutes"})
-      cells.front().emplace_back(head);
-  for (const TableRow& row : rows) cells.push_back(cells_of(row, wish.fits()));
+    for (const std::string& head :
+         {std::string("q"), std::string("n"), step + "X", step + "Y", step + "D",
+          std::string("X %"), std::string("Y %"), say("triples.minutes")})
+      cells.front().push_back(head);
+  for (const TableRow& row : rows) cells.push_back(cells_of(row, wish.fits(), say.language()));
   for (const std::string& row : table_rows(cells, width)) std::cout << row;
   if (wish.fits())
     std::cout << "\n"
-              << wrapped(
-                     "X %, Y %: part of the travel that is covered. minutes: X, Y and both "
-                     "diagonals, " +
-                         std::to_string(wish.runs) + " runs there and back, at " +
-                         fixed_text(wish.feed, 0) + " mm/min, " + fixed_text(wish.dwell, 1) +
-                         " s at each of the n + 1 stops.",
-                     0, width);
+              << wrapped(say("triples.legend-cost",
+                             {{"runs", std::to_string(wish.runs)},
+                              {"feed", fixed_text(wish.feed, 0)},
+                              {"dwell", localised(fixed_text(wish.dwell, 1), say.language())}}),
+                         0, width);
 }
 
-Expected<std::vector<TableRow>> rows_that_fit(const TableWish& wish, math::TripleRequest& w) {
+Expected<std::vector<TableRow>> rows_that_fit(const TableWish& wish, math::TripleRequest& w,
+                                              const config::TerminalWords& say) {
   for (const auto& [option, text, to] : {std::tuple{"--x", &wish.x, &w.x},
                                          {"--y", &wish.y, &w.y},
                                          {"--resolution", &wish.resolution, &w.resolution},
@@ -104,7 +109,7 @@ Expected<std::vector<TableRow>> rows_that_fit(const TableWish& wish, math::Tripl
     if (!rows.empty()) return rows;
   }
   NONIO_TRY(const auto found, math::plan_triples(w));
-  if (found.plans.empty()) return fail(planning::why_nothing(found));
+  if (found.plans.empty()) return fail(planning::why_nothing(found, say));
   for (const math::TriplePlan& p : found.plans)
     if (p.worst_cover() >= wish.least_cover)
       rows.push_back({{p.a, p.b, p.c}, p, minutes_of(p, wish)});
@@ -127,7 +132,7 @@ nlohmann::ordered_json json_of(const TableRow& row) {
 /// A folder for each row: 01-56-33-65.
 int write_row_programs(const std::vector<TableRow>& rows, const TableWish& wish,
                        const math::TripleRequest& w, const Common& common) {
-  if (wish.control.empty()) return complain("part programs want a control (--control)");
+  if (wish.control.empty()) return complain("part programs: --control is required");
   const auto given = settings_of(wish.settings);
   if (!given) return complain(given.error().message);
   loader::Plugins plugins;
@@ -169,20 +174,17 @@ PointTable sheet_rows(const std::vector<TableRow>& rows) {
 }
 
 int plan_table(const TableWish& wish, const Common& common) {
+  const SiteWords words(common, wish.sheet.language);
   math::TripleRequest request;
   std::vector<TableRow> rows;
   if (wish.x.empty() != wish.y.empty())
     return complain("--x and --y: expected both, or none for the table alone");
   if (!wish.out.empty() && !wish.fits()) return complain("--program: expected --x and --y too");
   if (wish.fits()) {
-    auto found = rows_that_fit(wish, request);
+    auto found = rows_that_fit(wish, request, words.get());
     if (!found) return complain(found.error().message, exit_failed);
     rows = std::move(*found);
-    if (rows.empty())
-      return complain(
-          "no plan covers as much of both axes; a smaller --least-cover or a larger "
-          "--hypotenuse shows more",
-          exit_failed);
+    if (rows.empty()) return complain(words.get()("triples.less-cover"), exit_failed);
   } else {
     for (const math::Triple& t : math::primitive_triples(wish.hypotenuse))
       rows.push_back({t, {}, 0.0});
@@ -201,7 +203,7 @@ int plan_table(const TableWish& wish, const Common& common) {
     for (const TableRow& row : rows) out["rows"].push_back(json_of(row));
     print_json(out);
   } else {
-    print_table_rows(rows, wish);
+    print_table_rows(rows, wish, words.get());
   }
   if (!wish.sheet.file.empty())
     if (const int exit = write_sheet(wish.sheet, rectangle(request.x, request.y), sheet_rows(rows),

@@ -13,6 +13,7 @@
 #include "nonio/sdk/format.h"
 #include "plan_sheet.h"
 #include "platform/storage/files.h"
+#include "site_words.h"
 #include "tables.h"
 #include "text_layout.h"
 #include "verbs.h"
@@ -77,61 +78,60 @@ Expected<void> settle(Plan& plan) {
 
 std::string mm_text(double m) { return evidence_text({"", m, Quantity::length}); }
 
-std::vector<std::string> cells_of(std::size_t number, const math::TriplePlan& p) {
-  return {std::to_string(number),
-          std::to_string(p.a) + "-" + std::to_string(p.b) + "-" + std::to_string(p.c),
-          std::to_string(p.q),
-          std::to_string(p.n),
-          mm_text(p.step_x),
-          mm_text(p.step_y),
-          mm_text(p.step_d),
-          mm_text(p.length_x),
-          mm_text(p.length_y),
-          mm_text(p.length_d),
-          fixed_text(100.0 * p.cover_x, 2),
-          fixed_text(100.0 * p.cover_y, 2),
-          fixed_text(p.gain_EYX(), 2),
-          fixed_text(p.gain_EXY(), 2)};
+std::vector<std::string> cells_of(std::size_t number, const math::TriplePlan& p,
+                                  const std::string& language) {
+  std::vector<std::string> cells{
+      std::to_string(number),
+      std::to_string(p.a) + "-" + std::to_string(p.b) + "-" + std::to_string(p.c),
+      std::to_string(p.q), std::to_string(p.n)};
+  for (const double m : {p.step_x, p.step_y, p.step_d, p.length_x, p.length_y, p.length_d})
+    cells.push_back(localised(mm_text(m), language));
+  for (const double x : {100.0 * p.cover_x, 100.0 * p.cover_y, p.gain_EYX(), p.gain_EXY()})
+    cells.push_back(localised(fixed_text(x, 2), language));
+  return cells;
 }
 
-void print_plans(const Plan& plan, const math::TriplePlans& found) {
+void print_plans(const Plan& plan, const math::TriplePlans& found,
+                 const config::TerminalWords& say) {
   constexpr std::size_t indent = 7;
   const std::size_t width = line_width(STDOUT_FILENO);
   const math::TripleRequest& w = plan.wish;
-  std::cout << wrapped(
-                   "X " + mm_text(w.x) + " mm, Y " + mm_text(w.y) + " mm, over-travel " +
-                       mm_text(w.over_travel) + " mm at each end; steps are multiples of " +
-                       mm_text(w.resolution) + " mm" +
-                       (w.largest_step > 0.0 ? ", at most " + mm_text(w.largest_step) + " mm" : ""),
-                   0, width)
+  const auto mm = [&](double m) { return localised(mm_text(m), say.language()); };
+  std::cout << wrapped(say(w.largest_step > 0.0 ? "triples.wish-max-step" : "triples.wish",
+                           {{"x", mm(w.x)},
+                            {"y", mm(w.y)},
+                            {"over_travel", mm(w.over_travel)},
+                            {"resolution", mm(w.resolution)},
+                            {"max_step", mm(w.largest_step)}}),
+                       0, width)
             << "\n";
-  std::vector<std::vector<std::string>> cells{{"", "a-b-c", "q", "n", "step X", "step Y", "step D",
-                                               "X mm", "Y mm", "D mm", "X %", "Y %", "EYX", "EXY"}};
+  const std::string step = say("triples.step") + " ";
+  std::vector<std::vector<std::string>> cells{{"", "a-b-c", "q", "n", step + "X", step + "Y",
+                                               step + "D", "X mm", "Y mm", "D mm", "X %", "Y %",
+                                               "EYX", "EXY"}};
   for (std::size_t i = 0; i < found.plans.size(); ++i)
-    cells.push_back(cells_of(i + 1, found.plans[i]));
+    cells.push_back(cells_of(i + 1, found.plans[i], say.language()));
   const std::vector<std::string> rows = table_rows(cells, width);
   std::cout << rows.front();
   for (std::size_t i = 0; i < found.plans.size(); ++i) {
     const math::TriplePlan& p = found.plans[i];
-    std::cout << rows[i + 1] << wrapped("why: " + planning::why_listed(p), indent, width, 2)
-              << wrapped("gives up: " + planning::gives_up(p, found.plans.front()), indent, width,
-                         2);
-    if (const std::string warning = planning::aspect_warning(p); !warning.empty())
-      std::cout << wrapped("warning: " + warning, indent, width, 2);
+    std::cout << rows[i + 1]
+              << wrapped(say("triples.why", {{"why", planning::why_listed(p, say)}}), indent, width,
+                         2)
+              << wrapped(say("triples.disadvantage",
+                             {{"what", planning::gives_up(p, found.plans.front(), say)}}),
+                         indent, width, 2);
+    if (const std::string warning = planning::aspect_warning(p, say); !warning.empty())
+      std::cout << wrapped(say("warning") + ": " + warning, indent, width, 2);
   }
-  std::cout << "\n"
-            << wrapped(
-                   "n + 1 stops on each line. X %, Y %: part of the travel that is covered. EYX, "
-                   "EXY: gain, the scatter of a straightness for a scatter of 1 of one reading of "
-                   "the diagonals.",
-                   0, width);
+  std::cout << "\n" << wrapped(say("triples.legend"), 0, width);
 }
 
 int write_programs(const Common& common, const Programs& p, const Machine& machine,
                    const PointTable& rows, std::map<std::string, std::string> settings,
                    std::vector<std::string>* written = nullptr) {
   if (p.control.empty() || p.out.empty())
-    return complain("part programs want a control (--control) and a folder");
+    return complain("part programs: --control and a folder are required");
   const auto given = settings_of(p.settings);
   if (!given) return complain(given.error().message);
   for (const auto& [name, value] : *given) settings[name] = value;
@@ -157,13 +157,13 @@ int plan_triples(Plan plan, const Common& common) {
   if (auto done = settle(plan); !done) return complain(done.error().message);
   const auto found = math::plan_triples(plan.wish);
   if (!found) return complain(found.error().message);
+  const SiteWords words(common, common.json ? "en" : plan.sheet.language);
   if (common.json)
-    std::cout << planning::triples_json(plan.wish, *found);
+    std::cout << planning::triples_json(plan.wish, *found, words.get());
   else if (!found->plans.empty())
-    print_plans(plan, *found);
-  if (found->plans.empty()) {
-    return complain(planning::why_nothing(*found), exit_failed);
-  }
+    print_plans(plan, *found, words.get());
+  if (found->plans.empty())
+    return complain(planning::why_nothing(*found, words.get()), exit_failed);
   const PointTable rows = math::triple_table(found->plans);
   const Machine machine = rectangle(plan.wish.x, plan.wish.y);
   if (!plan.sheet.file.empty())

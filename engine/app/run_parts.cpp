@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -12,12 +14,12 @@
 #include "platform/storage/files.h"
 #include "progress.h"
 #include "run_common.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-namespace batch = batch;
 
 namespace {
 
@@ -28,11 +30,8 @@ struct NightWish {
   batch::RunOptions options;
 };
 
-std::string counted(std::uint64_t n, const std::string& what) {
-  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
-}
-
-void tell_planned(const batch::Night& night, const batch::RunOptions& options, bool json) {
+void print_planned(const batch::Night& night, const batch::RunOptions& options,
+                   const config::TerminalWords& say, bool json) {
   const auto& shards = night.planned;
   std::uint64_t in_shards = 0;
   for (const std::uint64_t n : shards) in_shards += n;
@@ -53,13 +52,25 @@ void tell_planned(const batch::Night& night, const batch::RunOptions& options, b
     return;
   }
   const auto [least, most] = std::minmax_element(shards.begin(), shards.end());
-  std::cout << "run " << night.night.number << " of " << night.night.date
-            << " is planned: " << counted(night.campaigns.size(), "campaign") << ", " << to_do
-            << " to do: " << in_shards << " in " << counted(shards.size(), "shard") << " of "
-            << *least << (*least == *most ? "" : " to " + std::to_string(*most)) << ", "
-            << to_do - in_shards << " left to the merge\n"
-            << "next: nonio run SITE --out OUT --shard i/" << shards.size() << "  for i = 0 .. "
-            << shards.size() - 1 << ", then: nonio run merge " << options.out.string() << "\n";
+  const auto number = [](std::uint64_t n) { return std::to_string(n); };
+  const std::string sizes =
+      *least == *most ? number(*least)
+                      : say("run.range", {{"least", number(*least)}, {"most", number(*most)}});
+  const std::size_t width = sentence_width(STDOUT_FILENO);
+  std::cout << wrapped(say("run.shards-planned",
+                           {{"run", say("night-of", {{"number", number(night.night.number)},
+                                                     {"date", night.night.date}})},
+                            {"campaigns", say.counted("campaigns", night.campaigns.size())},
+                            {"todo", number(to_do)},
+                            {"count", number(in_shards)},
+                            {"shards", say.counted("run.shards", shards.size())},
+                            {"sizes", sizes},
+                            {"left", number(to_do - in_shards)}}),
+                       0, width, 2)
+            << wrapped(say("run.shards-next", {{"count", number(shards.size())},
+                                               {"last", number(shards.size() - 1)},
+                                               {"out", options.out.string()}}),
+                       0, width, 2);
 }
 
 int plan_night(NightWish& wish, const Common& common) {
@@ -73,7 +84,7 @@ int plan_night(NightWish& wish, const Common& common) {
   const batch::Night night = batch::run_site(options, progress.events());
   progress.end();
   if (const auto exit = exit_of_unfinished(night)) return *exit;
-  if (!common.quiet || common.json) tell_planned(night, options, common.json);
+  if (!common.quiet || common.json) print_planned(night, options, progress.words(), common.json);
   return exit_done;
 }
 

@@ -5,12 +5,13 @@
 
 namespace nonio::app {
 
-SiteWords::SiteWords(const Common& common) {
+SiteWords::SiteWords(const Common& common, const std::string& language) {
   std::string digest;
   if (auto read = config::read_templates(common.template_folders(), digest, nullptr, {},
-                                         {"words/en/terminal"}))
+                                         {"words/en/terminal", "words/" + language + "/terminal"}))
     templates_ = std::move(*read);
-  words_.emplace(templates_, "en");
+  words_.emplace(templates_,
+                 templates_.tables.contains("words/" + language + "/terminal") ? language : "en");
 }
 
 void SiteWords::take(const config::TerminalWords& words) {

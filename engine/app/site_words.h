@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "campaign/config/terminal_words.h"
 #include "common.h"
@@ -12,7 +13,8 @@ namespace nonio::app {
 /// the words alone, since the templates of a run end with it. Not copyable.
 class SiteWords {
  public:
-  explicit SiteWords(const Common& common);
+  /// English where a language has no words, and of "".
+  explicit SiteWords(const Common& common, const std::string& language = "en");
   SiteWords(const SiteWords&) = delete;
   SiteWords& operator=(const SiteWords&) = delete;
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-#include <cstdio>
+#include <unistd.h>
+
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "batch/state/night_status.h"
+#include "laboratory/assessment/assess.h"
+#include "nonio/sdk/format.h"
+#include "site_words.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -17,74 +21,86 @@ namespace {
 struct StatusWish {
   std::string out;
   double max_age = 36.0;  ///< h; 0: any
+  WorklistWish list{};
 };
 
-std::string night_text(const evaluation::NightOf& night) {
-  return "run " + std::to_string(night.number) + (night.date.empty() ? "" : " of " + night.date);
+using config::TerminalWords;
+
+std::string run_text(const evaluation::NightOf& night, const TerminalWords& say) {
+  const std::string number = std::to_string(night.number);
+  return night.date.empty() ? say("night", {{"number", number}})
+                            : say("night-of", {{"number", number}, {"date", night.date}});
 }
 
-std::string hours_text(double hours) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f h", hours);
-  return text.data();
+std::string hours_text(double hours, const TerminalWords& say) {
+  return localised(fixed_text(hours, 1), say.language()) + " h";
 }
 
 /// What is wrong; empty if all is well.
-std::string trouble(const NightStatus& s, const StatusWish& wish) {
+std::string trouble(const NightStatus& s, const StatusWish& wish, const TerminalWords& say) {
   if (s.state == NightStatus::State::cut_short)
-    return night_text(s.night) + " began and did not end";
+    return say("state.cut-short", {{"run", run_text(s.night, say)}});
   const bool goes_on =
       s.state == NightStatus::State::running || s.state == NightStatus::State::planned;
-  if (!s.last) return goes_on ? "" : "no run is complete";
-  if (s.age < -60.0) return "summary.json is from the future; expected a clock that is right";
+  if (!s.last) return goes_on ? "" : say("state.none");
+  if (s.age < -60.0) return say("state.future");
   if (wish.max_age > 0.0 && s.age > wish.max_age * 3600.0)
-    return "older than " + hours_text(wish.max_age);
+    return say("state.old", {{"age", hours_text(wish.max_age, say)}});
   return {};
 }
 
-std::string line_of(const NightStatus& s, const std::string& wrong) {
+std::string line_of(const NightStatus& s, const std::string& wrong, const TerminalWords& say) {
   std::string line;
   if (s.state == NightStatus::State::running)
-    line = night_text(s.night) + " is running (" + s.used_by + "); ";
+    line = say("state.running", {{"run", run_text(s.night, say)}, {"by", s.used_by}}) + "; ";
   if (s.state == NightStatus::State::planned)
-    line = night_text(s.night) + " is planned, " + std::to_string(s.reported) + " of " +
-           std::to_string(s.shards) + " shards have reported; ";
+    line = say("state.planned", {{"run", run_text(s.night, say)},
+                                 {"reported", std::to_string(s.reported)},
+                                 {"count", std::to_string(s.shards)}}) +
+           "; ";
   if (s.last)
-    line += night_text(s.last->night) + " is complete, " + hours_text(s.age / 3600.0) +
-            " ago: " + std::to_string(s.last->seen) +
-            (s.last->seen == 1 ? " campaign, " : " campaigns, ") + std::to_string(s.last->failed) +
-            " failed";
+    line += say("state.complete", {{"run", run_text(s.last->night, say)},
+                                   {"age", hours_text(s.age / 3600.0, say)},
+                                   {"campaigns", say.counted("campaigns", s.last->seen)},
+                                   {"failed", std::to_string(s.last->failed)}});
   else
-    line += "no run is complete yet";
-  return line + (wrong.empty() ? "" : "; WRONG: " + wrong);
+    line += say("state.none-yet");
+  return line + (wrong.empty() ? "" : "; " + say("state.wrong", {{"what", wrong}}));
 }
 
-int status(const StatusWish& wish, const Common& common) {
-  const auto found = batch::night_status(wish.out);
-  if (!found) return complain(found.error().message);
-  const std::string wrong = trouble(*found, wish);
+/// That of --language, else that of the last run; "" before there is one.
+std::string language_of(const StatusWish& wish) {
+  if (!wish.list.language.empty()) return wish.list.language;
+  const auto tonight = assessment::tonight_in(wish.out);
+  return tonight ? tonight->language : "";
+}
+
+int print_status(const NightStatus& found, const StatusWish& wish, const Common& common) {
+  // What other programs read stays English.
+  const SiteWords words(common, common.json ? "en" : language_of(wish));
+  const std::string wrong = trouble(found, wish, words.get());
   const int exit = wrong.empty() ? exit_done : exit_failed;
   if (common.json) {
     Json json = {{"schema", "nonio-status/1"},
                  {"well", wrong.empty()},
-                 {"state", to_text(found->state)},
-                 {"night", found->night.number},
-                 {"date", found->night.date}};
-    if (found->state == NightStatus::State::planned) {
-      json["shards"] = found->shards;
-      json["reported"] = found->reported;
+                 {"state", to_text(found.state)},
+                 {"night", found.night.number},
+                 {"date", found.night.date}};
+    if (found.state == NightStatus::State::planned) {
+      json["shards"] = found.shards;
+      json["reported"] = found.reported;
     }
-    if (!found->used_by.empty()) json["used_by"] = found->used_by;
-    if (found->last)
-      json["last_complete"] = {{"night", found->last->night.number},
-                               {"date", found->last->night.date},
-                               {"age_s", found->age},
-                               {"campaigns", found->last->seen},
-                               {"failed", found->last->failed}};
+    if (!found.used_by.empty()) json["used_by"] = found.used_by;
+    if (found.last)
+      json["last_complete"] = {{"night", found.last->night.number},
+                               {"date", found.last->night.date},
+                               {"age_s", found.age},
+                               {"campaigns", found.last->seen},
+                               {"failed", found.last->failed}};
     if (!wrong.empty()) json["wrong"] = wrong;
     print_json(json);
   } else if (!common.quiet || !wrong.empty()) {
-    std::cout << line_of(*found, wrong) << "\n";
+    std::cout << wrapped(line_of(found, wrong, words.get()), 0, sentence_width(STDOUT_FILENO), 2);
   }
   return exit;
 }
@@ -93,7 +109,6 @@ int status(const StatusWish& wish, const Common& common) {
 
 Verb status_verb(Common& common) {
   struct Wish : StatusWish {
-    WorklistWish list{};
     bool only_actions = false;
   };
   auto wish = std::make_shared<Wish>();
@@ -138,8 +153,10 @@ Verb status_verb(Common& common) {
         wish->list.out = wish->out;
         if (wish->only_actions || !wish->list.page.empty())
           return print_worklist(wish->list, common);
-        const int exit = status(*wish, common);
-        if (exit != exit_usage && !common.json && !common.quiet) print_worklist(wish->list, common);
+        const auto found = batch::night_status(wish->out);
+        if (!found) return complain(found.error().message);
+        const int exit = print_status(*found, *wish, common);
+        if (found->last && !common.json && !common.quiet) print_worklist(wish->list, common);
         return exit;
       }};
 }

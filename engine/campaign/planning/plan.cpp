@@ -37,24 +37,24 @@ const char* to_text(TripleReason reason) {
   return "next";
 }
 
-const char* words_of(TripleReason reason) {
+std::string words_of(TripleReason reason, const TerminalWords& say) {
   switch (reason) {
     case TripleReason::best:
-      return "covers the worse axis furthest";
+      return say("triples.best");
     case TripleReason::area:
-      return "measures the largest area";
+      return say("triples.area");
     case TripleReason::even:
-      return "the best with an even number of steps: a stop at mid-travel, a half diagonal";
+      return say("triples.even");
     case TripleReason::dense:
-      return "the best whose stops are an ISO 230-2 sampling of both axes";
+      return say("triples.dense");
     case TripleReason::fewest_stops:
-      return "fewest stops near the best coverage";
+      return say("triples.fewest-stops");
     case TripleReason::small_numbers:
-      return "smallest triple near the best coverage: round numbers";
+      return say("triples.small-numbers");
     case TripleReason::next:
       break;
   }
-  return "the next triple in the order";
+  return say("triples.next");
 }
 
 const char* option_of(TripleLimit limit) {
@@ -108,7 +108,7 @@ storage::Json wish_json(const math::TripleRequest& w) {
 }
 
 storage::Json row_json(const PointTable& table, std::size_t row, const TriplePlan& p,
-                       const TriplePlan& best) {
+                       const TriplePlan& best, const TerminalWords& say) {
   storage::Json json;
   for (const PointTable::Column& c : table.columns)
     if (c.quantity == Quantity::count)
@@ -119,56 +119,60 @@ storage::Json row_json(const PointTable& table, std::size_t row, const TriplePla
   json["iso230_2_sampling"] = p.dense;
   json["reasons"] = storage::Json::array();
   for (const TripleReason r : p.reasons) json["reasons"].push_back(to_text(r));
-  json["why"] = why_listed(p);
-  json["gives_up"] = gives_up(p, best);
-  if (const std::string warning = aspect_warning(p); !warning.empty()) json["warning"] = warning;
+  json["why"] = why_listed(p, say);
+  json["gives_up"] = gives_up(p, best, say);
+  if (const std::string warning = aspect_warning(p, say); !warning.empty())
+    json["warning"] = warning;
   return json;
 }
 
 }  // namespace
 
-std::string why_listed(const TriplePlan& plan) {
+std::string why_listed(const TriplePlan& plan, const TerminalWords& say) {
   std::string all;
-  for (const TripleReason r : plan.reasons) append(all, words_of(r), "; ");
+  for (const TripleReason r : plan.reasons) append(all, words_of(r, say), "; ");
   return all;
 }
 
-std::string gives_up(const TriplePlan& plan, const TriplePlan& best) {
+std::string gives_up(const TriplePlan& plan, const TriplePlan& best, const TerminalWords& say) {
   std::string all;
   const auto less = [&](double share, const char* of) {
-    if (share > 1e-9) append(all, fixed_text(100.0 * share, 2) + " % of " + of, "; ");
+    if (share > 1e-9)
+      append(all, say(of, {{"percent", localised(fixed_text(100.0 * share, 2), say.language())}}),
+             "; ");
   };
-  less(best.worst_cover() - plan.worst_cover(), "the coverage of the worse axis");
-  less(1.0 - plan.area() / best.area(), "the area");
-  if (plan.n > best.n) append(all, std::to_string(plan.n - best.n) + " more stops", "; ");
-  if (!plan.even()) append(all, "odd number of steps: no half diagonal", "; ");
-  if (!plan.dense) append(all, "not an ISO 230-2 sampling", "; ");
-  return all.empty() ? "nothing" : all;
+  less(best.worst_cover() - plan.worst_cover(), "triples.less-coverage");
+  less(1.0 - plan.area() / best.area(), "triples.less-area");
+  if (plan.n > best.n)
+    append(all, say("triples.more-stops", {{"count", std::to_string(plan.n - best.n)}}), "; ");
+  if (!plan.even()) append(all, say("triples.odd"), "; ");
+  if (!plan.dense) append(all, say("triples.sparse"), "; ");
+  return all.empty() ? say("triples.no-disadvantage") : all;
 }
 
-std::string aspect_warning(const TriplePlan& plan) {
+std::string aspect_warning(const TriplePlan& plan, const TerminalWords& say) {
   if (!plan.flat()) return {};
   const bool x_long = plan.length_x > plan.length_y;
-  return std::string("the diagonals run nearly along ") + (x_long ? "X" : "Y") + ": " +
-         (x_long ? "EYX" : "EXY") + " comes out with " +
-         fixed_text(std::max(plan.gain_EYX(), plan.gain_EXY()), 1) +
-         " times the scatter of a reading; measure it directly, or plan a shorter rectangle";
+  const double gain = std::max(plan.gain_EYX(), plan.gain_EXY());
+  return say("triples.flat", {{"axis", x_long ? "X" : "Y"},
+                              {"straightness", x_long ? "EYX" : "EXY"},
+                              {"gain", localised(fixed_text(gain, 1), say.language())}});
 }
 
-std::string why_nothing(const math::TriplePlans& plans) {
+std::string why_nothing(const math::TriplePlans& plans, const TerminalWords& say) {
   std::string limits;
   if (!plans.blocked_by.empty()) {
-    for (const TripleLimit l : plans.blocked_by) append(limits, option_of(l), "; or ");
+    for (const TripleLimit l : plans.blocked_by) append(limits, option_of(l), ", ");
     return plans.blocked_by.front() == TripleLimit::travel
-               ? "no plan fits: the travel is shorter than five points of the smallest triple (" +
-                     limits + ")"
-               : "no plan fits; one does if this is eased: " + limits;
+               ? say("triples.too-short", {{"limits", limits}})
+               : say("triples.blocked", {{"limits", limits}});
   }
   for (const TripleLimit l : plans.together) append(limits, option_of(l), "; ");
-  return "no plan fits; more than one of these limits must be eased: " + limits;
+  return say("triples.blocked-together", {{"limits", limits}});
 }
 
-std::string triples_json(const math::TripleRequest& wish, const math::TriplePlans& plans) {
+std::string triples_json(const math::TripleRequest& wish, const math::TriplePlans& plans,
+                         const TerminalWords& say) {
   storage::Json json = {
       {"schema", "nonio-triples/1"}, {"wish", wish_json(wish)}, {"tried", plans.tried}};
   const PointTable table = math::triple_table(plans.plans);
@@ -177,8 +181,8 @@ std::string triples_json(const math::TripleRequest& wish, const math::TriplePlan
     json["row_units"][c.name] = std::string(unit_of(c.quantity).symbol);
   json["rows"] = storage::Json::array();
   for (std::size_t i = 0; i < plans.plans.size(); ++i)
-    json["rows"].push_back(row_json(table, i, plans.plans[i], plans.plans.front()));
-  if (plans.plans.empty()) json["nothing_fits"] = why_nothing(plans);
+    json["rows"].push_back(row_json(table, i, plans.plans[i], plans.plans.front(), say));
+  if (plans.plans.empty()) json["nothing_fits"] = why_nothing(plans, say);
   return storage::dump(json);
 }
 

@@ -212,7 +212,7 @@ class Durable(NightTest):
         self.run_nonio("--date", "2026-11-03", expect=0)
         done = self.status()
         self.assertEqual(0, done.returncode, done.stdout + done.stderr)
-        self.assertRegex(done.stdout, r"^night 1 of 2026-11-03 is complete, 0\.0 h ago: 1 campaign, 0 failed\n$")
+        self.assertRegex(done.stdout, r"^run 1 of 2026-11-03 is complete, 0\.0 h ago: 1 campaign, 0 failed\n")
         self.assertEqual("", self.status("--quiet").stdout)
         old = time.time() - 40 * 3600
         os.utime(self.out / "summary.json", (old, old))

@@ -179,7 +179,7 @@ class Shards(NightTest):
 
     def test_a_plan_is_withdrawn_and_its_night_goes_on(self):
         self.some_campaigns()
-        self.assertIn("no night is planned", self.nonio("run", "cancel", self.site, expect=2).stderr)
+        self.assertIn("no run is planned", self.nonio("run", "cancel", self.site, expect=2).stderr)
         self.plan(2, "--date", "2026-11-01")
         self.shard(0, 2, expect=(0, 1))
         self.nonio("run", "cancel", self.out, expect=0)

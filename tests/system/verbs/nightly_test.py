@@ -30,6 +30,15 @@ class Nightly(VerbTest):
         self.assertEqual(fit["values"]["rms"]["unit"], "um")
         self.assertIn("U", fit["values"]["noise_floor"])
 
+    def test_status_is_in_the_language_of_the_run(self):
+        self.campaign(manifest(["scale:X", "backlash:X"], self.RUN), x=readings(scale=20, backlash=-6))
+        (self.site / "site.toml").write_text('language = "de"\n')
+        self.night("--date", "2026-11-03")
+        out = self.out.parent
+        for args, first in (((), "Lauf 1 vom 2026-11-03 ist abgeschlossen, vor 0,0 h: 1 Kampagne, 0 fehlgeschlagen"),
+                            (("--language", "it"), "esecuzione 1 del 2026-11-03 è completa, 0,0 h fa: 1 campagna, 0 non riuscite")):
+            self.assertEqual(first, self.nonio("status", out, *args, expect=0).stdout.split("\n")[0])
+
     def test_what_fails_and_what_is_missing_are_findings(self):
         self.campaign(manifest(["scale:X"], self.RUN), x=readings(scale=20, backlash=-6))
         results = self.night()

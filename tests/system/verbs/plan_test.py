@@ -84,14 +84,20 @@ class Triples(VerbTest):
 
     def test_the_table_for_people(self):
         shown = self.nonio("plan", "triples", "--x", 20000, "--y", 2000).stdout
-        for words in ("EYX", "why: covers the worse axis furthest", "gives up: ", "warning: "):
+        for words in ("EYX", "why: best coverage of the worse axis", "disadvantage: ", "warning: "):
             self.assertIn(words, shown)
 
     def test_tables_fit_100_columns(self):
         for words in (("triples", "--x", 20000, "--y", 2000), ("triples", "--x", 123456.789, "--y", 98765.432, "--resolution", 0.001),
                       ("table", "--x", 12000, "--y", 9000), ("rotary", "--axis", "C", "--balls", 5, "--radius", 250, "--probe-u", 1.5)):
-            shown = self.nonio("plan", *words).stdout
-            self.assertEqual([], [line for line in shown.split("\n") if len(line) > 100], words)
+            for language in ("en", "de", "it"):
+                shown = self.nonio("plan", *words, "--language", language).stdout
+                self.assertEqual([], [line for line in shown.split("\n") if len(line) > 100], words)
+                numbers = re.findall(r"(?<![\w.,])\d+[.,]\d+(?![\w.,])", shown)
+                self.assertEqual(language == "en", any("." in number for number in numbers), words)
+                self.assertEqual(language != "en", any("," in number for number in numbers), words)
+                self.assertNotIn("triples.", shown)
+                self.assertNotIn("rotary.", shown)
 
     def test_nothing_fits(self):
         done = self.nonio("plan", "triples", "--x", 4000, "--y", 4000, "--max-step", 2, expect=1)
@@ -123,7 +129,7 @@ class Triples(VerbTest):
                 (["--x", "20000", "--y", "20000", "--resolution", "0.000001", "--max-points", "100000",
                   "--hypotenuse", "1000000"], "coarser resolution"),
                 (["--x", "400"], "--y"),
-                (["--x", "400", "--y", "400", "--program", "p"], "want a control"),
+                (["--x", "400", "--y", "400", "--program", "p"], "--control"),
                 (["--x", "400", "--y", "300", "--program", "p", "--control", "gcode", "--choose", "99"], "--choose")):
             done = self.nonio("plan", "triples", *args, expect=2)
             self.assertIn(words, done.stderr, args)
@@ -257,7 +263,7 @@ class LookUpTable(VerbTest):
     def test_what_cannot_be(self):
         for args, status, words in ((["--x", 4000], 2, "expected both"), (["--sort", "minutes"], 2, "--x and --y"),
                                     (["--program", "p"], 2, "--x and --y"),
-                                    (["--x", 4000, "--y", 3000, "--program", "p"], 2, "want a control"),
+                                    (["--x", 4000, "--y", 3000, "--program", "p"], 2, "--control"),
                                     (["--x", 4000, "--y", 4000, "--max-step", 2], 1, "--max-step"),
                                     (["--x", 4000, "--y", 100, "--least-cover", 1], 1, "--least-cover")):
             self.assertIn(words, self.nonio("plan", "table", *args, expect=status).stderr, args)
@@ -492,7 +498,7 @@ class Programs(VerbTest):
                 (["program", "--axis", "X", "--control", "gcode", *out], "FROM below TO"),
                 (base + ["--axis", "X=0:5"], "is given twice"),
                 (["program", "--axis", "X=0:100", "--control", "gcodes", *out], "control \"gcodes\" (nearest: \"gcode\")"),
-                (["program", "--axis", "X=0:100", *out], "want a control"),
+                (["program", "--axis", "X=0:100", *out], "--control"),
                 (base + ["--set", "dwell_s"], "NAME=VALUE"),
                 (base + ["--set", "dwel_s=1"], "nearest: \"dwell_s\""),
                 (base + ["--set", "dwell_s=0"], "expected at least"),
