@@ -29,7 +29,7 @@ double seconds(const timeval& t) {
 }
 
 /// One first night in a process of its own.
-Cost night(nonio::batch::RunOptions options, bool confine) {
+Cost run(nonio::batch::RunOptions options, bool confine) {
   fs::remove_all(options.out);
   options.confine = confine;
   const auto begin = std::chrono::steady_clock::now();
@@ -38,7 +38,7 @@ Cost night(nonio::batch::RunOptions options, bool confine) {
     const nonio::batch::RunEvents silent{[](const auto&) {}, [](auto, auto) {}, [](const auto&) {},
                                          [] {}};
     const auto done = nonio::batch::run_site(options, silent);
-    std::_Exit(done.end == nonio::batch::Night::End::complete ? 0 : 1);
+    std::_Exit(done.end == nonio::batch::RunResult::End::complete ? 0 : 1);
   }
   int status = 0;
   rusage usage{};
@@ -70,11 +70,11 @@ int main(int argc, char** argv) {
   options.out = fs::temp_directory_path() / ("nonio-bench-" + std::to_string(::getpid()));
   const int rounds = argc > 4 ? std::atoi(argv[4]) : 21;
   std::vector<double> wall[2], processor[2], ratio, wall_ratio;
-  night(options, true);  // files are in memory then
+  run(options, true);  // files are in memory then
   for (int i = 0; i < rounds; ++i) {
     Cost cost[2]{};
     for (const int confined : {i % 2, 1 - i % 2}) {
-      cost[confined] = night(options, confined == 1);
+      cost[confined] = run(options, confined == 1);
       wall[confined].push_back(cost[confined].wall);
       processor[confined].push_back(cost[confined].processor);
     }

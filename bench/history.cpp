@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/close/morning_update.h"
+#include "batch/close/worklist_update.h"
 #include "campaign/config/template_files.h"
 #include "laboratory/store/place.h"
 #include "laboratory/store/store.h"
@@ -68,10 +68,10 @@ int morning(const char* out, const char* templates) {
   context.templates = std::move(*read);
   nonio::batch::RunOptions options;
   options.out = out;
-  nonio::assessment::Tonight tonight;
-  tonight.night = 2, tonight.date = "2026-03-20", tonight.campaigns = 100'000;
+  nonio::assessment::LastRun last_run;
+  last_run.run = 2, last_run.date = "2026-03-20", last_run.campaigns = 100'000;
   const Clock clock;
-  const auto made = nonio::batch::make_morning(options, context, tonight);
+  const auto made = nonio::batch::make_worklist(options, context, last_run);
   const std::string took = clock.text();
   if (!made) return complain(made.error());
   std::printf("morning: %s, %zu characters of lines\n", took.c_str(), made->json.size());

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/night_plan.h"
+#include "batch/state/run_plan.h"
 #include "batch/survey/earlier_results.h"
 #include "batch/survey/survey.h"
 #include "platform/storage/digest.h"
@@ -85,8 +85,8 @@ int main(int argc, char** argv) {
   }
   batch::set_in_order(campaigns);
   tell("in order, shared readings found", before, count);
-  batch::NightPlan plan;
-  plan.night = {1, "2026-01-01"};
+  batch::RunPlan plan;
+  plan.run = {1, "2026-01-01"};
   plan.shards.resize(std::strtoull(argv[2], nullptr, 10));
   if (const auto written = batch::write_plan(argv[3], plan, campaigns); !written) {
     std::fprintf(stderr, "%s\n", written.error().message.c_str());

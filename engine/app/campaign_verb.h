@@ -21,7 +21,7 @@ struct OpenCampaign {
   const Campaign& campaign() const { return read.manifest->campaign; }
 };
 
-/// Reads the campaign and tells on stderr what is wrong. The error is the exit status if the verb
+/// Reads the campaign and reports its errors on stderr. The error is the exit status if the verb
 /// cannot go on: 2 for the configuration, 1 for measurements of which none can be read. Errors of
 /// single measurements stay in `read.errors` and leave the others.
 tl::expected<OpenCampaign, int> open_campaign(

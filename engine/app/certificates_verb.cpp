@@ -34,7 +34,7 @@ Json to_json(const RegisterEntry& e) {
   return json;
 }
 
-/// "  released by B. Sample (account lab@room-3)": the name as it was said, the account as the
+/// "  released by B. Sample (account lab@room-3)": the name as it was stated, the account as the
 /// operating system knows it.
 std::string person_text(const char* what, const std::string& by, const std::string& account) {
   if (by.empty() && account.empty()) return {};
@@ -103,7 +103,7 @@ int certificates(const CertificateWish& wanted, const Common& common) {
     print_json(Json{{"schema", "nonio-certificates/1"}, {"certificates", std::move(all)}});
   } else {
     for (const RegisterEntry& e : *entries) print(e);
-    if (entries->empty() && !common.quiet) std::cout << "no number was drawn yet\n";
+    if (entries->empty() && !common.quiet) std::cout << "no certificate number was drawn yet\n";
   }
   return exit_done;
 }

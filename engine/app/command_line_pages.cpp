@@ -76,7 +76,7 @@ std::string in_words(const std::vector<std::string>& words) {
   return out;
 }
 
-/// What bash offers where a value of the argument stands.
+/// What bash offers in the place of a value of the argument.
 std::string bash_values(const Argument& a) {
   const auto& words = a.choices.empty() ? a.offers : a.choices;
   if (!words.empty()) return "-W " + in_single_quotes(in_words(words));

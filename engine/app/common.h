@@ -17,7 +17,7 @@ struct Common {
   std::vector<std::string> plugin_paths, template_paths;
   bool json = false, quiet = false;
 
-  /// Given on the command line, then from the environment, then beside the program.
+  /// Given on the command line, then from the environment, then in the folder of the program.
   std::vector<std::filesystem::path> plugin_folders() const;
   std::vector<std::filesystem::path> template_folders() const;
   static std::filesystem::path own_plugins();
@@ -27,7 +27,7 @@ struct Common {
 std::vector<Argument> common_arguments(Common& common);
 /// --templates.
 Argument templates_argument(Common& common);
-/// --set NAME=VALUE; `help` says of what.
+/// --set NAME=VALUE; `help` states about what.
 Argument settings_argument(std::vector<std::string>& settings, std::string help);
 /// {"NAME", "VALUE"} of each --set.
 Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::string>& given);

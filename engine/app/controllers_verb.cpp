@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -6,6 +8,7 @@
 
 #include "campaign/loader/plugins.h"
 #include "nonio/sdk/format.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -34,7 +37,7 @@ const char* to_text(ControlTable::Confidence c) {
                                                    : "unsure";
 }
 
-/// Of the sign, if the declaration says it.
+/// Of the sign, if the declaration states it.
 const ControlTable::Fact* sign_fact(const ControlTable& t) {
   for (const ControlTable::Fact& f : t.facts)
     if (f.id == "sign") return &f;
@@ -82,7 +85,7 @@ std::string cell(std::string text, std::size_t width) {
 }
 
 void print_head() {
-  for (const auto& [head, width] : {std::pair{"control", 20},
+  for (const auto& [head, width] : {std::pair{"control", 18},
                                     {"points", 6},
                                     {"both ways", 9},
                                     {"straight", 8},
@@ -98,16 +101,19 @@ void print_head() {
 void print_control(const Controller& o, bool facts) {
   const ControlTable& t = o.table;
   const auto yes = [](bool is, std::size_t width) { return cell(is ? "yes" : "-", width); };
-  std::cout << cell(o.info.name, 20) << cell(t.points > 0 ? std::to_string(t.points) : "any", 6)
+  std::cout << cell(o.info.name, 18) << cell(t.points > 0 ? std::to_string(t.points) : "any", 6)
             << yes(t.bidirectional, 9) << yes(t.straightness, 8) << yes(t.squareness, 6)
             << yes(t.volumetric, 6) << cell(sign_unknown(t) ? "not known" : to_text(t.sign), 11)
             << cell(to_text(t.entry), 9) << cell(short_text(t.value_step.linear * 1e3, 3), 9)
-            << (t.backlash.empty() ? "-" : t.backlash) << "\n";
+            << (t.backlash.empty() ? "-" : "yes") << "\n";
   if (!facts) return;
-  std::cout << "    " << o.info.summary << "\n    table: " << t.name
-            << "; zero: " << to_text(t.zero) << "\n";
+  const std::size_t width = line_width(STDOUT_FILENO);
+  std::cout << wrapped(o.info.summary, 4, width)
+            << wrapped("table: " + t.name + "; zero: " + to_text(t.zero) +
+                           (t.backlash.empty() ? "" : "; backlash parameter: " + t.backlash),
+                       4, width, 2);
   for (const ControlTable::Fact& f : t.facts)
-    std::cout << "    " << cell(to_text(f.confidence), 11) << f.description << "\n";
+    std::cout << wrapped(cell(to_text(f.confidence), 11) + f.description, 4, width, 12);
 }
 
 int list_controls(const std::vector<std::string>& names, const Common& common) {
@@ -150,7 +156,8 @@ Verb controls_verb(Common& common) {
               "points: of one table. both ways: a table for each direction of travel. straight, "
               "square: an axis by the position of another. volume: all errors of the machine in "
               "one file. sign: whether an entry is the measured error (actual - nominal) or the "
-              "correction. If it is undocumented, no table is written before a sign probe has "
+              "correction. backlash: a parameter of lost motion (with NAME: which). If the sign is "
+              "undocumented, no table is written before a sign probe has "
               "shown it (`nonio table probe`). Name the control in the campaign:\n    "
               "[machine]\n    control = \"fagor-8055\"",
           .examples = {"nonio table controls pmac ecmc"},

@@ -80,7 +80,8 @@ void print_list(const std::string& id, const fs::path& folder,
     std::cout << "  " << f.sha256 << "  " << f.size << "  " << f.name << "\n";
 }
 
-/// Every file in a folder as it was written, or nothing: what is there already has these bytes or stays.
+/// Every file in a folder as it was written, or nothing: what exists already has these bytes or
+/// stays.
 Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
                                 const std::vector<evaluation::RecordedFile>& files) {
   const std::string below = std::string(evaluation::last_good_name) + "/";
@@ -107,7 +108,7 @@ Expected<std::size_t> write_out(const fs::path& from, const fs::path& to,
   return good.size() + own.size();
 }
 
-/// False if something is damaged or in the way; it says what.
+/// False if something is damaged or in the way; the message names it.
 bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
   fs::path folder;
   const auto files = files_of(wish, id, folder);

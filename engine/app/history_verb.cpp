@@ -347,7 +347,7 @@ struct HistoryWish {
   std::string out, machine, axis, quantity;
 };
 
-/// Leaves what is asked for.
+/// Leaves what is requested.
 void keep(const HistoryWish& wish, const std::string& machine, reports::SiteHistory& site) {
   if (!machine.empty())
     std::erase_if(site.machines, [&](const auto& m) { return m.id != machine; });
@@ -359,30 +359,31 @@ void keep(const HistoryWish& wish, const std::string& machine, reports::SiteHist
 }
 
 int history(const HistoryWish& wish, const Common& common) {
-  const auto tonight = assessment::tonight_in(wish.out);
-  if (!tonight) return complain(tonight.error().message);
+  const auto last_run = assessment::last_run_in(wish.out);
+  if (!last_run) return complain(last_run.error().message);
   std::string machine;
   if (!wish.machine.empty()) {
     auto known = store::machine_named(wish.out, wish.machine);
     if (!known) return complain(known.error().message);
     machine = std::move(*known);
   }
-  if (const auto known = store::known_night(wish.out);
-      !known || *known != std::optional(tonight->night))
-    complain(store::store_in(wish.out) + " does not contain run " + std::to_string(tonight->night) +
+  if (const auto known = store::known_run(wish.out);
+      !known || *known != std::optional(last_run->run))
+    complain(store::store_in(wish.out) + " does not contain run " + std::to_string(last_run->run) +
              " yet: what follows is older. The next `nonio run` enters it.");
-  auto site = assessment::assess(wish.out, *tonight, [] {});
+  auto site = assessment::assess(wish.out, *last_run, [] {});
   if (!site) return complain(site.error().message);
   keep(wish, machine, *site);
   std::string digest;
   const auto templates = config::read_templates(common.template_folders(), digest);
   if (!templates) return complain(templates.error().message);
   if (common.json) {
-    std::cout << assessment::history_json(*site, *tonight, *templates);
+    std::cout << assessment::history_json(*site, *last_run, *templates);
     return exit_done;
   }
-  const std::string language =
-      templates->tables.contains("words/" + tonight->language + "/site") ? tonight->language : "en";
+  const std::string language = templates->tables.contains("words/" + last_run->language + "/site")
+                                   ? last_run->language
+                                   : "en";
   const reports::Wording words(*templates, language, {"site", "terminal"});
   const HistoryWords with{words, line_width(STDOUT_FILENO)};
   if (machine.empty()) {

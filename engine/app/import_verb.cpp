@@ -93,7 +93,7 @@ void print(const importing::ImportReport& report) {
       std::cout << "  belongs to no machine, so it has no history: state --asset, or --maker and "
                    "--serial\n";
     for (const importing::ImportedFile& f : c.files) {
-      if (!f.same_as.empty()) {  // said once, and nothing more of this file
+      if (!f.same_as.empty()) {  // reported once, and nothing more of this file
         std::cout << "  " << f.file << ": " << f.lacks.front() << "\n";
         continue;
       }

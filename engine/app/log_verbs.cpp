@@ -92,7 +92,7 @@ int event(EventWish& wish, const Common& common) {
   return exit_done;
 }
 
-/// False if it is no number.
+/// False if it is not a number.
 bool take_number(const std::string& text, std::optional<double>& into) {
   if (text.empty()) return true;
   double x = 0.0;
@@ -202,7 +202,7 @@ Verb event_verb(Common& common) {
   config::Event& e = wish->event;
   return {
       .name = "event",
-      .summary = "Record an event of a machine: a crash, a repair, a new table",
+      .summary = "Records an event of a machine: a crash, a repair, a new table",
       .arguments = joined(
           {site_argument(wish->site),
            {"--machine", &e.machine,
@@ -234,7 +234,7 @@ Verb ack_verb(Common& common) {
   config::Acknowledgement& a = wish->known;
   return {
       .name = "ack",
-      .summary = "Acknowledge a finding of a machine until a given day",
+      .summary = "Acknowledges a finding of a machine until a given day",
       .arguments = joined(
           {site_argument(wish->site),
            {"--finding", &a.finding, "Id of the finding, as printed in the summary of the run"},
@@ -267,7 +267,7 @@ Verb remove_verb(Common& common) {
   auto wish = std::make_shared<ForgetWish>();
   return {
       .name = "remove",
-      .summary = "Record that campaigns or files were removed from the site on purpose",
+      .summary = "Records that campaigns or files were removed from the site on purpose",
       .arguments = joined({site_argument(wish->site),
                            required({"CAMPAIGN", &wish->campaigns,
                                      "Their ids; or paths of other files or folders of the site, "
@@ -278,7 +278,8 @@ Verb remove_verb(Common& common) {
                           common_arguments(common)),
       .footer =
           "The nightly run reports a missing campaign in every run, with exit status 1, "
-          "until it is back or forgotten. Appends to SITE/forgotten.toml. The results of the "
+          "until it is back or its removal is recorded. Appends to SITE/forgotten.toml. The "
+          "results of the "
           "campaign stay in the output folder and in the history.",
       .examples = {"nonio machine remove site 2021-03-02-rossi --by \"B. Sample\" --why \"machine "
                    "was sold\""},

@@ -76,18 +76,19 @@ constexpr const char* keeps_the_rest =
 
 Verb change_verb(const std::shared_ptr<ModelOptions>& options, Common& common, bool add) {
   const std::string name = add ? "add" : "drop";
-  return {.name = name,
-          .summary = add ? "Adds an effect to the model and shows the residuals before and after"
-                         : "Removes an effect from the model",
-          .arguments = joined(campaign_arguments(options->folder, common),
-                              {required({"EFFECT", &options->effect,
-                                         add ? "kind:axis, such as backlash:X (`nonio plugin "
-                                               "list`); with a value, such as \"squareness:XY = "
-                                               "12.3 arcsec\", it is held at it and not fitted"
-                                             : "kind:axis, such as backlash:X"})}),
-          .footer = keeps_the_rest,
-          .examples = {"nonio model " + name + " samples/site/02-constant-reversal backlash:X"},
-          .run = [options, &common, add] { return change(*options, common, add); }};
+  return {
+      .name = name,
+      .summary = add ? "Adds an effect to the model and shows the residuals before and after"
+                     : "Removes an effect from the model",
+      .arguments = joined(campaign_arguments(options->folder, common),
+                          {required({"EFFECT", &options->effect,
+                                     add ? "kind:axis, such as backlash:X (`nonio plugin "
+                                           "list`); with a value, such as \"squareness:XY = "
+                                           "12.3 arcsec\", it keeps that value and is not fitted"
+                                         : "kind:axis, such as backlash:X"})}),
+      .footer = keeps_the_rest,
+      .examples = {"nonio model " + name + " samples/site/02-constant-reversal backlash:X"},
+      .run = [options, &common, add] { return change(*options, common, add); }};
 }
 
 /// "57,103" as numbers; nothing if it is something else.
@@ -120,7 +121,7 @@ int change_campaign(const ModelOptions& options, const Common& common,
 
 Verb exclude_verb(const std::shared_ptr<ModelOptions>& options, Common& common) {
   return {.name = "exclude",
-          .summary = "Leaves readings of a measurement out, with a reason",
+          .summary = "Excludes readings of a measurement, with a reason",
           .arguments =
               joined(campaign_arguments(options->folder, common),
                      {required({"MEASUREMENT", &options->measurement, "Its id in campaign.toml"}),

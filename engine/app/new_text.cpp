@@ -45,7 +45,7 @@ std::string offered(const std::string& table, const std::string& key, const std:
   return "# " + key + " = " + example + "  # " + help + "\n";
 }
 
-/// How a measurement was made: what its certificate says.
+/// How a measurement was made: what its certificate states.
 std::string test_text(const NewAxis& a) {
   const bool rotary = a.axis.rotary;
   const auto line = [](const char* key, const char* example) {
@@ -57,7 +57,7 @@ std::string test_text(const NewAxis& a) {
          line("compensation", "\"off\"");
 }
 
-/// What else a certificate wants of a campaign.
+/// What else a certificate requires of a campaign.
 std::string certificate_text() {
   return "\n"
          "# Further statements of the certificate: docs/howto-certificate.md\n"
@@ -338,7 +338,7 @@ std::string example_readings(const Axis& axis, const std::string& campaign) {
       for (int i = 0; i < targets; ++i) {
         const int k = direction > 0 ? i : targets - 1 - i;
         const double share = (target[k] - from) / (to - from);
-        // In um; or in arcsec, the same after a turn: nothing that would ask for attention.
+        // In um; or in arcsec, the same after a turn, so that no finding is a warning.
         const double turn = 2.0 * std::numbers::pi * share;
         const double value =
             (axis.rotary ? 2.0 * std::sin(2.0 * turn) : 4.0 * share + std::sin(turn)) +

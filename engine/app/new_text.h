@@ -32,7 +32,7 @@ struct NewMachine {
   std::vector<Axis> axes;
 };
 
-/// The record of a machine; what is not known stands as a comment.
+/// The record of a machine; keys without a known value are comments.
 std::string machine_text(const NewMachine& machine);
 std::string site_text(const NewSite& site);
 std::string campaign_text(const NewCampaign& campaign);
@@ -42,8 +42,8 @@ std::string campaign_text(const NewCampaign& campaign);
 /// no such key.
 bool set_offered(std::string& text, const std::string& key, const std::string& value);
 
-/// CSV of readings that nobody took, and that say so: 5 runs, both directions, over the travel. Each
-/// campaign and axis has its own, for equal readings of two campaigns are a finding.
+/// CSV of invented readings, marked as such: 5 runs, both directions, over the travel. They differ
+/// for each campaign and axis, because equal readings of two campaigns are a finding.
 std::string example_readings(const Axis& axis, const std::string& campaign);
 
 /// The nearest id that a campaign may have: "Rossi FP12" gives "rossi-fp12".

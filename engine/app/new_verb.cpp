@@ -40,8 +40,8 @@ struct NewFiles {
   std::vector<Artifact> files;
 };
 
-/// The nearest folder at or above this one that holds a site.toml, or a campaign beside the new
-/// one.
+/// The nearest folder at or above this one that contains a site.toml, or another campaign next to
+/// the new one.
 std::optional<fs::path> site_above(const fs::path& folder) {
   std::error_code error;
   for (fs::path up = folder.parent_path(); !up.empty(); up = up.parent_path()) {
@@ -56,7 +56,7 @@ std::optional<fs::path> site_above(const fs::path& folder) {
 /// The folder of the site's campaign that has the id; empty if none has.
 fs::path holder_of(const std::string& id, const fs::path& site) {
   std::error_code error;
-  if (!fs::exists(site / config::site_name, error)) return {};  // it may be anybody's home
+  if (!fs::exists(site / config::site_name, error)) return {};  // it may be a home folder
   fs::recursive_directory_iterator it(site, fs::directory_options::skip_permission_denied, error);
   for (; !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
     if (it->path().filename().string().starts_with('.')) it.disable_recursion_pending();
@@ -202,7 +202,7 @@ Values known_instrument(const std::optional<Campaign>& last, const std::string& 
           {"instrument.U_per_m_um", um_text(i.U_per_length)}};
 }
 
-/// Asked only where the site issues certificates.
+/// Prompted only if the site issues certificates.
 Expected<void> ask_for_certificate(const NewCampaign& c, const fs::path& site, Values& values,
                                    Questions& ask) {
   std::string digest;
@@ -220,7 +220,7 @@ Expected<void> ask_for_certificate(const NewCampaign& c, const fs::path& site, V
   return {};
 }
 
-/// From the folder's name, if the command line does not say it.
+/// From the folder's name, if the command line does not state it.
 Expected<std::string> id_of(const NewWish& wish, const fs::path& folder, Questions& ask) {
   std::string id = wish.id, near = valid_id(folder.filename().string());
   if (!config::is_campaign_id(near)) near = "campaign-" + near;
@@ -268,7 +268,7 @@ Expected<std::vector<NewAxis>> axes_with_files(const NewWish& wish, Questions& a
   return axes;
 }
 
-/// What the command line says, and the answers to the rest.
+/// What the command line states, and the answers to the rest.
 Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Questions& ask) {
   NewCampaign c{.id = {},
                 .customer = wish.customer,
@@ -312,7 +312,7 @@ std::vector<Artifact> files_of(const NewCampaign& c, std::string manifest) {
   return files;
 }
 
-/// What is wrong with the files, evaluated as a night would do it, with the site's own settings.
+/// Errors of the files, which are evaluated as in a run, with the settings of the site.
 std::vector<Error> mistakes(const std::vector<Artifact>& files, const std::string& id,
                             const std::optional<fs::path>& site, const Common& common) {
   const storage::ScratchFolder trial("new");

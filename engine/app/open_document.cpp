@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio show --open`: the report of a campaign, or the summary of a night, on the
-// desktop.
+// `nonio show --open`: the report of a campaign, or the summary of a run, on the desktop.
 #include <fcntl.h>
 #include <spawn.h>
 #include <unistd.h>
@@ -37,7 +36,7 @@ Expected<Json> json_file(const fs::path& path) {
   return json;
 }
 
-/// The report in the language that was asked for; else a page; else the results
+/// The report in the language that was requested; else a page; else the results
 /// themselves.
 Expected<fs::path> document_of(const fs::path& results) {
   NONIO_TRY(const auto json, json_file(results / evaluation::results_name));
@@ -73,7 +72,7 @@ Expected<fs::path> document(const OpenWish& wish, const Common& common) {
   switch (what_holds(folder)) {
     case Holds::results:
       return document_of(folder);
-    case Holds::night:
+    case Holds::run:
       return document_of_night(folder, common);
     case Holds::campaign: {
       const fs::path results = storage::results_folder(wish.out, id_of_campaign(folder));

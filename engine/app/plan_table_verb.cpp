@@ -223,7 +223,8 @@ Verb plan_table_verb(Common& common) {
   auto wish = std::make_shared<TableWish>();
   return {
       .name = "table",
-      .summary = "Look-up table of right triples by ratio; for travels the plans that fit, by cost",
+      .summary =
+          "Look-up table of right triples by ratio; with travels, the plans that fit, by cost",
       .arguments = joined(
           {{"--x", &wish->x, "Travel of X, mm"},
            {"--y", &wish->y, "Travel of Y, mm"},

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "campaign/loader/plugins.h"
 #include "nonio/sdk/method.h"
+#include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -66,20 +69,23 @@ void print_plugins_json(const loader::Plugins& plugins) {
 }
 
 void print_plugins(const loader::Plugins& plugins, bool with_options) {
+  const std::size_t width = line_width(STDOUT_FILENO);
   for (const Listed& p : all_of(plugins)) {
     std::cout << p.kind << " " << p.info->name << " " << p.info->version
-              << (p.info->opt_in ? " (on request)" : "") << "\n    " << p.info->summary << "\n";
+              << (p.info->opt_in ? " (on request)" : "") << "\n"
+              << wrapped(p.info->summary, 4, width);
     if (with_options)
       for (const Option& o : p.info->options)
         std::cout << "    "
                   << (p.method != nullptr ? "[[measurement]]" : "[options." + p.info->name + "]")
                   << " " << o.name
                   << (o.required ? " (required)" : " = " + option_json(o)["default"].dump())
-                  << (o.unit.empty() ? "" : " " + o.unit) << "\n        " << o.help << "\n";
+                  << (o.unit.empty() ? "" : " " + o.unit) << "\n"
+                  << wrapped(o.help, 8, width);
     if (!with_options || p.method == nullptr) continue;
     for (const Method::Column& c : p.method->columns)
-      std::cout << "    column " << name_in_file(c) << (c.required ? "" : " (optional)")
-                << "\n        " << c.help << "\n";
+      std::cout << "    column " << name_in_file(c) << (c.required ? "" : " (optional)") << "\n"
+                << wrapped(c.help, 8, width);
   }
   std::cout << "\nfiles (ABI " << NONIO_ABI_TAG << ")\n";
   for (const loader::PluginFile& f : plugins.files()) {

@@ -38,7 +38,7 @@ bool runs_gcode(const std::string& control, const loader::Plugins& plugins) {
   return true;
 }
 
-/// What options and the record of the machine say of its axes.
+/// What options and the record of the machine state about its axes.
 Settings said_of_axes(const OpenCampaign& open) {
   for (const Controller& o : open.place->plugins.controllers())
     if (o.info.name == open.campaign().machine.control)
@@ -125,7 +125,7 @@ Expected<Artifact> program_of(const tables::SignProbe& p, const Machine& machine
     return fail("control " + machine.control +
                 " runs no part programs in G-code: enter the moves by hand (run without --out), or "
                 "name a writer with --control");
-  // A zero offset that stands in the control would send the axis elsewhere.
+  // A zero offset that is active in the control would send the axis elsewhere.
   const std::string control = w.control.empty() ? writer_for(machine.control, plugins) : w.control;
   if (control == "gcode" && !machine.control.empty()) settings.emplace("work_offset", "G53");
   auto files = planning::write_programs(plugins, control, with_axis, stops, settings);

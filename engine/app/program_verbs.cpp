@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// help, version, completion: what the program says of itself.
+// help, version, completion: what the program reports of itself.
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -86,7 +86,7 @@ Verb version_verb(Common& common) {
 Verb completion_verb(const Program& program) {
   auto shell = std::make_shared<std::string>();
   return {.name = "completion",
-          .summary = "Prints the shell script that completes verbs, options and files",
+          .summary = "Prints the shell script that completes commands, options and files",
           .arguments = {required(one_of({"bash", "zsh"}, {"SHELL", shell.get(), "bash or zsh"}))},
           .examples = {"nonio completion bash > ~/.local/share/bash-completion/completions/nonio",
                        "nonio completion zsh > ~/.zfunc/_nonio"},

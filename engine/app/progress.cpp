@@ -119,8 +119,8 @@ void Progress::clear() {
   if (bar_ && drawn_once_) std::cerr << "\r\033[K";
 }
 
-void Progress::still_failed(const batch::Night& night) {
-  for (const batch::CampaignState& c : night.campaigns)
+void Progress::still_failed(const batch::RunResult& run) {
+  for (const batch::CampaignState& c : run.campaigns)
     if (c.status == evaluation::Status::failed &&
         c.action == batch::CampaignState::Action::unchanged)
       std::cerr << failed_word() << " " << c.id << " (" << words()("run.unchanged")

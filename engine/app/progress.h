@@ -21,7 +21,7 @@ class Progress {
   /// Ends the bar's line.
   void end();
   /// Names the campaigns that failed and were not done again.
-  void still_failed(const batch::Night& night);
+  void still_failed(const batch::RunResult& run);
 
  private:
   void note(const std::string& message);

@@ -13,7 +13,7 @@ Holds what_holds(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder / config::manifest_name, error)) return Holds::campaign;
   if (storage::is_there(folder / evaluation::results_name).value_or(false)) return Holds::results;
-  if (fs::exists(folder / "summary.json", error)) return Holds::night;
+  if (fs::exists(folder / "summary.json", error)) return Holds::run;
   return Holds::nothing;
 }
 

@@ -60,10 +60,10 @@ void print_actions(const std::string& actions, const config::TerminalWords& word
 
 }  // namespace
 
-void print_summary(const batch::Night& night, const fs::path& out,
+void print_summary(const batch::RunResult& run, const fs::path& out,
                    const config::TerminalWords& words, bool json) {
   std::size_t done = 0, unchanged = 0, attention = 0, failed = 0;
-  for (const batch::CampaignState& c : night.campaigns) {
+  for (const batch::CampaignState& c : run.campaigns) {
     if (c.status == evaluation::Status::failed)
       ++failed;
     else if (c.action == batch::CampaignState::Action::done)
@@ -75,30 +75,30 @@ void print_summary(const batch::Night& night, const fs::path& out,
   // Findings are counted by campaign; actions by line of the worklist.
   if (json) {
     Json end = {{"event", "end"},         {"done", done},     {"unchanged", unchanged},
-                {"attention", attention}, {"failed", failed}, {"vanished", night.vanished.size()}};
-    if (night.asking) end["decisions"] = *night.asking;
+                {"attention", attention}, {"failed", failed}, {"vanished", run.vanished.size()}};
+    if (run.asking) end["decisions"] = *run.asking;
     end["summary"] = (out / "summary.json").string();
     print_json(end, -1);
     return;
   }
-  if (night.asking && *night.asking > 0) print_actions(night.actions, words);
+  if (run.asking && *run.asking > 0) print_actions(run.actions, words);
   const auto count = [](std::size_t n) { return std::to_string(n); };
   std::cout << words("counts", {{"done", count(done)},
                                 {"unchanged", count(unchanged)},
                                 {"failed", count(failed)}})
             << "; "
-            << (night.vanished.empty()
+            << (run.vanished.empty()
                     ? ""
-                    : words("vanished", {{"count", count(night.vanished.size())}}) + "; ")
-            << (night.asking ? words("run.actions", {{"count", count(*night.asking)}}) + "; " : "")
+                    : words("vanished", {{"count", count(run.vanished.size())}}) + "; ")
+            << (run.asking ? words("run.actions", {{"count", count(*run.asking)}}) + "; " : "")
             << (out / "summary.txt").string() << "\n";
 }
 
 namespace {
 
-/// Whoever ends the run, or the terminal that it was started from, leaves a night that the next run
-/// goes on with. Under nohup a lost terminal is nothing to stop for. A reader of the output that
-/// went away, or a limit for the size of files, is no reason to die but an error like others.
+/// A signal that ends the run, or the end of its terminal, leaves a run that the next one
+/// continues. Under nohup a lost terminal does not stop it. A closed pipe of the output, or a limit
+/// for the size of files, does not end the process but is an error like others.
 void catch_signals() {
   struct sigaction stop {};
   stop.sa_handler = [](int) { process::request_stop(); };
@@ -130,11 +130,11 @@ void prepare_run(batch::RunOptions& options, const std::string& site, const std:
                  "uses nonio), or pass --root.\n";
 }
 
-std::optional<int> exit_of_unfinished(const batch::Night& night) {
-  if (night.end == batch::Night::End::refused) return complain(night.error);
-  if (night.end == batch::Night::End::interrupted)
+std::optional<int> exit_of_unfinished(const batch::RunResult& run) {
+  if (run.end == batch::RunResult::End::refused) return complain(run.error);
+  if (run.end == batch::RunResult::End::interrupted)
     return complain("interrupted; the same command goes on where it stopped", exit_interrupted);
-  if (!night.error.empty()) return complain(night.error, exit_failed);
+  if (!run.error.empty()) return complain(run.error, exit_failed);
   return std::nullopt;
 }
 

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "batch/shards/packed_shard.h"
-#include "batch/state/night_plan.h"
-#include "batch/state/night_state.h"
 #include "batch/state/output_lock.h"
+#include "batch/state/run_plan.h"
+#include "batch/state/run_state.h"
 #include "platform/storage/files.h"
 #include "progress.h"
 #include "run_common.h"
@@ -25,27 +25,27 @@ namespace {
 
 constexpr std::uint64_t most_shards = 100000;
 
-struct NightWish {
+struct PartWish {
   std::string site, out, alive;
   batch::RunOptions options;
 };
 
-void print_planned(const batch::Night& night, const batch::RunOptions& options,
+void print_planned(const batch::RunResult& run, const batch::RunOptions& options,
                    const config::TerminalWords& say, bool json) {
-  const auto& shards = night.planned;
+  const auto& shards = run.planned;
   std::uint64_t in_shards = 0;
   for (const std::uint64_t n : shards) in_shards += n;
   const auto to_do = static_cast<std::uint64_t>(
-      std::count_if(night.campaigns.begin(), night.campaigns.end(),
+      std::count_if(run.campaigns.begin(), run.campaigns.end(),
                     [](const auto& c) { return c.action == batch::CampaignState::Action::todo; }));
   if (json) {
     std::cout << Json{{"schema", "nonio-night-plan/1"},
-                      {"night", night.night.number},
-                      {"date", night.night.date},
-                      {"campaigns", night.campaigns.size()},
+                      {"night", run.run.number},
+                      {"date", run.run.date},
+                      {"campaigns", run.campaigns.size()},
                       {"to_do", to_do},
                       {"left_to_merge", to_do - in_shards},
-                      {"vanished", night.vanished.size()},
+                      {"vanished", run.vanished.size()},
                       {"shards", shards}}
                      .dump()
               << "\n";
@@ -58,9 +58,9 @@ void print_planned(const batch::Night& night, const batch::RunOptions& options,
                       : say("run.range", {{"least", number(*least)}, {"most", number(*most)}});
   const std::size_t width = sentence_width(STDOUT_FILENO);
   std::cout << wrapped(say("run.shards-planned",
-                           {{"run", say("night-of", {{"number", number(night.night.number)},
-                                                     {"date", night.night.date}})},
-                            {"campaigns", say.counted("campaigns", night.campaigns.size())},
+                           {{"run", say("night-of", {{"number", number(run.run.number)},
+                                                     {"date", run.run.date}})},
+                            {"campaigns", say.counted("campaigns", run.campaigns.size())},
                             {"todo", number(to_do)},
                             {"count", number(in_shards)},
                             {"shards", say.counted("run.shards", shards.size())},
@@ -73,7 +73,7 @@ void print_planned(const batch::Night& night, const batch::RunOptions& options,
                        0, width, 2);
 }
 
-int plan_night(NightWish& wish, const Common& common) {
+int plan_run(PartWish& wish, const Common& common) {
   batch::RunOptions& options = wish.options;
   if (wish.out.empty()) return complain("--out is empty; expected a folder");
   if (!options.date.empty() && !is_day(options.date))
@@ -81,29 +81,28 @@ int plan_night(NightWish& wish, const Common& common) {
   options.step = batch::RunOptions::Step::plan;
   prepare_run(options, wish.site, wish.out, common);
   Progress progress(common, common.quiet, common.json);
-  const batch::Night night = batch::run_site(options, progress.events());
+  const batch::RunResult run = batch::run_site(options, progress.events());
   progress.end();
-  if (const auto exit = exit_of_unfinished(night)) return *exit;
-  if (!common.quiet || common.json) print_planned(night, options, progress.words(), common.json);
+  if (const auto exit = exit_of_unfinished(run)) return *exit;
+  if (!common.quiet || common.json) print_planned(run, options, progress.words(), common.json);
   return exit_done;
 }
 
-/// A merge that is asked for again after its end says so, and ends as the night did.
-int already_merged(const batch::NightStatus& status, const Common& common) {
+/// A second merge of a complete run reports that, and has the exit status of the run.
+int already_merged(const batch::RunStatus& status, const Common& common) {
   const std::uint64_t failed = status.last ? status.last->failed : 0;
   if (!common.quiet)
-    std::cerr << "nonio: run " << status.night.number
-              << " is complete: there is nothing to merge\n";
+    std::cerr << "nonio: run " << status.run.number << " is complete: there is nothing to merge\n";
   return failed > 0 ? exit_failed : exit_done;
 }
 
-int merge_night(NightWish& wish, const Common& common) {
+int merge_run(PartWish& wish, const Common& common) {
   batch::RunOptions& options = wish.options;
   const auto plan = batch::find_plan(wish.out);
   if (!plan) return complain(plan.error().message);
   if (!*plan) {
-    const auto status = batch::night_status(wish.out);
-    if (status && status->state == batch::NightStatus::State::complete)
+    const auto status = batch::run_status(wish.out);
+    if (status && status->state == batch::RunStatus::State::complete)
       return already_merged(*status, common);
     return complain(batch::read_plan(wish.out).error().message);
   }
@@ -115,16 +114,15 @@ int merge_night(NightWish& wish, const Common& common) {
                     ", for which the run was planned, is not on this host; expected --site FOLDER");
   prepare_run(options, site, wish.out, common);
   Progress progress(common, common.quiet, common.json);
-  const batch::Night night = batch::run_site(options, progress.events());
+  const batch::RunResult run = batch::run_site(options, progress.events());
   progress.end();
-  if (const auto exit = exit_of_unfinished(night)) return *exit;
-  if (!common.json) progress.still_failed(night);
-  if (!common.quiet || common.json)
-    print_summary(night, options.out, progress.words(), common.json);
-  return night.any_failed() ? exit_failed : exit_done;
+  if (const auto exit = exit_of_unfinished(run)) return *exit;
+  if (!common.json) progress.still_failed(run);
+  if (!common.quiet || common.json) print_summary(run, options.out, progress.words(), common.json);
+  return run.any_failed() ? exit_failed : exit_done;
 }
 
-int cancel_night(const NightWish& wish, const Common& common) {
+int cancel_run(const PartWish& wish, const Common& common) {
   const auto plan = batch::find_plan(wish.out);
   if (plan && !*plan) return complain(batch::read_plan(wish.out).error().message);
   const auto lock = batch::OutputLock::take(wish.out, batch::OutputLock::Use::planned);
@@ -138,7 +136,7 @@ int cancel_night(const NightWish& wish, const Common& common) {
   return exit_done;
 }
 
-int unlock_night(const NightWish& wish, const Common& common) {
+int unlock_folder(const PartWish& wish, const Common& common) {
   std::optional<std::string> alive;
   if (!wish.alive.empty()) {
     auto text = storage::read_file(wish.alive);
@@ -155,13 +153,13 @@ int unlock_night(const NightWish& wish, const Common& common) {
   return exit_done;
 }
 
-Argument out_argument(NightWish& wish) {
+Argument out_argument(PartWish& wish) {
   return required(
       existing(Argument::Takes::folder, {"OUT", &wish.out, "Output folder of the planned run"}));
 }
 
 Verb plan_part(Common& common) {
-  auto wish = std::make_shared<NightWish>();
+  auto wish = std::make_shared<PartWish>();
   batch::RunOptions& options = wish->options;
   using Takes = Argument::Takes;
   return {
@@ -191,11 +189,11 @@ Verb plan_part(Common& common) {
           "not merged; finished shards are kept. Until the merge, `nonio "
           "run` without --shard is refused.",
       .examples = {"nonio run plan site --out out --shards 4"},
-      .run = [wish, &common] { return plan_night(*wish, common); }};
+      .run = [wish, &common] { return plan_run(*wish, common); }};
 }
 
 Verb merge_part(Common& common) {
-  auto wish = std::make_shared<NightWish>();
+  auto wish = std::make_shared<PartWish>();
   batch::RunOptions& options = wish->options;
   options.patience = 3.0;
   Argument wait = within(0, 3600,
@@ -218,11 +216,11 @@ Verb merge_part(Common& common) {
           "1 also if a shard has not reported: the message names it. Run it, then merge again; "
           "nothing is merged twice.",
       .examples = {"nonio run merge out"},
-      .run = [wish, &common] { return merge_night(*wish, common); }};
+      .run = [wish, &common] { return merge_run(*wish, common); }};
 }
 
 Verb cancel_part(Common& common) {
-  auto wish = std::make_shared<NightWish>();
+  auto wish = std::make_shared<PartWish>();
   return {.name = "cancel",
           .summary = "Withdraws a plan; the results of finished shards are kept",
           .arguments = joined({out_argument(*wish)}, common_arguments(common)),
@@ -230,11 +228,11 @@ Verb cancel_part(Common& common) {
               "Refused while a shard is running. The run stays open: `nonio run` without --shard, "
               "or another plan, continues it.",
           .examples = {"nonio run cancel out"},
-          .run = [wish, &common] { return cancel_night(*wish, common); }};
+          .run = [wish, &common] { return cancel_run(*wish, common); }};
 }
 
 Verb unlock_part(Common& common) {
-  auto wish = std::make_shared<NightWish>();
+  auto wish = std::make_shared<PartWish>();
   using Takes = Argument::Takes;
   return {
       .name = "unlock",
@@ -252,7 +250,7 @@ Verb unlock_part(Common& common) {
           "this command if you, or the scheduler, know that it has ended. Refused if the lock of "
           "the file system shows that the process is running.",
       .examples = {"nonio run unlock out"},
-      .run = [wish, &common] { return unlock_night(*wish, common); }};
+      .run = [wish, &common] { return unlock_folder(*wish, common); }};
 }
 
 }  // namespace

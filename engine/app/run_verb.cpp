@@ -30,8 +30,8 @@ const char* to_text(batch::CampaignState::Action action) {
   return "unchanged";
 }
 
-void print_night_plan(const batch::Night& night, const config::TerminalWords& words, bool json) {
-  for (const batch::CampaignState& c : night.campaigns) {
+void print_run_plan(const batch::RunResult& run, const config::TerminalWords& words, bool json) {
+  for (const batch::CampaignState& c : run.campaigns) {
     const bool collides =
         c.action == batch::CampaignState::Action::todo && c.status == evaluation::Status::failed;
     const std::string reason = collides ? c.errors.front().message : c.reason;
@@ -47,7 +47,7 @@ void print_night_plan(const batch::Night& night, const config::TerminalWords& wo
   }
 }
 
-// A script's --shard "$UNSET" is a mistake, not a whole night on every host.
+// A script's --shard "$UNSET" is a mistake, not a whole run on every host.
 constexpr const char* not_given = "not given";
 
 struct RunWish {
@@ -74,18 +74,18 @@ std::string take_shard(RunWish& wish) {
   return {};
 }
 
-/// One shard of a planned night.
+/// One shard of a planned run.
 int run_part(const batch::RunOptions& options, const Common& common) {
   Progress progress(common, common.quiet, common.json);
-  const batch::Night night = batch::run_shard(options, progress.events());
+  const batch::RunResult run = batch::run_shard(options, progress.events());
   progress.end();
-  if (const auto exit = exit_of_unfinished(night)) return *exit;
+  if (const auto exit = exit_of_unfinished(run)) return *exit;
   const auto left = static_cast<std::size_t>(
-      std::count_if(night.campaigns.begin(), night.campaigns.end(),
+      std::count_if(run.campaigns.begin(), run.campaigns.end(),
                     [](const auto& c) { return c.action == batch::CampaignState::Action::todo; }));
-  const std::size_t failed = night.failed(), done = night.campaigns.size() - left - failed;
+  const std::size_t failed = run.failed(), done = run.campaigns.size() - left - failed;
   if (common.json)
-    std::cout << Json{{"event", "end"},         {"night", night.night.number},
+    std::cout << Json{{"event", "end"},         {"night", run.run.number},
                       {"shard", options.shard}, {"shards", options.shards},
                       {"done", done},           {"failed", failed},
                       {"left_to_merge", left}}
@@ -103,7 +103,7 @@ int run_part(const batch::RunOptions& options, const Common& common) {
   return failed > 0 ? exit_failed : exit_done;
 }
 
-int run_night(RunWish& wish, const Common& common) {
+int run_site_again(RunWish& wish, const Common& common) {
   if (wish.out.empty()) return complain("--out is empty; expected a folder");
   batch::RunOptions& options = wish.options;
   if (!options.date.empty() && !is_day(options.date))
@@ -122,16 +122,16 @@ int run_night(RunWish& wish, const Common& common) {
   }
   prepare_run(options, wish.site, wish.out, common);
   Progress progress(common, common.quiet, common.json);
-  const batch::Night night = batch::run_site(options, progress.events());
+  const batch::RunResult run = batch::run_site(options, progress.events());
   progress.end();
-  if (const auto exit = exit_of_unfinished(night)) return *exit;
-  // What a night before has already said is said again: a failed campaign is never silent.
-  if (!common.json && !options.dry_run) progress.still_failed(night);
+  if (const auto exit = exit_of_unfinished(run)) return *exit;
+  // Failures that an earlier run reported are reported again: a failed campaign is never silent.
+  if (!common.json && !options.dry_run) progress.still_failed(run);
   if (options.dry_run)
-    print_night_plan(night, progress.words(), common.json);
+    print_run_plan(run, progress.words(), common.json);
   else if (!common.quiet || common.json)
-    print_summary(night, options.out, progress.words(), common.json);
-  return night.any_failed() ? exit_failed : exit_done;
+    print_summary(run, options.out, progress.words(), common.json);
+  return run.any_failed() ? exit_failed : exit_done;
 }
 
 }  // namespace
@@ -164,7 +164,7 @@ Verb run_verb(Common& common) {
            {"--dry-run", &options.dry_run, "Print what would be evaluated and why; write nothing"},
            {"--shard", &wish->shard,
             "i/S: only shard i = 0 .. S-1 of a run that `nonio run plan` has divided into S "
-            "shards; on any host that has SITE and OUT, in any order, also repeatedly"},
+            "shards; on any host that has SITE and OUT, in any order, also more than once"},
            {"--pack", &options.pack,
             "With --shard: work in a folder of this host and store the results as one file in "
             "OUT/.nonio/packs. Every command reads them there; `nonio export` writes them into "
@@ -179,7 +179,7 @@ Verb run_verb(Common& common) {
           "A campaign is evaluated again only if its files, site.toml, a plugin, a template or the "
           "program have changed. A run that was killed resumes where it stopped.",
       .examples = {"nonio run samples/site --out out"},
-      .run = [wish, &common] { return run_night(*wish, common); }};
+      .run = [wish, &common] { return run_site_again(*wish, common); }};
 }
 
 }  // namespace nonio::app

@@ -45,10 +45,11 @@ Verb serve_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "serve",
-      .summary = "Serves a page on this computer: the model of a campaign, or the work of a site",
+      .summary =
+          "Serves a page on this computer: the model of a campaign, or the worklist of a site",
       .arguments = joined(
           {required(existing(Takes::folder,
-                             {"CAMPAIGN", &options->folder,
+                             {"SITE|CAMPAIGN", &options->folder,
                               "Folder of one campaign, with its campaign.toml; or a site"})),
            takes(Takes::folder,
                  {"--out", &options->out,
@@ -58,7 +59,7 @@ Verb serve_verb(Common& common) {
            takes(Takes::file,
                  {"--token-file", &options->token_file,
                   "Keep the token in this file, so that the address stays after a restart; it is "
-                  "made if it is not there, and only this user may be able to read it"}),
+                  "created if it does not exist, and only this user may be able to read it"}),
            {"--host", &options->hosts,
             "Name (NAME or NAME:PORT) by which a reverse proxy on this computer calls the page"},
            within(0, 65535, {"--port", &options->port, "Fixed port; default: any free one"}),

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// `nonio show`: results.json for a person at a terminal, read from a night's
-// folder or made now.
+// SPDX-License-Identifier: Apache-2.0 `nonio show`: results.json for a person at a terminal, read
+// from the folder of a run or evaluated now.
 #include <unistd.h>
 
 #include <algorithm>
@@ -35,15 +34,15 @@ struct ShowWish {
   bool all = false, opens = false;
 };
 
-/// results.json and the words to say it in.
+/// results.json and the words that it is printed with.
 struct Shown {
   std::string text;
   Templates templates;
   std::string language = "en";
 };
 
-/// What the night would write, without a number drawn for a certificate;
-/// nothing is written.
+/// The results of a campaign as a run would write them, but without a number drawn for a
+/// certificate. Nothing is written.
 Expected<Shown> evaluated_now(const fs::path& folder, const Common& common) {
   auto place = reading::open_workplace(folder, common.plugin_folders(), common.template_folders(),
                                        NONIO_VERSION);
@@ -61,7 +60,7 @@ Expected<Shown> evaluated_now(const fs::path& folder, const Common& common) {
   return Shown{std::move(text), std::move((*place)->context.templates), context.site.language};
 }
 
-Expected<Shown> of_night(const fs::path& folder, const Common& common) {
+Expected<Shown> of_run(const fs::path& folder, const Common& common) {
   auto text = storage::read_file(folder / evaluation::results_name);
   if (!text) return fail(text.error());
   std::string digest;
@@ -170,7 +169,7 @@ class Page {
         {thing.value("maker", ""), thing.value("model", ""), thing.value("serial", "")}, " ");
   }
 
-  /// Whether a result is above its tolerance: only that asks for an action, other findings warn.
+  /// Whether a result is above its tolerance: only that requests an action, other findings warn.
   static bool exceeded(const Json& results) {
     for (const Json& analysis : results.value("analyses", Json::array()))
       for (const Json& value : analysis.value("values", Json::object()))
@@ -474,14 +473,14 @@ int show(const ShowWish& wish, const Common& common) {
   if (wish.folder.empty()) return complain("expected a campaign, its results, or a machine");
   const fs::path folder = results_at(wish.folder);
   const Holds holds = what_holds(folder);
-  if (holds == Holds::nothing && !fs::exists(folder) && what_holds(wish.out) == Holds::night)
+  if (holds == Holds::nothing && !fs::exists(folder) && what_holds(wish.out) == Holds::run)
     return show_machine(wish.out, wish.folder, common);
-  if (holds == Holds::night)
+  if (holds == Holds::run)
     return complain(folder.string() + " contains the results of a run; expected " +
                     (folder / "ID").string() + " (summary.txt lists them)");
   if (holds == Holds::nothing) return complain(holds_nothing(folder));
   const auto shown =
-      holds == Holds::campaign ? evaluated_now(folder, common) : of_night(folder, common);
+      holds == Holds::campaign ? evaluated_now(folder, common) : of_run(folder, common);
   if (!shown) return complain(text_of(shown.error()));
   const bool is_stored = holds == Holds::results && !storage::in_pack(folder);
   try {

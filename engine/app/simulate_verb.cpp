@@ -86,7 +86,7 @@ Verb simulate_verb(Common& common) {
           "seed = 7             the same seed gives the same bytes\n  [[cycle]]              "
           "measurement = \"X\"    targets, runs, noise of one measurement\n  [[effect]]            "
           " name = \"backlash:X\"  b_um = -6.0\nEffects are those of `nonio plugin list`, and "
-          "formulas under [[model.formula]] or, if they shall not appear in the campaign, "
+          "formulas under [[model.formula]] or, if they must not appear in the campaign, "
           "[[simulation.formula]]. The name of a parameter ends with its unit.",
       .examples = {"nonio model simulate samples/simulate/worn-screw.toml --out site/worn-screw"},
       .run = [wish, &common] { return simulate(*wish, common); }};

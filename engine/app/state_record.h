@@ -9,7 +9,7 @@
 
 namespace nonio::app {
 
-/// A state of the control that a verb learned of.
+/// A state of the control that a command was given.
 struct NewState {
   std::string since, source;         ///< as in [[axes.X.state]]
   std::vector<Artifact> files;       ///< none: there is no table

@@ -5,7 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "batch/state/night_status.h"
+#include "batch/state/run_status.h"
 #include "laboratory/assessment/assess.h"
 #include "nonio/sdk/format.h"
 #include "site_words.h"
@@ -14,7 +14,7 @@
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
-using batch::NightStatus;
+using batch::RunStatus;
 
 namespace {
 
@@ -26,10 +26,10 @@ struct StatusWish {
 
 using config::TerminalWords;
 
-std::string run_text(const evaluation::NightOf& night, const TerminalWords& say) {
-  const std::string number = std::to_string(night.number);
-  return night.date.empty() ? say("night", {{"number", number}})
-                            : say("night-of", {{"number", number}, {"date", night.date}});
+std::string run_text(const evaluation::RunLabel& run, const TerminalWords& say) {
+  const std::string number = std::to_string(run.number);
+  return run.date.empty() ? say("night", {{"number", number}})
+                          : say("night-of", {{"number", number}, {"date", run.date}});
 }
 
 std::string hours_text(double hours, const TerminalWords& say) {
@@ -37,11 +37,10 @@ std::string hours_text(double hours, const TerminalWords& say) {
 }
 
 /// What is wrong; empty if all is well.
-std::string trouble(const NightStatus& s, const StatusWish& wish, const TerminalWords& say) {
-  if (s.state == NightStatus::State::cut_short)
-    return say("state.cut-short", {{"run", run_text(s.night, say)}});
-  const bool goes_on =
-      s.state == NightStatus::State::running || s.state == NightStatus::State::planned;
+std::string trouble(const RunStatus& s, const StatusWish& wish, const TerminalWords& say) {
+  if (s.state == RunStatus::State::cut_short)
+    return say("state.cut-short", {{"run", run_text(s.run, say)}});
+  const bool goes_on = s.state == RunStatus::State::running || s.state == RunStatus::State::planned;
   if (!s.last) return goes_on ? "" : say("state.none");
   if (s.age < -60.0) return say("state.future");
   if (wish.max_age > 0.0 && s.age > wish.max_age * 3600.0)
@@ -49,17 +48,17 @@ std::string trouble(const NightStatus& s, const StatusWish& wish, const Terminal
   return {};
 }
 
-std::string line_of(const NightStatus& s, const std::string& wrong, const TerminalWords& say) {
+std::string line_of(const RunStatus& s, const std::string& wrong, const TerminalWords& say) {
   std::string line;
-  if (s.state == NightStatus::State::running)
-    line = say("state.running", {{"run", run_text(s.night, say)}, {"by", s.used_by}}) + "; ";
-  if (s.state == NightStatus::State::planned)
-    line = say("state.planned", {{"run", run_text(s.night, say)},
+  if (s.state == RunStatus::State::running)
+    line = say("state.running", {{"run", run_text(s.run, say)}, {"by", s.used_by}}) + "; ";
+  if (s.state == RunStatus::State::planned)
+    line = say("state.planned", {{"run", run_text(s.run, say)},
                                  {"reported", std::to_string(s.reported)},
                                  {"count", std::to_string(s.shards)}}) +
            "; ";
   if (s.last)
-    line += say("state.complete", {{"run", run_text(s.last->night, say)},
+    line += say("state.complete", {{"run", run_text(s.last->run, say)},
                                    {"age", hours_text(s.age / 3600.0, say)},
                                    {"campaigns", say.counted("campaigns", s.last->seen)},
                                    {"failed", std::to_string(s.last->failed)}});
@@ -71,11 +70,11 @@ std::string line_of(const NightStatus& s, const std::string& wrong, const Termin
 /// That of --language, else that of the last run; "" before there is one.
 std::string language_of(const StatusWish& wish) {
   if (!wish.list.language.empty()) return wish.list.language;
-  const auto tonight = assessment::tonight_in(wish.out);
-  return tonight ? tonight->language : "";
+  const auto last_run = assessment::last_run_in(wish.out);
+  return last_run ? last_run->language : "";
 }
 
-int print_status(const NightStatus& found, const StatusWish& wish, const Common& common) {
+int print_status(const RunStatus& found, const StatusWish& wish, const Common& common) {
   // What other programs read stays English.
   const SiteWords words(common, common.json ? "en" : language_of(wish));
   const std::string wrong = trouble(found, wish, words.get());
@@ -84,16 +83,16 @@ int print_status(const NightStatus& found, const StatusWish& wish, const Common&
     Json json = {{"schema", "nonio-status/1"},
                  {"well", wrong.empty()},
                  {"state", to_text(found.state)},
-                 {"night", found.night.number},
-                 {"date", found.night.date}};
-    if (found.state == NightStatus::State::planned) {
+                 {"night", found.run.number},
+                 {"date", found.run.date}};
+    if (found.state == RunStatus::State::planned) {
       json["shards"] = found.shards;
       json["reported"] = found.reported;
     }
     if (!found.used_by.empty()) json["used_by"] = found.used_by;
     if (found.last)
-      json["last_complete"] = {{"night", found.last->night.number},
-                               {"date", found.last->night.date},
+      json["last_complete"] = {{"night", found.last->run.number},
+                               {"date", found.last->run.date},
                                {"age_s", found.age},
                                {"campaigns", found.last->seen},
                                {"failed", found.last->failed}};
@@ -120,7 +119,7 @@ Verb status_verb(Common& common) {
   WorklistWish& list = wish->list;
   return {
       .name = "status",
-      .summary = "Was the last run done, and what requires action?",
+      .summary = "State of the last run, and what requires action",
       .arguments = joined(
           {required(existing(Takes::folder, {"OUT", &wish->out, "Output folder of `nonio run`"})),
            age,
@@ -153,7 +152,7 @@ Verb status_verb(Common& common) {
         wish->list.out = wish->out;
         if (wish->only_actions || !wish->list.page.empty())
           return print_worklist(wish->list, common);
-        const auto found = batch::night_status(wish->out);
+        const auto found = batch::run_status(wish->out);
         if (!found) return complain(found.error().message);
         const int exit = print_status(*found, *wish, common);
         if (found->last && !common.json && !common.quiet) print_worklist(wish->list, common);

@@ -49,7 +49,7 @@ config::Checked<Settings> campaign_options(const OpenCampaign& open, const Info&
 /// measured.
 Expected<void> knows_active(const Campaign& campaign, const Measurement& m);
 
-/// What a control's tables of a campaign are: the words of a refusal stand on stderr.
+/// The tables of a control that a campaign gives. The words of a refusal are printed on stderr.
 void tell_findings(const OpenCampaign& open, const std::vector<Finding>& findings);
 
 }  // namespace nonio::app

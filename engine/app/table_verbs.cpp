@@ -38,7 +38,7 @@ Campaign machine_of(const std::vector<std::string>& axes) {
   return campaign;
 }
 
-/// Their places are their numbers: `--axis` says so.
+/// Their places are their numbers: `--axis` uses them.
 void number_axes(const std::vector<std::string>& names, Settings& options) {
   if (!options.has("axes")) return;
   NumberTables axes = options.tables("axes");
@@ -170,7 +170,7 @@ Expected<std::vector<BacklashWas>> backlash_was(const std::vector<std::string>& 
   return all;
 }
 
-/// A table whose files do not hold the backlash value beside it: 0 would be a guess.
+/// A table whose files do not contain the backlash value that belongs to it: 0 would be a guess.
 Expected<void> settle_backlash(const TableWish& w, const Loaded& present, Settings& options) {
   const auto said = backlash_was(w.backlash_was);
   if (!said) return fail(said.error().message);

@@ -80,7 +80,7 @@ std::string held_text(const modelling::PartModel& part, const model::Parameter& 
   return {};
 }
 
-/// Curves by what they say, everything else by its parameters.
+/// Curves by their RMS, everything else by its parameters.
 void print_parameters(std::ostream& out, const model::Fit& fit, const modelling::PartModel& part,
                       const modelling::ModelWords& words) {
   if (fit.parameters.empty()) return;
@@ -117,7 +117,7 @@ void print_parameters(std::ostream& out, const model::Fit& fit, const modelling:
   }
 }
 
-/// One after the other: each beside those above it.
+/// Added one after the other: each is fitted together with those above it.
 void print_places(std::ostream& out, const model::Comparison& c, const modelling::ModelWords& words,
                   Quantity deviation) {
   const config::TerminalWords say = words.terminal();
@@ -233,7 +233,7 @@ void print_advice(std::ostream& out, const modelling::Explained& e, const std::s
   const model::Explanation& x = e.explanation;
   const config::TerminalWords say = words.terminal();
   for (const model::Description& d : x.descriptions) sentence(out, 2, words.description(d, e.part));
-  for (const auto& [what, label] : {std::pair{"is", "why"}, {"cure", "do"}})
+  for (const auto& [what, label] : {std::pair{"is", "why"}, {"remedy", "do"}})
     if (const std::string text = words.card(x.verdict.effect, what); !text.empty())
       sentence(out, 2, say(label) + ": " + text);
   for (const model::Candidate& c : x.candidates)

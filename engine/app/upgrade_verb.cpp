@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio upgrade`: keys of site.toml and campaign.toml get their present names.
+// `nonio upgrade`: keys of site.toml, causes/*.toml and campaign.toml get their present names.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -33,6 +33,9 @@ class Upgrade {
     if (!is_site && walk->campaigns.empty())
       return complain(folder.string() + " contains neither site.toml nor a campaign");
     if (is_site) file(folder / config::site_name, config::site_file());
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder / config::causes_folder, none))
+      if (entry.path().extension() == ".toml") file(entry.path(), config::causes_file());
     for (const auto& [name, why] : walk->unlisted) failed({why, name});
     for (const std::string& one : walk->campaigns)
       file((folder / one / config::manifest_name).lexically_normal(), config::campaign_file());
@@ -99,7 +102,9 @@ Verb upgrade_verb(Common& common) {
   auto folder = std::make_shared<std::string>();
   return {
       .name = "upgrade",
-      .summary = "Gives keys with former names in site.toml and campaign.toml their present names",
+      .summary =
+          "Gives keys with former names in site.toml, causes/ and campaign.toml their present "
+          "names",
       .arguments = joined(
           {required(existing(Argument::Takes::folder, {"SITE|CAMPAIGN", folder.get(),
                                                        "Folder of a site or of one campaign"}))},

@@ -70,7 +70,7 @@ std::vector<std::string> check_names(const std::vector<std::string>& checks) {
   return out;
 }
 
-/// The gravest of all files'.
+/// The most severe of all files'.
 int exit_of(const std::vector<Verdict>& verdicts) {
   constexpr std::array<std::pair<Verdict, int>, 8> statuses{{{Verdict::altered, exit_failed},
                                                              {Verdict::untrusted, 4},
@@ -85,8 +85,8 @@ int exit_of(const std::vector<Verdict>& verdicts) {
   return exit_failed;
 }
 
-/// The verdict first: nothing that a file says comes before it, and nothing can look like it.
-/// The checks that fail follow, or all of them.
+/// The verdict first: no text of the file precedes it, and none can look like it. The checks that
+/// fail follow, or all of them.
 void print(std::ostream& out, const std::string& file, const sign::Verified& v, bool quiet,
            bool verbose) {
   const std::string name = printable(file);
@@ -118,7 +118,7 @@ int verify(const VerifyWish& wanted, const Common& common) {
   const auto rows = certificates::register_rows(wanted.site);
   process::step_aside();  // a stranger's file is read confined, as the plugins' code is run
   std::unique_ptr<reading::Workplace> place;
-  std::ostringstream early;  // loading plugins may begin this process anew: said when that is over
+  std::ostringstream early;  // loading plugins may restart this process: printed after that
   const auto open = [&]() -> Expected<const reading::Context*> {
     if (place) return &place->context;
     auto opened = certificates::open_to_verify(common.plugin_folders(), common.template_folders(),
@@ -183,7 +183,7 @@ Verb verify_verb(Common& common) {
           "is needed.\n\nExit status: 0 valid; 3 valid, but not every check was made; 4 signer not "
           "trusted by you; 5 not in force; 8 other words than installed; 1 altered or broken; 6 "
           "not a certificate; 7 no such file; 2 usage, configuration, or a register that cannot be "
-          "read. Of several files the gravest: 1, 4, 5, 8, 6, 7, 3, 0.",
+          "read. Of several files the most severe: 1, 4, 5, 8, 6, 7, 3, 0.",
       .examples = {"nonio certificate verify --site site out/c1/certificate.pdf"},
       .run = [wanted, &common] { return verify(*wanted, common); }};
 }

@@ -20,13 +20,13 @@ namespace {
 
 /// Leaves out what was known before that day, and other customers' machines.
 void keep_lines(const WorklistWish& wish, reports::SiteHistory& site) {
-  std::erase_if(site.lines, [&](const reports::MorningLine& l) {
+  std::erase_if(site.lines, [&](const reports::WorkItem& l) {
     return (!wish.customer.empty() && l.customer != wish.customer) ||
            (!wish.since.empty() && !l.since.empty() && l.since < wish.since);
   });
 }
 
-/// One of the pages of the morning as it would be now, on stdout.
+/// One of the pages of the site as it would be now, on stdout.
 int print_page(const WorklistWish& wish, const Templates& templates, const std::string& language,
                assessment::Assessment& assessment) {
   const reports::SiteHistory& site = assessment.site();
@@ -58,8 +58,8 @@ int print_page(const WorklistWish& wish, const Templates& templates, const std::
 int print_worklist(const WorklistWish& wish, const Common& common) {
   if (!wish.since.empty() && !is_day(wish.since))
     return complain("--since: expected a day as YYYY-MM-DD, found \"" + wish.since + "\"");
-  const auto tonight = assessment::tonight_in(wish.out);
-  if (!tonight) return complain(tonight.error().message);
+  const auto last_run = assessment::last_run_in(wish.out);
+  if (!last_run) return complain(last_run.error().message);
   std::optional<config::SiteLogs> entered;
   auto folders = common.template_folders();
   if (!wish.site.empty()) {
@@ -74,9 +74,10 @@ int print_worklist(const WorklistWish& wish, const Common& common) {
   const auto templates = config::read_templates(folders, digest);
   if (!templates) return complain(templates.error().message);
   auto assessment = assessment::Assessment::of(
-      wish.out, *tonight, [] {}, assessment::Assessment::Kept::used, entered ? &*entered : nullptr);
+      wish.out, *last_run, [] {}, assessment::Assessment::Kept::used,
+      entered ? &*entered : nullptr);
   if (!assessment) return complain(assessment.error().message);
-  std::string language = wish.language.empty() ? tonight->language : wish.language;
+  std::string language = wish.language.empty() ? last_run->language : wish.language;
   if (!templates->tables.contains("words/" + language + "/site")) {
     if (!wish.language.empty())
       return complain("--language: there are no words/" + language +
@@ -89,13 +90,13 @@ int print_worklist(const WorklistWish& wish, const Common& common) {
   keep_lines(wish, site);
   const bool asks = std::any_of(site.lines.begin(), site.lines.end(), reports::asks);
   if (common.json) {
-    std::cout << "{\n \"schema\": \"nonio-morning/1\",\n \"night\": " << tonight->night
-              << ",\n \"date\": \"" << tonight->date
+    std::cout << "{\n \"schema\": \"nonio-morning/1\",\n \"night\": " << last_run->run
+              << ",\n \"date\": \"" << last_run->date
               << "\",\n \"lines\": " << assessment::lines_json(site, *templates) << "\n}\n";
     return asks ? exit_failed : exit_done;
   }
   if (site.lines.empty()) site.hidden = all;
-  const auto text = reports::morning_text(site, *templates, language, site.lines.size());
+  const auto text = reports::worklist_text(site, *templates, language, site.lines.size());
   if (!text) return complain(text.error().message);
   std::cout << wrapped(*text, 0, sentence_width(STDOUT_FILENO), 4);
   return asks ? exit_failed : exit_done;

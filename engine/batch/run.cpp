@@ -8,20 +8,20 @@
 
 #include "batch/close/history_update.h"
 #include "batch/close/mail.h"
-#include "batch/close/morning_update.h"
-#include "batch/close/night_history.h"
+#include "batch/close/run_history.h"
 #include "batch/close/shown_histories.h"
 #include "batch/close/summary.h"
+#include "batch/close/worklist_update.h"
 #include "batch/commit/leftovers.h"
 #include "batch/commit/refused.h"
 #include "batch/commit/store.h"
 #include "batch/release/one_again.h"
 #include "batch/shards/packed_shard.h"
 #include "batch/shards/parts.h"
-#include "batch/state/night_plan.h"
-#include "batch/state/night_state.h"
 #include "batch/state/output_lock.h"
 #include "batch/state/read_apart.h"
+#include "batch/state/run_plan.h"
+#include "batch/state/run_state.h"
 #include "batch/survey/known_numbers.h"
 #include "batch/survey/survey.h"
 #include "batch/workers/runner.h"
@@ -70,23 +70,23 @@ Expected<std::string> look_at_site(const RunOptions& options) {
 
 /// What is new, in the order of the numbers, and what waits. An error if the register cannot be
 /// read: a summary without what was issued would pass for one of a run that issued nothing.
-Expected<void> note_certificates(Night& night, const RunOptions& options,
-                                 const reading::Context& context, NightState& state) {
+Expected<void> note_certificates(RunResult& run, const RunOptions& options,
+                                 const reading::Context& context, RunState& state) {
   NONIO_TRY(auto known, known_of(options, context, Look::again));
   if (!known) {  // the next run lists it
-    night.notes.push_back("the register of certificates is locked: what was issued is not listed");
+    run.notes.push_back("the register of certificates is locked: what was issued is not listed");
     return {};
   }
   const std::uint64_t before = state.issued_before.value_or(0);
   state.issued_at_begin = before;
   state.issued_before = issued_so_far(known->numbers);
   for (certificates::RegisterEntry& e : known->numbers)
-    if (e.order > before) night.issued.push_back(std::move(e));
+    if (e.order > before) run.issued.push_back(std::move(e));
   for (certificates::WaitingDraft& draft : known->drafts) {
-    const auto here = std::find_if(night.campaigns.begin(), night.campaigns.end(),
+    const auto here = std::find_if(run.campaigns.begin(), run.campaigns.end(),
                                    [&](const CampaignState& c) { return c.id == draft.campaign; });
-    if (here != night.campaigns.end() && here->status != evaluation::Status::failed)
-      night.waiting.push_back(std::move(draft));
+    if (here != run.campaigns.end() && here->status != evaluation::Status::failed)
+      run.waiting.push_back(std::move(draft));
   }
   return {};
 }
@@ -94,77 +94,77 @@ Expected<void> note_certificates(Night& night, const RunOptions& options,
 bool is_campaign(const Vanished& v) { return config::is_campaign_id(v.id); }
 
 /// Campaigns that were removed on purpose do not count as vanished.
-void leave_out_forgotten(Night& night, const Expected<store::Told>& told) {
-  if (!told) return;
-  std::erase_if(night.vanished, [&](const Vanished& v) {
+void leave_out_forgotten(RunResult& run, const Expected<store::SiteRecords>& records) {
+  if (!records) return;
+  std::erase_if(run.vanished, [&](const Vanished& v) {
     return is_campaign(v) &&
-           std::any_of(told->logs.forgotten.begin(), told->logs.forgotten.end(),
+           std::any_of(records->logs.forgotten.begin(), records->logs.forgotten.end(),
                        [&](const config::Forgotten& f) { return f.campaign == v.id; });
   });
 }
 
 /// If pages cannot be made, the run does not fail: they are made again from the results.
-Morning morning_of(Night& night, const RunOptions& options, const RunEvents& events,
-                   const reading::Context& context) {
-  auto made = make_morning(options, context, tonight_of(night, options.out, context.templates));
+MorningPages worklist_of(RunResult& run, const RunOptions& options, const RunEvents& events,
+                         const reading::Context& context) {
+  auto made = make_worklist(options, context, last_run_of(run, options.out, context.templates));
   if (made) {
-    night.asking = made->asking;
-    night.actions = made->actions;
+    run.asking = made->asking;
+    run.actions = made->actions;
     return std::move(*made);
   }
   if (process::is_stop_requested()) return {};
-  night.morning_error = "the pages of the worklist were not made: " + made.error().message;
-  night.notes.push_back(night.morning_error + "; the next run makes them");
-  events.note(night.notes.back());
+  run.worklist_error = "the pages of the worklist were not made: " + made.error().message;
+  run.notes.push_back(run.worklist_error + "; the next run makes them");
+  events.note(run.notes.back());
   return {};
 }
 
-/// A mail that cannot be sent is said in the summary, and loses nothing.
-void write_mail(Night& night, const RunOptions& options, const RunEvents& events,
-                const reading::Context& context, const Morning& morning) {
+/// A mail that cannot be sent is reported in the summary, and nothing is lost.
+void write_mail(RunResult& run, const RunOptions& options, const RunEvents& events,
+                const reading::Context& context, const MorningPages& morning) {
   if (morning.mail.empty() || process::is_stop_requested()) return;
   const config::TerminalWords words(context.templates, context.site.language);
-  const std::string subject = words(
-      "mail.subject", {{"number", std::to_string(night.night.number)}, {"date", night.night.date}});
+  const std::string subject =
+      words("mail.subject", {{"number", std::to_string(run.run.number)}, {"date", run.run.date}});
   const auto sent = send_mail(*context.site.mail, options.site, {subject, morning.mail});
   if (sent) return;
-  night.morning_error = "the mail of this run was not sent: " + sent.error().message;
-  night.notes.push_back(night.morning_error);
-  events.note(night.notes.back());
+  run.worklist_error = "the mail of this run was not sent: " + sent.error().message;
+  run.notes.push_back(run.worklist_error);
+  events.note(run.notes.back());
 }
 
-/// First what cannot be left lying; then what the register says; the summary last.
-Expected<void> close_night(Night& night, const RunOptions& options, const RunEvents& events,
-                           const SetUp& place, NightState& state) {
+/// First what cannot be left lying; then what the register states; the summary last.
+Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEvents& events,
+                         const SetUp& place, RunState& state) {
   const reading::Context& context = place.context;
-  if (auto tidied = tidy_all(night, options.out, state.resumed); !tidied) return tidied;
-  if (auto noted = note_certificates(night, options, context, state); !noted) return noted;
-  const Morning morning = morning_of(night, options, events, context);
-  if (!state.reopened) write_mail(night, options, events, context, morning);
+  if (auto tidied = tidy_all(run, options.out, state.resumed); !tidied) return tidied;
+  if (auto noted = note_certificates(run, options, context, state); !noted) return noted;
+  const MorningPages morning = worklist_of(run, options, events, context);
+  if (!state.reopened) write_mail(run, options, events, context, morning);
   const config::TerminalWords words(context.templates, context.site.language);
-  if (auto written = write_summary(night, options.out, options.version, words, morning); !written)
+  if (auto written = write_summary(run, options.out, options.version, words, morning); !written)
     return written;
   if (auto kept = place.parts.keep(state.of()); !kept) return kept;
-  return end_night(options.out, state, {state.of(), night.campaigns.size(), night.failed()});
+  return end_run(options.out, state, {state.of(), run.campaigns.size(), run.failed()});
 }
 
 /// The summary lists all of them; of very many the messages name the first.
-void tell_vanished(const Night& night, const RunEvents& events) {
+void tell_vanished(const RunResult& run, const RunEvents& events) {
   constexpr std::size_t most = 100;
-  for (std::size_t i = 0; i < std::min(most, night.vanished.size()); ++i) {
-    const Vanished& v = night.vanished[i];
+  for (std::size_t i = 0; i < std::min(most, run.vanished.size()); ++i) {
+    const Vanished& v = run.vanished[i];
     events.note(is_campaign(v) ? "campaign " + v.id + " has vanished: " + v.why
                                : v.id + " " + v.why);
   }
-  if (night.vanished.size() > most)
-    events.note("and " + std::to_string(night.vanished.size() - most) +
+  if (run.vanished.size() > most)
+    events.note("and " + std::to_string(run.vanished.size() - most) +
                 " more have vanished: see the summary");
 }
 
 /// Which campaigns there are, and what is to do with each.
 Expected<void> survey_site(const RunOptions& options, const reading::Context& context,
-                           const NightState& state, const std::optional<Known>& known,
-                           Night& night) {
+                           const RunState& state, const std::optional<Known>& known,
+                           RunResult& run) {
   SurveyInput input{options.site,
                     options.out,
                     context,
@@ -172,7 +172,7 @@ Expected<void> survey_site(const RunOptions& options, const reading::Context& co
                     state.force,
                     std::nullopt,
                     {},
-                    night.notes,
+                    run.notes,
                     process::is_stop_requested,
                     options.verify_results};
   if (known) {
@@ -181,17 +181,17 @@ Expected<void> survey_site(const RunOptions& options, const reading::Context& co
       input.drafts.insert(draft.campaign);
   }
   NONIO_TRY(auto surveyed, survey(input));
-  night.campaigns = std::move(surveyed.campaigns);
-  night.vanished = std::move(surveyed.vanished);
-  night.may_vanish = context.site.limits.vanished;
+  run.campaigns = std::move(surveyed.campaigns);
+  run.vanished = std::move(surveyed.vanished);
+  run.may_vanish = context.site.limits.missing_campaigns;
   return {};
 }
 
 /// Keys with former names: of many the messages name the first.
-void report_former_keys(const Night& night, const RunEvents& events) {
+void report_former_keys(const RunResult& run, const RunEvents& events) {
   constexpr std::size_t most = 20;
   std::size_t count = 0;
-  for (const CampaignState& c : night.campaigns)
+  for (const CampaignState& c : run.campaigns)
     for (const Error& w : c.warnings)
       if (++count <= most)
         events.note(storage::path_text(c.folder) + "/" + w.file + ":" + std::to_string(w.line) +
@@ -201,41 +201,39 @@ void report_former_keys(const Night& night, const RunEvents& events) {
                 " more keys with former names: `nonio check` lists them");
 }
 
-void tell_plan(const Night& night, const RunEvents& events) {
-  tell_vanished(night, events);
-  report_former_keys(night, events);
-  events.planned(night.campaigns.size(),
-                 static_cast<std::size_t>(
-                     std::count_if(night.campaigns.begin(), night.campaigns.end(), is_todo)));
+void tell_plan(const RunResult& run, const RunEvents& events) {
+  tell_vanished(run, events);
+  report_former_keys(run, events);
+  events.planned(run.campaigns.size(), static_cast<std::size_t>(std::count_if(
+                                           run.campaigns.begin(), run.campaigns.end(), is_todo)));
 }
 
 /// What was found out before the first campaign is done.
 struct Plan {
-  Expected<store::Told> told;
+  Expected<store::SiteRecords> records;
   std::string only;                              ///< the campaign of a run that is reopened
   std::optional<std::uint64_t> history_known{};  ///< by the store, when this run was planned
 };
 
 /// Surveyed and reported. An error: the run ends here; empty if a stop is requested.
-Expected<Plan> plan_night(const RunOptions& options, const RunEvents& events, const SetUp& place,
-                          const NightState& state, const std::optional<Known>& known,
-                          Night& night) {
+Expected<Plan> plan_run(const RunOptions& options, const RunEvents& events, const SetUp& place,
+                        const RunState& state, const std::optional<Known>& known, RunResult& run) {
   const reading::Context& context = place.context;
-  const std::size_t notes_so_far = night.notes.size();
-  const auto surveyed = survey_site(options, context, state, known, night);
+  const std::size_t notes_so_far = run.notes.size();
+  const auto surveyed = survey_site(options, context, state, known, run);
   if (process::is_stop_requested()) return fail("");
   if (!surveyed) return fail(surveyed.error());
   std::string only;
   if (state.reopened) {
-    NONIO_TRY(auto one, leave_only(options, state, night));
+    NONIO_TRY(auto one, leave_only(options, state, run));
     only = std::move(one);
   }
   const auto& lost = place.parts.lost();
-  night.vanished.insert(night.vanished.end(), lost.begin(), lost.end());
-  Plan plan{read_told(options, context), std::move(only)};
-  leave_out_forgotten(night, plan.told);
-  for (std::size_t i = notes_so_far; i < night.notes.size(); ++i) events.note(night.notes[i]);
-  tell_plan(night, events);
+  run.vanished.insert(run.vanished.end(), lost.begin(), lost.end());
+  Plan plan{read_records(options, context), std::move(only)};
+  leave_out_forgotten(run, plan.records);
+  for (std::size_t i = notes_so_far; i < run.notes.size(); ++i) events.note(run.notes[i]);
+  tell_plan(run, events);
   return plan;
 }
 
@@ -244,59 +242,59 @@ void tell_stage(const RunEvents& events, const char* name) {
 }
 
 /// A run that was planned, as its shards have left it.
-Expected<Plan> planned_night_of(const RunOptions& options, const RunEvents& events,
-                                const SetUp& place, const NightPlan& planned,
-                                const std::optional<Known>& known, Night& night) {
+Expected<Plan> planned_run_of(const RunOptions& options, const RunEvents& events,
+                              const SetUp& place, const RunPlan& planned,
+                              const std::optional<Known>& known, RunResult& run) {
   const reading::Context& context = place.context;
-  night.may_vanish = context.site.limits.vanished;
+  run.may_vanish = context.site.limits.missing_campaigns;
   if (!planned.register_read && known)
-    if (auto fit = check_numbers(options.out, night.campaigns, known->numbers); !fit)
+    if (auto fit = check_numbers(options.out, run.campaigns, known->numbers); !fit)
       return fail(fit.error());
-  if (auto noted = note_failures(options, context, night, place.signer.has_value()); !noted)
+  if (auto noted = note_failures(options, context, run, place.signer.has_value()); !noted)
     return fail(noted.error());
-  Plan plan{read_told(options, context), {}, planned.history_known};
-  leave_out_forgotten(night, plan.told);
-  tell_plan(night, events);
+  Plan plan{read_records(options, context), {}, planned.history_known};
+  leave_out_forgotten(run, plan.records);
+  tell_plan(run, events);
   return plan;
 }
 
 /// Every campaign that is to do, and what the history and the reports know of it. An error: the
 /// run ends here; empty if a stop is requested.
 Expected<void> do_planned(const RunOptions& options, const RunEvents& events, SetUp& place,
-                          const Plan& plan, bool register_known, NightState& state, Night& night) {
+                          const Plan& plan, bool register_known, RunState& state, RunResult& run) {
   const reading::Context& context = place.context;
   tell_stage(events, "campaigns");
   HistoryUpdate history(options, context);
   if (const auto begun = history.begin(plan.history_known); !begun) return begun;
-  if (std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
+  if (std::any_of(run.campaigns.begin(), run.campaigns.end(), is_todo))
     if (const auto begun = ShownHistories(options, context).begin(); !begun) return begun;
-  store_refused(options, context, state, events, night.campaigns);
+  store_refused(options, context, state, events, run.campaigns);
   ReleaseDesk desk;
   desk.signer = place.signer ? &*place.signer : nullptr;
   desk.plugins = &*place.host;
   if (!register_known)
     desk.recheck = [&](const std::vector<certificates::RegisterEntry>& numbers) {
       if (!state.issued_before) state.issued_before = issued_so_far(numbers);
-      return check_numbers(options.out, night.campaigns, numbers);
+      return check_numbers(options.out, run.campaigns, numbers);
     };
   RunOptions numbered = options;  // numbers in the order of the campaigns
   if (options.step == RunOptions::Step::merge && context.site.numbering.automatic)
     numbered.jobs = 1;
-  bool well = do_campaigns(numbered, events, context, state, desk, night.campaigns);
+  bool well = do_campaigns(numbered, events, context, state, desk, run.campaigns);
   if (well && !process::is_stop_requested()) {
     std::vector<std::string> done;
-    for (const CampaignState& c : night.campaigns)
+    for (const CampaignState& c : run.campaigns)
       if (c.action == Action::done && c.is_campaign) done.push_back(c.id);
     tell_stage(events, "history");
     const std::uint64_t before = state.reopened ? state.number
-                                 : state.last   ? state.last->night.number
+                                 : state.last   ? state.last->run.number
                                                 : 0;
-    write_history(night, history, before, done, plan.told, events);
-    well =
-        show_histories(options, events, context, state, desk, history, plan.told, plan.only, night);
+    write_history(run, history, before, done, plan.records, events);
+    well = show_histories(options, events, context, state, desk, history, plan.records, plan.only,
+                          run);
   }
   if (well) return {};
-  if (state.reopened && std::any_of(night.campaigns.begin(), night.campaigns.end(), is_todo))
+  if (state.reopened && std::any_of(run.campaigns.begin(), run.campaigns.end(), is_todo))
     history.nothing_done();
   tidy_root(options.out);
   return fail("");
@@ -311,81 +309,80 @@ Expected<void> make_ready(const RunOptions& options, const reading::Context& con
 }
 
 /// The run itself, in an output folder that no other process uses.
-void do_night(const RunOptions& options, const RunEvents& events, const std::string& site_text,
-              SetUp& place, const std::optional<Known>& known, Night& night) {
+void do_run(const RunOptions& options, const RunEvents& events, const std::string& site_text,
+            SetUp& place, const std::optional<Known>& known, RunResult& run) {
   const reading::Context& context = place.context;
   const auto refuse = [&](std::string why) {
-    night.end =
-        process::is_stop_requested() || why.empty() ? Night::End::interrupted : Night::End::refused;
-    night.error = std::move(why);
+    run.end = process::is_stop_requested() || why.empty() ? RunResult::End::interrupted
+                                                          : RunResult::End::refused;
+    run.error = std::move(why);
   };
   if (const auto ready = make_ready(options, context); !ready) return refuse(ready.error().message);
-  std::optional<NightPlan> planned;
+  std::optional<RunPlan> planned;
   if (options.step == RunOptions::Step::merge) {
     auto read = read_plan(options.out);
     if (!read) return refuse(read.error().message);
     planned = std::move(*read);
   }
-  auto state =
-      planned ? planned_night(options, site_text, planned->night.number)
-      : !options.only.empty()
-          ? reopen_night(options, site_text)
-          : begin_night(options, site_text,
-                        known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
+  auto state = planned ? planned_run(options, site_text, planned->run.number)
+               : !options.only.empty()
+                   ? reopen_run(options, site_text)
+                   : begin_run(options, site_text,
+                               known ? std::optional(issued_so_far(known->numbers)) : std::nullopt);
   if (!state) return refuse(state.error().message);
-  night.night = state->of();
-  if (state->last) night.seen_before = state->last->seen;
+  run.run = state->of();
+  if (state->last) run.seen_before = state->last->seen;
   tell_stage(events, "survey");
-  const std::size_t own_notes = night.notes.size();
+  const std::size_t own_notes = run.notes.size();
   if (planned) {
     if (auto same = check_made_with(*planned, context); !same) return refuse(same.error().message);
-    if (auto gathered = gather(options, *planned, night); !gathered) {
+    if (auto gathered = gather(options, *planned, run); !gathered) {
       if (process::is_stop_requested()) return refuse({});
-      night.error = gathered.error().message;
+      run.error = gathered.error().message;
       return;
     }
   }
-  const auto plan = planned ? planned_night_of(options, events, place, *planned, known, night)
-                            : plan_night(options, events, place, *state, known, night);
+  const auto plan = planned ? planned_run_of(options, events, place, *planned, known, run)
+                            : plan_run(options, events, place, *state, known, run);
   if (!plan) return refuse(plan.error().message);
   if (options.dry_run) return;
   if (options.step == RunOptions::Step::plan) {
-    const auto written = plan_shards(options, context, *state, known.has_value(), own_notes, night);
+    const auto written = plan_shards(options, context, *state, known.has_value(), own_notes, run);
     if (!written) refuse(written.error().message);
     return;
   }
-  if (const auto done = do_planned(options, events, place, *plan, known.has_value(), *state, night);
+  if (const auto done = do_planned(options, events, place, *plan, known.has_value(), *state, run);
       !done)
     return refuse(done.error().message);
-  leave_out_new(*state, night.campaigns);
+  leave_out_new(*state, run.campaigns);
   tell_stage(events, "pages");
-  const auto closed = close_night(night, options, events, place, *state);
+  const auto closed = close_run(run, options, events, place, *state);
   if (closed && planned) {
     auto gone = remove_plan(options.out);
     if (gone) gone = storage::sweep_packs(options.out);
-    if (!gone) night.error = gone.error().message;
+    if (!gone) run.error = gone.error().message;
   }
   if (closed) return;
   tidy_root(options.out);
   if (process::is_stop_requested()) return refuse({});
-  night.error = closed.error().message + "; the same command goes on where it stopped";
+  run.error = closed.error().message + "; the same command goes on where it stopped";
 }
 
 }  // namespace
 
-Night run_site(const RunOptions& options, const RunEvents& events) {
-  Night night;
+RunResult run_site(const RunOptions& options, const RunEvents& events) {
+  RunResult run;
   const auto refuse = [&](std::string why) {
-    night.end = process::is_stop_requested() ? Night::End::interrupted : Night::End::refused;
-    night.error = std::move(why);
-    return std::move(night);
+    run.end = process::is_stop_requested() ? RunResult::End::interrupted : RunResult::End::refused;
+    run.error = std::move(why);
+    return std::move(run);
   };
   const auto site_text = look_at_site(options);
   if (!site_text) return refuse(site_text.error().message);
   const auto place = set_up(options);
   if (!place) return refuse(place.error().message);
   const reading::Context& context = (*place)->context;
-  night.notes = (*place)->notes;
+  run.notes = (*place)->notes;
   if (events.words) events.words(config::TerminalWords(context.templates, context.site.language));
 
   std::optional<OutputLock> lock;
@@ -402,24 +399,24 @@ Night run_site(const RunOptions& options, const RunEvents& events) {
   const auto known = known_of(options, context);
   if (!known) return refuse(known.error().message);
   if (!*known)
-    night.notes.push_back(
+    run.notes.push_back(
         "another process keeps the register of certificates locked, or its server is away: "
         "campaigns that need a number wait for it");
-  for (const std::string& note : night.notes) events.note(note);
-  if (!(*place)->unstamped.empty()) night.notes.push_back((*place)->unstamped);
+  for (const std::string& note : run.notes) events.note(note);
+  if (!(*place)->unstamped.empty()) run.notes.push_back((*place)->unstamped);
   // What takes the memory is released first, so that enough is left to report it.
   auto reserve = std::make_unique<std::array<char, 1 << 18>>();
   try {
-    do_night(options, events, *site_text, **place, *known, night);
+    do_run(options, events, *site_text, **place, *known, run);
   } catch (const std::exception& e) {
     reserve.reset();
-    night.error = dynamic_cast<const std::bad_alloc*>(&e) != nullptr
-                      ? "out of memory; the same command goes on where it stopped"
-                      : e.what();
+    run.error = dynamic_cast<const std::bad_alloc*>(&e) != nullptr
+                    ? "out of memory; the same command goes on where it stopped"
+                    : e.what();
     if (lock) [[maybe_unused]]
-      const auto tidied = tidy_all(night, options.out, true);
+      const auto tidied = tidy_all(run, options.out, true);
   }
-  return night;
+  return run;
 }
 
 }  // namespace nonio::batch

@@ -10,7 +10,7 @@ namespace nonio::certificates {
 
 /// Where one file is other than it was: keys of TOML, lines of text; of other files that they
 /// differ. At most `most_changes` places are listed. Without `before` or `after`: the file is new,
-/// or gone.
+/// or was removed.
 FileChange change_of(const std::string& file, const std::string* before, const std::string* after);
 
 inline constexpr std::size_t most_changes = 40;

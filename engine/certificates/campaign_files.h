@@ -11,15 +11,15 @@
 
 namespace nonio::certificates {
 
-/// The files of one campaign for numbering and signing: each is read and hashed once, when it is
-/// asked for first. They are those that were evaluated, or there is an error: the process with the
-/// plugins has read them through descriptors of its own.
+/// The files of one campaign for numbering and signing: each is read and hashed once, at its first
+/// use. They are those that were evaluated, or there is an error: the process with the plugins has
+/// read them through descriptors of its own.
 class CampaignFiles {
  public:
   /// `folder` must outlive it.
   explicit CampaignFiles(const std::filesystem::path& folder) : folder_(folder) {}
 
-  /// `name` as the manifest has it, `digest` as it was evaluated. Stays as long as this.
+  /// `name` as the manifest has it, `digest` as it was evaluated. Valid as long as this object.
   Expected<std::string_view> bytes(const std::string& name, const std::string& digest);
   /// SHA-256 of the files of readings, one behind the other.
   Expected<std::string> readings_sha256(const reading::Inputs& inputs);

@@ -20,7 +20,7 @@ Expected<void> withdraw(const std::filesystem::path& site, const config::Numberi
                         const std::string& number, const std::string& why,
                         const std::string& by = {});
 
-/// Whether the register is what it was written as; an error if that cannot be asked.
+/// Whether the register is what it was written as; an error if that cannot be read.
 Expected<Audit> audit(const std::filesystem::path& site, const config::Numbering& numbering);
 
 /// Writes what was issued under all numbers into a folder: NUMBER.pdf, NUMBER-dcc.xml.

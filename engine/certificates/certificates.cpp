@@ -214,7 +214,7 @@ void remove_unsigned(evaluation::Evaluated& evaluated) {
 
 namespace {
 
-/// Of a draft its pages stay, under a name that says so: what is signed comes with the number.
+/// Of a draft its pages stay, under a name that shows that: what is signed comes with the number.
 void keep_draft(evaluation::Evaluated& evaluated) {
   for (Results::Written& w : evaluated.results.outputs) {
     auto& artifacts = w.result.artifacts;

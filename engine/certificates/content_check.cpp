@@ -57,7 +57,7 @@ Expected<void> unpack(const sign::Verified& v, const fs::path& folder) {
   return {};
 }
 
-/// What an attached results.json says of the number that was issued, if one was, and by which
+/// What an attached results.json states about the number that was issued, if one was, and by which
 /// version.
 struct Stated {
   std::optional<evaluation::Certificate> certificate;
@@ -162,7 +162,7 @@ class Again {
   }
 
   /// Those that the file was made with, if this is its version. What is not whole, or not what
-  /// results.json says of it, is no reason to look at less.
+  /// results.json states about it, does not end the other checks.
   sign::Check take_templates() {
     constexpr const char* id = "content.templates";
     if (stated_.nonio != context_.version)
@@ -183,7 +183,7 @@ class Again {
     return {id, State::holds, "the attached ones are those that results.json names"};
   }
 
-  /// Words say whether a value conforms: with others than the installed ones, a file of the same
+  /// Words state whether a value conforms: with others than the installed ones, a file of the same
   /// signer and the same readings may state the opposite.
   sign::Check same_words() const {
     if (!strange_) return not_checked(words_check, "needs the templates of this version");
@@ -246,8 +246,8 @@ class Again {
         });
   }
 
-  /// The night's own way up to the signature, which holds what is to be signed against what is
-  /// there.
+  /// The steps of a run up to the signature; the bytes to be signed are compared with those that
+  /// exist.
   Expected<std::string> same_file(evaluation::Evaluated& again) {
     if (again.status == evaluation::Status::failed)
       return fail("the attached readings cannot be evaluated: " +

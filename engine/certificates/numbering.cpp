@@ -133,7 +133,7 @@ void put_reasons(const Releasing& releasing, Issue& issue) {
 const config::AcceptedRule* rule_for(const config::Numbering& numbering,
                                      const evaluation::KnownFinding& finding) {
   if (finding.id.starts_with(reading::plausibility_prefix))
-    return nullptr;  // a person says why, each time
+    return nullptr;  // a person states why, each time
   for (const config::AcceptedRule& rule : numbering.accepted) {
     const bool all_of_a_kind = rule.finding.ends_with(".*");
     if (all_of_a_kind ? finding.id.starts_with(rule.finding.substr(0, rule.finding.size() - 1))
@@ -275,7 +275,7 @@ Expected<evaluation::Certificate> Numbers::find_or_draw(const evaluation::Evalua
   if (*found) return std::move(**found);
   if (auto same = check_release(made_from(evaluated, context_)); !same) return fail(same.error());
   NONIO_TRY(const auto before, opened.last_number(campaign));
-  // Of the same data, by a night beside this one, since they were looked for? Then nothing is
+  // Issued for the same data by another run since they were searched? Then nothing is
   // amended.
   if (before) found = opened.find(campaign, data);
   if (!found) return fail(found.error());
@@ -396,7 +396,7 @@ Expected<void> Numbers::issue(evaluation::Evaluated& evaluated, const std::strin
   return {};
 }
 
-/// A certificate does not change; that another version would print other numbers is said.
+/// A certificate does not change; that another version would print other numbers is stated.
 void Numbers::note_differences(evaluation::Evaluated& evaluated) const {
   auto outputs = std::exchange(evaluated.results.outputs, {});
   const auto same = same_values(evaluated.certificate->results,

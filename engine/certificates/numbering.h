@@ -34,29 +34,29 @@ class Numbers {
   Numbers(Where where, const reading::Context& context, const Releasing* releasing)
       : where_(std::move(where)), context_(context), releasing_(releasing) {}
 
-  /// What was issued for what is evaluated here, whatever is `missing` for it today; else, if
-  /// nothing is, a draft or a number; else neither. `as_draft`: no number, whatever the rules say.
+  /// What was issued for these data, whatever is `missing` for it today; else, if nothing is, a
+  /// draft or a number; else neither. `as_draft`: never a number.
   evaluation::AssignedNumber assign(const evaluation::Evaluated& evaluated, CampaignFiles& files,
                                     std::vector<std::string> missing, bool as_draft) const;
   /// Whether a finding that no rule accepts came after a number was drawn by the rules.
   bool held_up(const evaluation::Evaluated& evaluated) const;
   /// After signing: enters what is issued into the register, and gives the campaign what the
-  /// register holds. Of what was issued before it is said if its numbers are others now. A draft is
-  /// entered as one that waits for `folder`'s release (relative to the site).
+  /// register holds. Of what was issued before it is stated if its numbers are others now. A draft
+  /// is entered as one that waits for `folder`'s release (relative to the site).
   Expected<void> issue(evaluation::Evaluated& evaluated, const std::string& folder) const;
-  /// Nothing is signed that neither a person nor the site's rules have released. What is not part
-  /// of a certificate nobody releases: by the rules it is signed, else it is left out and a finding
-  /// says so.
+  /// Nothing is signed that neither a person nor the site's rules have released. Documents that are
+  /// not part of a certificate need no release: they are signed if the rules allow it, else omitted
+  /// with a finding.
   void hold_unreleased(evaluation::Evaluated& evaluated) const;
-  /// A number that was drawn for a campaign keeps the reason why it is not issued. Silent: there is
-  /// nobody left to tell.
+  /// Records why a number that was drawn for a campaign is not issued. Errors are ignored, because
+  /// no caller could handle them.
   void note_failure(const std::string& campaign, const std::string& why) const;
 
  private:
   Expected<Register> open() const;
   Expected<bool> has_register() const;
   bool may_issue(const evaluation::Evaluated& evaluated) const;
-  /// No number: `missing` says what for.
+  /// No number: `missing` states what for.
   Expected<evaluation::Certificate> find_or_draw(const evaluation::Evaluated& evaluated,
                                                  CampaignFiles& files,
                                                  std::vector<std::string>& missing,

@@ -48,7 +48,7 @@ class Comparison {
  private:
   void compare_objects(const storage::Json& attached, const storage::Json& again,
                        const std::string& where) {
-    // Certificates of earlier versions say neither k, which was 2, nor their budget.
+    // Certificates of earlier versions state neither k, which was 2, nor their budget.
     for (const auto& [key, value] : again.items())
       if (!attached.contains(key) && key != "k" && key != "budget")
         difference = where + " lacks " + key;
@@ -210,7 +210,7 @@ std::string contradiction(const sign::DccValue& v, const storage::Json& results)
   if (!same_when_rounded(v, value["value"].get<double>(),
                          has_U ? value["U"].get<double>() : std::nan("")))
     return who + " is another number in results.json, or has another uncertainty there";
-  // Results of earlier versions do not say k, which was 2.
+  // Results of earlier versions do not state k, which was 2.
   if (has_U && !same(is_number(value, "k") ? value["k"].get<double>() : 2.0, v.k))
     return who + " has another coverage factor in results.json";
   return {};

@@ -210,7 +210,7 @@ reading::Inputs Register::inputs_of(std::int64_t id) {
 
 namespace {
 
-/// What the journal says was issued under a number.
+/// What the journal states was issued under a number.
 Expected<storage::Json> issued_as_noted(storage::Database& database, const std::string& number) {
   const auto entry = Journal(database).last_of("issued", number);
   if (auto well = database.take_error(); !well) return fail(well.error());

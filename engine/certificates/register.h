@@ -50,7 +50,7 @@ struct WaitingDraft {
   std::string replaces;          ///< the number that it would replace; may be empty
   reading::Inputs made_from;     ///< its data, and plugins, templates, version
   std::vector<evaluation::KnownFinding> findings;
-  std::optional<Approval> author{};  ///< who has approved it, where two persons are wanted
+  std::optional<Approval> author{};  ///< who has approved it, where two persons are required
 };
 
 /// What a person approves, as he has read it.
@@ -77,7 +77,7 @@ struct Audit {
 /// carries it across a fork. What a call has changed is on disk when it returns.
 class Register {
  public:
-  /// Made if it is not there. Whoever finds it locked waits up to `patience` seconds.
+  /// Made if it is missing. Whoever finds it locked waits up to `patience` seconds.
   static Expected<Register> open(const std::filesystem::path& site,
                                  const config::Numbering& numbering, double patience = 60.0);
   /// The same, whatever was done to it.
@@ -113,9 +113,9 @@ class Register {
   /// one. `today` is YYYY-MM-DD; an error if something was issued on a later day.
   Expected<evaluation::Certificate> draw(const std::string& campaign, const reading::Inputs& data,
                                          const std::string& today);
-  /// Issues what was drawn and signed. Gives what holds from now on: if somebody else was faster
-  /// with the same data, what he has issued; where both are persons' approvals, an error that names
-  /// the first one. The campaign's draft is removed with it.
+  /// Issues what was drawn and signed. Returns the entry that is valid from now on: if another
+  /// process was faster with the same data, the entry of that process; if both are approvals by
+  /// persons, an error that names the first one. The campaign's draft is removed with it.
   Expected<evaluation::Certificate> issue(const evaluation::Certificate& certificate,
                                           const std::string& campaign, const reading::Inputs& data,
                                           const Approved* approved = nullptr);
@@ -129,15 +129,15 @@ class Register {
   Expected<std::vector<evaluation::IssuedFile>> files(const std::string& number);
 
   Expected<std::vector<WaitingDraft>> all_drafts();
-  /// In place of an earlier one of the campaign. What its author said stays if it is the same.
+  /// In place of an earlier one of the campaign. What its author stated stays if it is the same.
   Expected<void> enter_draft(const WaitingDraft& draft);
   Expected<void> drop_draft(const std::string& campaign);
   Expected<std::optional<WaitingDraft>> draft(const std::string& campaign);
-  /// The author's word on the draft that he has seen; an error if the draft, or what an author says
-  /// of it, has changed since.
+  /// The approval of the draft by its author, who has seen it; an error if the draft, or what an
+  /// author states about it, has changed since.
   Expected<void> approve(const WaitingDraft& seen, const Approval& approval);
   /// For whoever approves what another person has approved already: enters the second approval into
-  /// the journal, so that its reasons are kept, and says who was first.
+  /// the journal, so that its reasons are kept, and states who was first.
   Expected<std::string> note_second(const std::string& number, const std::string& campaign,
                                     const Approval& second);
   /// Whose approval a number was issued with; none by the rules.
@@ -162,7 +162,7 @@ class Register {
                                                         const reading::Inputs& data);
   Expected<evaluation::Certificate> load(std::int64_t id);
   reading::Inputs inputs_of(std::int64_t id);
-  /// An error if they are not what the journal says was issued.
+  /// An error if they are not what the journal states was issued.
   Expected<std::vector<evaluation::IssuedFile>> files_of(std::int64_t id);
   Expected<void> note_replaced(std::int64_t id, Issue& issue);
 

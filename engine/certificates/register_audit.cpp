@@ -122,7 +122,7 @@ class Auditor {
     check_anchor(id, number, noted.contains("carried_over"), drawn);
   }
 
-  /// What the signed file says of the journal.
+  /// What the signed file states about the journal.
   void check_anchor(std::int64_t id, const std::string& number, bool carried_over,
                     const Journal::Entry& drawn) {
     for (const storage::Database::Row& row :

@@ -24,7 +24,7 @@ struct RegisterRows {
   std::map<std::string, std::string> issued;  ///< number, by the SHA-256 of an issued file
 };
 
-/// Of the site's register; nothing is asked where `site` is empty.
+/// Of the site's register; not checked where `site` is empty.
 RegisterRows register_rows(const std::filesystem::path& site);
 
 /// "no verdict on FILE, because the register cannot be read: ..."
@@ -34,9 +34,9 @@ std::string no_verdict(const RegisterRows& rows, const std::string& what);
 /// bytes of a PDF may end with updates.
 std::string issued_by(const RegisterRows& rows, std::string_view bytes);
 
-/// What the register of a site says of a signed file (`register.state`): that this very file was
+/// The state of a signed file in the register of a site (`register.state`): that this very file was
 /// issued under its number, and that the number is in force. None where the file has no number that
-/// a register gives. An error if the register has to be asked and did not answer.
+/// a register gives. An error if the register is required and did not answer.
 Expected<std::optional<sign::Check>> check_register(const sign::Verified& verified,
                                                     std::string_view bytes,
                                                     const RegisterRows& rows);

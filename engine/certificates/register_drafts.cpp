@@ -152,7 +152,7 @@ void Register::add_second(const std::string& number, const std::string& campaign
 Expected<void> Register::approve(const WaitingDraft& seen, const Approval& approval) {
   storage::Database::Transaction transaction(*database_);
   if (auto same = check_seen(seen, approval); !same) {
-    // What is kept of the second approval stays.
+    // The record of the second approval is committed.
     if (auto ended = end(transaction); !ended) return ended;
     return same;
   }

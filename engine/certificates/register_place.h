@@ -31,7 +31,8 @@ Expected<RegisterPlace> register_place(const std::filesystem::path& site,
 Expected<bool> has_register(const RegisterPlace& place, double patience);
 /// Made with `create`. Refused: a server that may lose what it has confirmed, since it would give
 /// numbers again; the register of another site; a new one where the site has one of the other kind.
-/// `as_it_is`: not compared with what the site has seen, for an audit, which says all that is wrong.
+/// `as_it_is`: not compared with what the site has seen, for an audit, which states all that is
+/// wrong.
 Expected<storage::Database> open_register(const RegisterPlace& place, storage::Database::Use use,
                                           double patience, bool as_it_is = false);
 /// An error if it is not the register of the site, or lacks entries that the site has seen.

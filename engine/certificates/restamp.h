@@ -20,7 +20,7 @@ struct RestampOptions {
   bool fetch = true;
 };
 
-/// An error where no time-stamp server is named although a time stamp is wanted.
+/// An error where no time-stamp server is named although a time stamp is required.
 config::Checked<sign::Prolonging> prolonging_of(const RestampOptions& options);
 
 struct Restamped {

@@ -63,16 +63,16 @@ Expected<sign::TimeStamping> stamping_of(const config::Signing& s, const fs::pat
   stamping.required = s.time_stamp_required;
   stamping.seconds = s.time_stamp_seconds;
   stamping.trust = std::move(roots);
-  // Certificates wait for each other: a server that is away costs its time limit once, not each time.
+  // Certificates are signed in turn: a server without response costs its time limit once only.
   stamping.away = std::make_shared<std::string>();
   return stamping;
 }
 
 constexpr const char* signing_process = "the process that signs";
 
-/// One request and its answer go over a stream of their own, whose end the signer is sent.
-/// Waits for whoever asks: one that hangs is ended by the main process, and its stream with it.
-/// An empty request asks who signs. The answer: "" or what went wrong; what there is to say of a
+/// One request and its answer go over a stream of their own, whose end the signer is sent. Waits
+/// for requests: one that hangs is ended by the main process, and its stream with it. An empty
+/// request is answered with the signer. The answer: "" or what went wrong; the message about a
 /// missing time stamp; the bytes.
 void answer(int stream, const Expected<sign::Key>& key,
             const Expected<sign::TimeStamping>& stamping) {
@@ -95,7 +95,7 @@ void answer(int stream, const Expected<sign::Key>& key,
   done ? reply("", *done) : reply(done.error().message, {});
 }
 
-/// `go_on`: asked now and then until the answer begins; may be empty.
+/// `go_on`: called repeatedly until the answer begins; may be empty.
 Expected<sign::Signed> ask(int channel, std::string_view bytes,
                            const std::function<bool()>& go_on = {}) {
   NONIO_TRY(auto ends, process::channel_pair(SOCK_STREAM, signing_process));

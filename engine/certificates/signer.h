@@ -15,7 +15,7 @@ namespace nonio::certificates {
 
 /// The only process of a run that has the key. Workers send it finished bytes and get them back
 /// signed. It is made before plugins are loaded, so that nothing of theirs is in it, and opens the
-/// key once; if that does not succeed, it says why to everyone who asks.
+/// key once; if that does not succeed, each request is answered with the error.
 class Signer {
  public:
   /// A disk or share without an answer for `disk_seconds` is none.
@@ -26,7 +26,7 @@ class Signer {
 
   /// Starts the process; whose key it has, or why it has none.
   Expected<sign::Identity> start();
-  /// Starts it again if it has died; what was asked meanwhile is not lost.
+  /// Starts it again if it has died; requests in the meantime are not lost.
   void revive();
   /// To be called first in a worker: it cannot listen to others.
   void leave_to_worker() const;

@@ -12,7 +12,7 @@ namespace nonio::certificates {
 
 /// Arguments of `nonio certificate verify`; paths may be empty.
 struct VerifyOptions {
-  std::filesystem::path site;  ///< whose [signing] says whom to trust and expect
+  std::filesystem::path site;  ///< whose [signing] states whom to trust and expect
   std::filesystem::path signer_roots, time_stamp_roots;
   std::filesystem::path trust;  ///< one root for both
   std::filesystem::path revocation;

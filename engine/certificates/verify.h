@@ -13,15 +13,15 @@
 
 namespace nonio::certificates {
 
-/// Plugins and templates, with those of `site` if it is not empty. Of its site.toml nothing, and
-/// nothing of the folder that one happens to stand in.
+/// Plugins and templates, with those of `site` if it is not empty. Neither its site.toml nor the
+/// current folder is read.
 Expected<std::unique_ptr<reading::Workplace>> open_to_verify(
     const std::vector<std::filesystem::path>& plugin_folders,
     std::vector<std::filesystem::path> template_folders, const std::filesystem::path& site,
     const std::string& version);
 
-/// A file that may be a certificate. Refused by its size where the system tells it, else when more
-/// comes than may; never read whole.
+/// A file that may be a certificate. Refused by its size where the system reports it, else when
+/// more bytes are read than allowed; never read whole.
 Expected<std::string> read_bounded(const std::filesystem::path& path);
 
 /// Opens plugins and templates at the first call: a file whose signature does not hold needs none.
@@ -29,8 +29,8 @@ using OpenContext = std::function<Expected<const reading::Context*>()>;
 
 /// A certificate (PDF) or a DCC (XML): its signature first, then, where that holds, its content:
 /// every attached DCC, and the attached readings evaluated again by the plugins that `open` gives,
-/// up to the printed pages. `rows` of the register say whether a number is in force, and whose key
-/// signed it. Whatever the file holds, there is an answer; an error is one of `open`, or the
+/// up to the printed pages. `rows` of the register state whether a number is in force, and whose
+/// key signed it. Whatever the file holds, there is an answer; an error is one of `open`, or the
 /// register is needed and could not be read.
 Expected<sign::Verified> verify_file(const std::filesystem::path& path,
                                      const sign::Verifier& verifier, const OpenContext& open,

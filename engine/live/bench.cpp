@@ -87,7 +87,7 @@ struct Running {
   bool fills = false;     ///< `residual`
   bool is_begun = false;  ///< the first state was reported
   Clock::time_point begun = Clock::now();
-  int told = 0;  ///< seconds that were reported
+  int reported = 0;  ///< seconds that were reported
 };
 
 bool write_all(int fd, std::string_view bytes) {
@@ -179,7 +179,7 @@ class Loop {
         channel_(std::move(channel)),
         seconds_(bench_.place->context.site.limits.seconds) {}
 
-  /// Until the server has gone.
+  /// Until the server has ended.
   void run() {
     tell(0, job_state::opened, storage::dump(described(bench_)));
     if (!bench_.has_catalogue) {
@@ -360,16 +360,16 @@ class Loop {
     bench_.read.inputs.front().second = saved.at("manifest_sha256").get<std::string>();
   }
 
-  /// Ends what takes too long, and says how long the others have been at work.
+  /// Ends what takes too long, and states how long the others have been at work.
   void look_after() {
     std::vector<std::uint64_t> overdue;
     for (auto& [number, one] : running_) {
       const double seconds = std::chrono::duration<double>(Clock::now() - one.begun).count();
       if (seconds > seconds_) {
         overdue.push_back(number);
-      } else if (seconds >= one.told + 1) {
-        one.told = static_cast<int>(seconds);
-        if (number != 0) tell(number, job_state::running, std::to_string(one.told));
+      } else if (seconds >= one.reported + 1) {
+        one.reported = static_cast<int>(seconds);
+        if (number != 0) tell(number, job_state::running, std::to_string(one.reported));
       }
     }
     for (const std::uint64_t number : overdue) {

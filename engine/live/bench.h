@@ -20,8 +20,8 @@ inline constexpr const char* done = "done";
 inline constexpr const char* failed = "failed";
 }  // namespace job_state
 
-/// Answers requests until the other side has gone. A request is packed: "do" or "cancel", number
-/// of the job, JSON.
+/// Answers requests until the other side has closed the connection. A request is packed: "do" or
+/// "cancel", number of the job, JSON.
 [[noreturn]] void run_bench(const BenchWish& wish, process::Handle channel);
 
 }  // namespace nonio::live

@@ -15,8 +15,8 @@
 
 namespace nonio::live {
 
-/// The server's side of a bench process: numbers for requests, answers from a thread of its own. A
-/// bench process that dies fails what was asked of it, and is made anew.
+/// The server's side of a bench process: numbers for requests, answers from a thread of its own. If
+/// a bench process dies, its requests fail and it is restarted.
 class BenchClient {
  public:
   /// Number of the job (0: the campaign itself), one of `job_state`, text. Called without a lock,
@@ -48,7 +48,7 @@ class BenchClient {
   std::condition_variable wanted_;
   process::Handle channel_;
   std::set<std::uint64_t> open_;                 ///< jobs without an answer
-  std::map<std::uint64_t, std::string> unsent_;  ///< asked while there was no process
+  std::map<std::uint64_t, std::string> unsent_;  ///< requested while there was no process
   std::uint64_t last_ = 0;
   bool again_ = true, over_ = false;
   std::thread listener_;

@@ -84,7 +84,7 @@ Json lines_in_space(const model::Part& part) {
 
 Json card_of(const modelling::ModelWords& words, const std::string& effect) {
   Json card = Json::object();
-  for (const char* what : {"title", "is", "size", "looks", "alike", "cure"})
+  for (const char* what : {"title", "is", "size", "appearance", "similar", "remedy"})
     if (std::string text = words.card(effect, what); !text.empty()) card[what] = std::move(text);
   return card;
 }
@@ -230,7 +230,7 @@ Expected<std::string> page_data(const Bench& bench, const PartModel& part, const
   return data;
 }
 
-/// None where it is of other readings.
+/// None if it belongs to other readings.
 const model::Groundwork* groundwork_of(const Bench& bench, const Tried& tried) {
   if (tried.own) return nullptr;
   const auto found = bench.groundwork.find(tried.part().part.name);

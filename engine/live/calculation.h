@@ -30,7 +30,7 @@ struct Bench {
   std::unique_ptr<reading::Workplace> place;
   reading::ReadCampaign read;
   std::vector<modelling::PartModel> parts;  ///< with any model
-  bool has_catalogue = false;  ///< of very many readings each process that wants it makes it
+  bool has_catalogue = false;  ///< of very many readings each process that requires it makes it
   /// Of parts with many readings: the same for each model that is tried.
   std::map<std::string, model::Groundwork> groundwork{};
 
@@ -39,7 +39,7 @@ struct Bench {
   modelling::PartModel* part(const std::string& name);
 };
 
-/// Reads the campaign; the process goes on in a child that is kept apart. An error tells why the
+/// Reads the campaign; the process goes on in a child that is kept apart. An error states why the
 /// campaign cannot be opened.
 Expected<Bench> open_bench(const BenchWish& wish);
 
@@ -73,7 +73,7 @@ bool needs_residual(const storage::Json& request);
 /// What must be read from files, or written: such a request is not confined to calculating.
 bool needs_files(const std::string& kind);
 
-/// The fit, or what was asked of it, depends on this of a request.
+/// The part of a request that the fit and its results depend on.
 std::string trial_key(const storage::Json& request);
 
 }  // namespace nonio::live

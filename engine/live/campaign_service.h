@@ -25,7 +25,7 @@ struct Shells {
   Sentences sentences;
 };
 
-/// Of a site: its morning, and the workbench of each of its campaigns.
+/// Of a site: its worklist, and the workbench of each of its campaigns.
 std::unique_ptr<Starting> site_service(const LiveWish& wish, Launcher launcher, Shells shells);
 
 /// Of a campaign, or of a site if the folder has no campaign.toml.

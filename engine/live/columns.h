@@ -7,7 +7,7 @@
 #include "campaign/modelling/campaign_model.h"
 #include "platform/storage/json_values.h"
 
-/// Readings of a part as the page asks for them: reduced to pixels, or single ones.
+/// Readings of a part as the page requests them: reduced to pixels, or single ones.
 namespace nonio::live {
 
 /// Least and largest y in each of `px` columns of the range x0..x1, and the rows that have them; so

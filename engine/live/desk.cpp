@@ -13,7 +13,7 @@ namespace {
 constexpr auto fit_patience = std::chrono::seconds(2);
 constexpr const char* json_type = "application/json";
 
-/// An object with something in front of what it has.
+/// The JSON object with the version as its first member.
 std::string with_version(std::uint64_t version, const std::string& object) {
   return "{\"version\":" + std::to_string(version) + "," + object.substr(1);
 }

@@ -100,7 +100,7 @@ class Desk {
   Done change_model(const Json& body);
   Done known(const std::vector<std::string>& effects) const;
 
-  // what the bench says
+  // messages of the bench
   void tell(std::uint64_t job, const std::string& state, std::string text);
   void take_campaign(const std::string& state, const std::string& text);
   void take_work(const std::string& part, PartState::Work& work, bool is_fit,

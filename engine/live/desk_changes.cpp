@@ -36,10 +36,10 @@ Answer Desk::post(const std::string& what, const Json& body, const Request& requ
   const std::lock_guard lock(mutex_);
   if (what != "name") end_search();
   const Trial before = session_.trial();
-  std::string told;
-  const auto done = change(what, body, told);
-  if (told.empty()) told = command_between(name_, before, session_.trial());
-  return changed(done, told);
+  std::string shown_command;
+  const auto done = change(what, body, shown_command);
+  if (shown_command.empty()) shown_command = command_between(name_, before, session_.trial());
+  return changed(done, shown_command);
 }
 
 /// Also where it failed: with words.
@@ -76,17 +76,17 @@ Done Desk::change_model(const Json& body) {
   return session_.set(model);
 }
 
-Done Desk::change(const std::string& what, const Json& body, std::string& told) {
+Done Desk::change(const std::string& what, const Json& body, std::string& shown_command) {
   if (what == "model") return change_model(body);
   if (what == "undo") return session_.undo();
   if (what == "redo") return session_.redo();
   if (what == "goto") return session_.go_to(body.at("n").get<std::size_t>());
   if (what == "name") {
-    told = command();
+    shown_command = command();
     return session_.name(body.at("n").get<std::size_t>(), body.at("name").get<std::string>());
   }
   if (what == "include") {
-    told = "nonio model compare " + quoted_for_shell(name_);
+    shown_command = "nonio model compare " + quoted_for_shell(name_);
     return session_.include(body.at("part").get<std::string>(),
                             body.at("rows").get<std::vector<std::size_t>>());
   }
@@ -186,7 +186,7 @@ Answer Desk::save(const Request& request) {
     return out;
   }
   const Json body = Json::parse(request.body.empty() ? "{}" : request.body);
-  const std::string told = command();
+  const std::string shown_command = command();
   Json wish = save_request("save");
   wish["why"] = body.value("why", "").substr(0, longest_text);
   const Waiting done = wait_for(lock, wish, "");
@@ -206,7 +206,7 @@ Answer Desk::save(const Request& request) {
   return json_answer(200, {{"version", session_.version()},
                            {"manifest_sha256", saved.at("manifest_sha256")},
                            {"steps", saved.at("steps")},
-                           {"command", told}});
+                           {"command", shown_command}});
 }
 
 // ---- effects, one after the other
@@ -260,7 +260,7 @@ void Desk::end_search() {
 /// When all parts are explained: the next effect, or the end.
 void Desk::search_on() {
   while (searching_ && is_explained()) {
-    std::vector<modelling::Told> told;
+    std::vector<modelling::PartVerdict> verdicts;
     std::string says;
     for (const std::string& part : order_) {
       const PartState& one = parts_.at(part);
@@ -279,12 +279,12 @@ void Desk::search_on() {
         continue;
       }
       const Json verdict = Json::parse(one.explain.head).at("explain");
-      told.push_back({verdict.at("verdict").at("kind").get<std::string>(),
-                      verdict.at("verdict").value("effect", ""),
-                      verdict.at("certain").get<std::vector<std::string>>()});
+      verdicts.push_back({verdict.at("verdict").at("kind").get<std::string>(),
+                          verdict.at("verdict").value("effect", ""),
+                          verdict.at("certain").get<std::vector<std::string>>()});
       says += (says.empty() ? "" : "\n") + verdict.at("verdict").value("says", "");
     }
-    const std::string next = modelling::next_effect(told);
+    const std::string next = modelling::next_effect(verdicts);
     if (next.empty()) return search_ended("done", says);
     if (searching_->added.size() == most_added)
       return fail_search("12 effects were added and one is still missing; stopped", "most_added");

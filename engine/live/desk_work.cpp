@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a desk asks of its bench process, and what comes back.
+// Requests of a desk to its bench process, and their answers.
 #include <chrono>
 #include <ctime>
 
@@ -61,7 +61,7 @@ const Remembered::Text* Remembered::find(const std::string& key) const {
 
 void Remembered::clear() { *this = Remembered(); }
 
-// ---- what is asked of the bench
+// ---- requests to the bench
 
 Json Desk::request_for(const std::string& kind, const std::string& part) const {
   const Trial& trial = session_.trial();
@@ -75,8 +75,8 @@ Json Desk::request_for(const std::string& kind, const std::string& part) const {
   return request;
 }
 
-/// What belongs to another trial is cancelled; what is not known yet of this one is asked, or will
-/// be when there is somebody to ask.
+/// What belongs to another trial is cancelled; what is not known yet of this one is requested, now
+/// or as soon as a process is free.
 void Desk::refresh() {
   for (const std::string& part : order_) {
     PartState& state = parts_[part];
@@ -124,7 +124,7 @@ void Desk::publish(const char* type, const std::string& about, Json data) {
   events_.publish({session_.version(), type, about, storage::dump_line(all)});
 }
 
-// ---- what the bench says
+// ---- messages of the bench
 
 void Desk::tell(std::uint64_t job, const std::string& state, std::string text) {
   const std::lock_guard lock(mutex_);
@@ -181,7 +181,7 @@ void Desk::take_campaign(const std::string& state, const std::string& text) {
   answered_.notify_all();
 }
 
-/// As if nothing had been asked: what was, is lost with the process.
+/// As if nothing had been requested: what was, is lost with the process.
 void Desk::forget_parts() {
   for (const std::string& part : order_) {
     parts_[part].fit.job = parts_[part].explain.job = 0;

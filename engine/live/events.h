@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// What the server tells the pages that listen. Of what a newer event replaces only the newest is
+/// Events that the server sends to open pages. Of what a newer event replaces only the newest is
 /// kept, so a slow page holds no queue, and a page that comes back gets all that it has missed.
 namespace nonio::live {
 

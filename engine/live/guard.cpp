@@ -60,7 +60,7 @@ bool is_ours(std::string_view text, const Post& post, std::string_view scheme) {
     const auto allowed = authority_of(host);
     if (!allowed || allowed->name != given->name) return false;
     if (given->port == allowed->port) return true;
-    // The proxy's port is that of http or https, which may be said or not.
+    // The proxy's port is that of http or https, which may be stated or not.
     const std::string usual = scheme == "http" ? "80" : "443";
     return (allowed->port.empty() && (given->port == usual || given->port == "80")) ||
            (given->port.empty() && allowed->port == usual);
@@ -125,7 +125,7 @@ bool fits(std::string_view path, std::string_view pattern, std::vector<std::stri
   }
 }
 
-/// The route of a path; the status says what is wrong with path or method.
+/// The route of a path; the status states what is wrong with path or method.
 Verdict route_of(const Head& head, const std::vector<Route>& routes) {
   Verdict out;
   const std::string_view path =

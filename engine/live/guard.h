@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-/// Who may ask the server of `nonio serve` for what: a pure function over the head of a request.
+/// Which requests the server of `nonio serve` accepts: a pure function over the head of a request.
 /// Attackers are web pages in the same browser (also under a name that means 127.0.0.1 by now) and
 /// other users of the machine.
 namespace nonio::live {
@@ -65,10 +65,10 @@ struct Verdict {
   std::vector<std::string> names{};  ///< what stands for {part}, percent-decoded
 };
 
-/// 200 if these bytes, up to the empty line, are the head of a request as RFC 9112 wants it, so that
-/// everybody who reads it reads the same: one blank between method, target and version, no field on
-/// two lines, no blank before a colon, no control character. 400 if not, 431 if it is too large,
-/// 414 if its target is.
+/// 200 if these bytes, up to the empty line, are the head of a request as RFC 9112 requires it, so
+/// that every reader reads it alike: one blank between method, target and version, no field on two
+/// lines, no blank before a colon, no control character. 400 if not, 431 if it is too large, 414 if
+/// its target is.
 int head_status(std::string_view bytes);
 
 /// The first thing that is wrong, or the route. Tests in this order: size of the head (414, 431),

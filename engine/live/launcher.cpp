@@ -19,7 +19,7 @@ namespace {
 /// This program, also where it was replaced meanwhile.
 constexpr const char* own_program = "/proc/self/exe";
 
-/// One process for a campaign or a verb; false if the server has gone.
+/// One process for a campaign or a verb; false if the server has ended.
 bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
   auto ends = process::channel_pair(SOCK_STREAM, "a process of its own");
   if (!ends) return process::send_descriptors(to_server, '-', {});

@@ -59,7 +59,8 @@ class Front {
   std::uint16_t port() const { return port_; }
 
   /// `take` gets a socket whose next bytes are a head, still unread; or the status with which it is
-  /// to be refused (408: too slow, 431: too large). Until `is_over`, asked several times a second.
+  /// to be refused (408: too slow, 431: too large). Until `is_over`, which is called several times
+  /// a second.
   void serve(const std::function<void(process::Handle, int refused)>& take,
              const std::function<bool()>& is_over);
 
@@ -106,7 +107,7 @@ void Front::accept_all() {
     process::Handle visitor(
         ::accept4(socket_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (!visitor) return;
-    // The one who has waited longest has least to say.
+    // The one who has waited longest is closed first.
     if (waiting_.size() == most_waiting) waiting_.erase(waiting_.begin());
     waiting_[++last_] = {std::move(visitor), Clock::now(), 0};
   }

@@ -9,7 +9,7 @@
 
 namespace nonio::live {
 
-/// What `nonio serve` is asked for.
+/// What `nonio serve` is requested.
 struct LiveWish {
   std::filesystem::path folder;  ///< of a campaign, or of a site
   std::string name;              ///< as a person wrote it
@@ -17,7 +17,7 @@ struct LiveWish {
   std::vector<std::string> plugin_paths, template_paths;  ///< as they were given
   std::filesystem::path own_plugins, program;
   std::string version;
-  std::filesystem::path out;       ///< of a site: output folder of its nights; empty: none
+  std::filesystem::path out;       ///< of a site: output folder of its runs; empty: none
   std::string token_file;          ///< empty: a new token each time
   std::vector<std::string> hosts;  ///< names by which a proxy calls it
   std::uint16_t port = 0;
@@ -25,7 +25,7 @@ struct LiveWish {
 };
 
 /// Serves the page until SIGINT or SIGTERM. Prints one line, the address with the token. An error
-/// tells why it could not begin. To be called by a process of one thread without plugins.
+/// states why it could not begin. To be called by a process of one thread without plugins.
 Expected<void> serve(const LiveWish& wish);
 
 /// The server itself, as `nonio_serve` of a library that is loaded late (late_library.h).

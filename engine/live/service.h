@@ -19,7 +19,7 @@ struct Request {
   const std::vector<std::string>& names;  ///< what stands for the names in the route's path
   std::string body;
 
-  /// A value of the query; none if it is not there.
+  /// A value of the query; none if it is missing.
   std::optional<std::string> query(std::string_view name) const;
 };
 

@@ -20,7 +20,7 @@ struct Excluded {
   std::size_t row = 0;
   std::string measurement, file;
   std::uint32_t measurement_row = 0;  ///< of the measurement's table
-  std::uint64_t line = 0;             ///< 0: the reader does not say
+  std::uint64_t line = 0;             ///< 0: the reader does not state it
   std::string why;
   bool operator==(const Excluded&) const = default;
 };

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <utility>
 
-#include "batch/state/night_status.h"
+#include "batch/state/run_status.h"
 #include "campaign/config/site_logs.h"
 #include "certificates/certificate_list.h"
 #include "certificates/register_place.h"
@@ -24,14 +24,14 @@ std::string news_stamp(const fs::path& path) {
          std::to_string(s.st_mtim.tv_nsec) + " " + std::to_string(s.st_ino) + ";";
 }
 
-NightNow night_now(const fs::path& out) {
+RunNow run_now(const fs::path& out) {
   if (out.empty()) return {.state = "none"};
-  const auto status = batch::night_status(out);
+  const auto status = batch::run_status(out);
   if (!status) return {.state = "none"};
-  NightNow now{.state = batch::to_text(status->state),
-               .number = status->night.number,
-               .date = status->night.date};
-  if (status->last) now.last = status->last->night.number, now.last_date = status->last->night.date;
+  RunNow now{.state = batch::to_text(status->state),
+             .number = status->run.number,
+             .date = status->run.date};
+  if (status->last) now.last = status->last->run.number, now.last_date = status->last->run.date;
   return now;
 }
 
@@ -50,7 +50,7 @@ SiteNews::SiteNews(fs::path site, fs::path out, Tell tell)
       register_(register_of(site_)),
       tell_(std::move(tell)),
       seen_(look()) {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::thread([this] { watch(); });
 }
 
 SiteNews::~SiteNews() {
@@ -62,9 +62,9 @@ SiteNews::~SiteNews() {
   thread_.join();
 }
 
-NightNow SiteNews::night() const {
+RunNow SiteNews::run() const {
   const std::lock_guard lock(mutex_);
-  return seen_.night;
+  return seen_.run;
 }
 
 void SiteNews::look_now() {
@@ -77,7 +77,7 @@ void SiteNews::look_now() {
 
 SiteNews::Seen SiteNews::look() const {
   Seen out;
-  out.night = night_now(out_);
+  out.run = run_now(out_);
   for (const char* name :
        {config::events_name, config::acknowledged_name, config::forgotten_name, "site.toml"})
     out.morning += news_stamp(site_ / name);
@@ -87,7 +87,7 @@ SiteNews::Seen SiteNews::look() const {
   return out;
 }
 
-void SiteNews::run() {
+void SiteNews::watch() {
   constexpr auto pause = std::chrono::seconds(1);
   while (true) {
     {
@@ -102,7 +102,7 @@ void SiteNews::run() {
       const std::lock_guard lock(mutex_);
       before = std::exchange(seen_, now);
     }
-    if (!(now.night == before.night)) tell_("night");
+    if (!(now.run == before.run)) tell_("night");
     if (now.morning != before.morning) tell_("morning");
     if (now.drafts != before.drafts) tell_("drafts");
   }

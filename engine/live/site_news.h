@@ -13,37 +13,37 @@
 namespace nonio::live {
 
 /// State of the runs of an output folder.
-struct NightNow {
-  std::string state{};       ///< none, or as `nonio status` says
+struct RunNow {
+  std::string state{};       ///< none, or as `nonio status` states
   std::uint64_t number = 0;  ///< of the last that began
   std::string date{};
   std::uint64_t last = 0;  ///< the last complete one; 0: none
   std::string last_date{};
-  bool operator==(const NightNow&) const = default;
+  bool operator==(const RunNow&) const = default;
 };
 
-/// Looks once a second whether a site's morning has become another one: by a night, by what people
-/// have entered, here or on a terminal, or by a release.
+/// Checks once a second whether the worklist of a site has changed: by a run, by entries of people
+/// (here or on a terminal), or by a release.
 class SiteNews {
  public:
-  /// `what`: night (it began or ended), morning (results or entries), drafts.
+  /// `what`: night (a run began or ended), morning (results or entries changed), drafts.
   using Tell = std::function<void(const std::string& what)>;
   SiteNews(std::filesystem::path site, std::filesystem::path out, Tell tell);
   SiteNews(const SiteNews&) = delete;
   SiteNews& operator=(const SiteNews&) = delete;
   ~SiteNews();
 
-  NightNow night() const;
+  RunNow run() const;
   /// Without waiting for the second to pass.
   void look_now();
 
  private:
   struct Seen {
-    NightNow night{};
+    RunNow run{};
     std::string morning{}, drafts{};
   };
   Seen look() const;
-  void run();
+  void watch();
 
   std::filesystem::path site_, out_, register_;
   Tell tell_;

@@ -50,7 +50,7 @@ Expected<bool> SiteRun::begin(const std::vector<std::string>& arguments, const s
   std::unique_lock lock(mutex_);
   if (running_ || over_) return false;
   NONIO_TRY(auto channel, launcher_.run(arguments));
-  if (thread_.joinable()) thread_.join();  // it has told its end
+  if (thread_.joinable()) thread_.join();  // it has reported its end
   running_ = true;
   cancelled_ = false;
   id_ = id;
@@ -133,8 +133,8 @@ void SiteRun::end(const ToolEnd& end) {
 }
 
 void SiteRun::follow(process::Handle channel) {
-  const ToolEnd told = hear_tool(channel, [this](const std::string& line) { take(line); });
-  end(told);
+  const ToolEnd end_of_tool = hear_tool(channel, [this](const std::string& line) { take(line); });
+  end(end_of_tool);
 }
 
 }  // namespace nonio::live

@@ -21,8 +21,8 @@ struct ResultsNow {
 };
 ResultsNow results_now(const std::filesystem::path& out, const std::string& id);
 
-/// A `nonio run` that a page has asked for: one at a time, of one campaign or of all that has
-/// changed. What it tells is JSON: state, stage, done, to_do, what was different afterwards.
+/// A `nonio run` that a page has started: one at a time, of one campaign or of all that has
+/// changed. It reports as JSON: state, stage, done, to_do, what was different afterwards.
 class SiteRun {
  public:
   /// `changed`: something of `now()` is new.
@@ -34,7 +34,7 @@ class SiteRun {
   /// `id`: of the campaign; empty: a whole run. False if one is at work.
   Expected<bool> begin(const std::vector<std::string>& arguments, const std::string& command,
                        const std::string& id);
-  /// Asks the one at work to end. False if there is none.
+  /// Ends the one at work. False if there is none.
   bool cancel();
   bool is_running() const;
   /// nothing if there was none.

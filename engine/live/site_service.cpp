@@ -282,7 +282,7 @@ Answer SiteService::morning() {
 }
 
 Answer SiteService::state() {
-  const NightNow night = news_->night();
+  const RunNow run = news_->run();
   Json json = {{"schema", "nonio-live-site/1"},
                {"version", version_.load()},
                {"engine", wish_.version},
@@ -292,11 +292,11 @@ Answer SiteService::state() {
                {"campaigns", campaigns_in(wish_.folder)},
                {"running", run_->is_running()},
                {"night",
-                {{"state", night.state},
-                 {"night", night.number},
-                 {"date", night.date},
-                 {"last", night.last},
-                 {"last_date", night.last_date}}}};
+                {{"state", run.state},
+                 {"night", run.number},
+                 {"date", run.date},
+                 {"last", run.last},
+                 {"last_date", run.last_date}}}};
   if (Json now = run_->now(); !now.is_null()) json["run"] = std::move(now);
   return answered(200, json);
 }

@@ -49,10 +49,10 @@ bool take_from(int fd, std::string& into) {
   return true;
 }
 
-/// Whole lines of `text` from `told` on.
-void tell_lines(const std::string& text, std::size_t& told, int channel) {
-  for (std::size_t end; (end = text.find('\n', told)) != std::string::npos; told = end + 1) {
-    process::write_text(channel, storage::pack(is_line, text.substr(told, end - told)));
+/// Whole lines of `text` from `sent` on.
+void tell_lines(const std::string& text, std::size_t& sent, int channel) {
+  for (std::size_t end; (end = text.find('\n', sent)) != std::string::npos; sent = end + 1) {
+    process::write_text(channel, storage::pack(is_line, text.substr(sent, end - sent)));
   }
 }
 
@@ -70,7 +70,7 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   // What a run prints are events; what others print is one answer.
   const bool tells = !arguments.empty() && arguments.front() == "run";
   std::string printed, said;
-  std::size_t told_out = 0, told = 0;
+  std::size_t sent_printed = 0, sent = 0;
   std::array<pollfd, 3> all{
       {{out[0], POLLIN, 0}, {errors[0], POLLIN, 0}, {channel.get(), POLLIN, 0}}};
   while (all[0].fd >= 0 || all[1].fd >= 0) {
@@ -84,8 +84,8 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
     }
     if (all[0].revents != 0 && !take_from(out[0], printed)) all[0].fd = -1;
     if (all[1].revents != 0 && !take_from(errors[0], said)) all[1].fd = -1;
-    if (tells) tell_lines(printed, told_out, channel.get());
-    tell_lines(said, told, channel.get());
+    if (tells) tell_lines(printed, sent_printed, channel.get());
+    tell_lines(said, sent, channel.get());
   }
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
@@ -98,7 +98,7 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
 }
 
 void stop_tool(const process::Handle& channel) {
-  [[maybe_unused]] const bool told = process::write_text(channel.get(), "stop");
+  [[maybe_unused]] const bool sent = process::write_text(channel.get(), "stop");
 }
 
 ToolEnd hear_tool(const process::Handle& channel,

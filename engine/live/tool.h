@@ -17,17 +17,17 @@ struct ToolEnd {
   std::string out, errors;  ///< what it printed; of the errors the end
 };
 
-/// In a process of one thread: starts the program with these arguments, tells each line of its
-/// errors (and each event of a run) over the channel, and at the end how it ended. It asks the program to end (SIGTERM) when
-/// the other side says so, and ends it if the other side has gone.
+/// In a process of one thread: starts the program with these arguments, sends each line of its
+/// errors (and each event of a run) over the channel, and at the end its exit. It terminates the
+/// program (SIGTERM) when the other side requests it, and ends it if the other side has ended.
 [[noreturn]] void run_tool(const std::string& program, const std::vector<std::string>& arguments,
                            process::Handle channel);
 
-/// The other side: until the end, or until the process has gone.
+/// The other side: until its end.
 ToolEnd hear_tool(const process::Handle& channel,
                   const std::function<void(const std::string& line)>& line);
 
-/// Asks it to end: what it has done so far stays whole.
+/// Terminates it: what it has done so far stays whole.
 void stop_tool(const process::Handle& channel);
 
 }  // namespace nonio::live

@@ -11,8 +11,8 @@
 
 namespace nonio::live {
 
-/// Looks once a second whether files still have the content that was read. Time and size only tell
-/// when to look: content decides.
+/// Looks once a second whether files still have the content that was read. Time and size only show
+/// when to read: content decides.
 class Watch {
  public:
   using Tell = std::function<void(bool changed)>;

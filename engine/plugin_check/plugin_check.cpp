@@ -104,7 +104,7 @@ void speak_otherwise() {
     if (std::setlocale(LC_ALL, name) != nullptr) return;
 }
 
-/// The file's own first, so that they stand in for the program's of the same name.
+/// Those of the file first, so that they replace the program's of the same name.
 template <class Plugin>
 std::vector<Plugin> joined(std::vector<Plugin> own, const std::vector<Plugin>& others) {
   const std::size_t n = own.size();
@@ -125,7 +125,7 @@ std::vector<fs::path> files_with(const fs::path& folder, const std::string& endi
   return found;
 }
 
-/// The campaigns below a folder; their files are those beside the manifest.
+/// The campaigns below a folder; their files are in the folder of the manifest.
 Expected<std::vector<kit::Source>> sources_below(const fs::path& folder) {
   std::vector<kit::Source> sources;
   for (const fs::path& manifest : files_with(folder, std::string("/") + config::manifest_name)) {
@@ -295,8 +295,8 @@ class Checker {
       run(plugin, c.name, [&](Bench& b) { return c.run((brought_.*kind)[index], b); });
   }
 
-  /// One check in a child. `list` gets what a check that passed says; `always`: needed for the
-  /// others, and only told of if it was asked for or went wrong.
+  /// One check in a child. `list` gets the text of a passed check; `always`: needed for the others,
+  /// and reported only if it was requested or failed.
   bool run(const std::string& plugin, const std::string& name,
            const std::function<Verdict(Bench&)>& work, std::string* list = nullptr,
            bool always = false) {
@@ -399,7 +399,7 @@ class Checker {
     bench_.sources = std::move(made_.at(bench_.seed).sources);
     bench_.samples = std::move(made_.at(bench_.seed).samples);
     if (!brought_.analyses.empty() || !brought_.effects.empty())
-      for (kit::Sample& s : bench_.samples) s.results.reset();  // they may say something else
+      for (kit::Sample& s : bench_.samples) s.results.reset();  // they may be different
     for (const kit::Source& s : cases_)
       if (auto sample = kit::open_source(s, bench_.readers, bench_.methods))
         bench_.samples.push_back(std::move(*sample));
@@ -458,7 +458,7 @@ class Checker {
   std::vector<kit::Source> cases_;
   std::vector<std::string> names_;
   fs::path path_, shown_path_;  ///< the second as it was given
-  std::size_t hung_ = 0;        ///< checks of one plugin that did not come back
+  std::size_t hung_ = 0;        ///< checks of one plugin that did not return
   const char* zone_ = nullptr;  ///< of time, of the next child
   /// What `pure` made the first time of a plugin.
   struct Once {

@@ -41,7 +41,7 @@ struct PluginCheckRequest {
 /// The names of all checks, with what each holds a plugin against.
 std::vector<std::pair<std::string, std::string>> plugin_check_names();
 
-/// Tells of each check as it ends. The error is of the request: no plugin there, no such check.
+/// Reports each check as it ends. An error if the request is wrong: no such plugin, no such check.
 Expected<void> check_plugins(const PluginCheckRequest& request,
                              const std::function<void(const PluginCheck&)>& tell);
 

@@ -14,7 +14,8 @@ namespace nonio::plugin_check::kit {
 
 namespace {
 
-/// What an analysis says of one sample, as a list; findings apart, since some have a threshold.
+/// The results of an analysis for one sample, as a list; findings apart, since some have a
+/// threshold.
 struct Said {
   struct One {
     std::string name;
@@ -250,7 +251,7 @@ Verdict analysis_shift(const Analysis& a, const Bench& bench) {
   });
 }
 
-/// Powers of the deviation in a quantity; none if it says nothing about that.
+/// Powers of the deviation in a quantity; none if it shows nothing about that.
 std::optional<int> power_of(Quantity q) {
   switch (q) {
     case Quantity::deviation:
@@ -419,7 +420,7 @@ Verdict analysis_hostile(const Analysis& a, const Bench& bench) {
   return passed();
 }
 
-/// Where it applies it has something to say, somewhere at least.
+/// Where it applies it must give a result, at least somewhere.
 Verdict analysis_says(const Analysis& a, const Bench& bench) {
   if (!a.analyse_campaign && (!a.applies || !a.analyse))
     return failed("applies or analyse is missing");

@@ -109,8 +109,8 @@ config::MachineRecord record_for(const Sample& sample) {
   return record;
 }
 
-/// Of controls that count: nobody but the machine's builder knows how many counts an axis has. So
-/// many that a sixteenth of one is a nanometre.
+/// Of controls with entries in counts: only the builder of the machine knows the counts of an axis.
+/// Chosen so that a sixteenth of a count is a nanometre.
 void add_encoders(Settings& settings, const Info& info, const Machine& machine) {
   for (const Option& o : info.options) {
     if (o.name != "axes" || o.help.find("counts_per_mm") == o.help.npos) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Laws of tables: read back as the plugin says its control reads them, they take the error away.
+// Laws of tables: read back as the plugin reports its control reads them, they take the error away.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,7 +14,7 @@ namespace nonio::plugin_check::kit {
 
 namespace {
 
-/// An axis whose error everybody knows. SI.
+/// An axis whose error is known. SI.
 struct KnownError {
   bool rotary = false;
   std::vector<double> targets, error;  ///< actual - nominal at each target, mean of both directions
@@ -307,7 +307,7 @@ Verdict table_rounding(const Controller& o, const Bench& bench) {
   });
 }
 
-/// Errors that grow until no table holds them: refused then, and right as long as they are not.
+/// Growing errors: the tables must be right until the errors are refused as too large.
 Verdict table_limits(const Controller& o, const Bench& bench) {
   return each_setting(o, bench, [&](const SetUp& s) -> std::string {
     storage::Random random = bench.random(13);

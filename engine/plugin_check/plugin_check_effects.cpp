@@ -91,8 +91,8 @@ void take_away(const Columns& basis, std::vector<double>& v) {
     }
 }
 
-/// Orthonormal basis of the columns beside the zeros. `least`: the smallest share of a column that
-/// the ones before it leave.
+/// Orthonormal basis of the columns and the zeros. `least`: the smallest share of a column that the
+/// ones before it leave.
 Columns basis_of(const Observations& o, const Columns& columns, double& least) {
   Columns basis;
   least = 1.0;
@@ -159,7 +159,7 @@ Verdict effect_again(const Effect& e, const Bench& bench) {
   });
 }
 
-/// A row in which the axis stood, far away, is added to the readings.
+/// A row in which the axis was at rest, far away, is added to the readings.
 Verdict effect_still(const Effect& e, const Bench& bench) {
   if (e.instances) return skipped("an effect in space: a stationary axis is included");
   return everywhere(e, bench, [&](const Shown& s, const std::vector<double>& shape) -> std::string {
@@ -222,7 +222,7 @@ Verdict effect_grid(const Effect& e, const Bench& bench) {
   });
 }
 
-/// Share of the columns' sum of squares that the span of others holds.
+/// Share of the columns' sum of squares in the span of the others.
 double alike(const Observations& o, const Columns& columns, const Columns& others) {
   double least = 0.0, whole = 0.0, left = 0.0;
   const Columns basis = basis_of(o, others, least);
@@ -235,8 +235,8 @@ double alike(const Observations& o, const Columns& columns, const Columns& other
   return whole > 0.0 ? 1.0 - left / whole : 1.0;
 }
 
-/// Of each value of a grid, one of its neighbours looks alike: else an effect that lies between
-/// them is found by nobody.
+/// Each value of a grid must resemble one of its neighbours: otherwise the search misses an effect
+/// between them.
 Verdict effect_neighbours(const Effect& e, const Bench& bench) {
   const bool any = std::any_of(e.shapes.begin(), e.shapes.end(),
                                [](const Effect::Shape& s) { return s.continuous; });
@@ -262,7 +262,7 @@ Verdict effect_neighbours(const Effect& e, const Bench& bench) {
   });
 }
 
-/// Somewhere at least; what readings cannot tell apart elsewhere is for the engine.
+/// At least somewhere; the engine handles readings that do not separate effects elsewhere.
 Verdict effect_independent(const Effect& e, const Bench& bench) {
   const auto all = shown(e, bench);
   if (all.empty()) return skipped(unseen);
@@ -316,7 +316,7 @@ std::optional<Planted> plant(const Effect& e, const Shown& s, storage::Random& r
   return p;
 }
 
-/// What a fit says of the planted effect; empty if it is right.
+/// What a fit predicts of the planted effect; empty if it is right.
 std::string missed(const Effect& e, const Planted& p, const model::Fit& fit) {
   const auto n = static_cast<double>(p.truth.size());
   const auto planted = without_zeros(p.part.table, p.truth);
@@ -357,7 +357,7 @@ Verdict effect_planted(const Effect& e, const Bench& bench) {
   return tried == 0 ? skipped("no sample determines its parameters") : passed();
 }
 
-/// By its name, or by one that these readings cannot tell from it.
+/// By its name, or by one that these readings do not separate from it.
 bool named(const model::Explanation& x, const std::string& name) {
   const auto has = [&](const std::vector<std::string>& names) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -371,7 +371,7 @@ bool named(const model::Explanation& x, const std::string& name) {
   });
 }
 
-/// What is always in a model may say the same on these readings.
+/// What is always in a model may are the same on these readings.
 bool unseen_in(const model::Explanation& x, const std::string& name) {
   return std::any_of(x.candidates.begin(), x.candidates.end(), [&](const model::Candidate& c) {
     return c.term.name() == name && !c.visible;

@@ -109,7 +109,7 @@ std::string words_of(const Row& row) {
          (row.size() > 3 ? short_text(row[3] * 1e3, 6) + " mm or mrad" : std::string("?"));
 }
 
-/// Readings of `o` that are not in `base`, in words; `lost` gets how many of base are gone.
+/// Readings of `o` that are not in `base`, in words; `lost`: how many of base are missing.
 std::string strangers(const std::map<Row, int>& base, std::size_t n, const Observations& o,
                       std::size_t& lost, bool placed = true) {
   auto left = base;
@@ -293,7 +293,7 @@ Verdict reader_signs(const Reader& r, const Bench& bench) {
   });
 }
 
-/// Where an option of the reader says in which unit a file is; else the file says it.
+/// Where an option of the reader states in which unit a file is; else the file states it.
 Verdict reader_inch(const Reader& r, const Bench& bench) {
   const auto has = [](const Option& o, const char* choice) {
     return std::find(o.choices.begin(), o.choices.end(), choice) != o.choices.end();
@@ -321,7 +321,7 @@ Verdict reader_inch(const Reader& r, const Bench& bench) {
   return skipped("no option has the choices mm and inch");
 }
 
-/// Against readings.csv: a file tells nobody whether its numbers were taken for what they are.
+/// Compared with readings.csv: a file alone does not show whether it was read correctly.
 Verdict reader_truth(const Reader& r, const Bench& bench) {
   std::size_t compared = 0;
   Verdict v = each_file(r, bench, [&](const ReadFile& f, const Observations& o) -> std::string {
@@ -336,7 +336,7 @@ Verdict reader_truth(const Reader& r, const Bench& bench) {
   return v;
 }
 
-/// Files of anybody else.
+/// Files of other formats.
 Verdict reader_foreign(const Reader& r, const Bench& bench) {
   storage::Random random = bench.random(9);
   if (!r.recognises || !r.reads || !r.read) return failed("recognises, reads or read is missing");

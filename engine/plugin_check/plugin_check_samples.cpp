@@ -117,7 +117,7 @@ class MadeMachine {
     return out;
   }
 
-  /// A ball on a table C that stands on B, at positions of both.
+  /// A ball on a table C that is mounted on B, at positions of both.
   std::string balls_of_two_axes() {
     std::string out = "angle_deg,B_deg,x_mm,y_mm,z_mm\n";
     for (const double b : {-40.0, 0.0, 40.0})
@@ -134,8 +134,8 @@ class MadeMachine {
     return out;
   }
 
-  /// A gauge on a table, along its radius and along its axis, which the control has 20 um beside
-  /// where it is.
+  /// A gauge on a table, along its radius and along its axis, which the control has 20 um from its
+  /// true position.
   std::string tool_centre(int n) {
     std::string out = "angle_deg,x_mm,y_mm,z_mm,tx,ty,tz,deviation_um,line\n";
     for (const bool along : {false, true})

@@ -68,15 +68,15 @@ std::vector<TableRow> rows_of_table(const Source& source, const std::string& nam
 }
 
 /// A number as it was written: right to half of its last digit.
-struct Told {
+struct WrittenNumber {
   double value = 0.0, half = 0.0;
   bool holds(double found) const {
     return std::fabs(found - value) <= half * (1.0 + 1e-6) + 1e-9 * std::fabs(value);
   }
 };
 
-std::optional<Told> told(const std::string& text) {
-  Told t;
+std::optional<WrittenNumber> written_number(const std::string& text) {
+  WrittenNumber t;
   const char* const end = text.data() + text.size();
   const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
   const auto [stop, error] = std::from_chars(begin, end, t.value);
@@ -89,7 +89,7 @@ std::optional<Told> told(const std::string& text) {
   return t;
 }
 
-/// A column that a reading may have, and where it stands in the observations.
+/// A column that a reading may have, and the member of the observations that contains it.
 struct Compared {
   const char* column;
   double per_si;
@@ -127,7 +127,7 @@ std::string other_column(const TableRow& row, const Observations& o, std::size_t
     const std::string* text = row.find(c.column);
     if (text == nullptr) continue;
     const double* column = c.of(o);
-    const auto wanted = told(*text);
+    const auto wanted = written_number(*text);
     if (column == nullptr || !wanted || !wanted->holds(column[i] * c.per_si)) return c.column;
   }
   return {};
@@ -196,7 +196,7 @@ Verdict truth(const Analysis& a, const Bench& bench) {
         if (unit.symbol != row.text("unit"))
           return failed(where + ": it is in " + std::string(unit.symbol) + ", expected " +
                         row.text("unit"));
-        const auto wanted = told(row.text("value"));
+        const auto wanted = written_number(row.text("value"));
         if (!wanted || !wanted->holds(value->value * unit.per_si))
           return failed(where + ": it is " + short_text(value->value * unit.per_si, 9) +
                         ", expected " + row.text("value"));
@@ -244,7 +244,7 @@ std::string other_columns(const Effect& e, const Effect& formula, const Observat
 }
 
 /// formulas.toml of a case: [[model.formula]] as in a manifest, where they would be refused, since
-/// they say what an effect says.
+/// they state what an effect predicts.
 Expected<std::vector<Formula>> formulas_of(const Source& source,
                                            const std::vector<Method>& methods) {
   const Artifact* file = file_of(source, "formulas.toml");
@@ -299,7 +299,7 @@ std::string other_entry(const TableRow& row, const LoadedTable& t, std::size_t i
   const std::string* text = row.find(plus ? (t.rotary ? "plus_arcsec" : "plus_um")
                                           : (t.rotary ? "minus_arcsec" : "minus_um"));
   if (text == nullptr) return {};
-  const auto wanted = told(*text);
+  const auto wanted = written_number(*text);
   const std::vector<double>& entries = plus || t.minus.empty() ? t.plus : t.minus;
   const double found = entries[i] * (t.rotary ? arcsec_per_rad : 1e6);
   if (wanted && wanted->holds(found)) return {};
@@ -309,7 +309,7 @@ std::string other_entry(const TableRow& row, const LoadedTable& t, std::size_t i
 std::string other_point(const TableRow& row, const std::vector<LoadedTable>& tables) {
   const std::string* text = row.find("position_mm");
   if (text == nullptr) text = row.find("position_deg");
-  const auto wanted = text == nullptr ? std::nullopt : told(*text);
+  const auto wanted = text == nullptr ? std::nullopt : written_number(*text);
   if (!wanted) return row.where + ": expected a number in position_mm or position_deg";
   for (const LoadedTable& t : tables) {
     if (t.output != row.text("axis") || t.position.size() != 1) continue;

@@ -7,8 +7,8 @@
 
 #include "plugin_check/plugin_checks.h"
 
-/// What a person wrote beside the files of a case, because the file alone tells nobody whether it
-/// was understood: readings.csv, table.csv, expected/values.csv, formulas.toml.
+/// Files that a person wrote for a case, because the data file alone does not show whether it was
+/// read correctly: readings.csv, table.csv, expected/values.csv, formulas.toml.
 namespace nonio::plugin_check::kit {
 
 /// Of a reader: reading by reading, against readings.csv.

@@ -19,7 +19,7 @@
 /// crash or hang there.
 namespace nonio::plugin_check::kit {
 
-/// A campaign as it lies in a folder.
+/// A campaign as it is stored in a folder.
 struct Source {
   std::string name, manifest;
   std::vector<Artifact> files;
@@ -59,7 +59,7 @@ struct Bench {
   reading::Context context;  ///< for the model: without a site
   /// What `pure` does once everything is ready and only the plugin is still to be called.
   std::function<void()> only_plugin{};
-  reading::Stage stage;  ///< told what is being tried, for the case that it does not come back
+  reading::Stage stage;  ///< called with what is tried next, for the case that it does not return
 
   storage::Random random(std::uint64_t stream) const { return {seed, stream}; }
 };
@@ -95,7 +95,7 @@ std::vector<Check<Controller>> controller_checks_of_files();
 /// key that is not written.
 std::string wrong_option(const Option& option, bool may_be_absent);
 
-/// What a plugin makes of all samples, digested; a failure says why there is nothing. Calls
+/// What a plugin makes of all samples, digested; an error states why there is nothing. Calls
 /// `Bench::only_plugin` before the plugin.
 Verdict fingerprint(const Method& method, const Bench& bench);
 Verdict fingerprint(const Reader& reader, const Bench& bench);
@@ -104,7 +104,7 @@ Verdict fingerprint(const Analysis& analysis, const Bench& bench);
 Verdict fingerprint(const Output& output, const Bench& bench);
 Verdict fingerprint(const Controller& controller, const Bench& bench);
 
-/// What `check` says of readings, results or files; empty if nothing.
+/// Message of `check` about readings, results or files; empty if nothing.
 template <class What>
 std::string unsound(const What& what) {
   const auto sound = check(what);
@@ -112,14 +112,14 @@ std::string unsound(const What& what) {
 }
 /// A rearrangement of n rows.
 std::vector<std::uint32_t> shuffled(std::size_t n, storage::Random& random);
-/// Readings that nobody should have sent.
+/// Readings that are not acceptable.
 std::vector<std::pair<std::string, Observations>> odd_tables(const Observations& o);
-/// The plugin's defaults, and what the sample says.
+/// The plugin's defaults, and the settings of the sample.
 Settings settings_for(const Info& info, const Sample& sample);
 Settings settings_for(const Output& output, const Sample& sample);
-/// Beside these, the numbers of the axes by their places.
+/// In addition to these, the numbers of the axes by their order.
 Settings settings_for(const Controller& controller, const Sample& sample);
-/// All that the analyses and the model say of a sample: what is known, else they are asked.
+/// All results of the analyses and the model for a sample: kept ones, else they are computed.
 Results results_of(const Sample& sample, const Bench& bench);
 
 }  // namespace nonio::plugin_check::kit

@@ -14,8 +14,8 @@ struct TemplateCheck {
   std::vector<std::string> outputs;  ///< those that looked at their templates
 };
 
-/// What every output says of the templates it uses: layouts, words of all languages, letters that
-/// the fonts lack. Later folders win. An error if the folders or plugins cannot be read.
+/// What every output reports about its templates: layouts, words of all languages, letters that the
+/// fonts lack. Later folders win. An error if the folders or plugins cannot be read.
 Expected<TemplateCheck> check_templates(const std::vector<std::filesystem::path>& template_folders,
                                         const std::vector<std::filesystem::path>& plugin_folders);
 

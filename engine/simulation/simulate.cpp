@@ -42,14 +42,14 @@ struct Seen {
   Observations table;
   std::vector<std::pair<std::size_t, std::size_t>> from;  ///< cycle and row, of each reading
   const model::Part* part = nullptr;                      ///< none: of a rotary axis
-  double sign = 1.0;                                      ///< of what the effects say
+  double sign = 1.0;                                      ///< of the sum of the effects
 };
 
 /// The effect as it is of these readings: its place, or nothing if they do not show it.
 std::optional<Axis> place_in(const Seen& seen, const EffectSpec& e, const Machine& machine) {
   Effect effect = e.effect;
   if (seen.part != nullptr) {
-    effect.is_nuisance = false;  // how a straightedge stood may be said too
+    effect.is_nuisance = false;  // the orientation of a straightedge may be stated too
     const auto terms = model::terms_of(*seen.part, machine, {e.name}, {effect});
     if (!terms || terms->empty()) return std::nullopt;
     return terms->front().axis;
@@ -92,8 +92,9 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// The columns as one: those of a curve are mixed at random and brought to their RMS. In space, where
-/// not every reading senses it, the functions of a curve are orthogonal over the places, rms 1.
+/// The deviation of all columns: those of a curve are mixed at random and scaled to their RMS. In
+/// space, where not every reading senses it, the functions of a curve are orthogonal over the
+/// places, rms 1.
 std::vector<double> deviation_of_columns(const EffectSpec& e, const Effect::Columns& columns,
                                          storage::Random random) {
   std::vector<double> factor = e.linear, sum(columns.empty() ? 0 : columns[0].size(), 0.0);
@@ -161,7 +162,7 @@ double sensed(const Seen& seen, const EffectSpec& e, const Axis& place, std::siz
   return seen.table.sense_of(i)[k];
 }
 
-/// Adds the effect to the rows that show it, and tells it in `truth`.
+/// Adds the effect to the rows that show it, and records it in `truth`.
 Expected<void> add_effect(const EffectSpec& e, const Specification& s, const std::vector<Seen>& all,
                           std::vector<Observations>& rows, Json& truth, storage::Random random) {
   std::vector<double> whole;
@@ -207,7 +208,7 @@ void preset(const CycleSpec& c, Observations& o) {
   for (std::size_t i = o.size(); i-- > 0;) o.deviation[i] -= o.deviation[i - i % each];
 }
 
-/// The file of one measurement; tells in `truth` what was misread.
+/// The file of one measurement; records in `truth` what was misread.
 Expected<std::string> readings(const Specification& s, std::size_t k, const Observations& o,
                                Json& truth) {
   const CycleSpec& c = s.cycles[k];

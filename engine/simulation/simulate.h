@@ -13,7 +13,7 @@ namespace nonio::simulation {
 
 struct Simulated {
   std::vector<Artifact> campaign;  ///< readings, then campaign.toml
-  std::string truth;               ///< JSON: what was put in; for beside the campaign, not into it
+  std::string truth;  ///< JSON: the simulated errors; to be stored outside of the campaign
 };
 
 /// First line of a simulated campaign.toml; a folder whose manifest has another is not overwritten.

@@ -100,9 +100,9 @@ class Rows {
 
 constexpr std::array<Vector, 3> units{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-/// Where the linear axes stand when the probe is at the ball. A table takes the ball along, and its
-/// carrier table and ball. A head takes the stylus along, which is at the ball with the heads at 0,
-/// and its carrier head and stylus; the linear axes go back by as much.
+/// Position of the linear axes when the probe is at the ball. A table moves the ball, and its
+/// carrier moves table and ball. A head moves the stylus, which is at the ball with the heads at 0,
+/// and its carrier moves head and stylus; the linear axes compensate that movement.
 Observations centres(const RotarySpec& r, const RotarySpec* carrier, const CycleSpec& c) {
   Rows rows(c);
   for (std::size_t k = 0; k < 3; ++k) rows.line(c.measurement.id + " " + "xyz"[k], units[k]);
@@ -141,7 +141,7 @@ Observations with_tool_centre(const RotarySpec& r, const CycleSpec& c) {
       const Vector meant = turned(c.balls[b], centre, direction, angle),
                    is = turned(sum(c.balls[b], 1.0, c.ball_offset), r.centre, r.direction, angle);
       const Vector moved = sum(is, -1.0, meant);
-      // Where the linear axes stand: at the ball, or back by the way from the pivot to it.
+      // Position of the linear axes: at the ball, or back by the vector from the pivot to it.
       const Vector at = head ? sum(sum(c.balls[b], 1.0, centre), -1.0, meant) : meant;
       for (std::size_t k = 0; k < senses; ++k) {
         const Vector sense = probe                 ? units[k]

@@ -11,7 +11,7 @@
 /// what an exact machine would have read, before effects and noise.
 namespace nonio::simulation {
 
-/// Rows of one measurement; what its file will not tell, the effects do not know either.
+/// Rows of one measurement; the effects get only what its file will contain.
 Expected<Observations> rows_of(const Specification&, const CycleSpec&,
                                const std::vector<double>& targets);
 

@@ -32,8 +32,8 @@ void collect_headers(const toml::node& node, const std::string& top, Headers& he
   }
 }
 
-/// The manifest in the specification: its own lines, with empty ones where the simulation's stood,
-/// and for comments, which may tell what is hidden.
+/// The manifest in the specification: its own lines, with empty ones in place of the simulation's
+/// and of comments, which may reveal what is hidden.
 std::string manifest_of(std::string_view text, const toml::table& root) {
   Headers headers;
   for (const auto& [key, node] : root) collect_headers(node, std::string(key.str()), headers);
@@ -148,7 +148,7 @@ class EffectReader {
   std::vector<Error>& errors_;
 };
 
-/// The seed, and formulas that campaign.toml shall not tell.
+/// The seed, and formulas that campaign.toml must not contain.
 std::vector<Formula> read_simulation(config::TableReader& top, Specification& s) {
   auto reader = top.table("simulation");
   if (!reader) return {};

@@ -42,7 +42,7 @@ struct CycleSpec {
   std::string carrier;                        ///< another rotary axis that turned too, or none
   std::vector<double> carrier_at;             ///< its positions, rad
   std::vector<std::array<double, 3>> senses;  ///< of gauges, unit vectors
-  std::string sensor;                         ///< of rtcp: turns, stands, probe
+  std::string sensor;                         ///< of rtcp: turns, stands or probe
   std::array<double, 3> ball_offset{};        ///< from where the control takes the ball to be, m
   /// Of a kind that only its method can write: runs along its axis.
   const Method* method = nullptr;

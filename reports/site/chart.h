@@ -8,8 +8,8 @@
 
 namespace nonio::reports::site {
 
-/// One quantity over the years: points with U, limit and guard band, events, what the model says,
-/// forecast. An SVG.
+/// One quantity over the years: points with U, limit and guard band, events, what the model
+/// predicts, forecast. An SVG.
 Html history_chart(const Page&, const MachineHistory&, const HistorySeries&);
 
 /// The same as a line without axes, for a table.

@@ -41,10 +41,10 @@ std::string whole_days(const std::string& html) {
   return out + html.substr(done);
 }
 
-View page_view(const Page& page, const std::string& title, std::string beside_navigation) {
+View page_view(const Page& page, const std::string& title, std::string next_to_navigation) {
   View view;
   view.set("language", page.words.language()).set("title", title).set("program", "Nonio");
-  view.set("root", page.to_root).set("beside", std::move(beside_navigation));
+  view.set("root", page.to_root).set("beside", std::move(next_to_navigation));
   view.set("script_source", std::string(script_source));
   view.set("style_source", std::string(style_source));
   view.set("script", Html{std::string(page_script)}).set("style", Html{std::string(page_style)});
@@ -82,17 +82,17 @@ std::string proposal_text(const Page& page, const IntervalProposal& proposal) {
   return months + ". " + why;
 }
 
-bool shows_value(const MorningLine& l) { return l.value && !is_log_of_scatter(l.quantity); }
+bool shows_value(const WorkItem& l) { return l.value && !is_log_of_scatter(l.quantity); }
 
 FollowedNumbers numbers_of(const Page& page, const ModelComparison& c) {
   return {c.quantity, c.unit, c.travel && c.travel->rotary, page.words};
 }
 
-std::string line_text(const Page& page, const MorningLine& l, const char* part) {
+std::string line_text(const Page& page, const WorkItem& l, const char* part) {
   return reports::line_text(page.templates, page.words.language(), l, part);
 }
 
-std::string also_text(const Page& page, const MorningLine& l) {
+std::string also_text(const Page& page, const WorkItem& l) {
   std::string out;
   for (const bool undecided : {false, true}) {
     std::string values;
@@ -115,8 +115,8 @@ std::string also_text(const Page& page, const MorningLine& l) {
   return out;
 }
 
-std::string since_text(const Page& page, const MorningLine& l) {
-  if (l.since.empty() || l.kind == MorningLine::Kind::overdue) return {};
+std::string since_text(const Page& page, const WorkItem& l) {
+  if (l.since.empty() || l.kind == WorkItem::Kind::overdue) return {};
   return page.words.get("site.since", {{"date", l.since}});
 }
 
@@ -141,7 +141,7 @@ std::string month_text(const Page& page, std::string_view month) {
          std::string(month.substr(0, 4));
 }
 
-const char* name_of(MorningLine::Kind kind) {
+const char* name_of(WorkItem::Kind kind) {
   constexpr const char* names[] = {"lost",    "failed",   "out",       "changed",    "soon",
                                    "overdue", "withheld", "undecided", "information"};
   return names[static_cast<std::size_t>(kind)];
@@ -172,7 +172,7 @@ std::string titles(const Templates& templates, std::string_view language, const 
 
 }  // namespace
 
-std::string line_text(const Templates& templates, std::string_view language, const MorningLine& l,
+std::string line_text(const Templates& templates, std::string_view language, const WorkItem& l,
                       std::string_view part) {
   Finding finding = l.finding;
   for (auto& [name, text] : finding.texts) {

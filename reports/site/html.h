@@ -29,7 +29,7 @@ Html with_whole_days(std::string_view text);
 std::string whole_days(const std::string& html);
 
 /// What the head of every page shows.
-View page_view(const Page&, const std::string& title, std::string beside_navigation = {});
+View page_view(const Page&, const std::string& title, std::string next_to_navigation = {});
 /// The page templates/pages/site/`name`.html.
 Expected<std::string> written(const Page&, const std::string& name, const View&);
 
@@ -46,13 +46,13 @@ std::string proposal_text(const Page&, const IntervalProposal&);
 FollowedNumbers numbers_of(const Page&, const ModelComparison&);
 /// Whether the value of a line is printed: that of a scatter is a logarithm, and its sentence states
 /// the factor.
-bool shows_value(const MorningLine&);
+bool shows_value(const WorkItem&);
 /// What a line states or advises ("says", "advice"), with kinds of events in words; not yet typeset.
-std::string line_text(const Page&, const MorningLine&, const char* part);
+std::string line_text(const Page&, const WorkItem&, const char* part);
 /// "Also out: A 15.5 ± 1.9 µm (limit 5)."; empty where the line has one value.
-std::string also_text(const Page&, const MorningLine&);
-/// "Since 2026-01-24."; nothing where what it says has the day already.
-std::string since_text(const Page&, const MorningLine&);
+std::string also_text(const Page&, const WorkItem&);
+/// "Since 2026-01-24."; nothing where what it states has the day already.
+std::string since_text(const Page&, const WorkItem&);
 /// Name of a quantity in words, with its symbol where it has none.
 std::string quantity_text(const Page&, const std::string& quantity);
 /// A number with three significant digits, in its printed unit, without the unit.
@@ -64,6 +64,6 @@ std::optional<Day> day_of(std::string_view date);
 /// A month as its name and year: "Mar 2026".
 std::string month_text(const Page&, std::string_view month);
 
-const char* name_of(MorningLine::Kind);
+const char* name_of(WorkItem::Kind);
 
 }  // namespace nonio::reports::site

@@ -14,7 +14,7 @@ namespace nonio::reports::site {
 
 namespace {
 
-using Kind = MorningLine::Kind;
+using Kind = WorkItem::Kind;
 
 const MachineHistory* machine_in(const SiteHistory& site, const std::string& id) {
   const auto& all = site.machines;
@@ -52,7 +52,7 @@ constexpr std::size_t most_lines = 200;    // one page, not a download
 constexpr std::size_t most_machines = 60;  // of the strip
 constexpr std::size_t most_months = 36;
 
-std::span<const MorningLine> shown_lines(const Page& page) {
+std::span<const WorkItem> shown_lines(const Page& page) {
   const auto& all = page.site.lines;
   return std::span(all).first(std::min(all.size(), most_lines));
 }
@@ -68,7 +68,7 @@ void add_filter(View& view, const Page& page, const char* name,
 
 void add_filters(View& view, const Page& page) {
   std::map<std::string, std::string> kinds, customers, machines, axes;
-  for (const MorningLine& l : shown_lines(page)) {
+  for (const WorkItem& l : shown_lines(page)) {
     kinds[name_of(l.kind)] = page.words.get("site.kind." + std::string(name_of(l.kind)));
     if (!l.customer.empty()) customers[l.customer] = l.customer;
     if (!l.machine.empty()) machines[l.machine] = l.machine;
@@ -82,25 +82,25 @@ void add_filters(View& view, const Page& page) {
   add_filter(view, page, "axis", axes);
 }
 
-std::string limit_text(const Page& page, const MorningLine& l) {
+std::string limit_text(const Page& page, const WorkItem& l) {
   if (!l.limit) return {};
   return ", " + page.words.get("site.limit", {{"limit", short_number(page, *l.limit, l.unit)}});
 }
 
-Html says(const Page& page, const MorningLine& l, const char* part) {
+Html says(const Page& page, const WorkItem& l, const char* part) {
   return {typeset_html(line_text(page, l, part))};
 }
 
-/// What it says, what else of the axis is open, since when.
-Html all_it_says(const Page& page, const MorningLine& l) {
+/// What it states, what else of the axis is open, since when.
+Html all_it_says(const Page& page, const WorkItem& l) {
   std::string more;
   for (const std::string& text : {also_text(page, l), since_text(page, l)})
     if (!text.empty()) more += " " + text;
   return {whole_days(says(page, l, "says").text) + with_whole_days(more).text};
 }
 
-void add_line(View& view, const Page& page, const MorningLine& l) {
-  using State = MorningLine::State;
+void add_line(View& view, const Page& page, const WorkItem& l) {
+  using State = WorkItem::State;
   const char* kind = name_of(l.kind);
   const std::string what = l.state == State::fixed ? "fixed" : kind;
   View& line = view.add("line");
@@ -130,7 +130,7 @@ void add_lines(View& view, const Page& page) {
   view.flag("lines", !shown.empty());
   if (shown.empty())
     view.set("nothing", page.words.get(page.site.judged ? "site.nothing" : "site.not_judged"));
-  for (const MorningLine& l : shown) add_line(view, page, l);
+  for (const WorkItem& l : shown) add_line(view, page, l);
   if (const std::size_t more = page.site.lines.size() - shown.size(); more > 0)
     view.set("more_lines", page.words.get("site.and_more", {{"count", std::to_string(more)}}));
 }
@@ -179,7 +179,7 @@ void add_strip(View& view, const Page& page) {
   view.flag("strip", !months.empty());
   while (months.size() > most_months) months.erase(months.begin());
   std::set<std::string> first;  // those that the lines name come first
-  for (const MorningLine& l : page.site.lines)
+  for (const WorkItem& l : page.site.lines)
     if (first.size() < most_machines && cells.contains(l.machine)) first.insert(l.machine);
   for (const auto& [machine, of] : cells)
     if (first.size() < most_machines) first.insert(machine);
@@ -208,10 +208,10 @@ void add_strip(View& view, const Page& page) {
 constexpr std::size_t most_sparks = 10;
 
 /// The first lines that a machine has, one of each axis.
-std::vector<const MorningLine*> drawn_lines(const SiteHistory& site) {
-  std::vector<const MorningLine*> out;
+std::vector<const WorkItem*> drawn_lines(const SiteHistory& site) {
+  std::vector<const WorkItem*> out;
   std::set<std::string> seen;
-  for (const MorningLine& l : site.lines)
+  for (const WorkItem& l : site.lines)
     if (out.size() < most_sparks && machine_in(site, l.machine) != nullptr &&
         seen.insert(l.machine + ' ' + l.axis).second)
       out.push_back(&l);
@@ -221,7 +221,7 @@ std::vector<const MorningLine*> drawn_lines(const SiteHistory& site) {
 /// Largest deviations of machines whose lines come first.
 void add_sparks(View& view, const Page& page) {
   bool any = false;
-  for (const MorningLine* l : drawn_lines(page.site)) {
+  for (const WorkItem* l : drawn_lines(page.site)) {
     View* row = nullptr;
     for (const char* quantity : {"A", "B", "R"}) {
       const auto& all = machine_of(page, l->machine)->series;
@@ -247,7 +247,7 @@ void add_sparks(View& view, const Page& page) {
 
 Expected<std::string> index_page(const Page& page) {
   View view = page_view(page, page.words.get("site.morning"),
-                        page.words.get("site.night", {{"night", std::to_string(page.site.night)},
+                        page.words.get("site.night", {{"night", std::to_string(page.site.run)},
                                                       {"date", page.site.date}}));
   view.set("counts", counts(page));
   add_filters(view, page);
@@ -263,7 +263,7 @@ namespace nonio::reports {
 
 std::vector<std::string> drawn_first(const SiteHistory& site) {
   std::vector<std::string> out;
-  for (const MorningLine* l : site::drawn_lines(site))
+  for (const WorkItem* l : site::drawn_lines(site))
     if (std::find(out.begin(), out.end(), l->machine) == out.end()) out.push_back(l->machine);
   return out;
 }

@@ -29,7 +29,7 @@ void add_identity(View& view, const Page& page, const MachineHistory& m) {
 
 void add_open_lines(View& view, const Page& page, const MachineHistory& m) {
   bool any = false;
-  for (const MorningLine& l : page.site.lines) {
+  for (const WorkItem& l : page.site.lines) {
     if (l.machine != m.id) continue;
     any = true;
     std::string text = page.words.get("site.kind." + std::string(name_of(l.kind))) + ": ";
@@ -139,7 +139,7 @@ void add_numbers(View& view, const Page& page, const HistorySeries& s,
   }
 }
 
-/// Of two series of one quantity the one that has ended says so.
+/// Of two series of one quantity the one that has ended states that.
 std::string title_of(const Page& page, const HistorySeries& s) {
   const std::string title = s.axis + " · " + quantity_text(page, s.quantity);
   if (!s.ended || s.points.empty()) return title;

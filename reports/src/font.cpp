@@ -101,7 +101,8 @@ std::string widths_array(const std::vector<std::uint16_t>& advance, const Number
   return out + "]";
 }
 
-/// Six letters that tell this subset from every other, then the name: "ABCDEF+LiberationSans".
+/// Six letters that distinguish this subset from every other, then the name:
+/// "ABCDEF+LiberationSans".
 std::string subset_name(std::string_view bytes, std::string_view path) {
   std::uint64_t hash = 1469598103934665603U;  // FNV-1a, 64 bits
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;

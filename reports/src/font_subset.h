@@ -15,8 +15,8 @@ namespace nonio::reports {
 /// 9.9) and its names, which hold the licence. Empty if that cannot be made from this file.
 std::string font_subset(std::string_view font, const std::vector<char>& glyphs);
 
-/// The same with these glyphs alone, numbered as they stand in the list, and behind them what they
-/// are composed of. The first is the font's glyph 0, for characters that it does not have.
+/// The same with these glyphs only, numbered in the order of the list, followed by the glyphs that
+/// they are composed of. The first is the font's glyph 0, for characters that it does not have.
 std::string font_part(std::string_view font, std::vector<std::uint16_t> glyphs);
 
 /// The part for one document; without a name if that cannot be made.

@@ -77,7 +77,7 @@ Expected<SetText> set_text(const Context&, std::string_view text, bool bold, dou
 Expected<SetText> set_line(const Context&, std::string_view text, bool bold, double size,
                            double width, std::string_view field);
 
-/// A filled sign: a disc, a triangle, a square or a ring, so that colour is not needed to tell.
+/// A filled sign: a disc, a triangle, a square or a ring, distinct without colour.
 void draw_mark(Canvas&, const Style&, Level, double x, double y, double size);
 Colour colour_of(const Style&, Level);
 

@@ -15,12 +15,12 @@ struct Cells {
   std::vector<bool> bold;
 };
 
-/// What the columns ask for: all in one line; no word divided; no number divided.
+/// The widths that the columns need: all in one line; no word divided; no number divided.
 struct Needs {
   std::vector<double> natural, least, numbers;
 };
 
-/// What each column asks for, but none more than one level: the short ones get all, so that one
+/// What each column requests, but none more than one level: the short ones get all, so that one
 /// long column does not divide them.
 std::vector<double> up_to_a_level(const Needs& needs, double width) {
   std::vector<double> out(needs.least.size());

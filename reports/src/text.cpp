@@ -85,7 +85,7 @@ bool stays_with_number(char32_t c) {
 }
 
 /// Chinese stops and brackets fill half of their square only: no blank follows them.
-bool has_room_behind(char32_t c) {
+bool has_room_after(char32_t c) {
   constexpr std::u32string_view all = U"\u3002\uFF0C\uFF1B\uFF1A\u3001\uFF09\uFF1F\uFF01";
   return all.find(c) != std::u32string_view::npos;
 }
@@ -101,7 +101,7 @@ Expected<Glyphs> shape(std::string_view text, const Fonts& fonts, bool bold, std
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t at = i;
     const char32_t c = next_composed(text, i);
-    if (c == U' ' && has_room_behind(last)) continue;
+    if (c == U' ' && has_room_after(last)) continue;
     Glyph glyph = glyph_of(c, font, fonts.wide);
     const bool accent = c == acute_above;
     const bool over_a_letter = bears_accent(last) && !glyph.wide && !out.back().wide &&

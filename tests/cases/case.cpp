@@ -106,7 +106,7 @@ void evaluate_iso(const Case& c, const AxisTest& test, Outcome& out) {
   }
   const auto of = uncertainty_budget(c.campaign, c.campaign.environment, "X", test);
   if (!of.budget) return;
-  const auto U = iso230_2_uncertainty(*of.budget, approaches_behind_means(test), k);
+  const auto U = iso230_2_uncertainty(*of.budget, approaches_per_mean(test), k);
   put(out, "U(A)", U.A, um), put(out, "U(A+)", U.A_plus, um), put(out, "U(A-)", U.A_minus, um);
   put(out, "U(E)", U.E, um), put(out, "U(E+)", U.E_plus, um), put(out, "U(E-)", U.E_minus, um);
   put(out, "U(R)", U.R, um), put(out, "U(R+)", U.R_plus, um), put(out, "U(R-)", U.R_minus, um);
@@ -135,7 +135,7 @@ void evaluate_vdi(const Case& c, const AxisTest& test, Outcome& out) {
   }
   const auto of = uncertainty_budget(c.campaign, c.campaign.environment, "X", test);
   if (!of.budget) return;
-  const auto U = vdi3441_uncertainty(*of.budget, approaches_behind_means(test));
+  const auto U = vdi3441_uncertainty(*of.budget, approaches_per_mean(test));
   put(out, "U(P)", U.P, um), put(out, "U(Pa)", U.Pa, um), put(out, "U(Ps_max)", U.Ps_max, um);
   put(out, "U(Ps_mean)", U.Ps_mean, um), put(out, "U(U_max)", U.U_max, um);
   put(out, "U(U_mean)", U.U_mean, um);
@@ -155,7 +155,7 @@ void evaluate_positioning(const Case& c, const AxisTest& test, Outcome& out) {
   put(out, "slope", slopes.least_squares, slope_unit);
   put(out, "slope_ends", slopes.end_points, slope_unit);
   const auto of = uncertainty_budget(c.campaign, c.campaign.environment, "X", test);
-  const std::size_t n = approaches_behind_means(test);
+  const std::size_t n = approaches_per_mean(test);
   if (of.budget) put(out, "U(slope)", slope_uncertainty(slope_budget(*of.budget), n), slope_unit);
   for (const PositioningRule& rule : positioning_rules())
     for (const RuleValue& v : evaluate_rule(rule, axis, offset)) {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Texts for people use the terms of docs/terms.toml: no forbidden synonym and no private phrase in templates/words, in
-literals of engine, plugins and reports (among them all texts of --help), in README.md, CONTRIBUTING.md and the pages for
-users. In comments, and in pages for developers, their number may only fall. The glossary is the one that the terms make.
+literals and comments of engine, plugins and reports (among them all texts of --help), in README.md, CONTRIBUTING.md and
+the pages for users and developers. The glossary is the one that the terms make.
 
 words_test.py SOURCE_FOLDER"""
 import pathlib
@@ -14,10 +14,6 @@ import unittest
 ROOT = pathlib.Path(sys.argv.pop(1))
 TERMS = tomllib.loads((ROOT / "docs" / "terms.toml").read_text(encoding="utf-8"))
 TERM = [term for section in TERMS["section"] for term in section["term"]]
-# Private phrases in comments of engine, plugins and reports: correct some, and lower the number.
-COMMENTS = 560
-# The same in docs/dev and in the pages of samples and plugins.
-DEVELOPERS = 53
 
 
 def rules(language):
@@ -107,20 +103,16 @@ class Words(unittest.TestCase):
                  for literal in split(text)[0] for phrase, write in wrong(literal)]
         self.assertEqual("", "\n".join(found))
 
-    def test_pages_for_users(self):
-        pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+    def test_pages(self):
+        pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("**/*.md")),
+                 ROOT / "samples" / "README.md", *sorted((ROOT / "plugins").rglob("README.md"))]
         found = [f"{page.relative_to(ROOT)}: {phrase!r}; write {write}" for page in pages
                  for line in prose(page.read_text(encoding="utf-8")).split("\n") for phrase, write in wrong(line)]
         self.assertEqual("", "\n".join(found))
 
-    def test_pages_for_developers_have_no_more_of_them(self):
-        pages = [ROOT / "samples" / "README.md", *(ROOT / "plugins").rglob("README.md"), *(ROOT / "docs" / "dev").glob("*.md")]
-        count = sum(1 for page in pages for line in prose(page.read_text(encoding="utf-8")).split("\n") for _ in wrong(line))
-        self.assertEqual(DEVELOPERS, count, "lower DEVELOPERS if it fell; a new page has none")
-
-    def test_comments_have_no_more_of_them(self):
-        count = sum(1 for _, text in sources() for _ in wrong(split(text)[1]))
-        self.assertEqual(COMMENTS, count, "lower COMMENTS if it fell; a new comment has none")
+    def test_comments(self):
+        found = [f"{path}: {phrase!r}; write {write}" for path, text in sources() for phrase, write in wrong(split(text)[1])]
+        self.assertEqual("", "\n".join(found))
 
 
 if __name__ == "__main__":

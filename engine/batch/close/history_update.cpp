@@ -22,7 +22,7 @@ std::string in_one_line(const std::vector<Error>& errors) {
 std::vector<config::Event> events_of(const config::MachineRecords& records) {
   std::vector<config::Event> events;
   for (const config::RecordFile& file : records) {
-    if (!file.record) continue;  // its campaigns fail, and say why
+    if (!file.record) continue;  // its campaigns fail, and state why
     for (const auto& [axis, recorded] : file.record->axes) {
       for (const config::ControlState& state : recorded.states) {
         if (state.source == "backup") continue;  // nothing was loaded on that day
@@ -43,7 +43,8 @@ std::vector<config::Event> events_of(const config::MachineRecords& records) {
 
 }  // namespace
 
-Expected<store::Told> read_told(const RunOptions& options, const reading::Context& context) {
+Expected<store::SiteRecords> read_records(const RunOptions& options,
+                                          const reading::Context& context) {
   auto logs = read_apart<config::SiteLogs>(
       "what the site states of its machines", context.site.limits.disk_seconds,
       [&](process::SignsOfLife& signs) -> Expected<config::SiteLogs> {
@@ -53,12 +54,12 @@ Expected<store::Told> read_told(const RunOptions& options, const reading::Contex
         return std::move(*read);
       });
   if (!logs) return fail(logs.error());
-  return store::Told{std::move(*logs), context.site.aliases, events_of(context.machines),
-                     context.site.due};
+  return store::SiteRecords{std::move(*logs), context.site.aliases, events_of(context.machines),
+                            context.site.due};
 }
 
 Expected<void> HistoryUpdate::begin(std::optional<std::uint64_t> planned) {
-  NONIO_TRY(const auto known, store::known_night(options_.out));
+  NONIO_TRY(const auto known, store::known_run(options_.out));
   known_ = known ? known : planned;
   std::optional<storage::Server> server;
   if (const auto& choice = context_.site.database)
@@ -69,39 +70,40 @@ Expected<void> HistoryUpdate::begin(std::optional<std::uint64_t> planned) {
                             : std::filesystem::absolute(options_.site / choice->password_file)};
   NONIO_TRY(const auto elsewhere, store::note_place(options_.out, server));
   if (elsewhere) known_.reset();
-  return store::forget_known_night(options_.out);
+  return store::forget_known_run(options_.out);
 }
 
-Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::uint64_t night,
+Expected<std::vector<std::string>> HistoryUpdate::end(std::uint64_t last, std::uint64_t run,
                                                       const std::vector<std::string>& campaigns,
-                                                      const Expected<store::Told>& told) {
-  if (!told) return fail(told.error());
-  auto updated = read_apart<store::Updated>(
-      "the history", context_.site.limits.disk_seconds,
-      [&](process::SignsOfLife& signs) -> Expected<store::Updated> {
-        signs.reading((options_.out / store::store_name).string());
-        return store::update(options_.out, known_ != last, campaigns, *told, [&] { signs.beat(); });
-      });
+                                                      const Expected<store::SiteRecords>& records) {
+  if (!records) return fail(records.error());
+  auto updated =
+      read_apart<store::Updated>("the history", context_.site.limits.disk_seconds,
+                                 [&](process::SignsOfLife& signs) -> Expected<store::Updated> {
+                                   signs.reading((options_.out / store::store_name).string());
+                                   return store::update(options_.out, known_ != last, campaigns,
+                                                        *records, [&] { signs.beat(); });
+                                 });
   if (!updated) return fail(updated.error());
   rebuilt_ = rebuilt_ || updated->rebuilt;
   std::vector<std::string> notes;
   for (const std::string& left : updated->left_out) notes.push_back("not in the history: " + left);
   if (!notes.empty()) return notes;
-  if (auto noted = store::note_known_night(options_.out, night); !noted) return fail(noted.error());
-  known_ = night;
+  if (auto noted = store::note_known_run(options_.out, run); !noted) return fail(noted.error());
+  known_ = run;
   return notes;
 }
 
 void HistoryUpdate::nothing_done() const {
   // If it cannot be noted, the next run makes the store again.
   if (known_) [[maybe_unused]]
-    const auto noted = store::note_known_night(options_.out, *known_);
+    const auto noted = store::note_known_run(options_.out, *known_);
 }
 
 Expected<std::vector<std::string>> HistoryUpdate::end(const std::vector<std::string>& campaigns,
-                                                      const Expected<store::Told>& told) {
+                                                      const Expected<store::SiteRecords>& records) {
   if (!known_) return std::vector<std::string>{};
-  return end(*known_, *known_, campaigns, told);
+  return end(*known_, *known_, campaigns, records);
 }
 
 }  // namespace nonio::batch

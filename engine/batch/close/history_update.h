@@ -6,15 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 #include "campaign/reading/context.h"
 #include "laboratory/store/store.h"
 
 namespace nonio::batch {
 
-/// What events.toml, acknowledged.toml and forgotten.toml say, and what site.toml and the records
-/// of the machines say of machines; all that is wrong in one error.
-Expected<store::Told> read_told(const RunOptions& options, const reading::Context& context);
+/// What events.toml, acknowledged.toml and forgotten.toml state, and what site.toml and the records
+/// of the machines state about machines; all that is wrong in one error.
+Expected<store::SiteRecords> read_records(const RunOptions& options,
+                                          const reading::Context& context);
 
 /// The laboratory's memory (OUT/history.sqlite) in step with results that are about to change.
 class HistoryUpdate {
@@ -27,16 +28,16 @@ class HistoryUpdate {
   Expected<void> begin(std::optional<std::uint64_t> known = {});
   std::optional<std::uint64_t> known() const { return known_; }
   /// When all are: adds these campaigns. `last` is the run whose end the store should contain,
-  /// `night` the one that it contains from now on. Returns notes for the summary. An error leaves
-  /// the store as it was, and the next run makes it again.
-  Expected<std::vector<std::string>> end(std::uint64_t last, std::uint64_t night,
+  /// `run` the one that it contains from now on. Returns notes for the summary. An error leaves the
+  /// store as it was, and the next run makes it again.
+  Expected<std::vector<std::string>> end(std::uint64_t last, std::uint64_t run,
                                          const std::vector<std::string>& campaigns,
-                                         const Expected<store::Told>& told);
+                                         const Expected<store::SiteRecords>& records);
   /// No result was stored after `begin`: the store is complete up to the same run as before.
   void nothing_done() const;
-  /// The same between nights, where a store that is behind is left to the next one.
+  /// The same between runs, where an outdated store is left to the next run.
   Expected<std::vector<std::string>> end(const std::vector<std::string>& campaigns,
-                                         const Expected<store::Told>& told);
+                                         const Expected<store::SiteRecords>& records);
   /// Whether the store was made from nothing.
   bool rebuilt() const { return rebuilt_; }
 

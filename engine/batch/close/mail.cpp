@@ -35,10 +35,10 @@ namespace net = Poco::Net;
 
 namespace {
 
-constexpr std::size_t longest_answer = 300;  // bytes, of what a server or program says
+constexpr std::size_t longest_answer = 300;  // bytes, of a message of a server or program
 constexpr std::size_t longest_subject = 200;
 
-/// One line of printable text: what others say goes into a summary.
+/// One line of printable text: messages of others become part of the summary.
 std::string one_line(std::string text, std::size_t longest) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
@@ -51,7 +51,7 @@ std::string one_line(std::string text, std::size_t longest) {
   return text;
 }
 
-/// A server may send back what it was sent, also encoded: then nothing of it is said.
+/// A server may send back what it was sent, also encoded: then nothing of it is stated.
 std::string without(const std::string& secret, const std::string& text) {
   if (secret.empty()) return text;
   const bool there = text.find(secret) != std::string::npos;

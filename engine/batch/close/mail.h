@@ -15,9 +15,9 @@ struct Letter {
   std::string text;     ///< UTF-8
 };
 
-/// Whether this line is grave enough for a mail that is wanted `on` that. What somebody acknowledged
-/// is not, nor what is fixed, nor a change that is not sure enough.
-bool is_reason_for_mail(const reports::MorningLine& line, config::Mail::On on);
+/// Whether this line is severe enough for a mail, by the setting `on`. A line that was acknowledged
+/// or fixed is not, nor is a change that is not significant enough.
+bool is_reason_for_mail(const reports::WorkItem& line, config::Mail::On on);
 
 /// Gives the letter to the program or the server of `mail`, once. Paths are relative to `site`. In
 /// a process of its own, which may take `seconds` (s) in all. The password appears in no error.

@@ -5,8 +5,8 @@
 
 namespace nonio::batch {
 
-bool is_reason_for_mail(const reports::MorningLine& line, config::Mail::On on) {
-  using Kind = reports::MorningLine::Kind;
+bool is_reason_for_mail(const reports::WorkItem& line, config::Mail::On on) {
+  using Kind = reports::WorkItem::Kind;
   if (!reports::asks_by_mail(line)) return false;
   switch (on) {
     case config::Mail::On::lost:

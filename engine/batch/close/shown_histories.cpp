@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "batch/state/night_state.h"
 #include "batch/state/read_apart.h"
+#include "batch/state/run_state.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
@@ -16,16 +16,17 @@ namespace {
 
 constexpr const char* histories_name = "histories";
 
-/// What people say that stands in histories; nothing else of it can change without a campaign.
-std::string digest_of_told(const store::Told& told) {
+/// Digest of the statements of people that histories contain; nothing else of a history can change
+/// without a campaign.
+std::string digest_of_records(const store::SiteRecords& records) {
   storage::Json json = storage::Json::array();
-  for (const auto* events : {&told.logs.events, &told.of_records}) {
+  for (const auto* events : {&records.logs.events, &records.of_records}) {
     json.push_back(storage::Json::array());
     for (const config::Event& e : *events)
       json.back().push_back({e.date, e.machine, e.axis, e.kind, e.text});
   }
-  for (const config::Alias& a : told.aliases) json.push_back({"alias", a.name, a.asset});
-  for (const config::DueRule& d : told.due) json.push_back({"due", d.machine, d.months});
+  for (const config::Alias& a : records.aliases) json.push_back({"alias", a.name, a.asset});
+  for (const config::DueRule& d : records.due) json.push_back({"due", d.machine, d.months});
   return storage::sha256(json.dump(-1, ' ', false, storage::Json::error_handler_t::replace));
 }
 
@@ -45,12 +46,14 @@ Expected<void> ShownHistories::begin() const {
 }
 
 Expected<std::map<std::string, assessment::HistoryBasis>> ShownHistories::others(
-    const std::vector<CampaignState>& campaigns, const store::Told& told, bool looked) const {
+    const std::vector<CampaignState>& campaigns, const store::SiteRecords& records,
+    bool looked) const {
   using Bases = std::map<std::string, assessment::HistoryBasis>;
   std::map<std::string, std::string> shown;
   for (const CampaignState& c : campaigns)
     if (shows_history(c)) shown[c.id] = c.history;
-  if (shown.empty() || (!looked && noted_histories(options_.out) == digest_of_told(told) + "\n"))
+  if (shown.empty() ||
+      (!looked && noted_histories(options_.out) == digest_of_records(records) + "\n"))
     return Bases();
   return read_apart<Bases>("the history of the machines", context_.site.limits.disk_seconds,
                            [&](process::SignsOfLife& signs) -> Expected<Bases> {
@@ -67,9 +70,9 @@ Expected<std::map<std::string, assessment::HistoryBasis>> ShownHistories::others
 }
 
 Expected<void> ShownHistories::end(const std::vector<CampaignState>& campaigns,
-                                   const store::Told& told) const {
+                                   const store::SiteRecords& records) const {
   if (std::none_of(campaigns.begin(), campaigns.end(), shows_history)) return {};
-  std::string now = digest_of_told(told) + "\n";
+  std::string now = digest_of_records(records) + "\n";
   if (noted_histories(options_.out) == now) return {};
   return storage::publish(options_.out / state_folder, {{histories_name, std::move(now)}});
 }

@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 #include "campaign/reading/context.h"
 #include "laboratory/assessment/history_so_far.h"
 #include "laboratory/store/store.h"
 
 namespace nonio::batch {
 
-/// Which campaigns show another history of their machine than the store has. A run asks when the
-/// store knows its results; then those campaigns are done again. Where nothing has changed since
-/// all were right (OUT/.nonio/histories says so), no history is looked at.
+/// Which campaigns show another history of their machine than the store has. A run calls this when
+/// the store contains its results; then those campaigns are done again. Where nothing has changed
+/// since all were right (by OUT/.nonio/histories), no history is looked at.
 class ShownHistories {
  public:
   ShownHistories(const RunOptions& options, const reading::Context& context)
@@ -24,9 +24,11 @@ class ShownHistories {
   Expected<void> begin() const;
   /// By campaign. `looked`: whatever was noted before. Notes nothing.
   Expected<std::map<std::string, assessment::HistoryBasis>> others(
-      const std::vector<CampaignState>& campaigns, const store::Told& told, bool looked) const;
+      const std::vector<CampaignState>& campaigns, const store::SiteRecords& records,
+      bool looked) const;
   /// All are right.
-  Expected<void> end(const std::vector<CampaignState>& campaigns, const store::Told& told) const;
+  Expected<void> end(const std::vector<CampaignState>& campaigns,
+                     const store::SiteRecords& records) const;
 
  private:
   const RunOptions& options_;

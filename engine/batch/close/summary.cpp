@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "batch/state/night_state.h"
+#include "batch/state/run_state.h"
 #include "batch/workers/runner.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
@@ -67,24 +67,24 @@ storage::Json entry_json(const CampaignState& c, const std::string& reason) {
   return json;
 }
 
-std::string night_words(const evaluation::NightOf& night, const config::TerminalWords& words) {
-  return words(night.date.empty() ? "night" : "night-of",
-               {{"number", std::to_string(night.number)}, {"date", night.date}});
+std::string run_words(const evaluation::RunLabel& run, const config::TerminalWords& words) {
+  return words(run.date.empty() ? "night" : "night-of",
+               {{"number", std::to_string(run.number)}, {"date", run.date}});
 }
 
-storage::Json night_json(const evaluation::NightOf& night) {
-  return {{"night", night.number}, {"date", night.date}};
+storage::Json run_json(const evaluation::RunLabel& run) {
+  return {{"night", run.number}, {"date", run.date}};
 }
 
 /// Which run this is, and whether campaigns are missing: first of all, so that no reader takes an
-/// old summary for tonight's.
-std::string night_line(const Night& night, const config::TerminalWords& words) {
+/// old summary for that of this run.
+std::string run_line(const RunResult& run, const config::TerminalWords& words) {
   std::string line =
-      night_words(night.night, words) + "; " + words.counted("seen", night.campaigns.size()) + ", ";
+      run_words(run.run, words) + "; " + words.counted("seen", run.campaigns.size()) + ", ";
   if (line[0] >= 'a' && line[0] <= 'z') line[0] = static_cast<char>(line[0] - 'a' + 'A');
   return line +
-         (night.seen_before ? words("seen-before", {{"count", std::to_string(*night.seen_before)}})
-                            : words("first-night")) +
+         (run.seen_before ? words("seen-before", {{"count", std::to_string(*run.seen_before)}})
+                          : words("first-night")) +
          "\n";
 }
 
@@ -108,14 +108,12 @@ struct Lists {
   std::map<std::string, Fresh> fresh_by_heading;  ///< those that require action
 
   void add(const Vanished& v) {
-    vanished.add(v.id + (config::is_campaign_id(v.id) ? ": " : " ") + v.why,
-                 {{"campaign", v.id},
-                  {"folder", v.folder},
-                  {"last_done_night", v.night},
-                  {"message", v.why}});
+    vanished.add(
+        v.id + (config::is_campaign_id(v.id) ? ": " : " ") + v.why,
+        {{"campaign", v.id}, {"folder", v.folder}, {"last_done_night", v.run}, {"message", v.why}});
   }
 
-  /// An error if what the campaign's record says cannot be read.
+  /// An error if what the campaign's record states cannot be read.
   Expected<void> add(const CampaignState& c, const fs::path& out) {
     if (c.status == evaluation::Status::failed) {
       add_failed(c, out);
@@ -156,20 +154,20 @@ struct Lists {
     const fs::path results = storage::results_folder(out, c.id);
     const auto record = evaluation::read_record(results);
     if (record && record->failed_since) {
-      const evaluation::NightOf& since = *record->failed_since;
-      entry["failed_since"] = night_json(since);
-      if (since.number != record->night)
-        line += "; " + words("failed-since", {{"night", night_words(since, words)}});
+      const evaluation::RunLabel& since = *record->failed_since;
+      entry["failed_since"] = run_json(since);
+      if (since.number != record->run)
+        line += "; " + words("failed-since", {{"night", run_words(since, words)}});
     }
     const std::string folder = (storage::own_folder(out, c.id) / evaluation::last_good_name)
                                    .lexically_relative(out)
                                    .generic_string();
     if (const auto good = evaluation::read_record(results / evaluation::last_good_name)) {
-      const evaluation::NightOf night{good->night, good->date};
-      entry["last_good"] = night_json(night);
+      const evaluation::RunLabel run{good->run, good->date};
+      entry["last_good"] = run_json(run);
       entry["last_good"]["status"] = to_text(good->status);
       entry["last_good"]["folder"] = folder;
-      line += "; " + words("last-good", {{"night", night_words(night, words)}, {"folder", folder}});
+      line += "; " + words("last-good", {{"night", run_words(run, words)}, {"folder", folder}});
     }
     failed.add(line, entry);
   }
@@ -212,11 +210,11 @@ std::string waiting_line(const std::vector<certificates::WaitingDraft>& drafts,
 }
 
 /// "12 campaigns: 3 done, 9 unchanged, 0 failed; 2 lines: action required".
-std::string counts_line(const Night& night, const Lists& lists, const Morning& morning,
+std::string counts_line(const RunResult& run, const Lists& lists, const MorningPages& morning,
                         const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
   const config::TerminalWords& words = lists.words;
-  return "Nonio " + version + ": " + words.counted("campaigns", night.campaigns.size()) + ": " +
+  return "Nonio " + version + ": " + words.counted("campaigns", run.campaigns.size()) + ": " +
          words("counts", {{"done", n(lists.done.count)},
                           {"unchanged", n(lists.unchanged.count)},
                           {"failed", n(lists.failed.count)}}) +
@@ -244,26 +242,26 @@ void write_fresh(storage::Spool& out, const Lists& lists) {
 }
 
 /// A run in which nothing is new and no action is required.
-bool is_quiet(const Night& night, const Lists& lists, const Morning& morning) {
+bool is_quiet(const RunResult& run, const Lists& lists, const MorningPages& morning) {
   return lists.done.count == 0 && lists.failed.count == 0 && lists.vanished.count == 0 &&
-         morning.asking == 0 && !morning.json.empty() && night.issued.empty() &&
-         night.waiting.empty() && night.notes.empty();
+         morning.asking == 0 && !morning.json.empty() && run.issued.empty() &&
+         run.waiting.empty() && run.notes.empty();
 }
 
 /// What requires action comes first. Of long lists the begin: summary.json has them whole.
-void write_text(storage::Spool& out, const Night& night, Lists& lists, const std::string& version,
-                const Morning& morning) {
+void write_text(storage::Spool& out, const RunResult& run, Lists& lists, const std::string& version,
+                const MorningPages& morning) {
   const config::TerminalWords& words = lists.words;
-  if (is_quiet(night, lists, morning)) {
-    std::string line = night_line(night, words);
+  if (is_quiet(run, lists, morning)) {
+    std::string line = run_line(run, words);
     line.pop_back();
     out.add(line + ": " + words(morning.judged ? "quiet" : "quiet.not-judged") + "\n");
     return;
   }
-  out.add(counts_line(night, lists, morning, version));
-  out.add(night_line(night, words));
-  if (!night.issued.empty()) out.add(issued_line(night.issued, words));
-  if (!night.waiting.empty()) out.add(waiting_line(night.waiting, words));
+  out.add(counts_line(run, lists, morning, version));
+  out.add(run_line(run, words));
+  if (!run.issued.empty()) out.add(issued_line(run.issued, words));
+  if (!run.waiting.empty()) out.add(waiting_line(run.waiting, words));
   const auto section = [&](const char* heading, List& list) {
     if (list.count == 0) return;
     out.add("\n" + words(heading) + "\n");
@@ -277,22 +275,22 @@ void write_text(storage::Spool& out, const Night& night, Lists& lists, const std
   if (!morning.text.empty()) out.add("\n" + words("heading.morning") + "\n" + morning.text);
   write_fresh(out, lists);
   section("heading.done", lists.done);
-  if (!night.notes.empty()) out.add("\n" + words("heading.notes") + "\n");
-  for (const std::string& note : night.notes) out.add("  " + note + "\n");
+  if (!run.notes.empty()) out.add("\n" + words("heading.notes") + "\n");
+  for (const std::string& note : run.notes) out.add("  " + note + "\n");
 }
 
-void write_json(storage::Spool& out, const Night& night, Lists& lists, const std::string& version,
-                const fs::path& out_folder, const Morning& morning) {
+void write_json(storage::Spool& out, const RunResult& run, Lists& lists, const std::string& version,
+                const fs::path& out_folder, const MorningPages& morning) {
   const std::initializer_list<List*> all{&lists.done,   &lists.unchanged, &lists.attention,
                                          &lists.failed, &lists.vanished,  &lists.fresh};
-  storage::Json seen = {{"tonight", night.campaigns.size()}, {"night_before", nullptr}};
-  if (night.seen_before) seen["night_before"] = *night.seen_before;
-  storage::Json counts = {{"campaigns", night.campaigns.size()}};
+  storage::Json seen = {{"tonight", run.campaigns.size()}, {"night_before", nullptr}};
+  if (run.seen_before) seen["night_before"] = *run.seen_before;
+  storage::Json counts = {{"campaigns", run.campaigns.size()}};
   for (const List* l : all)
     if (l != &lists.fresh) counts[l->name] = l->count;
   out.add("{\n \"schema\": \"nonio-summary/1\",\n \"nonio\": " + storage::Json(version).dump() +
-          ",\n \"night\": " + std::to_string(night.night.number) +
-          ",\n \"date\": " + storage::Json(night.night.date).dump() +
+          ",\n \"night\": " + std::to_string(run.run.number) +
+          ",\n \"date\": " + storage::Json(run.run.date).dump() +
           ",\n \"language\": " + storage::Json(lists.words.language()).dump() +
           ",\n \"seen\": " + seen.dump() + ",\n \"counts\": " + counts.dump());
   for (List* l : all) {
@@ -302,14 +300,14 @@ void write_json(storage::Spool& out, const Night& night, Lists& lists, const std
   }
   out.add(",\n \"lines\": " + (morning.json.empty() ? "[]" : morning.json));
   storage::Json issued = storage::Json::array();
-  for (const certificates::RegisterEntry& e : night.issued) {
+  for (const certificates::RegisterEntry& e : run.issued) {
     storage::Json one = {{"number", e.number}, {"campaign", e.campaign}};
     if (!e.replaces.empty()) one["replaces"] = e.replaces;
     issued.push_back(std::move(one));
   }
   out.add(",\n \"issued\": " + issued.dump());
   storage::Json waiting = storage::Json::array();
-  for (const certificates::WaitingDraft& d : night.waiting) {
+  for (const certificates::WaitingDraft& d : run.waiting) {
     storage::Json one = {
         {"campaign", d.campaign},
         {"file",
@@ -320,19 +318,19 @@ void write_json(storage::Spool& out, const Night& night, Lists& lists, const std
   }
   out.add(",\n \"drafts\": " + waiting.dump());
   out.add(",\n \"notes\": " +
-          storage::Json(night.notes).dump(-1, ' ', false, storage::Json::error_handler_t::replace) +
+          storage::Json(run.notes).dump(-1, ' ', false, storage::Json::error_handler_t::replace) +
           "\n}\n");
 }
 
 }  // namespace
 
-std::size_t Night::failed() const {
+std::size_t RunResult::failed() const {
   return static_cast<std::size_t>(
       std::count_if(campaigns.begin(), campaigns.end(),
                     [](const CampaignState& c) { return c.status == evaluation::Status::failed; }));
 }
 
-std::size_t Night::lost_parts() const {
+std::size_t RunResult::lost_parts() const {
   return static_cast<std::size_t>(
       std::count_if(vanished.begin(), vanished.end(),
                     [](const Vanished& v) { return !config::is_campaign_id(v.id); }));
@@ -355,22 +353,22 @@ std::string first_error(const CampaignState& c, const config::TerminalWords& wor
          (more == 0 ? "" : " " + words("more", {{"count", std::to_string(more)}}));
 }
 
-Expected<void> write_summary(const Night& night, const fs::path& out, const std::string& version,
-                             const config::TerminalWords& words, const Morning& morning) {
+Expected<void> write_summary(const RunResult& run, const fs::path& out, const std::string& version,
+                             const config::TerminalWords& words, const MorningPages& morning) {
   const std::vector<std::string> names{"summary.txt", "summary.json"};
   storage::remove_leftovers(out);
   storage::Spool text = storage::Spool::at(storage::temporary_path(out, names[0]));
   storage::Spool json = storage::Spool::at(storage::temporary_path(out, names[1]));
   Lists lists(out / state_folder, words);
-  for (const CampaignState& c : night.campaigns) {
+  for (const CampaignState& c : run.campaigns) {
     const auto added = process::is_stop_requested() ? fail("interrupted") : lists.add(c, out);
     if (added) continue;
     storage::remove_temporaries(out, names);
     return fail("cannot write the summary in " + out.string() + ": " + added.error().message);
   }
-  for (const Vanished& v : night.vanished) lists.add(v);
-  write_text(text, night, lists, version, morning);
-  write_json(json, night, lists, version, out, morning);
+  for (const Vanished& v : run.vanished) lists.add(v);
+  write_text(text, run, lists, version, morning);
+  write_json(json, run, lists, version, out, morning);
   auto written = text.flush();
   if (written) written = json.flush();
   if (written) written = storage::rename_temporaries(out, names);

@@ -14,9 +14,9 @@
 
 namespace nonio::batch {
 
-/// A process that makes staged results durable while the workers go on. What has come together
-/// while the disk was busy is flushed at once, so that a fast night pays for few flushes and a slow
-/// one waits for none.
+/// A process that makes staged results durable while the workers go on. What has accumulated while
+/// the disk was busy is flushed at once, so that a fast run needs few flushes and a slow one waits
+/// for none.
 class Committer {
  public:
   struct Given {
@@ -28,7 +28,7 @@ class Committer {
     std::string error;   ///< empty: stored
     bool again = false;  ///< the process died over it; its parent may store it
   };
-  /// Run in the process: stores these campaigns and tells what became of each.
+  /// Run in the process: stores these campaigns and reports the outcome of each.
   using Task = std::function<std::vector<Expected<void>>(const std::vector<Given>&)>;
 
   explicit Committer(Task task) : task_(std::move(task)) {}

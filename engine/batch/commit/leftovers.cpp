@@ -2,7 +2,7 @@
 #include "batch/commit/leftovers.h"
 
 #include "batch/commit/store.h"
-#include "batch/state/night_state.h"
+#include "batch/state/run_state.h"
 #include "platform/process/stop.h"
 #include "platform/storage/files.h"
 
@@ -33,10 +33,10 @@ void tidy_root(const fs::path& out) {
   storage::remove_leftovers(out / state_folder);
 }
 
-Expected<void> tidy_all(const Night& night, const fs::path& out, bool resumed) {
+Expected<void> tidy_all(const RunResult& run, const fs::path& out, bool resumed) {
   tidy_root(out);
   if (resumed) return tidy_below(out, storage::own_folder(out, "a") != out / "a");
-  for (const CampaignState& c : night.campaigns) {
+  for (const CampaignState& c : run.campaigns) {
     if (process::is_stop_requested()) return fail("interrupted");
     if (c.action != CampaignState::Action::done || !c.is_campaign) continue;
     const fs::path folder = storage::own_folder(out, c.id);

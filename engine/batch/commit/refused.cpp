@@ -8,9 +8,8 @@
 namespace nonio::batch {
 using Action = CampaignState::Action;
 
-void store_refused(const RunOptions& options, const reading::Context& context,
-                   const NightState& night, const RunEvents& events,
-                   std::vector<CampaignState>& campaigns) {
+void store_refused(const RunOptions& options, const reading::Context& context, const RunState& run,
+                   const RunEvents& events, std::vector<CampaignState>& campaigns) {
   const storage::Disk disk(options.out);
   const CampaignState* before = nullptr;
   for (CampaignState& c : campaigns) {
@@ -20,14 +19,14 @@ void store_refused(const RunOptions& options, const reading::Context& context,
     std::vector<Error> errors = c.errors;
     if (stays)
       errors.front().message +=
-          "; the results of run " + std::to_string(record->night) + " stay as they are";
+          "; the results of run " + std::to_string(record->run) + " stay as they are";
     if (c.is_campaign && !stays && (before == nullptr || before->id != c.id)) {
       evaluation::Evaluated evaluated;
       evaluated.campaign.id = c.id;
       evaluated.status = evaluation::Status::failed;
       evaluated.results.errors = errors;
       if (const auto stored =
-              store(options.out, evaluated, context, {c.folder, night.of(), c.reason, true}, disk);
+              store(options.out, evaluated, context, {c.folder, run.of(), c.reason, true}, disk);
           !stored)
         errors.push_back(stored.error());
     }

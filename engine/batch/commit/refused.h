@@ -3,16 +3,15 @@
 
 #include <vector>
 
-#include "batch/state/night.h"
-#include "batch/state/night_state.h"
+#include "batch/state/run_result.h"
+#include "batch/state/run_state.h"
 #include "campaign/reading/context.h"
 
 namespace nonio::batch {
 
-/// What the survey has failed: a good result of an earlier run stays, else there is one that says
+/// What the survey has failed: a good result of an earlier run stays, else there is one that states
 /// what is wrong. Several campaigns with one id claim one folder.
-void store_refused(const RunOptions& options, const reading::Context& context,
-                   const NightState& night, const RunEvents& events,
-                   std::vector<CampaignState>& campaigns);
+void store_refused(const RunOptions& options, const reading::Context& context, const RunState& run,
+                   const RunEvents& events, std::vector<CampaignState>& campaigns);
 
 }  // namespace nonio::batch

@@ -23,8 +23,8 @@ evaluation::RecordedFile recorded(const Artifact& a) {
   return {a.name, a.bytes.size(), storage::sha256(a.bytes)};
 }
 
-/// Under a temporary name, whole or not at all: until tonight's record has its name, this is what
-/// states to a run that is resumed why the campaign is done.
+/// Under a temporary name, whole or not at all: until the record of this run has its name, this
+/// file states to a resumed run why the campaign is done.
 Expected<void> write_record(const fs::path& folder, const evaluation::Record& record) {
   const std::string unfinished = std::string(".") + evaluation::record_name;
   const std::string text = evaluation::to_json(record);
@@ -39,12 +39,12 @@ Expected<void> write_record(const fs::path& folder, const evaluation::Record& re
 Expected<void> look_back(const fs::path& folder, evaluation::Record& record) {
   NONIO_TRY(const auto last, evaluation::last_record(folder));
   if (record.status == evaluation::Status::failed)
-    record.failed_since = evaluation::NightOf{record.night, record.date};
+    record.failed_since = evaluation::RunLabel{record.run, record.date};
   if (!last) return {};
   const evaluation::Record& old = last->record;
-  record.previous = old.night < record.night ? old.findings : old.previous;
+  record.previous = old.run < record.run ? old.findings : old.previous;
   if (record.status == evaluation::Status::failed && old.status == evaluation::Status::failed)
-    record.failed_since = old.failed_since.value_or(evaluation::NightOf{old.night, old.date});
+    record.failed_since = old.failed_since.value_or(evaluation::RunLabel{old.run, old.date});
   return {};
 }
 
@@ -59,8 +59,8 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
   if (auto taken = evaluation::take_in(out, e.campaign.id); !taken) return taken;
   evaluation::Record record;
   record.folder = storage::path_text(note.folder);
-  record.night = note.night.number;
-  record.date = note.night.date;
+  record.run = note.run.number;
+  record.date = note.run.date;
   record.reason = note.reason;
   record.status = e.status;
   record.retry = note.retry;
@@ -88,7 +88,7 @@ Expected<void> stage(const fs::path& out, const evaluation::Evaluated& e,
     files.push_back({store::earlier_name, std::move(carried.earlier)});
     record.files.push_back(recorded(files.back()));
   }
-  // Last, so that it never speaks of a file that is not there.
+  // Last, so that it never speaks of a file that is missing.
   files.push_back({evaluation::results_name, std::move(results)});
   record.files.push_back(recorded(files.back()));
 
@@ -107,19 +107,19 @@ namespace {
 class Move {
  public:
   /// What a commit that was cut short has done already is not staged any more.
-  Move(fs::path to, std::uint64_t night, const Expected<void>& sound) : folder_(std::move(to)) {
+  Move(fs::path to, std::uint64_t run, const Expected<void>& sound) : folder_(std::move(to)) {
     auto staged = evaluation::staged_record(folder_);
-    if (storage::has_own_names() && is_stored(night)) {
+    if (storage::has_own_names() && is_stored(run)) {
       leave_to_other();
     } else if (!staged) {
       done_ = fail(staged.error());
-    } else if (*staged && (*staged)->night == night) {
+    } else if (*staged && (*staged)->run == run) {
       record_ = std::move(**staged);
       for (const evaluation::RecordedFile& f : record_.files) names_.insert(f.name);
       done_ = sound;
     } else {
       const auto record = evaluation::read_record(folder_);
-      moved_ = record && record->night == night;  // an older one would pass for tonight's
+      moved_ = record && record->run == run;  // an older one could be taken for that of this run
       if (!moved_) done_ = fail("nothing is staged in " + folder_.string());
     }
   }
@@ -147,7 +147,7 @@ class Move {
     if (there) rename(folder_ / evaluation::record_name, folder_ / evaluation::record_before_name);
     if (there && done_ && storage::has_own_names()) {
       const auto moved = evaluation::last_record(folder_);
-      if (moved && *moved && (*moved)->record.night >= record_.night) {
+      if (moved && *moved && (*moved)->record.run >= record_.run) {
         // It has taken its place since this process looked.
         rename(folder_ / evaluation::record_before_name, folder_ / evaluation::record_name);
         return leave_to_other();
@@ -210,9 +210,9 @@ class Move {
            name == store::earlier_name;
   }
   /// Whether the present results are of this run, or of a later one that has begun since.
-  bool is_stored(std::uint64_t night) const {
+  bool is_stored(std::uint64_t run) const {
     const auto record = evaluation::read_record(folder_);
-    return record && record->night >= night;
+    return record && record->run >= run;
   }
   /// Another process that did the same shard was quicker: what it has stored are the same bytes.
   void leave_to_other() {
@@ -233,8 +233,8 @@ class Move {
     if (const auto renamed = storage::rename_file(from, to, is_ours); !renamed)
       give_up(renamed.error().message);
   }
-  /// The old results as they are, or nothing of them: some may be there already, and where storing
-  /// others was cut short some may be gone.
+  /// The old results as they are, or nothing of them: some may exist already, and if storing others
+  /// was interrupted some may be missing.
   void keep(const evaluation::Record& old) {
     if (!done_) return;
     const fs::path to = folder_ / evaluation::last_good_name;
@@ -260,7 +260,7 @@ class Move {
 }  // namespace
 
 std::vector<Expected<void>> commit(const fs::path& out, const std::vector<Staged>& campaigns,
-                                   std::uint64_t night, const storage::Disk& disk) {
+                                   std::uint64_t run, const storage::Disk& disk) {
   std::vector<Move> moves;
   const auto sound = [&](const Staged& c) -> Expected<void> {
     if (c.losses == disk.losses()) return {};
@@ -275,7 +275,7 @@ std::vector<Expected<void>> commit(const fs::path& out, const std::vector<Staged
       if (!m.moved() && m.done()) (m.*step)();
   };
   for (const Staged& c : campaigns)
-    moves.emplace_back(storage::own_folder(out, c.id), night, sound(c));
+    moves.emplace_back(storage::own_folder(out, c.id), run, sound(c));
   flush();
   each(&Move::read_back);
   each(&Move::put_old_aside);
@@ -297,7 +297,7 @@ Expected<void> store(const fs::path& out, const evaluation::Evaluated& evaluated
                      const storage::Disk& disk) {
   const std::uint32_t losses = disk.losses();
   if (auto staged = stage(out, evaluated, context, note); !staged) return staged;
-  return commit(out, {{evaluated.campaign.id, losses}}, note.night.number, disk).front();
+  return commit(out, {{evaluated.campaign.id, losses}}, note.run.number, disk).front();
 }
 
 Expected<void> tidy(const fs::path& folder) {

@@ -13,7 +13,7 @@ namespace nonio::batch {
 /// What the record of a campaign states in addition to its results.
 struct StoreNote {
   std::string folder;
-  evaluation::NightOf night{};
+  evaluation::RunLabel run{};
   std::string reason;
   bool retry = false;
 };
@@ -35,7 +35,7 @@ struct Staged {
 /// Results that a failure replaces which may pass go into the folder `last-good`. One entry for
 /// each campaign.
 std::vector<Expected<void>> commit(const std::filesystem::path& out,
-                                   const std::vector<Staged>& campaigns, std::uint64_t night,
+                                   const std::vector<Staged>& campaigns, std::uint64_t run,
                                    const storage::Disk& disk);
 
 /// Both, for one campaign.

@@ -215,7 +215,7 @@ class Releaser {
     const fs::path results = storage::results_folder(options_.out, id_);
     auto record = evaluation::read_record(results);
     if (!record) return fail("no result of a run in " + results.string());
-    night_.number = record->night;
+    run_.number = record->run;
     twins_ = twins_of(record->inputs);
     return {};
   }
@@ -246,11 +246,11 @@ class Releaser {
     std::vector<CampaignState> campaigns{campaign};
     HistoryUpdate history(options_, (*place)->context);
     if (const auto begun = history.begin(); !begun) return fail_with(begun.error().message);
-    if (!do_campaigns(options_, events_, (*place)->context, night_, desk, campaigns))
+    if (!do_campaigns(options_, events_, (*place)->context, run_, desk, campaigns))
       return fail_with("interrupted");
     // What is not entered now is entered by the next run.
     [[maybe_unused]] const auto entered =
-        history.end({id_}, read_told(options_, (*place)->context));
+        history.end({id_}, read_records(options_, (*place)->context));
     auto opened = certificates::Register::open(options_.site, numbering_);
     if (!opened) return fail_with(opened.error().message);
     auto last = opened->last_number(id_);
@@ -284,7 +284,7 @@ class Releaser {
   RunOptions options_;
   const RunEvents& events_;
   config::Numbering numbering_;
-  NightState night_;
+  RunState run_;
   std::optional<OutputLock> lock_;
   std::string id_, role_, last_number_;
   certificates::WaitingDraft seen_;  ///< the draft as the register had it when it was read

@@ -7,25 +7,25 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 
 namespace nonio::batch {
 
 /// Arguments of `nonio certificate approve`.
 struct ReleaseRequest {
-  std::filesystem::path campaign;              ///< its folder
-  std::string by;                              ///< a person's name, as it is printed
-  std::string role;                            ///< author, authoriser; empty: what the site wants
+  std::filesystem::path campaign;  ///< its folder
+  std::string by;                  ///< a person's name, as it is printed
+  std::string role;                ///< author, authoriser; empty: what the site requires
   std::map<std::string, std::string> reasons;  ///< by finding_key or by the finding's id
   std::filesystem::path out;                   ///< of the run; empty: where it was
 };
 
 struct Released {
   enum class State {
-    refused,   ///< `why` says what is wrong with the wish
+    refused,   ///< `why` states what is wrong with the request
     lacking,   ///< findings of attention without a reason: `without_reason`
     approved,  ///< by the author; an authoriser is still wanted
-    failed,    ///< not issued, as `why` says; the draft still waits
+    failed,    ///< not issued, as `why` states; the draft still waits
     issued
   } state = State::refused;
   std::string why;

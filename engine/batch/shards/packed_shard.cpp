@@ -13,7 +13,7 @@
 namespace nonio::batch {
 namespace fs = std::filesystem;
 
-std::optional<ShardRecord> reported_pack(const fs::path& out, const NightPlan& plan,
+std::optional<ShardRecord> reported_pack(const fs::path& out, const RunPlan& plan,
                                          std::uint64_t shard) {
   auto record = read_shard_record(out, plan, shard);
   if (!record || !*record || !(*record)->pack) return std::nullopt;
@@ -56,17 +56,17 @@ Expected<void> pack_campaign(const fs::path& folder, const std::string& id,
   return {};
 }
 
-std::string begin_of_name(const NightPlan& plan, std::uint64_t shard) {
+std::string begin_of_name(const RunPlan& plan, std::uint64_t shard) {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "night-%llu-shard-%04llu",
-                static_cast<unsigned long long>(plan.night.number),
+                static_cast<unsigned long long>(plan.run.number),
                 static_cast<unsigned long long>(shard));
   return text.data();
 }
 
 }  // namespace
 
-Expected<void> PackedShard::hand_over(const RunOptions& options, const NightPlan& plan,
+Expected<void> PackedShard::hand_over(const RunOptions& options, const RunPlan& plan,
                                       ShardRecord& record) const {
   std::vector<ShardResult*> all;
   for (ShardResult& r : record.results)
@@ -80,7 +80,7 @@ Expected<void> PackedShard::hand_over(const RunOptions& options, const NightPlan
   NONIO_TRY(auto pack, storage::PackWriter::create(path));
   for (ShardResult* r : all) {
     const auto stored = evaluation::read_record(out() / r->campaign);
-    if (!stored || stored->night != plan.night.number)
+    if (!stored || stored->run != plan.run.number)
       return fail(r->campaign + " could not be stored in " + out().string() +
                   (r->errors.empty() ? "" : ": " + r->errors.back().message));
     if (auto packed = pack_campaign(out() / r->campaign, r->campaign, pack); !packed) return packed;
@@ -94,13 +94,13 @@ Expected<void> PackedShard::hand_over(const RunOptions& options, const NightPlan
 
 namespace {
 
-/// Removes the results that a folder has of an earlier run. The record goes when all files are gone that only it
-/// names; what is left until then does not count as results of this run. Other files stay.
-Expected<void> clear_folder(const fs::path& folder, std::uint64_t night) {
+/// Removes the results that a folder has of an earlier run. The record is removed when all files
+/// that only it names are removed; what is left until then does not count as results of this run.
+/// Other files stay.
+Expected<void> clear_folder(const fs::path& folder, std::uint64_t run) {
   NONIO_TRY(const auto there, storage::is_there(folder));
   if (!there) return {};
-  if (const auto record = evaluation::read_record(folder); record && record->night == night)
-    return {};
+  if (const auto record = evaluation::read_record(folder); record && record->run == run) return {};
   std::error_code error;
   const auto remove = [&](const fs::path& path) {
     if (!error) fs::remove(path, error);
@@ -134,7 +134,7 @@ Expected<void> clear_folder(const fs::path& folder, std::uint64_t night) {
 
 }  // namespace
 
-Expected<void> accept_packs(const fs::path& out, const NightPlan& plan,
+Expected<void> accept_packs(const fs::path& out, const RunPlan& plan,
                             const std::vector<const ShardRecord*>& shards) {
   std::vector<storage::Catalogue::Entry> entries;
   for (const ShardRecord* shard : shards)
@@ -147,7 +147,7 @@ Expected<void> accept_packs(const fs::path& out, const NightPlan& plan,
   NONIO_TRY(const auto before, storage::Catalogue::read(out));
   if (auto put = before.publish_with(out, entries); !put) return put;
   for (const storage::Catalogue::Entry& e : entries)
-    if (auto cleared = clear_folder(storage::own_folder(out, e.id), plan.night.number); !cleared)
+    if (auto cleared = clear_folder(storage::own_folder(out, e.id), plan.run.number); !cleared)
       return cleared;
   return {};
 }
@@ -155,7 +155,7 @@ Expected<void> accept_packs(const fs::path& out, const NightPlan& plan,
 Expected<void> keep_packs(const fs::path& out) {
   const auto found = find_plan(out);
   if (!found || !*found) return {};  // a plan that cannot be read is given up with what it has
-  const NightPlan& plan = **found;
+  const RunPlan& plan = **found;
   std::vector<ShardRecord> sound;
   for (std::uint64_t shard = 0; shard < plan.shards.size(); ++shard)
     if (auto record = reported_pack(out, plan, shard)) sound.push_back(std::move(*record));

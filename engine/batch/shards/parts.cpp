@@ -72,9 +72,9 @@ std::vector<CampaignState> states_of(std::vector<Listed> listed, bool whole_site
 }
 
 /// Stored in this run already: by this shard before it was killed, or by another copy of it.
-bool take_stored(const fs::path& out, std::uint64_t night, CampaignState& c) {
+bool take_stored(const fs::path& out, std::uint64_t run, CampaignState& c) {
   const auto record = evaluation::read_record(storage::results_folder(out, c.id));
-  if (!record || record->night != night) return false;
+  if (!record || record->run != run) return false;
   c.action = Action::done;
   c.status = record->status;
   c.errors = record->errors;
@@ -84,7 +84,7 @@ bool take_stored(const fs::path& out, std::uint64_t night, CampaignState& c) {
   return true;
 }
 
-ShardRecord record_of(const fs::path& out, std::uint64_t night,
+ShardRecord record_of(const fs::path& out, std::uint64_t run,
                       const std::vector<CampaignState>& campaigns) {
   ShardRecord record;
   std::vector<ShardResult>& results = record.results;
@@ -94,7 +94,7 @@ ShardRecord record_of(const fs::path& out, std::uint64_t night,
     if (c.status != evaluation::Status::failed) continue;
     results.back().errors = c.errors;
     CampaignState stored = c;
-    results.back().stored = take_stored(out, night, stored);
+    results.back().stored = take_stored(out, run, stored);
   }
   return record;
 }
@@ -133,107 +133,107 @@ void take_reported(const ShardRecord& record, std::vector<CampaignState>& campai
 
 /// The campaigns of a shard, the first `own` of the run's. An error without a message of the run: it was refused, or
 /// interrupted.
-Expected<void> do_part(const RunOptions& options, const RunEvents& events, const NightPlan& plan,
-                       std::size_t own, Night& night) {
+Expected<void> do_part(const RunOptions& options, const RunEvents& events, const RunPlan& plan,
+                       std::size_t own, RunResult& run) {
   RunOptions where = options;
   std::optional<PackedShard> packed;
   if (options.pack) {
     if (const auto record = reported_pack(options.out, plan, options.shard)) {
-      night.campaigns.resize(own);
-      take_reported(*record, night.campaigns);
+      run.campaigns.resize(own);
+      take_reported(*record, run.campaigns);
       events.planned(own, 0);
       return {};
     }
-    NONIO_TRY(auto begun, PackedShard::begin(options, night.campaigns));
+    NONIO_TRY(auto begun, PackedShard::begin(options, run.campaigns));
     packed.emplace(std::move(begun));
     where.out = packed->out();
   }
   std::size_t to_do = own;
   for (std::size_t i = 0; i < own && !packed; ++i)
-    if (take_stored(options.out, plan.night.number, night.campaigns[i])) --to_do;
+    if (take_stored(options.out, plan.run.number, run.campaigns[i])) --to_do;
   events.planned(own, to_do);
   if (to_do > 0) {  // else no plugin is loaded
     NONIO_TRY(const auto place, set_up(options));
     const reading::Context& read = place->context;
     if (events.words) events.words(config::TerminalWords(read.templates, read.site.language));
     if (const auto same = check_made_with(plan, place->context); !same) return same;
-    NightState state;
-    state.number = plan.night.number;
-    state.date = plan.night.date;
+    RunState state;
+    state.number = plan.run.number;
+    state.date = plan.run.date;
     ReleaseDesk desk;
     desk.plugins = &*place->host;
     desk.elsewhere = true;
-    if (!do_campaigns(where, events, place->context, state, desk, night.campaigns)) return fail("");
+    if (!do_campaigns(where, events, place->context, state, desk, run.campaigns)) return fail("");
   }
-  night.campaigns.resize(own);
-  night.error = "not reported";
-  ShardRecord record = record_of(where.out, plan.night.number, night.campaigns);
+  run.campaigns.resize(own);
+  run.error = "not reported";
+  ShardRecord record = record_of(where.out, plan.run.number, run.campaigns);
   if (packed)
     if (auto handed = packed->hand_over(options, plan, record); !handed) return handed;
   if (auto written = write_shard_record(options.out, plan, options.shard, record); !written)
     return written;
-  night.error.clear();
+  run.error.clear();
   return {};
 }
 
 }  // namespace
 
-Night run_shard(const RunOptions& options, const RunEvents& events) {
-  Night night;
+RunResult run_shard(const RunOptions& options, const RunEvents& events) {
+  RunResult run;
   const auto refuse = [&](std::string why) {
-    night.end = process::is_stop_requested() ? Night::End::interrupted : Night::End::refused;
-    night.error = std::move(why);
-    return std::move(night);
+    run.end = process::is_stop_requested() ? RunResult::End::interrupted : RunResult::End::refused;
+    run.error = std::move(why);
+    return std::move(run);
   };
   const auto lock = OutputLock::take(options.out, OutputLock::Use::shard);
   if (!lock) return refuse(lock.error().message);
   const auto plan = read_plan(options.out);
   if (!plan) return refuse(plan.error().message);
-  night.night = plan->night;
+  run.run = plan->run;
   if (plan->shards.size() != options.shards)
-    return refuse("run " + std::to_string(plan->night.number) + " is planned for " +
+    return refuse("run " + std::to_string(plan->run.number) + " is planned for " +
                   std::to_string(plan->shards.size()) + " shards; expected --shard i/" +
                   std::to_string(plan->shards.size()) + ", found " + std::to_string(options.shard) +
                   "/" + std::to_string(options.shards));
   auto listed = read_shard_list(options.out, *plan, options.shard);
   if (!listed) return refuse(listed.error().message);
   const std::size_t own = listed->size();
-  night.campaigns = states_of(std::move(*listed), false);
+  run.campaigns = states_of(std::move(*listed), false);
   storage::take_own_names(own_token());
-  if (const auto done = do_part(options, events, *plan, own, night); !done) {
-    if (night.error.empty()) return refuse(done.error().message);
-    night.error = done.error().message + "; run the shard again";
+  if (const auto done = do_part(options, events, *plan, own, run); !done) {
+    if (run.error.empty()) return refuse(done.error().message);
+    run.error = done.error().message + "; run the shard again";
   }
-  return night;
+  return run;
 }
 
 namespace {
 
 /// What this run has stored in a pack, into the folder of the campaign.
-Expected<void> take_in_of(const fs::path& out, std::uint64_t night, const std::string& id) {
+Expected<void> take_in_of(const fs::path& out, std::uint64_t run, const std::string& id) {
   const auto record = evaluation::read_record(storage::results_folder(out, id));
-  if (!record || record->night != night) return {};
+  if (!record || record->run != run) return {};
   return evaluation::take_in(out, id);
 }
 
 }  // namespace
 
 Expected<void> plan_shards(const RunOptions& options, const reading::Context& context,
-                           const NightState& state, bool register_read, std::size_t own_notes,
-                           Night& night) {
-  const bool any = std::any_of(night.campaigns.begin(), night.campaigns.end(),
+                           const RunState& state, bool register_read, std::size_t own_notes,
+                           RunResult& run) {
+  const bool any = std::any_of(run.campaigns.begin(), run.campaigns.end(),
                                [](const CampaignState& c) { return c.action == Action::todo; });
   if (auto removed = remove_plan(options.out); !removed) return removed;
   if (auto swept = storage::sweep_packs(options.out); !swept) return swept;
   if (state.resumed)  // of a run or a plan that was cut short
-    if (auto tidied = tidy_all(night, options.out, true); !tidied) return tidied;
-  for (const CampaignState& c : night.campaigns) {
+    if (auto tidied = tidy_all(run, options.out, true); !tidied) return tidied;
+  for (const CampaignState& c : run.campaigns) {
     if (!state.resumed || c.action != Action::todo || !c.is_campaign) continue;
     // Its shard would take what this run has stored before for its own.
     if (auto taken = take_in_of(options.out, state.number, c.id); !taken) return taken;
     const fs::path folder = storage::own_folder(options.out, c.id);
     const auto record = evaluation::read_record(folder);
-    if (!record || record->night != state.number) continue;
+    if (!record || record->run != state.number) continue;
     if (auto aside = storage::rename_file(folder / evaluation::record_name,
                                           folder / evaluation::record_before_name);
         !aside)
@@ -244,19 +244,18 @@ Expected<void> plan_shards(const RunOptions& options, const reading::Context& co
   if (auto begun = history.begin(); !begun) return begun;
   if (any)
     if (const auto begun = ShownHistories(options, context).begin(); !begun) return begun;
-  NightPlan plan;
-  plan.night = state.of();
+  RunPlan plan;
+  plan.run = state.of();
   plan.site = state.site;
   plan.made_with = reading::shared_inputs(context);
   plan.register_read = register_read;
   plan.history_known = history.known();
-  plan.notes.assign(night.notes.begin() + static_cast<std::ptrdiff_t>(own_notes),
-                    night.notes.end());
-  plan.vanished = night.vanished;
+  plan.notes.assign(run.notes.begin() + static_cast<std::ptrdiff_t>(own_notes), run.notes.end());
+  plan.vanished = run.vanished;
   plan.shards.resize(options.shards);
   if (process::is_stop_requested()) return fail("");
-  if (auto written = write_plan(options.out, plan, night.campaigns); !written) return written;
-  for (const NightPlan::List& list : plan.shards) night.planned.push_back(list.campaigns);
+  if (auto written = write_plan(options.out, plan, run.campaigns); !written) return written;
+  for (const RunPlan::List& list : plan.shards) run.planned.push_back(list.campaigns);
   return {};
 }
 
@@ -277,7 +276,7 @@ struct Reported {
 using Until = std::chrono::steady_clock::time_point;
 
 /// Its record, with a pack that is whole. None, and why, if it has not reported.
-std::optional<ShardRecord> sound_record(const fs::path& out, const NightPlan& plan,
+std::optional<ShardRecord> sound_record(const fs::path& out, const RunPlan& plan,
                                         std::uint64_t shard, std::string& why) {
   auto record = read_shard_record(out, plan, shard);
   if (!record) why = record.error().message;
@@ -290,7 +289,7 @@ std::optional<ShardRecord> sound_record(const fs::path& out, const NightPlan& pl
   return std::move(*record);
 }
 
-Expected<std::vector<Reported>> reported_by_all(const fs::path& out, const NightPlan& plan,
+Expected<std::vector<Reported>> reported_by_all(const fs::path& out, const RunPlan& plan,
                                                 Until until) {
   std::vector<Reported> all;
   std::vector<std::uint64_t> silent;
@@ -314,14 +313,14 @@ Expected<std::vector<Reported>> reported_by_all(const fs::path& out, const Night
 }
 
 /// What became of the campaigns of a shard; those without results that should be there are added to `missing`.
-void take_results(const fs::path& out, const NightPlan& plan, std::uint64_t shard, Until until,
+void take_results(const fs::path& out, const RunPlan& plan, std::uint64_t shard, Until until,
                   Reported& reported, std::vector<std::string>& missing) {
   for (std::size_t i = 0; i < reported.listed.size(); ++i) {
     CampaignState& c = reported.listed[i].campaign;
     const ShardResult& result = reported.record.results[i];
     const bool left = result.status == evaluation::Status::none;
     const bool stored = with_patience(left || !result.stored ? Until{} : until,
-                                      [&] { return take_stored(out, plan.night.number, c); });
+                                      [&] { return take_stored(out, plan.run.number, c); });
     if (stored || left) continue;
     if (result.stored) missing.push_back(c.id + " (shard " + std::to_string(shard) + ")");
     c.action = Action::done;
@@ -332,7 +331,7 @@ void take_results(const fs::path& out, const NightPlan& plan, std::uint64_t shar
 
 }  // namespace
 
-Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& night) {
+Expected<void> gather(const RunOptions& options, const RunPlan& plan, RunResult& run) {
   const auto until = std::chrono::steady_clock::now() +
                      std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                          std::chrono::duration<double>(options.patience));
@@ -340,7 +339,7 @@ Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& n
   for (Listed& one : all) {  // of a merge that was cut short
     CampaignState& c = one.campaign;
     if (c.action == Action::todo && c.status != evaluation::Status::failed)
-      take_stored(options.out, plan.night.number, c);
+      take_stored(options.out, plan.run.number, c);
   }
   NONIO_TRY(auto reported, reported_by_all(options.out, plan, until));
   std::vector<const ShardRecord*> records;
@@ -359,31 +358,31 @@ Expected<void> gather(const RunOptions& options, const NightPlan& plan, Night& n
                 (missing.size() == 1 ? " are"
                                      : " and " + std::to_string(missing.size() - 1) + " more are") +
                 " not in the output folder; run their shards again, then `nonio run merge OUT`");
-  night.campaigns = states_of(std::move(all), true);
-  night.vanished = plan.vanished;
-  night.notes.insert(night.notes.end(), plan.notes.begin(), plan.notes.end());
+  run.campaigns = states_of(std::move(all), true);
+  run.vanished = plan.vanished;
+  run.notes.insert(run.notes.end(), plan.notes.begin(), plan.notes.end());
   return {};
 }
 
 Expected<void> note_failures(const RunOptions& options, const reading::Context& context,
-                             const Night& night, bool can_sign) {
+                             const RunResult& run, bool can_sign) {
   std::vector<const CampaignState*> failed;
-  for (const CampaignState& c : night.campaigns)
+  for (const CampaignState& c : run.campaigns)
     if (c.action == Action::done && c.is_campaign && c.status == evaluation::Status::failed &&
         !c.errors.empty())
       failed.push_back(&c);
   if (failed.empty()) return {};
-  const auto noted = read_apart<bool>(
-      "the register of certificates", context.site.limits.disk_seconds,
-      [&](process::SignsOfLife& signs) {
-        const certificates::Numbers numbers({options.site, options.out, night.night.date, can_sign},
-                                            context, nullptr);
-        for (const CampaignState* c : failed) {
-          numbers.note_failure(c->id, c->errors.front().message);
-          signs.beat();
-        }
-        return Expected<bool>(true);
-      });
+  const auto noted =
+      read_apart<bool>("the register of certificates", context.site.limits.disk_seconds,
+                       [&](process::SignsOfLife& signs) {
+                         const certificates::Numbers numbers(
+                             {options.site, options.out, run.run.date, can_sign}, context, nullptr);
+                         for (const CampaignState* c : failed) {
+                           numbers.note_failure(c->id, c->errors.front().message);
+                           signs.beat();
+                         }
+                         return Expected<bool>(true);
+                       });
   if (!noted) return fail(noted.error());
   return {};
 }

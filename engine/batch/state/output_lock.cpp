@@ -16,7 +16,7 @@
 #include <thread>
 #include <utility>
 
-#include "batch/state/night_state.h"
+#include "batch/state/run_state.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
 
@@ -28,8 +28,8 @@ namespace {
 
 constexpr const char* user_name = "user";
 
-/// The process in OUT/.nonio/user. `machine` and `boot` tell whether it was on this host, and
-/// whether the host has started anew since; empty if the system does not say.
+/// The process in OUT/.nonio/user. `machine` and `boot` identify this host and its present start;
+/// empty if the system does not provide it.
 struct User {
   std::string host, machine, boot, job;
   long pid = 0;
@@ -79,7 +79,7 @@ std::string words_for(const User& user) {
          (user.job.empty() ? "" : " (job " + user.job + ")");
 }
 
-/// Asked by who has the flock of this host.
+/// Called by the process that has the flock of this host.
 bool is_gone(const User& user, const User& own) {
   if (!user.boot.empty() && user.boot == own.boot) return true;  // it would have the flock
   return !user.machine.empty() && user.machine == own.machine && user.host == own.host;
@@ -101,7 +101,8 @@ std::string temporary(const fs::path& path, const User& own) {
   return path.string() + "-" + own.boot.substr(0, own.boot.find('-')) + "-";
 }
 
-/// What processes of this host that were killed have left. Asked by who has the flock.
+/// What processes of this host that were killed have left. Called by the process that has the
+/// flock.
 void sweep(const fs::path& path, const User& own) {
   const std::string front = temporary(path, own);
   std::error_code error;
@@ -167,7 +168,7 @@ int open_lock(const fs::path& out, int how) {
   return ::open((out / state_folder / "lock").c_str(), how | O_CLOEXEC, 0644);
 }
 
-/// Whether a process has the lock that excludes others, as far as the file system tells.
+/// Whether a process has the exclusive lock, as far as the file system reports it.
 bool is_held(const fs::path& out) {
   const int fd = open_lock(out, O_RDONLY);
   const bool held = fd >= 0 && ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;

@@ -14,8 +14,8 @@ namespace nonio::batch {
 /// Two locks. flock on OUT/.nonio/lock holds among the processes of one host, and on most network
 /// file systems among hosts. OUT/.nonio/user, made by link(2), names the process that uses the
 /// folder for itself, and holds among hosts wherever a file can have two names. It is taken over
-/// only when its process is known to be gone: the same boot of this host, where flock tells, or
-/// this host before it started anew. Of another host this is unknown here: `unlock` states it.
+/// only if its process is known to have ended: the same start of this host, where flock decides, or
+/// an earlier start of this host. Of another host this is unknown here: `unlock` states it.
 class OutputLock {
  public:
   enum class Use {
@@ -39,10 +39,10 @@ class OutputLock {
 /// Who uses the folder for itself now, for people: "process 17 on host a (job 5)"; empty if no process does.
 std::string user_of(const std::filesystem::path& out);
 
-/// Frees a folder whose user, on another host, is known to be gone; gives who it was, nothing if
-/// there was none. With `alive`, the jobs that a scheduler still has, a job in each line: refused if the
-/// user is of one of them, or of no job (NONIO_JOB of its environment). Refused while a process of
-/// this host uses the folder.
+/// Frees a folder whose process, on another host, is known to have ended; gives who it was, nothing
+/// if there was none. With `alive`, the jobs that a scheduler still has, a job in each line:
+/// refused if the user is of one of them, or of no job (NONIO_JOB of its environment). Refused
+/// while a process of this host uses the folder.
 Expected<std::string> unlock(const std::filesystem::path& out,
                              const std::optional<std::string>& alive);
 

@@ -64,7 +64,7 @@ Expected<std::vector<EarlierResult>> unclaimed_results(const fs::path& out,
     std::string id = folder.filename().string();
     if (!config::is_campaign_id(id) || claimed.contains(id)) return;
     if (const auto record = evaluation::read_record(folder))
-      found.push_back({std::move(id), record->folder, record->night,
+      found.push_back({std::move(id), record->folder, record->run,
                        record->status == evaluation::Status::failed});
   };
   if (const auto listed = storage::each_results_folder(out, take); !listed)
@@ -96,14 +96,14 @@ std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
                       e.folder + " failed, which is the campaign " + now->id + " now");
     else if (now != nullptr)
       vanished.push_back(
-          {e.id, e.folder, e.night,
+          {e.id, e.folder, e.run,
            "its folder " + e.folder + " is the campaign " + now->id + " now; " + meant});
     else if (above != unlisted.end())
-      vanished.push_back({e.id, e.folder, e.night,
+      vanished.push_back({e.id, e.folder, e.run,
                           "it was not seen: the folder " + storage::path_text(above->folder) +
                               " could not be listed"});
     else
-      vanished.push_back({e.id, e.folder, e.night,
+      vanished.push_back({e.id, e.folder, e.run,
                           "its folder " + e.folder + " no longer exists, or has no " +
                               std::string(config::manifest_name) + " any more; " + meant});
   }

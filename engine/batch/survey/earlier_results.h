@@ -8,15 +8,15 @@
 #include <string_view>
 #include <vector>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 #include "batch/survey/site_walk.h"
 
 namespace nonio::batch {
 
-/// Results in the output folder under an id that no manifest gives tonight, by id.
+/// Results in the output folder under an id that no manifest of this run has, by id.
 struct EarlierResult {
   std::string id, folder;  ///< folder: as text, of the campaign, relative to the site
-  std::uint64_t night = 0;
+  std::uint64_t run = 0;
   bool failed = false;
 };
 
@@ -35,8 +35,9 @@ class ClaimedIds {
 Expected<std::vector<EarlierResult>> unclaimed_results(const std::filesystem::path& out,
                                                        const ClaimedIds& claimed);
 
-/// What of it was there before and is not there tonight. Failed results of a folder that is there under another id are
-/// leftovers, and only noted. The first `ordered` campaigns are in the order of their folders.
+/// What existed before and does not exist in this run. Failed results of a folder that is there
+/// under another id are leftovers, and only noted. The first `ordered` campaigns are in the order
+/// of their folders.
 std::vector<Vanished> vanished_of(const std::vector<EarlierResult>& earlier,
                                   const std::vector<CampaignState>& campaigns, std::size_t ordered,
                                   const std::vector<SiteWalk::Unlisted>& unlisted,

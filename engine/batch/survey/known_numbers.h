@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 #include "campaign/reading/context.h"
 #include "certificates/register.h"
 

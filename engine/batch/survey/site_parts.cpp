@@ -5,7 +5,7 @@
 #include <array>
 #include <set>
 
-#include "batch/state/night_state.h"
+#include "batch/state/run_state.h"
 #include "campaign/config/site_files.h"
 #include "campaign/config/template_files.h"
 #include "platform/storage/digest.h"
@@ -48,7 +48,7 @@ bool is_record(const std::string& path) {
 }
 std::string asset_of(const std::string& path) { return fs::path(path).stem().string(); }
 
-/// A wrong record replaces no copy: the copy tells whose record it is.
+/// A wrong record replaces no copy: the copy names the machine of the record.
 bool is_good(const std::string& path, const std::string& bytes) {
   return !is_record(path) || config::parse_machine(bytes, path, asset_of(path)).has_value();
 }
@@ -81,7 +81,7 @@ Expected<void> SiteParts::read_inventory() {
   try {
     if (json.at("schema") != inventory_schema) throw std::runtime_error("another schema");
     date_ = json.at("date").get<std::string>();
-    night_ = json.at("night").get<std::uint64_t>();
+    run_ = json.at("night").get<std::uint64_t>();
     for (const auto& [path, part] : json.at("files").items()) {
       // Files are read, written and removed by these names.
       if (!config::is_site_part(path) || fs::path(path).lexically_normal() != path)
@@ -186,15 +186,15 @@ void SiteParts::note_lost() {
            path + " --by NAME --why TEXT)";
   };
   for (const auto& [folder, count] : whole)
-    lost_.push_back({folder, folder, night_,
+    lost_.push_back({folder, folder, run_,
                      "none of its " + std::to_string(count) +
                          " files exists any more; their last contents are in " +
                          (out_ / copies_folder / folder).string() + meant(folder)});
   for (const auto& [path, part] : parts_)
     if (!part.why.empty() && !removed.contains(path) && !whole.contains(folder_of(path)))
-      lost_.push_back({path, path, night_, why_of(path) + meant(path)});
+      lost_.push_back({path, path, run_, why_of(path) + meant(path)});
   if (!damaged_.empty())
-    lost_.push_back({std::string(state_folder) + "/" + inventory_name, "", night_,
+    lost_.push_back({std::string(state_folder) + "/" + inventory_name, "", run_,
                      damaged_ + "; this run makes the inventory of the site anew"});
 }
 
@@ -241,7 +241,7 @@ void SiteParts::complete(config::MachineRecords& records) const {
             [](const auto& a, const auto& b) { return a.asset < b.asset; });
 }
 
-Expected<void> SiteParts::keep(const evaluation::NightOf& night) const {
+Expected<void> SiteParts::keep(const evaluation::RunLabel& run) const {
   std::map<fs::path, std::vector<Artifact>> copies;
   for (const auto& [path, bytes] : renewed_)
     copies[out_ / copies_folder / fs::path(path).parent_path()].push_back(
@@ -254,8 +254,7 @@ Expected<void> SiteParts::keep(const evaluation::NightOf& night) const {
     if (auto gone = remove_file(out_ / copies_folder / path); !gone) return gone;
   }
   for (const auto& [path, bytes] : renewed_) parts[path] = {storage::sha256(bytes), {}, {}};
-  storage::Json json = {
-      {"schema", inventory_schema}, {"night", night.number}, {"date", night.date}};
+  storage::Json json = {{"schema", inventory_schema}, {"night", run.number}, {"date", run.date}};
   json["files"] = storage::Json::object();
   for (const auto& [path, part] : parts) {
     json["files"][path] = {{"sha256", part.sha256}};

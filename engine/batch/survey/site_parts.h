@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 #include "campaign/config/machines.h"
 #include "campaign/config/site_logs.h"
 
@@ -33,7 +33,7 @@ class SiteParts {
   /// A record that is lost fails the campaigns of its machine, which its last copy names.
   void complete(config::MachineRecords& records) const;
   /// Becomes the inventory, with what was found good by this run.
-  Expected<void> keep(const evaluation::NightOf& night) const;
+  Expected<void> keep(const evaluation::RunLabel& run) const;
 
  private:
   struct Part {
@@ -52,7 +52,7 @@ class SiteParts {
 
   std::filesystem::path site_{}, out_{};
   std::string date_{}, damaged_{};  ///< of the inventory; why it cannot be read
-  std::uint64_t night_ = 0;
+  std::uint64_t run_ = 0;
   std::map<std::string, Part> parts_{};           ///< by path below the site
   std::map<std::string, std::string> renewed_{};  ///< bytes of those that differ from their copies
   std::vector<std::string> removed_{};            ///< on purpose

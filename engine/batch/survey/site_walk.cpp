@@ -32,7 +32,7 @@ constexpr std::size_t most_hung = 64;
 /// After so many of them a disk gets no more time than a second.
 constexpr std::size_t patient_for = 8;
 
-using Passed = std::map<std::string, std::string>;  // places that hung, and what was said of them
+using Passed = std::map<std::string, std::string>;  // places that hung, and what was stated of them
 
 std::string lower(std::string text) {
   for (char& c : text)

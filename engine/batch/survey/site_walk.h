@@ -22,7 +22,7 @@ struct SiteWalk {
 /// All folders below a site. Links are not followed: a campaign is a folder inside the site. Hidden
 /// folders and the output folder are left out. The walk is done in a child process with one
 /// descriptor: a folder that gives no answer within `seconds` is an unlisted one. An error if the
-/// site itself cannot be listed. What is returned after `stopped` said yes is not whole.
+/// site itself cannot be listed. What is returned after `stopped` became true is incomplete.
 Expected<SiteWalk> walk_site(const std::filesystem::path& site, const std::filesystem::path& out,
                              double seconds, bool (*stopped)());
 

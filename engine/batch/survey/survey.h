@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 #include "campaign/evaluation/evaluate.h"
 #include "certificates/register.h"
 
@@ -15,15 +15,15 @@ namespace nonio::batch {
 struct SurveyInput {
   std::filesystem::path site, out;
   const reading::Context& context;
-  std::uint64_t night;  ///< the one that is being done
+  std::uint64_t run;  ///< the one that is being done
   bool force;
   /// All of the site's register, and the campaigns whose drafts wait there; none while another
   /// process keeps it locked: then it is not consulted.
   std::optional<std::vector<certificates::RegisterEntry>> numbers;
   std::set<std::string> drafts;
   std::vector<std::string>& notes;  ///< what was passed over, for the summary
-  bool (*stopped)();                ///< asked now and then; what is returned then is not whole
-  bool verify_results = false;      ///< digests decide of all files given out
+  bool (*stopped)();            ///< called repeatedly; if it becomes true, the result is incomplete
+  bool verify_results = false;  ///< digests decide of all files given out
 };
 
 struct Surveyed {

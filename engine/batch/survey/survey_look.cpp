@@ -40,13 +40,13 @@ CampaignState ChangeDetector::at(const CampaignState& known, bool rough) {
   state.named_by_folder = known.named_by_folder;
   signs_.reading((fs::path(known.folder) / config::manifest_name).string());
   const auto text = storage::read_small_file(in_.site / known.folder / config::manifest_name);
-  if (!text) {  // its worker says why
+  if (!text) {  // its worker reports why
     state.named_by_folder = true;
     state.reason = "no earlier result";
     return state;
   }
   const std::string digest = storage::sha256(*text);
-  // Parsed in full only where a full reading did not say the same before.
+  // Parsed in full only where a full reading did not are the same before.
   if (state.id.empty()) state.id = config::extract_id(*text);
   Last last = last_of(state.id);
   const bool as_before = last && *last &&
@@ -97,11 +97,11 @@ ChangeDetector::Last ChangeDetector::last_of(const std::string& id) {
   return last;
 }
 
-/// Where storing tonight's results was cut short: why the campaign was done. The files that would
-/// tell are no longer those of the previous run.
+/// If storing the results of this run was interrupted: why the campaign was done. The files to
+/// compare with are no longer those of the previous run.
 std::string ChangeDetector::staged_reason(const CampaignState& state) const {
   const auto staged = evaluation::staged_record(storage::own_folder(in_.out, state.id));
-  return staged && *staged && (*staged)->night == in_.night ? (*staged)->reason : "";
+  return staged && *staged && (*staged)->run == in_.run ? (*staged)->reason : "";
 }
 
 void ChangeDetector::judge(CampaignState& state, const Last& last,
@@ -114,15 +114,15 @@ void ChangeDetector::judge(CampaignState& state, const Last& last,
     state.reason = staged_reason(state);
   if (!state.reason.empty()) return;
   const evaluation::Record& record = (*last)->record;
-  const bool tonight = record.night == in_.night;
+  const bool last_run = record.run == in_.run;
   state.reason = changes(state, record, manifest_digest);
   if (state.reason.empty() && !(*last)->whole) state.reason = "its last results are not whole";
   if (!state.reason.empty()) return;
   state.twins_before = twins_of(record.inputs);
   state.shows_history = record.history.has_value();
   if (record.history) state.history = record.history->sha256;
-  state.action = tonight ? CampaignState::Action::done : CampaignState::Action::unchanged;
-  state.reason = tonight ? record.reason : "nothing changed";
+  state.action = last_run ? CampaignState::Action::done : CampaignState::Action::unchanged;
+  state.reason = last_run ? record.reason : "nothing changed";
   state.status = record.status;
   state.errors = record.errors;
 }
@@ -130,7 +130,7 @@ void ChangeDetector::judge(CampaignState& state, const Last& last,
 std::string ChangeDetector::changes(CampaignState& state, const evaluation::Record& record,
                                     const std::string& manifest_digest) {
   std::vector<std::string> why;
-  if (record.retry && record.night != in_.night)
+  if (record.retry && record.run != in_.run)
     why.push_back("it failed for a reason that may have passed");
   if (record.folder != storage::path_text(state.folder))
     why.push_back("moved from " + record.folder);
@@ -150,7 +150,7 @@ std::string ChangeDetector::changes(CampaignState& state, const evaluation::Reco
       if (const auto now = look_at_file(state, name.substr(prefix.size()), digest, why))
         readings.push_back(*now);
   state.readings = readings;
-  if (in_.force && record.night != in_.night) return "--force";
+  if (in_.force && record.run != in_.run) return "--force";
   look_at_outputs(state, record, why);
   look_at_number(state, record, why);
   std::string words;

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 
 namespace nonio::batch {
 
@@ -13,7 +13,7 @@ namespace nonio::batch {
 /// whatever is shared.
 void find_twins(std::vector<CampaignState>& campaigns);
 
-/// As the evaluation wants them, in order.
+/// As the evaluation requires them, in order.
 reading::Twins twins_of(const CampaignState& campaign, const std::vector<CampaignState>& all);
 
 /// Of a record: what the run knew when it was written.

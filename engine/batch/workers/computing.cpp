@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What the process with the plugins says, first byte.
+// Messages of the process with the plugins, first byte.
 constexpr char wants_file = 'f', has_analysed = 'a', has_done = 'e';
 
 int ask_for_file(int stream, const fs::path& path) {
@@ -32,7 +32,7 @@ int ask_for_file(int stream, const fs::path& path) {
   return -1;
 }
 
-/// Says what is analysed; where a number is wanted, all of it, and waits for the number.
+/// Says what is analysed; where a number is required, all of it, and waits for the number.
 std::optional<evaluation::AssignedNumber> ask_for_number(
     int stream, const evaluation::AnalysedCampaign& analysed) {
   if (!analysed.number) {
@@ -48,7 +48,7 @@ std::optional<evaluation::AssignedNumber> ask_for_number(
   return assigned;
 }
 
-/// What no honest process says: these values decide which files are written.
+/// What no honest process reports: these values decide which files are written.
 std::string unsound_answer(const evaluation::Evaluated& e, const std::string& id) {
   if (e.campaign.id != id) return "another campaign's results";
   if (e.status != evaluation::Status::ok && e.status != evaluation::Status::attention &&
@@ -155,7 +155,7 @@ Expected<evaluation::Evaluated> Evaluator::write_documents(
     return fail(no_process_of_ours);
   if (const std::string why = unsound_answer(evaluated, id); !why.empty())
     return fail("the process that evaluates gave " + why);
-  // A certificate is what was assigned here; of it the other side says only whose it is.
+  // A certificate is what was assigned here; the other side only names its campaign.
   if (evaluated.certificate) {
     if (!assigned || !assigned->certificate) return fail(no_process_of_ours);
     assigned->certificate->output = evaluated.certificate->output;

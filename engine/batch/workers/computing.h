@@ -13,8 +13,8 @@
 
 namespace nonio::batch {
 
-/// In the process with the plugins: evaluates the campaigns that the other side names, until it is
-/// gone. It can open no file: the other side hands it those of the campaign.
+/// In the process with the plugins: evaluates the campaigns that the other side names, until the
+/// connection ends. It can open no file: the other side hands it those of the campaign.
 void evaluate_for(int stream, const reading::Context& context, process::SharedStatus& stage,
                   Prints& prints);
 
@@ -27,12 +27,12 @@ class Evaluator {
 
   /// What the other side has made of a campaign before its number is known.
   struct Analysed {
-    evaluation::Evaluated evaluated;                  ///< only where a number is wanted
-    std::optional<std::vector<std::string>> missing;  ///< for a number; none: none is wanted
+    evaluation::Evaluated evaluated;                  ///< only where a number is required
+    std::optional<std::vector<std::string>> missing;  ///< for a number; none: none is required
   };
 
   /// `read_campaign` and `analyse`, done by the other side. If that has ended, this process ends
-  /// too: its parent knows why. An error: it says what no process of ours says.
+  /// too: its parent knows why. An error: it states what no process of ours reports.
   Expected<Analysed> analyse(const std::filesystem::path& folder, const std::string& id,
                              const reading::Twins& twins,
                              const std::optional<HistorySoFar>& history);

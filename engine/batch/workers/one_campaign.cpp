@@ -23,7 +23,7 @@ constexpr const char* register_elsewhere = "the register of certificates is on a
 constexpr const char* register_locked =
     "the certificate register has been locked by another process since the run started";
 
-/// Memory that was refused, and a disk or share that did not answer, say nothing about the
+/// Memory that was refused, and a disk or share that did not answer, show nothing about the
 /// readings.
 bool is_of_the_machine(const Error& e) {
   if (e.message.find("out of memory") != e.message.npos) return true;
@@ -83,7 +83,7 @@ bool wants_signature(const evaluation::Evaluated& evaluated) {
   });
 }
 
-/// Read, analysed, numbered, written. `as_draft`: without a number, whatever the rules say.
+/// Read, analysed, numbered, written. `as_draft`: without a number, whatever the rules state.
 Expected<evaluation::Evaluated> evaluated_apart(const SiteWork& site, const RegisterState& state,
                                                 const CampaignState& c, const fs::path& folder,
                                                 certificates::CampaignFiles& files, bool as_draft,
@@ -151,7 +151,7 @@ Answer work(const SiteWork& site, const RegisterState& state, std::size_t index,
   }
   stage.set("writing the results");
   const auto staged = batch::stage(site.options.out, evaluated, site.context,
-                                   {c.folder, site.night.of(), c.reason, may_pass});
+                                   {c.folder, site.run.of(), c.reason, may_pass});
   if (!staged) {
     stage.set(staged.error().message);
     return Answer::not_stored;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/night.h"
-#include "batch/state/night_state.h"
+#include "batch/state/run_result.h"
+#include "batch/state/run_state.h"
 #include "batch/workers/computing.h"
 #include "batch/workers/worker.h"
 #include "certificates/numbering.h"
@@ -19,7 +19,7 @@ namespace nonio::batch {
 struct SiteWork {
   const RunOptions& options;
   const reading::Context& context;
-  const NightState& night;
+  const RunState& run;
   const std::vector<CampaignState>& campaigns;
   const certificates::Numbers& numbers;
   certificates::Signer* signer;  ///< null: nothing is signed
@@ -37,10 +37,10 @@ struct RegisterState {
 };
 
 /// In the worker's process, which has no plugin code: that runs at the other end of the evaluator's
-/// stream. Evaluates one campaign, numbers and signs it where that is wanted, and stages its files.
-/// `first`: no campaign was done in this process before. What plugins throw is caught where they
-/// are called. With Answer::not_stored the stage says why.
-/// `shows_history`: whether a document of the campaign shows the machine's.
+/// stream. Evaluates one campaign, numbers and signs it where that is required, and stages its
+/// files. `first`: no campaign was done in this process before. What plugins throw is caught where
+/// they are called. With Answer::not_stored the stage states why. `shows_history`: whether a
+/// document of the campaign shows the machine's.
 Answer do_campaign(const SiteWork& site, const RegisterState& state, std::size_t index, bool first,
                    process::SharedStatus& stage, Evaluator& evaluator, bool& shows_history);
 

@@ -39,7 +39,7 @@ constexpr std::string_view preparing = "prepare ", died = "died";
 constexpr int most_unexplained = 3;
 constexpr std::size_t most_prints = 16 << 10;  // bytes
 
-/// What the process that loads plugins says when it is ready.
+/// Message of the process that loads plugins when it is ready.
 struct Ready {
   loader::Catalogue catalogue;
   std::vector<std::string> said;
@@ -184,7 +184,7 @@ Expected<pid_t> PluginHost::make_process(process::Handle stream,
     pollfd one{control_.get(), POLLIN, 0};
     const bool heard = sent && ::poll(&one, 1, static_cast<int>(1000 * answer_seconds)) > 0;
     auto hello = heard ? process::receive_descriptors(control_.get()) : fail("no answer");
-    // The kernel says who it is: a child of ours, and not the one that loads.
+    // The kernel identifies it: a child of ours, and not the one that loads.
     if (hello && hello->word == 'h' && hello->sender > 0 && hello->sender != pid_) {
       siginfo_t info{};
       if (::waitid(P_PID, static_cast<id_t>(hello->sender), &info, WEXITED | WNOHANG | WNOWAIT) ==
@@ -229,7 +229,7 @@ void PluginHost::say(std::string_view text) {
 // ---- in the process that loads plugins
 
 std::string PluginHost::check_secrets() const {
-  if (!process::lacking_confinement().empty()) return {};  // said already
+  if (!process::lacking_confinement().empty()) return {};  // reported already
   for (const fs::path& secret : request_.secrets) {
     const process::Handle file(::open(secret.c_str(), O_RDONLY | O_CLOEXEC));
     if (file)
@@ -310,7 +310,7 @@ void PluginHost::serve(int control, int catalogue, int prints,
 
 void PluginHost::make_sibling(int control, int prints) noexcept {
   auto asked = process::receive_descriptors(control);
-  if (!asked) ::_exit(0);  // the main process has gone
+  if (!asked) ::_exit(0);  // the main process has ended
   if (asked->descriptors.size() != 2) return;
   // As a child of the main process, which waits for it and ends it. No lock is held: this process
   // has one thread.

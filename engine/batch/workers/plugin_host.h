@@ -45,7 +45,7 @@ class PluginHost {
   /// What went wrong, and what the kernel lacks.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// A process that evaluates campaigns for whoever has the other end of `stream`, and says in
+  /// A process that evaluates campaigns for whoever has the other end of `stream`, and states in
   /// `stage` what it is about to call. Made anew if the process that loads has died.
   Expected<pid_t> make_process(process::Handle stream, const process::SharedStatus& stage);
   /// Passes on what plugins have printed, up to a limit.

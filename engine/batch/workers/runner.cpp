@@ -30,8 +30,8 @@ namespace {
 using Action = CampaignState::Action;
 
 /// A worker is replaced after so many campaigns: starting one is then cheap, and what plugins may
-/// leave behind in it does not grow old. Plugins from elsewhere than beside the program were not
-/// tested with it: one of them, and every campaign gets a process of its own.
+/// leave in its memory does not accumulate. Plugins of other folders than the program's own were
+/// not tested with it: with one of them every campaign gets a process of its own.
 constexpr std::size_t campaigns_per_worker = 64;
 
 std::string day_of(std::time_t time) {
@@ -44,11 +44,11 @@ std::string day_of(std::time_t time) {
 class Runner {
  public:
   Runner(const RunOptions& options, const RunEvents& events, const reading::Context& context,
-         const NightState& night, const ReleaseDesk& desk, std::vector<CampaignState>& campaigns)
+         const RunState& run, const ReleaseDesk& desk, std::vector<CampaignState>& campaigns)
       : options_(options),
         events_(events),
         context_(context),
-        night_(night),
+        run_(run),
         signer_(desk.signer),
         plugins_(*desk.plugins),
         secrets_(config::secret_files(context.site, options.site)),
@@ -56,7 +56,7 @@ class Runner {
                  context, desk.releasing),
         work_{options,
               context,
-              night,
+              run,
               campaigns,
               numbers_,
               signer_,
@@ -72,7 +72,7 @@ class Runner {
         committer_([this](const std::vector<Committer::Given>& batch) {
           std::vector<Staged> staged;
           for (const Committer::Given& g : batch) staged.push_back(staged_of(g));
-          return commit(options_.out, staged, night_.number, disk_);
+          return commit(options_.out, staged, run_.number, disk_);
         }),
         campaigns_per_worker_(context.plugins->all_from(options.own_plugins) ? campaigns_per_worker
                                                                              : 1) {}
@@ -266,7 +266,7 @@ class Runner {
 
   /// The error, empty if there is none.
   std::string commit_here(const Committer::Given& given) const {
-    const auto stored = commit(options_.out, {staged_of(given)}, night_.number, disk_).front();
+    const auto stored = commit(options_.out, {staged_of(given)}, run_.number, disk_).front();
     return stored ? "" : stored.error().message;
   }
 
@@ -314,7 +314,7 @@ class Runner {
     return s;
   }
 
-  /// The worker did not come back with results: the campaign is failed, and says why.
+  /// The worker did not come back with results: the campaign is failed, and states why.
   void lost(std::size_t index, const std::string& why) {
     CampaignState& c = campaigns_[index];
     note_failure(c.id, why);
@@ -325,7 +325,7 @@ class Runner {
     evaluated.status = evaluation::Status::failed;
     evaluated.results.errors = {Error{why}};
     const auto stored =
-        store(options_.out, evaluated, context_, {c.folder, night_.of(), c.reason, true}, disk_);
+        store(options_.out, evaluated, context_, {c.folder, run_.of(), c.reason, true}, disk_);
     if (!stored)
       evaluated.results.errors.push_back(
           Error{"and this could not be stored: " + stored.error().message});
@@ -355,7 +355,7 @@ class Runner {
   const RunOptions& options_;
   const RunEvents& events_;
   const reading::Context& context_;
-  const NightState& night_;
+  const RunState& run_;
   certificates::Signer* signer_;  ///< null: nothing is signed
   PluginHost& plugins_;
   const std::vector<fs::path> secrets_;
@@ -381,9 +381,9 @@ class Runner {
 }  // namespace
 
 bool do_campaigns(const RunOptions& options, const RunEvents& events,
-                  const reading::Context& context, const NightState& night, const ReleaseDesk& desk,
+                  const reading::Context& context, const RunState& run, const ReleaseDesk& desk,
                   std::vector<CampaignState>& campaigns) {
-  return Runner(options, events, context, night, desk, campaigns).run();
+  return Runner(options, events, context, run, desk, campaigns).run();
 }
 
 }  // namespace nonio::batch

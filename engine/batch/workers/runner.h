@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/night.h"
-#include "batch/state/night_state.h"
+#include "batch/state/run_result.h"
+#include "batch/state/run_state.h"
 #include "batch/workers/plugin_host.h"
 #include "certificates/numbering.h"
 #include "certificates/signer.h"
@@ -15,7 +15,7 @@
 
 namespace nonio::batch {
 
-/// Asked with all numbers of the register once it could be read; an error: no number is drawn.
+/// Called with all numbers of the register once it could be read; an error: no number is drawn.
 using NumbersCheck = std::function<Expected<void>(const std::vector<certificates::RegisterEntry>&)>;
 
 /// What certificates need.
@@ -32,7 +32,7 @@ struct ReleaseDesk {
 
 /// Does every campaign that is to do, in workers of its own. False if it was interrupted.
 bool do_campaigns(const RunOptions& options, const RunEvents& events,
-                  const reading::Context& context, const NightState& night, const ReleaseDesk& desk,
+                  const reading::Context& context, const RunState& run, const ReleaseDesk& desk,
                   std::vector<CampaignState>& campaigns);
 
 }  // namespace nonio::batch

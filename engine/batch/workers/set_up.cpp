@@ -49,7 +49,8 @@ void note_key(SetUp& place, bool is_stamped) {
 }
 
 /// A folder, or a plugin in it, that others than root and the owner of the program can change;
-/// empty: there is none. Who can change the plugins beside the program can change that too.
+/// empty: there is none. Whoever can change the plugins in the program's folder can change the
+/// program too.
 std::string changeable_by_others(const RunOptions& options) {
   struct stat own {};
   ::stat(options.own_plugins.c_str(), &own);
@@ -124,6 +125,8 @@ Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options) {
                                           &context.templates_json, files->templates);
   if (!templates) return fail(all_of({templates.error()}));
   context.templates = std::move(*templates);
+  for (const Error& warning : config::warnings_of_causes(context.templates))
+    place->notes.push_back(all_of({warning}));
   if (auto allowed = check_user(options); !allowed) return fail(allowed.error());
   if (auto loaded = load_plugins(*place, options); !loaded) return fail(loaded.error());
   const loader::Plugins& plugins = place->plugins;

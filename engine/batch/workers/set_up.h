@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 #include "batch/survey/site_parts.h"
 #include "batch/workers/plugin_host.h"
 #include "certificates/signer.h"
@@ -17,7 +17,7 @@ namespace nonio::batch {
 struct SetUp {
   reading::Context context;
   std::optional<certificates::Signer> signer;
-  loader::Plugins plugins;  ///< what they say of themselves: this process has none of their code
+  loader::Plugins plugins;  ///< their declarations: this process has none of their code
   std::optional<PluginHost> host;
   SiteParts parts;
   std::vector<std::string> notes;  ///< for the reader of the summary
@@ -25,7 +25,7 @@ struct SetUp {
   std::string no_key;              ///< why nothing can be signed; empty: it can
 };
 
-/// An error says all that is wrong with the site. The process that holds the key is made before any
+/// An error states all mistakes of the site. The process that holds the key is made before any
 /// plugin is loaded.
 Expected<std::unique_ptr<SetUp>> set_up(const RunOptions& options);
 

@@ -16,7 +16,7 @@
 
 namespace nonio::batch {
 
-/// What a worker says when it is through with a campaign.
+/// Report of a worker at the end of a campaign.
 enum class Answer : char {
   ok,
   attention,
@@ -34,7 +34,7 @@ struct Outcome {
       : answer(a), grown(has_grown), shows_history(history) {}  // NOLINT: an answer is one
   Answer answer;
   bool grown;          ///< the memory of a process that works for this one
-  bool shows_history;  ///< a document of the campaign asks for the machine's
+  bool shows_history;  ///< a document of the campaign requests the machine's
 };
 
 /// A process that does campaigns one after the other, as its parent names them; with another one

@@ -31,9 +31,9 @@ Cause read_cause(TableReader& reader) {
     reader.error("title", "expected a text, or one for en among the texts by language");
   c.is = reader.text("is");
   c.size = reader.text("size");
-  c.looks = reader.text("looks");
-  c.alike = reader.text("alike");
-  c.cure = reader.text("cure");
+  c.appearance = reader.text("appearance");
+  c.similar = reader.text("similar");
+  c.remedy = reader.text("remedy");
   c.compensable = reader.flag("compensable").value_or(false);
   c.prior = reader.text("prior");
   for (const std::string& column : reader.texts("columns").value_or(std::vector<std::string>{}))
@@ -86,11 +86,12 @@ Checked<std::vector<Cause>> causes_in(const Templates& templates) {
   for (const auto& [name, text] : templates.files) {
     if (!is_causes_file(name)) continue;
     const std::string file = place_of(name);
-    const auto root = parse_toml(text, file);
+    auto root = parse_toml(text, file);
     if (!root) {
       errors.push_back(root.error());
       continue;
     }
+    rename_former_keys(*root, causes_file());
     TableReader top(*root, causes_file(), file, errors);
     top.integer("format");
     for (TableReader& reader : top.tables("cause")) {
@@ -112,6 +113,19 @@ Checked<std::vector<Cause>> causes_in(const Templates& templates) {
   return all;
 }
 
+std::vector<Error> warnings_of_causes(const Templates& templates) {
+  std::vector<Error> all;
+  for (const auto& [name, text] : templates.files) {
+    if (!is_causes_file(name)) continue;
+    const std::string file = place_of(name);
+    auto root = parse_toml(text, file);
+    if (!root) continue;
+    for (Error& warning : warnings_of(rename_former_keys(*root, causes_file()), file))
+      all.push_back(std::move(warning));
+  }
+  return all;
+}
+
 void add_words(const std::vector<Cause>& causes, Templates& templates) {
   if (causes.empty()) return;
   auto& words = templates.tables["words/en/causes"].values;
@@ -123,9 +137,9 @@ void add_words(const std::vector<Cause>& causes, Templates& templates) {
     for (const auto& [key, text] : {std::pair{"title", &c.title},
                                     {"is", &c.is},
                                     {"size", &c.size},
-                                    {"looks", &c.looks},
-                                    {"alike", &c.alike},
-                                    {"cure", &c.cure}})
+                                    {"appearance", &c.appearance},
+                                    {"similar", &c.similar},
+                                    {"remedy", &c.remedy}})
       if (!text->empty()) words[at + key] = *text;
   }
 }

@@ -20,10 +20,10 @@ inline constexpr std::string_view site_causes = "causes/site/";
 struct Cause {
   Formula formula;  ///< without an axis: of every axis of its kind
   bool rotary = false;
-  std::string title, is, size, looks, alike, cure;  ///< English
-  std::map<std::string, std::string> titles{};      ///< by language
-  std::string prior;                                ///< common, rare, very-rare
-  bool timed = false;                               ///< readings without times do not show it
+  std::string title, is, size, appearance, similar, remedy;  ///< English
+  std::map<std::string, std::string> titles{};               ///< by language
+  std::string prior;                                         ///< common, rare, very-rare
+  bool timed = false;  ///< readings without times do not show it
   bool compensable = false;
   std::string file;  ///< of the formula's line
 
@@ -40,7 +40,10 @@ bool is_causes_file(std::string_view name);
 /// the site are tried.
 Checked<std::vector<Cause>> causes_in(const Templates& templates);
 
-/// Their texts join the words of the effects.
+/// Keys with former names in these files, each with file and line.
+std::vector<Error> warnings_of_causes(const Templates& templates);
+
+/// Adds their texts to the words of the effects.
 void add_words(const std::vector<Cause>& causes, Templates& templates);
 
 }  // namespace nonio::config

@@ -12,7 +12,7 @@ CertificateTexts read_certificate(TableReader&);
 void read_certificate_of_campaign(TableReader&, CertificateTexts& into);
 Numbering read_numbering(TableReader&);
 
-/// The site's, where the campaign does not say otherwise; what nobody says gets its default.
+/// The values of the campaign, else those of the site, else the defaults.
 CertificateTexts certificate_of(const CertificateTexts& site, const CertificateTexts& campaign);
 
 }  // namespace nonio::config

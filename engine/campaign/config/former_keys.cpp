@@ -10,6 +10,13 @@ namespace {
 /// The version that no longer accepts them.
 constexpr const char* accepted_until = "0.3";
 
+struct FormerFinding {
+  std::string_view plugin, former, name;
+};
+constexpr FormerFinding former_findings[] = {{"rtcp.", "not-told", "not-identifiable"},
+                                             {"rtcp.", "not-told-ball", "not-identifiable-ball"},
+                                             {"rotary-chain.", "not-told", "not-identifiable"}};
+
 class Renaming {
  public:
   void table(toml::table& table, const Key& declaration, const std::string& place) {
@@ -17,6 +24,7 @@ class Renaming {
       rename(table, key, place);
       toml::node* node = table.get(key.name);
       if (node == nullptr) continue;
+      if (key.name == "finding") rename_finding(*node, place);
       const std::string inside =
           place.empty() ? std::string(key.name) : place + "." + std::string(key.name);
       if (key.holds == Key::Holds::named_tables)
@@ -47,6 +55,19 @@ class Renaming {
     in.insert(toml::key(key.name, toml::source_region(old->first.source())),
               std::move(old->second));
     in.erase(key.former);
+  }
+
+  void rename_finding(toml::node& node, const std::string& place) {
+    toml::value<std::string>* id = node.as_string();
+    if (id == nullptr) return;
+    for (const FormerFinding& f : former_findings) {
+      const std::string former = std::string(f.plugin) + std::string(f.former);
+      if (id->get() != former) continue;
+      const std::string name = std::string(f.plugin) + std::string(f.name);
+      found_.push_back({place, former, name, node.source().begin.line, true});
+      *id = name;
+      return;
+    }
   }
 
   void note(const Key& key, const std::string& place, std::uint64_t line) {
@@ -85,7 +106,7 @@ std::vector<Error> warnings_of(const std::vector<FormerKey>& keys, const std::st
       return other.place == k.place && other.former == k.former;
     };
     if (std::any_of(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(i), same)) continue;
-    const std::string before = k.place.empty() ? "" : k.place + ".";
+    const std::string before = k.place.empty() || k.is_value ? "" : k.place + ".";
     warnings.push_back(Error{"warning: " + before + k.former + " is now named " + before + k.name +
                                  "; `nonio upgrade` renames it. Version " + accepted_until +
                                  " will reject the former name",

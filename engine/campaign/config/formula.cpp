@@ -47,7 +47,7 @@ class Trial {
 
   bool linear(std::size_t k) const { return !formula_.parameters[k].range; }
 
-  /// The first point is the middle of the stretch at the start, with shapes at the low end.
+  /// Trial point n; the first is the middle of the travel at the start, shapes at their low end.
   void draw(int n) {
     const auto between = [&](double low, double high) {
       return low + (high - low) * numbers_.uniform();

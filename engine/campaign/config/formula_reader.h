@@ -7,7 +7,7 @@
 namespace nonio::config {
 
 /// [[formula]] of [model], or of a simulation: read and tried, so that what is wrong with them is
-/// said with the rest.
+/// stated with the rest.
 std::vector<Formula> read_formulas(TableReader& table, const Machine& machine);
 
 Formula::Parameter read_parameter(TableReader& reader);

@@ -13,7 +13,7 @@ namespace nonio::config {
 
 struct Choice {
   std::string_view name;
-  std::string_view meaning{};  ///< beside the name in messages: "um (deviation)"
+  std::string_view meaning{};  ///< in brackets after the name in messages: "um (deviation)"
 };
 
 /// A key of the same table has one of these values.
@@ -22,7 +22,7 @@ struct When {
   std::span<const std::string_view> values{};
 };
 
-/// What a text is made of. An empty text is not held against it.
+/// The characters that a text may have. An empty text is always accepted.
 struct TextRule {
   std::string_view letters{};      ///< "a-z0-9._-"; empty: any
   std::string_view not_letters{};  ///< any but these
@@ -67,7 +67,7 @@ struct Key {
   When needed{};  ///< there it is required
   /// Of what is required or needed: "x: is missing: " and this. Empty: "x is missing".
   std::string_view missing{};
-  /// What is said of a value that what follows refuses; {} stands for the value.
+  /// Message about a value that the following limits refuse; {} stands for the value.
   std::string_view wanted{};
   bool may_be_secret = false;             ///< of a text: no message repeats it
   std::span<const Choice> choices{};      ///< of a text
@@ -79,7 +79,7 @@ struct Key {
   bool distinct = false;                  ///< of a list: nothing twice
   std::span<const Key> keys{};            ///< of a table
   /// Of named_tables: where the name begins with one of these letters, the key `by_name` of the
-  /// table is `named_so` unless it says otherwise.
+  /// table is `named_so` unless it states otherwise.
   std::string_view initials{};
   std::string_view by_name{};
   std::string_view named_so{};
@@ -92,7 +92,7 @@ const Key& campaign_file();
 const Key& site_file();
 /// SITE/machines/<asset>.toml.
 const Key& machine_file();
-/// SITE/events.toml, acknowledged.toml and forgotten.toml: what people say of machines.
+/// SITE/events.toml, acknowledged.toml and forgotten.toml: entries of people about machines.
 const Key& events_file();
 const Key& acknowledged_file();
 const Key& forgotten_file();
@@ -100,7 +100,7 @@ const Key& forgotten_file();
 const Key& causes_file();
 /// What a specification of `nonio model simulate` has besides campaign.toml.
 const Key& specification_file();
-/// What tells the kind of axis that a cycle moves; settled by the code that reads cycles.
+/// What determines the kind of axis that a cycle moves; settled by the code that reads cycles.
 inline constexpr std::string_view cycle_axis = "(axis)";
 
 /// Files that a run writes next to the folders of the campaigns, and files of a site next to its
@@ -135,7 +135,7 @@ inline constexpr TextRule campaign_id_rule{
 bool obeys(std::string_view text, const TextRule& rule);
 bool in_range(double value, const Key& key);
 const Key* find_key(std::span<const Key> keys, std::string_view name);
-/// Whether the axis turns if nobody says so (ISO 841: A, B, C turn about X, Y, Z).
+/// Whether an axis is rotary by its name (ISO 841: A, B, C turn about X, Y, Z).
 bool rotary_by_name(std::string_view axis);
 
 }  // namespace nonio::config

@@ -87,13 +87,13 @@ class Layers {
     return list == nullptr ? NumberTables{} : number_tables_of(*list).value_or(NumberTables{});
   }
 
-  /// The last word counts.
+  /// A later setting replaces an earlier one.
   void add(const std::string& axis, const NumberTable& settings) {
     NumberTable& all = tables_[axis];
     for (const auto& [key, value] : settings) all[key] = value;
   }
 
-  /// Of a key of the manifest: its own line where it stands in a table.
+  /// The line of a key of the manifest: its own line if it is in a table.
   Error at_axes(const std::string& message, const std::string& axis, const std::string& key) const {
     const auto plugin = manifest_.options.find(output_.name);
     std::uint64_t line =

@@ -27,7 +27,7 @@ bool is_range(std::string_view text) {
   return digits(from) && digits(to) && std::stol(std::string(from)) <= std::stol(std::string(to));
 }
 
-/// Numbers that a control takes as they stand, by the key of option `axes`.
+/// Numbers that a control uses unchanged, by the key of option `axes`.
 void read_settings(TableReader& reader, RecordedAxis& axis) {
   const auto keep = [&](const char* key, std::optional<double> value) {
     if (value) axis.settings[key] = *value;

@@ -10,7 +10,7 @@
 
 #include "campaign/config/manifest.h"
 
-/// The machines of a site: SITE/machines/<asset>.toml says what campaigns do not measure.
+/// The machines of a site: SITE/machines/<asset>.toml has the data that campaigns do not measure.
 namespace nonio::config {
 
 inline constexpr const char* machines_folder = "machines";
@@ -77,9 +77,9 @@ using MachineRecords = std::vector<RecordFile>;
 Expected<MachineRecords> read_machines(const std::filesystem::path& site);
 
 /// How a campaign's machine is called in `Inputs`: by its asset, else by maker and serial; empty
-/// where neither is said.
+/// where neither is stated.
 std::string machine_input(const Machine& machine);
-/// Such a name stands in `Inputs` behind this.
+/// Prefix of such a name in `Inputs`.
 inline constexpr std::string_view machine_prefix = "machine ";
 /// The record's digest, `absent` where there is none.
 std::string machine_digest(const MachineRecords& records, std::string_view input);
@@ -88,12 +88,12 @@ std::string machine_digest(const MachineRecords& records, std::string_view input
 /// the machine. An error where two have its maker and serial.
 Expected<const RecordFile*> record_of(const MachineRecords& records, const Machine& machine);
 
-/// What the manifest and the record of its machine say otherwise, with both places.
+/// Contradictions between the manifest and the record of its machine, with both places.
 std::vector<Error> contradictions(const Manifest& manifest, const MachineRecord& record);
 
-/// What a table output works with: of each axis in option `axes` what site.toml says, over it what
-/// the record of the machine does, over that the campaign. Entries of site.toml for axes that the
-/// campaign has not are left out. Where the campaign contradicts the record, an error.
+/// What a table output works with: of each axis in option `axes` what site.toml states, over it
+/// what the record of the machine does, over that the campaign. Entries of site.toml for axes that
+/// the campaign has not are left out. Where the campaign contradicts the record, an error.
 Checked<Settings> settle_table_options(const Info& output, const RawOptions& site,
                                        const Manifest& manifest, const MachineRecord* record);
 

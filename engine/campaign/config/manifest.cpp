@@ -33,7 +33,7 @@ std::optional<double> expansion_of(TableReader& reader) {
   return value;
 }
 
-/// Nothing where nobody says it; empty where it is said that there was none.
+/// None if it is not stated; empty if it is stated that there was none.
 std::optional<std::string> active_table(const std::string& text) {
   if (text.empty()) return std::nullopt;
   return text == "none" ? std::string() : text;

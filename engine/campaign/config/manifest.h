@@ -28,7 +28,7 @@ struct RawOption {
   std::string file;
   std::uint64_t line = 0;
 };
-/// Tables as they were written before there were any: "X number=1 step_mm=50".
+/// Tables in their former form as texts: "X number=1 step_mm=50".
 Expected<NumberTables> number_tables_of(const std::vector<std::string>& entries);
 
 using RawOptions = std::map<std::string, std::map<std::string, RawOption>>;
@@ -50,7 +50,7 @@ struct AcceptedFinding {
 
 struct Manifest {
   Campaign campaign;
-  std::string purpose{};  ///< periodic, acceptance, after-repair, check; empty: not said
+  std::string purpose{};  ///< periodic, acceptance, after-repair, check; empty: not stated
   std::vector<std::string> undeclared_axes{};  ///< measured, and not among [machine.axes]
   std::vector<AcceptedFinding> accepted{};
   RunChoice run;
@@ -62,8 +62,8 @@ struct Manifest {
 struct Limits {
   double seconds = 600.0;
   double memory_MB = 4096.0;
-  double disk_seconds = 60.0;  ///< without a sign of life, in the survey
-  std::size_t vanished = 0;    ///< so many campaigns may be gone
+  double disk_seconds = 60.0;         ///< without a sign of life, in the survey
+  std::size_t missing_campaigns = 0;  ///< of the previous run that may be missing
 };
 
 /// `[[alias]]` of site.toml: two names of one machine.
@@ -118,18 +118,18 @@ struct Numbering {
   std::string register_file = "certificates.sqlite";  ///< relative to the site
   std::optional<DatabaseChoice> server{};  ///< in place of the file; its schema is the register's
   double patience = 60.0;                  ///< s, with a register that another process keeps locked
-  bool automatic = false;                  ///< a night may release what no finding holds up
+  bool automatic = false;                  ///< a run may release what no finding prevents
   std::vector<AcceptedRule> accepted{};
   bool two_persons = false;  ///< author and authoriser must not be the same
 };
 
-/// `[mail]` of site.toml: to whom a night writes, by which way, and from what on.
+/// `[mail]` of site.toml: to whom a run writes, how, and from which severity on.
 struct Mail {
   enum class On {
     lost,
     out,
     decision
-  };  ///< what is lost or failed; or out; or asks for a decision
+  };  ///< what is lost or failed; or out; or every action required
   enum class Tls { starttls, tls, none };
   std::vector<std::string> to;
   std::string from;
@@ -157,8 +157,8 @@ struct SiteFile {
   KeyLines lines;
   std::string language = "en";    ///< of the terminal and of summary.txt
   bool hashed_folders = false;    ///< results in OUT/ab/<id>
-  std::string settings;           ///< TOML: what of the file has a say in a certificate
-  std::string evaluation;         ///< TOML: what of it has a say in results
+  std::string settings;           ///< TOML: the part of the file that certificates depend on
+  std::string evaluation;         ///< TOML: the part of it that results depend on
   std::vector<Error> warnings{};  ///< keys with former names
 };
 

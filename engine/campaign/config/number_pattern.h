@@ -12,8 +12,8 @@ namespace nonio::config {
 /// with its year.
 std::string sequence_of(const std::string& pattern, const std::string& year);
 
-/// `[certificate] numbering` with its places filled. An error if that cannot be a number: it names
-/// files, and stands on paper.
+/// `[certificate] numbering` with its places filled. An error if the result cannot be a number,
+/// which is part of file names and is printed.
 Expected<std::string> number_text(const std::string& pattern, const std::string& year,
                                   std::uint64_t number);
 

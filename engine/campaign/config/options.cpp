@@ -35,7 +35,7 @@ const char* kind_of(const Setting& setting) {
   }
 }
 
-/// "X reference_mm=0 step_mm=50", as manifests said it before there were tables.
+/// "X reference_mm=0 step_mm=50", the form in manifests before there were tables.
 Expected<void> take_entry(const std::string& entry, NumberTables& out) {
   std::istringstream words(entry);
   std::string name, word;
@@ -73,7 +73,7 @@ Expected<NumberTables> number_tables_of(const std::vector<std::string>& entries)
 
 namespace {
 
-/// The setting as the declared kind; a whole number will do where a number is wanted, an empty
+/// The setting as the declared kind; a whole number will do where a number is required, an empty
 /// list for any, and "X number=1" for a table X. Else why not.
 Expected<Setting> as_declared(const Setting& found, const Setting& declared) {
   if (found.index() == declared.index()) return found;

@@ -17,7 +17,7 @@ RunChoice read_run(TableReader& top) {
 
 namespace {
 
-/// What of an option is no setting: of a table, the first key in it that is no number.
+/// What is not a valid setting in an option: of a table, its first key that is not a number.
 Error wrong_option(const std::string& place, const toml::node& value, const std::string& file) {
   if (const toml::table* tables = value.as_table())
     for (const auto& [name, node] : *tables) {

@@ -11,7 +11,7 @@ namespace nonio::config {
 
 RunChoice read_run(TableReader& top);
 
-/// Of plugins that only the run knows: what is wrong with them is said there.
+/// Of plugins that only the run knows: their errors are reported there.
 RawOptions read_options(TableReader& top, std::vector<Error>& errors);
 
 }  // namespace nonio::config

@@ -98,7 +98,7 @@ Expected<std::string> from_hex(const std::string& text) {
 fs::path site_of(const fs::path& campaign) {
   std::error_code error;
   const fs::path start = fs::canonical(campaign, error);
-  // One that cannot be looked at is not none: reading it says what is wrong.
+  // One that cannot be looked at is not none: reading it reports the error.
   const auto has = [](const char* name) {
     return
         [name](const fs::path& folder) { return storage::is_there(folder / name).value_or(true); };

@@ -21,7 +21,7 @@ struct SiteFiles {
   TemplateFiles templates{};
 };
 
-/// `reading` is told each path before it is read.
+/// `reading` is called with each path before it is read.
 Expected<SiteFiles> read_site_files(
     const std::filesystem::path& site,
     const std::function<void(const std::filesystem::path&)>& reading);

@@ -10,7 +10,7 @@
 
 #include "campaign/config/manifest.h"
 
-/// What people say of the machines of a site: SITE/events.toml, acknowledged.toml, forgotten.toml.
+/// Entries of people about machines: SITE/events.toml, acknowledged.toml, forgotten.toml.
 namespace nonio::config {
 
 inline constexpr const char* events_name = "events.toml";
@@ -58,12 +58,12 @@ Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
                                                          const std::string& file);
 Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file);
 
-/// The three files of a site; one that is not there says nothing.
+/// The three files of a site; a missing one is empty.
 Checked<SiteLogs> read_site_logs(const std::filesystem::path& site);
 
-/// Adds an entry at the end of the file, behind whatever stands there, comments included; the file
-/// is made if it is not there. Refused, and nothing written, if the file is wrong as it stands, if
-/// the entry would be wrong in it, or if somebody else writes it meanwhile.
+/// Adds an entry at the end of the file, after all that it contains, comments included; a missing
+/// file is made. Refused, and nothing written, if the file has errors, if it would have errors with
+/// the entry, or if another process writes it meanwhile.
 Checked<void> add_event(const std::filesystem::path& site, const Event& event);
 Checked<void> add_acknowledgement(const std::filesystem::path& site, const Acknowledgement& known);
 /// Refused if nothing that counts has its names.

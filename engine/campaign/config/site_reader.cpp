@@ -217,8 +217,8 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
     site.limits.seconds = reader->number("seconds").value_or(site.limits.seconds);
     site.limits.memory_MB = reader->number("memory_MB").value_or(site.limits.memory_MB);
     site.limits.disk_seconds = reader->number("disk_seconds").value_or(site.limits.disk_seconds);
-    if (const auto most = reader->integer("vanished"))
-      site.limits.vanished = static_cast<std::size_t>(*most);
+    if (const auto most = reader->integer("missing_campaigns"))
+      site.limits.missing_campaigns = static_cast<std::size_t>(*most);
     reader->finish();
   }
   if (auto reader = top.table("results")) {
@@ -239,7 +239,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   if (const toml::table* laboratory = (*root)["laboratory"].as_table())
     site.evaluation += settings_of(*laboratory, {"cmc"});
   // Decides anew what conforms. The default is what certificates were issued by before there was a
-  // choice, and says nothing new.
+  // choice, and needs no new evaluation.
   if (const auto rule = (*root)["certificate"]["decision_rule"].value<std::string>();
       rule && *rule != "iso14253-1")
     site.evaluation += "decision_rule = \"" + *rule + "\"\n";

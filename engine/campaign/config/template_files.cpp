@@ -41,7 +41,7 @@ Expected<std::map<std::string, fs::path>> template_paths(const fs::path& folder)
 
 namespace {
 
-/// Fonts have megabytes, and every installation has them.
+/// Whether a file is carried along: not fonts, which are large and in every installation.
 bool travels(std::string_view name) { return !name.starts_with("fonts/"); }
 
 }  // namespace

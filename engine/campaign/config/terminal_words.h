@@ -10,7 +10,7 @@
 
 namespace nonio::config {
 
-/// What the terminal and summary.txt say, in the language of the site:
+/// What the terminal and summary.txt state, in the language of the site:
 /// templates/words/<language>/terminal.toml, and English where a language has no text.
 class TerminalWords {
  public:

@@ -17,9 +17,9 @@
 
 namespace nonio::config {
 
-/// One table of a TOML file, read key by key as its declaration says. What is wrong is collected,
-/// not thrown. A key that is read and not declared, or read as something else than declared, is a
-/// mistake of the program: std::logic_error.
+/// One table of a TOML file, read key by key according to its declaration. What is wrong is
+/// collected, not thrown. A key that is read and not declared, or read as something else than
+/// declared, is a mistake of the program: std::logic_error.
 class TableReader {
  public:
   /// The file itself: `declaration` is of a table, and stays where it is.
@@ -29,7 +29,7 @@ class TableReader {
 
   std::string text(std::string_view key);
   std::optional<double> number(std::string_view key, double scale = 1.0);
-  /// 0 where the file says "none".
+  /// 0 where the file states "none".
   std::optional<double> number_or_none(std::string_view key, double scale = 1.0);
   std::optional<int> integer(std::string_view key);
   std::optional<bool> flag(std::string_view key);
@@ -47,9 +47,9 @@ class TableReader {
   std::vector<std::pair<std::string, TableReader>> named_tables(std::string_view key);
   const toml::table* anything(std::string_view key);
 
-  /// For conditions of the declaration: what `key` is where the table does not say so.
+  /// For conditions of the declaration: what `key` is where the table does not state that.
   void settle(std::string_view key, std::string_view value) { settled_ = {key, value}; }
-  /// The same table, goes on with another declaration.
+  /// The same table, read further with another declaration.
   TableReader declared(const Key& declaration) const;
   /// Reports every unknown key, with the nearest known one. A key that is declared and was not read
   /// is a std::logic_error.
@@ -108,11 +108,12 @@ class TableReader {
 Expected<toml::table> parse_toml(std::string_view text, const std::string& file);
 
 /// A key of a file that has the name of an earlier version, or the header of a table with such a
-/// key.
+/// key, or the id of a finding with such a name.
 struct FormerKey {
   std::string place;         ///< of the table that contains it: "machine.axes.X"; empty: the file
   std::string former, name;  ///< "table_on", "active_table"
   std::uint64_t line = 0;    ///< 1-based
+  bool is_value = false;     ///< the id of a finding
 };
 /// Renames keys with former names in `table` as `declaration` requires; all later code sees
 /// the present names. In the order of the lines. Where a table has both names, the former one stays unknown.

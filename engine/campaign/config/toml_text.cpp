@@ -14,9 +14,9 @@ bool is_bare_key_character(char c) {
          c == '_';
 }
 
-/// What toml++ 3.3 meets with undefined behaviour instead of an error: a byte outside ASCII that
-/// stands in neither a string nor a comment, or where a text goes on after a backslash; and a table
-/// header that begins with no key.
+/// Input for which toml++ 3.3 has undefined behaviour instead of an error: a byte outside ASCII
+/// that is in neither a string nor a comment, or where a text is continued after a backslash; and a
+/// table header that does not begin with a key.
 class Precheck {
  public:
   explicit Precheck(std::string_view text) : text_(text) {}
@@ -51,7 +51,7 @@ class Precheck {
   }
 
  private:
-  /// There toml++ goes on in the word, and may meet in it what stands in a string here.
+  /// There toml++ reads on in the word, and may find in it what is part of a string here.
   bool quote_within_word() const {
     const bool opens = closing_.empty() && (text_[at_] == '"' || text_[at_] == '\'');
     return opens &&
@@ -59,7 +59,8 @@ class Precheck {
                                         std::string_view::npos));
   }
 
-  /// There toml++ asks whether it is one more blank to skip, which it knows of few such letters.
+  /// There toml++ tests whether it is one more blank to skip, which it implements for few such
+  /// characters.
   bool goes_on_outside_ascii() const {
     if (text_[at_] != '\\' || closing_ != "\"\"\"") return false;
     const std::size_t next = text_.find_first_not_of(" \t\r\n", at_ + 1);
@@ -111,7 +112,7 @@ class Precheck {
     } else if (c == '=') {
       wants_value_ = true;
     } else if (c == '[' || c == '{') {
-      // A bracket where a key is wanted is that of a table's header: keys stand in it.
+      // A bracket where a key is expected is that of a table's header, which contains keys.
       open_ += wants_value_ ? c : '{';
       wants_value_ = open_.back() == '[';
     } else {

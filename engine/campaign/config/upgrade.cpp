@@ -28,6 +28,14 @@ std::size_t key_in(std::string_view line, std::string_view name) {
   return std::string_view::npos;
 }
 
+/// Where `value` is between quotes; npos: nowhere.
+std::size_t value_in(std::string_view line, const std::string& value) {
+  for (const char quote : {'"', '\''})
+    if (const std::size_t at = line.find(quote + value + quote); at != std::string_view::npos)
+      return at + 1;
+  return std::string_view::npos;
+}
+
 /// The lines of a text, each with its line feed.
 std::vector<std::string> lines_of(std::string_view text) {
   std::vector<std::string> lines;
@@ -63,7 +71,8 @@ Expected<UpgradedFile> upgraded(std::string_view text, const Key& declaration,
   for (const FormerKey& key : keys) {
     if (key.line == 0 || key.line > lines.size()) return by_hand(key, file);
     std::string& line = lines[key.line - 1];
-    const std::size_t at = key_in(line, key.former);
+    std::size_t at = key_in(line, key.former);
+    if (key.is_value) at = value_in(line, key.former);
     if (at == std::string::npos) return by_hand(key, file);
     line.replace(at, key.former.size(), key.name);
   }

@@ -31,7 +31,7 @@ struct Certificate {
   bool draft = false;               ///< without number: waits until a person releases it
   std::vector<IssuedFile> files{};  ///< those of `output` first
   std::string results{};            ///< results.json as it is attached
-  std::string released{};           ///< JSON: by whom, and why findings may stand
+  std::string released{};           ///< JSON: by whom, and why findings are accepted
 };
 
 /// The history of the machine that a document shows: of which campaigns, in which state.
@@ -68,20 +68,20 @@ struct Evaluated {
   bool retry = false;  ///< it failed for a reason that does not lie in its files
   std::vector<FollowedGroup> followed{};
   std::vector<ControlTables> control_tables{};
-  std::string purpose{};                  ///< as the manifest says it
-  std::optional<ShownHistory> history{};  ///< none: no document asks for it
+  std::string purpose{};                  ///< as the manifest states it
+  std::optional<ShownHistory> history{};  ///< none: no document requests it
 };
 
 /// What has become of a campaign's wish to be issued under a number.
 struct AssignedNumber {
   /// What was issued for the same data already, else a draft, else what has a new number.
   std::optional<Certificate> certificate{};
-  std::vector<std::string> missing{};  ///< why there is none; what day and register tell, too
-  std::optional<Error> error{};        ///< the register could not be asked: to be tried again
+  std::vector<std::string> missing{};  ///< why there is none, also by day and register
+  std::optional<Error> error{};        ///< the register could not be read: to be tried again
 };
 
 /// One campaign from its folder to its artifacts, without a number; writes nothing. For verbs: a
-/// night does it in four steps (evaluation.h).
+/// run does it in four steps (evaluation.h).
 Evaluated evaluate(const std::filesystem::path& folder, const std::string& id,
                    const reading::Context& context, const reading::Stage& stage);
 

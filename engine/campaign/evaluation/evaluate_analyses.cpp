@@ -63,7 +63,7 @@ void apply_cmc(const Laboratory& laboratory, double length, Evaluation& e) {
     e.findings.push_back({.id = "uncertainty.cmc", .texts = {{"results", std::move(raised)}}});
 }
 
-/// Readings that were taken out without a word why. The evaluation stands; nothing is issued.
+/// Readings that were excluded without a reason. The evaluation is valid; no certificate is issued.
 void note_reasons_missing(const Measurement& m, Evaluation& evaluation) {
   if (m.exclude.empty() || has_content(m.exclude_reason)) return;
   evaluation.findings.push_back(

@@ -35,8 +35,8 @@ void check_control(const Work& work) {
                                                    "; there are " + comma_list(tables)));
 }
 
-/// A table of another control than the machine's: the manifest that asks for it is wrong, and of
-/// what site.toml asks for all machines it is left out.
+/// A table of another control than the machine's: the manifest that requests it is wrong, and of
+/// what site.toml requests all machines it is left out.
 bool is_control_of_record(const Work& work, const std::string& controller) {
   const auto& machine = work.read.machine;
   if (!machine || machine->control.empty() || machine->control == controller) return true;
@@ -116,7 +116,7 @@ WantedPlugins wanted_plugins(const Work& work, std::vector<Remark>& notes) {
 
 namespace {
 
-/// Where the manifest asks for the output, if the error does not know better.
+/// Where the manifest requests the output, if the error does not know better.
 void place_at_output(const Work& work, const std::string& name, Error& error) {
   const config::Manifest& manifest = *work.read.manifest;
   const config::SiteFile& site = work.context.site;
@@ -159,7 +159,7 @@ OutputResult no_table(const char* id, const Info& controller, const char* why,
   return nothing;
 }
 
-/// What the tables take where the manifest wants them of the model and not of the readings; an
+/// What the tables take where the manifest requires them of the model and not of the readings; an
 /// error if there is no model.
 using ModelReadings = std::optional<Expected<std::vector<Observations>>>;
 

@@ -15,7 +15,7 @@
 ///
 ///   read_campaign    the files of the folder        -> observations
 ///   analyse          observations                   -> analyses, models, decisions, tables
-///   assign a number  (numbering.h, or nobody)       -> what is issued under it, or why nothing is
+///   assign a number (numbering.h; optional)       -> what is issued under it, or why nothing is
 ///   write_documents  all of that                    -> artifacts
 ///
 /// The first two and the last are done by the process with the plugins, the third by the one with
@@ -23,8 +23,8 @@
 namespace nonio::evaluation {
 
 /// A controller whose tables are to be written. Without `asked` a table that the control cannot
-/// have is worth a finding, not the campaign: it was tried only because nobody said which control
-/// the machine has.
+/// have is a finding and does not fail the campaign: it was tried only because the control of the
+/// machine is not stated.
 struct WantedController {
   const Controller* controller = nullptr;
   Settings options;
@@ -41,7 +41,7 @@ struct WantedOutput {
 /// The output that is issued under a number, and what it lacks for one.
 struct NumberRequest {
   std::string output;
-  std::vector<std::string> missing;  ///< keys to fill, findings to mend
+  std::vector<std::string> missing;  ///< keys to fill, findings to correct
   OutputResult incomplete;           ///< what is found of its traceability
 };
 
@@ -57,13 +57,13 @@ AnalysedCampaign analyse(reading::ReadCampaign read, const std::string& id,
                          const reading::Context& context, const reading::Stage& stage,
                          const reading::Twins& twins);
 
-/// `assigned`: the answer to `AnalysedCampaign::number`; null where nobody draws one. `history`: of
-/// the machine up to this campaign; null where nobody knows it.
+/// `assigned`: the answer to `AnalysedCampaign::number`; null where no number is drawn. `history`:
+/// of the machine up to this campaign; null where it is not known.
 Evaluated write_documents(AnalysedCampaign analysed, const AssignedNumber* assigned,
                           const reading::Context& context, const reading::Stage& stage,
                           const HistorySoFar* history = nullptr);
 
-// What `analyse` and `write_documents` are made of.
+// Steps of `analyse` and `write_documents`.
 
 /// What the calls of one campaign share: where errors go, each with the line that is to blame.
 struct Work {
@@ -80,7 +80,7 @@ struct Work {
   Error error_at(std::string key, const std::string& message) const;
   /// The options of a plugin; what is wrong with them is reported.
   std::optional<Settings> settle(const Info& info) const;
-  /// What the plugin says of itself; an error is reported, and means no.
+  /// What the plugin reports of itself; an error is reported, and means no.
   bool asks_to_apply(const std::string& who, const std::string& where,
                      const std::function<bool()>& ask) const;
   /// What runs if neither manifest nor site names plugins.
@@ -90,7 +90,7 @@ struct Work {
 /// Names of a list under `[run]`; none: all that apply.
 using PluginNames = std::optional<std::vector<std::string>>;
 
-/// The plugins that are asked for, in that order; without names all.
+/// The plugins that are requested, in that order; without names all.
 template <class Plugin>
 std::vector<const Plugin*> chosen_plugins(const Work& work, const std::vector<Plugin>& all,
                                           const PluginNames& names) {
@@ -115,15 +115,15 @@ bool has_plugin(const std::vector<Plugin>& all, const std::string& name) {
 void report_absent(const Work& work, const char* kind, const char* key, const PluginNames& names,
                    const std::function<bool(const std::string&)>& is_there);
 
-/// Of the analyses that are asked for; then of the model, if one is.
+/// Of the analyses that are requested; then of the model, if one is.
 std::vector<Results::Analysed> run_analyses(const Work& work);
 std::vector<Results::Analysed> fit_models(const Work& work, std::vector<ModelFit>& models);
 
 /// Ids of the findings of `analyses` for which no table is written: what looks like a mistake in
-/// the files, and nobody has said why it may stand. Where somebody has, the finding says so.
+/// the files and was not accepted with a reason. An accepted finding states that.
 std::vector<std::string> open_doubts(const Work& work, std::vector<Results::Analysed>& analyses);
 
-/// What no analysis and no model has looked at, said so that nobody takes silence for a result.
+/// Measurements that no analysis and no model has used, reported so that they are not overlooked.
 std::vector<Remark> unevaluated(const reading::ReadCampaign& read, const Results& results);
 
 /// Values against the tolerances of the manifest.
@@ -133,7 +133,7 @@ std::vector<Conformity> held_against_tolerances(const Campaign& campaign,
 /// Tolerances of measurements in another unit than the result that they name.
 void report_other_units(const Work& work, const std::vector<Results::Analysed>& analyses);
 
-/// The controllers and outputs that are asked for and apply; notes how their options are written
+/// The controllers and outputs that are requested and apply; notes how their options are written
 /// now. Nothing after an error.
 struct WantedPlugins {
   std::vector<WantedController> controllers;

@@ -12,7 +12,7 @@ namespace nonio::evaluation {
 
 namespace {
 
-/// Another certificate is another draw of its error. Empty if nobody could tell it from others.
+/// Another certificate is another draw of its error. Empty if it is not distinguishable.
 std::string instrument_source(const Instrument& i) {
   if (i.serial.empty()) return {};
   std::string out = "instrument";
@@ -128,7 +128,7 @@ std::optional<FollowedGroup> of_budget(const Results::Analysed& a, const Campaig
   }
   if (out.quantities.empty()) return std::nullopt;
   const std::size_t n = variances.size();
-  out.covariance.assign(n * n, 0.0);  // how these values hang together is not known here
+  out.covariance.assign(n * n, 0.0);  // the correlation of these values is not known here
   for (std::size_t i = 0; i < n; ++i) out.covariance[i * n + i] = variances[i];
   return out;
 }

@@ -43,7 +43,7 @@ struct FollowedGroup {
   std::optional<ComparedTargets> targets{};
 };
 
-/// Of everything that was evaluated. Nothing of measurements that cannot say how sure they are.
+/// Of everything that was evaluated. Nothing of measurements without an uncertainty.
 std::vector<FollowedGroup> followed_of(const reading::ReadCampaign& read, const Results& results);
 
 /// Members `followed` and `followed_covariance` of results.json.

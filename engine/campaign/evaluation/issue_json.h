@@ -7,9 +7,9 @@
 
 namespace nonio::evaluation {
 
-/// The key `certificate` of results.json: all that a certificate prints beside the results.
+/// The key `certificate` of results.json: all that a certificate prints in addition to the results.
 void put_certificate(JsonWriter& json, const Certificate& certificate);
-/// What it said; what is not there stays empty.
+/// Its content; what is missing stays empty.
 Certificate certificate_of(const storage::Json& json);
 
 }  // namespace nonio::evaluation

@@ -70,7 +70,7 @@ Error error_of(dom::object json) {
 Record record_of(dom::object json) {
   Record r;
   r.folder = text(json["folder"]);
-  r.night = json["night"];
+  r.run = json["night"];
   if (dom::element e; json["date"].get(e) == simdjson::SUCCESS) r.date = text(e);
   r.reason = text(json["reason"]);
   const auto status = status_named(std::string_view(json["status"]));
@@ -78,7 +78,7 @@ Record record_of(dom::object json) {
   r.status = *status;
   r.retry = json["retry"];
   if (dom::object since; json["failed_since"].get(since) == simdjson::SUCCESS)
-    r.failed_since = NightOf{since["night"], text(since["date"])};
+    r.failed_since = RunLabel{since["night"], text(since["date"])};
   if (dom::object since; json["indexed"].get(since) == simdjson::SUCCESS)
     r.indexed = IndexedSince{
         {since["night"], text(since["date"])}, text(since["version"]), text(since["sha256"])};
@@ -107,7 +107,7 @@ std::string to_json(const Record& r) {
   json.begin_object();
   json.member("schema", "nonio-run/2");
   json.member("folder", r.folder);
-  json.member("night", r.night);
+  json.member("night", r.run);
   if (!r.date.empty()) json.member("date", r.date);
   json.member("reason", r.reason);
   json.member("status", to_text(r.status));
@@ -122,8 +122,8 @@ std::string to_json(const Record& r) {
   if (r.indexed) {
     json.key("indexed");
     json.begin_object();
-    json.member("night", r.indexed->night.number);
-    json.member("date", r.indexed->night.date);
+    json.member("night", r.indexed->run.number);
+    json.member("date", r.indexed->run.date);
     json.member("version", r.indexed->version);
     json.member("sha256", r.indexed->sha256);
     json.end_object();

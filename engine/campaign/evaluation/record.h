@@ -13,7 +13,7 @@
 
 namespace nonio::evaluation {
 
-/// A finding as the morning's reader knows it again the next day.
+/// The parts of a finding by which the next run recognises it.
 struct KnownFinding {
   std::string measurement, id, title;
   bool attention = false;
@@ -31,38 +31,38 @@ struct RecordedFile {
   std::string sha256;
 };
 
-/// A night, by its number and the date it was given.
-struct NightOf {
+/// A run, by its number and the date it was given.
+struct RunLabel {
   std::uint64_t number = 0;
   std::string date;  ///< YYYY-MM-DD; empty: of a version that did not note it
 };
 
 /// Since when what the history keeps of a campaign (laboratory/store/entry.h) is as it is.
 struct IndexedSince {
-  NightOf night{};
+  RunLabel run{};
   std::string version;  ///< that evaluated it so first
   std::string sha256;   ///< of what is kept
 };
 
-/// `run.json` beside a campaign's results: from what they were made, when (which night) and why.
-/// It holds no time, so that equal runs leave equal bytes.
+/// `run.json`, stored with the results of a campaign: from what they were made, when (in which run)
+/// and why. It holds no time, so that equal runs leave equal bytes.
 struct Record {
   std::string folder;  ///< of the campaign, relative to the site
-  std::uint64_t night = 0;
-  std::string date;  ///< of that night
+  std::uint64_t run = 0;
+  std::string date;  ///< of that run
   std::string reason;
   Status status = Status::none;
   bool retry = false;  ///< it failed for a reason that does not lie in its content
-  std::optional<NightOf> failed_since{};  ///< the first of the nights in which it failed
+  std::optional<RunLabel> failed_since{};  ///< the first of the runs in which it failed
   reading::Inputs inputs;
   std::optional<IndexedSince> indexed{};  ///< none: it failed for a reason that may pass
   std::string certificate;                ///< its number; empty: none
   bool draft = false;                     ///< of a certificate that waits for its release
   std::vector<RecordedFile> files;
-  std::optional<ShownHistory> history{};  ///< that a document shows; none: no document asks for it
+  std::optional<ShownHistory> history{};  ///< that a document shows; none: no document requests it
   std::vector<Error> errors;
   std::string language{};                        ///< of the site, for `nonio show`; empty: English
-  std::vector<KnownFinding> findings, previous;  ///< previous: of the last night before this one
+  std::vector<KnownFinding> findings, previous;  ///< previous: of the last run before this one
 };
 
 inline constexpr const char* record_name = "run.json";

@@ -10,11 +10,11 @@
 /// The files of a campaign's results, wherever they lie (platform/storage/packed_results.h).
 namespace nonio::evaluation {
 
-/// All that its record names and the record itself, the last one; before them those of `last-good`, as
-/// "last-good/report.pdf". In no file lies what a record does not name. Empty if there is no record. An error if a
-/// name would lead out of the folder, or if a pack has files of the campaign that its record does not name.
+/// All that its record names and the record itself, the last one; before them those of `last-good`,
+/// as "last-good/report.pdf". Empty if there is no record. An error if a name would lead out of the
+/// folder, or if a pack has files of the campaign that its record does not name.
 Expected<std::vector<RecordedFile>> results_files(const std::filesystem::path& folder);
-/// With the digest of its record. An error names the file.
+/// Reads a file with the digest of its record. An error names the file.
 Expected<std::string> read_result(const std::filesystem::path& folder, const RecordedFile& file);
 
 /// Where the results of a campaign lie in a pack: writes them into its own folder, the record last, after which that

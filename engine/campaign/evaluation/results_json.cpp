@@ -163,7 +163,7 @@ void put_contribution(JsonWriter& json, const Contribution& c) {
   json.end_object();
 }
 
-/// Standard uncertainties: what goes in, and what it makes in each result.
+/// Standard uncertainties: the inputs, and their contribution to each result.
 void put_budget(JsonWriter& json, const std::optional<UncertaintyBudget>& budget) {
   if (!budget) return;
   json.key("budget");
@@ -296,7 +296,7 @@ void put_predictions(JsonWriter& json, const std::vector<Prediction>& prediction
   json.end_array();
 }
 
-/// What outputs predict, find and note stands once, not with each of their files.
+/// Predictions, findings and notes of an output are written once, not with each of its files.
 void put_tables(JsonWriter& json, const std::vector<Results::Written>& outputs,
                 const Templates& templates) {
   const auto silent = [](const Results::Written& w) {

@@ -26,7 +26,7 @@ std::string iso_date(const std::string& date) {
   return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6);
 }
 
-/// The places of a name put into a text; nothing if it wants one that the name does not have.
+/// The places of a name put into a text; nothing if it requires one that the name does not have.
 std::optional<std::string> filled_in(const std::string& text, const Places& places) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -250,7 +250,7 @@ class Importer {
                              (request_.rule.axes.empty() ? "" : ", as the rule states"));
   }
 
-  /// campaign.toml; what is still to be filled stands above it and in its place as a comment.
+  /// campaign.toml; what is still to be filled is a comment at the beginning and in its place.
   std::string manifest_of(const ImportedCampaign& campaign, const Places& places) const {
     toml::table root;
     if (auto extra = config::parse_toml(request_.rule.manifest, "rule"); extra)
@@ -278,7 +278,8 @@ class Importer {
     }
     return out.str();
   }
-  /// What the request says of the machine; else the rule's manifest, else the name of the file.
+  /// What the request states about the machine; else the rule's manifest, else the name of the
+  /// file.
   void put_machine(toml::table& machine, const Places& places) const {
     for (const auto& [key, place, said] :
          {std::tuple("asset", "asset", &request_.asset),
@@ -299,8 +300,8 @@ class Importer {
     return text;
   }
 
-  /// Reads every file as a night would. Names and ids that are there twice keep nobody from looking
-  /// into the files.
+  /// Reads every file as a run would. The files are read also if names or ids are given
+  /// twice.
   void check(ImportedCampaign& campaign, const std::vector<Found>& found) {
     if (const auto manifest = manifest_to_read(campaign, found.front().places)) {
       const Machine& machine = manifest->campaign.machine;
@@ -350,7 +351,7 @@ class Importer {
                                   plugins_.methods());
   }
 
-  /// Digest of the readings of a file; empty if there are none, or nobody can tell.
+  /// Digest of the readings of a file; empty if there are none or they cannot be read.
   std::string look_into(const config::Manifest& manifest, Measurement m, ImportedFile& file,
                         const Found& found) const {
     m.id = file.measurement;
@@ -388,7 +389,7 @@ class Importer {
         *reader, {bytes, manifest.campaign, m, *options, {}, plugins_.method(m.kind)});
   }
 
-  /// Of site.toml, if the site is there already.
+  /// Of site.toml, if the site exists already.
   config::RawOptions site_options() const {
     const auto text = storage::read_file(request_.out / "site.toml");
     if (!text) return {};

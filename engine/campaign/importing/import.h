@@ -13,17 +13,17 @@
 
 namespace nonio::importing {
 
-/// How the names of files say what was measured.
+/// How the names of files encode what was measured.
 struct ImportRule {
   std::string pattern;               ///< "{machine}_{axis}_{date}.rtl"
   std::string campaign;              ///< id of the campaign, with places; empty: see campaign_of
   std::string kind = "axis";         ///< of every measurement
   std::string reader;                ///< empty: by content
   std::vector<std::string> exclude;  ///< files are passed over whose path holds one of these
-  std::string axis;                  ///< of every file; empty: what stands at {axis}
-  /// What may stand at {axis}, and the axis of the machine it means; empty: see `fits`.
+  std::string axis;                  ///< of every file; empty: the text at {axis}
+  /// Texts accepted at {axis}, and the axis of the machine that each means; empty: see `fits`.
   std::map<std::string, std::string, std::less<>> axes;
-  std::string manifest;  ///< TOML: what stands in every campaign.toml besides
+  std::string manifest;  ///< TOML: further content of every campaign.toml
 };
 
 using Places = std::map<std::string, std::string, std::less<>>;
@@ -42,9 +42,10 @@ struct ImportedFile {
   std::string name;  ///< in the campaign
   std::string measurement, axis, reader;
   std::uint64_t readings = 0, missing = 0;
-  std::vector<std::string> lacks;    ///< what has to be said or mended before it can be read
-  std::string same_as;               ///< the file that has the same readings
-  std::vector<std::string> assumed;  ///< what was taken from the name or the rule, not as it stood
+  std::vector<std::string> lacks;  ///< what has to be stated or corrected before it can be read
+  std::string same_as;             ///< the file that has the same readings
+  std::vector<std::string>
+      assumed;  ///< what was derived from the name or the rule, not stated literally
 };
 
 struct ImportedCampaign {
@@ -69,13 +70,13 @@ struct ImportReport {
 struct ImportRequest {
   std::filesystem::path folder, out;
   ImportRule rule;
-  std::string asset{}, maker{}, serial{};  ///< of the machine of all campaigns; empty: not said
+  std::string asset{}, maker{}, serial{};  ///< of the machine of all campaigns; empty: not stated
   bool partial = false;  ///< write campaigns that lack something too, with what is to be filled
   bool dry_run = false;
 };
 
 /// Makes campaigns from a folder of files. A campaign's folder is new and appears whole; nothing
-/// that is there is touched. Where all of it is there already, there is nothing to do.
+/// that is there is touched. Where all of it exists already, there is nothing to do.
 Expected<ImportReport> import_folder(const ImportRequest& request, const loader::Plugins& plugins);
 
 }  // namespace nonio::importing

@@ -110,7 +110,7 @@ class Matcher {
       const std::string_view part = text_.substr(at, length);
       if (part.ends_with('/')) return;
       if (!fits(rule_, t.text, part)) continue;
-      // A place that is there twice has the same text both times.
+      // A place that is given twice has the same text both times.
       const auto known = now_.find(t.text);
       if (known != now_.end() && known->second != part) continue;
       const bool names = t.text != "*" && known == now_.end();

@@ -34,8 +34,8 @@ std::string text_at(std::string_view bytes, std::uint64_t at) {
 
 }  // namespace
 
-// Not boost::dll::library_info: it reads the table of names that `strip` takes away, and does not
-// tell weak symbols from others.
+// Not boost::dll::library_info: it reads the table of names that `strip` removes, and does not
+// distinguish weak symbols from others.
 Expected<std::vector<std::string>> exported_symbols(const std::filesystem::path& library) {
   NONIO_TRY(const auto file, storage::MappedFile::open(library));
   const std::string_view bytes = file.bytes();

@@ -107,7 +107,7 @@ Probed probe_in_child(std::span<const fs::path> paths) {
   return probed;
 }
 
-/// SIGKILL comes from outside (a person, the system without memory), so it says nothing about the
+/// SIGKILL comes from outside (a person, the system without memory), so it shows nothing about the
 /// plugin.
 bool is_killed(const Probed& p) {
   return p.refusals.empty() && !p.end.well && !p.end.overdue &&
@@ -185,7 +185,7 @@ std::vector<fs::path> Plugins::files_in(const std::vector<fs::path>& folders) {
     std::vector<fs::path> here;
     std::error_code error;
     const fs::path real = fs::canonical(folder, error);
-    error.clear();  // who lists a folder that is not there says so
+    error.clear();  // whoever lists a missing folder reports that
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
       if (it->path().extension() == ".so" && it->is_regular_file()) {
         const bool resolved = !real.empty() && !it->is_symlink(error);
@@ -229,7 +229,7 @@ void Plugins::load_file(const fs::path& path, const std::string& refusal) {
   const process::Muted muted;
   try {
     auto entry = open_entry(path);
-    if (!entry) entry = open_entry(path);  // what fails for a moment only would make another night
+    if (!entry) entry = open_entry(path);  // a temporary failure would change the results of a run
     Offered offered;
     if (entry) (*entry)->add_to(offered);
     file.refused = entry ? offered.incomplete() : entry.error().message;

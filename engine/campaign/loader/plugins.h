@@ -17,7 +17,7 @@ struct PluginFile {
   std::vector<std::string> brought;  ///< "analysis iso230-2 1.0.0", ...
 };
 
-/// What plugins say of themselves, as data: how a process knows them that has none of their code.
+/// The declarations of plugins, as data: how a process knows them that has none of their code.
 struct Catalogue {
   std::vector<PluginFile> files;
   std::vector<std::string> conflicts;
@@ -36,8 +36,8 @@ class Plugins final : public Registry {
   /// The shared libraries of the folders, in their order; a folder that cannot be read is a
   /// conflict.
   std::vector<std::filesystem::path> files_in(const std::vector<std::filesystem::path>& folders);
-  /// Loads and registers one; where `refusal` says something, it only remembers that. To be called
-  /// in a process that may come to harm.
+  /// Loads and registers one; if `refusal` is not empty, only that is recorded. To be called in a
+  /// process that may come to harm.
   void load_file(const std::filesystem::path& path, const std::string& refusal);
 
   /// Loads every shared library of the folders, in their order. They are first loaded and
@@ -49,7 +49,7 @@ class Plugins final : public Registry {
   /// Two plugins of one kind with the same name, each with both paths; outputs and controllers are
   /// one kind in this.
   const std::vector<std::string>& conflicts() const { return conflicts_; }
-  /// Whether every plugin that was loaded lies in this folder.
+  /// Whether every plugin that was loaded is in this folder.
   bool all_from(const std::filesystem::path& folder) const;
   /// One digest over the files of all that was loaded; reads them.
   Expected<std::string> digest() const;
@@ -69,7 +69,7 @@ class Plugins final : public Registry {
   }
   const std::vector<Controller>& controllers() const { return controllers_; }
 
-  /// Why a plugin of that name is not there, with the nearest name; of an output also among the
+  /// Why a plugin of that name is missing, with the nearest name; of an output also among the
   /// controllers, which `[run] outputs` names with them.
   std::string absence(std::string_view kind, std::string_view name) const;
   /// Every file that was refused, with the reason; empty if none was.

@@ -64,7 +64,7 @@ std::string mistake_of(const std::string& written, const reading::ReadCampaign& 
   const auto [kind, axis] = split(effect);
   const auto is_kind = [&, &k = kind](const Effect& e) { return e.info.name == k; };
   const auto known = std::find_if(read.effects.begin(), read.effects.end(), is_kind);
-  // All effects are asked whether they apply to all readings: only where it is said.
+  // It is tested whether all effects apply to all readings: only where it is stated.
   const auto nearest = [&] { return storage::suggestion(effect, known_names(read)); };
   if (kind.empty() || axis.empty())
     return "expected kind:axis, such as backlash:X; found \"" + effect + "\"" + nearest();
@@ -180,7 +180,7 @@ Expected<void> without_mistakes(const std::vector<std::string>& effects,
 
 namespace {
 
-/// Takes what the effect says off the readings; nothing where they do not show it.
+/// Subtracts the prediction of the effect from the readings; nothing where they do not show it.
 Expected<void> hold(PartModel& part, const Entry& entry, const Machine& machine,
                     const std::vector<Effect>& effects) {
   NONIO_TRY(auto terms, model::terms_of(part.part, machine, {entry.effect}, effects));

@@ -23,10 +23,10 @@ struct PartModel {
   std::string unfit;  ///< why these readings cannot show the model; "" if they can
   std::vector<model::Candidate> left_out{};  ///< effects that do not apply, and why
   RowsPlace interpolated{};                  ///< readings whose temperature is interpolated
-  /// Causes of the library, where they are asked for: searched if the catalogue does not explain.
+  /// Causes of the library, where they are requested: searched if the catalogue does not explain.
   std::vector<model::Term> library{};
-  /// Effects whose value is stated. What they say is taken off the deviations of `part`, so that
-  /// everything else is fitted to the rest; a comparison has them after its other terms.
+  /// Effects whose value is stated. Their prediction is subtracted from the deviations of `part`,
+  /// so that everything else is fitted to the rest; a comparison has them after its other terms.
   struct Held {
     model::Term term;
     model::Parameter parameter;
@@ -55,9 +55,9 @@ std::string kind_of(const model::Part& part);
 /// A reading of a part, as a person finds it again.
 struct ReadingPlace {
   std::string measurement, file;
-  std::uint64_t line = 0;  ///< 0: the reader does not say
+  std::uint64_t line = 0;  ///< 0: the reader does not state it
   std::uint32_t run = 0;   ///< 0: the same
-  int direction = 0;       ///< 0: the reader does not say
+  int direction = 0;       ///< 0: the reader does not state it
   double target = 0.0;     ///< along its line, m or rad
   Quantity position = Quantity::length;
 };

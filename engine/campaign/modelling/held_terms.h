@@ -24,7 +24,7 @@ Entry entry_of(const std::string& written);
 const std::string* find_effect(const std::vector<std::string>& model, const std::string& effect);
 
 /// The stated value in SI. Only an effect with one parameter and without shapes can be held. Errors
-/// say what was expected. `rotary`: of the axis of the effect.
+/// state what was expected. `rotary`: of the axis of the effect.
 Expected<double> held_value(const Entry& entry, const Effect& effect, bool rotary);
 
 }  // namespace nonio::modelling

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// The part that shows the effect, with this model; none if it was not measured. Only where the
-/// model does not have the effect must the catalogue say which part that is.
+/// model does not have the effect must the catalogue state which part that is.
 Expected<std::optional<Compared>> compare_axis(const reading::ReadCampaign& read,
                                                const std::vector<std::string>& effects,
                                                const std::string& effect) {
@@ -53,7 +53,7 @@ ModelStep step_of(const Change& change, const std::string& effect, bool add) {
   return step;
 }
 
-/// The file as `read` knows it; what somebody else has written meanwhile is not overwritten.
+/// The file as it was read; a change that another process has written meanwhile is not overwritten.
 Expected<std::string> unchanged_manifest(const fs::path& folder,
                                          const reading::ReadCampaign& read) {
   std::error_code error;

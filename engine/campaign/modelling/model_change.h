@@ -29,7 +29,7 @@ struct Change {
 struct ModelEdit {
   std::string effect;
   bool add = true;
-  std::string why{};  ///< what a person said of it; goes into the history
+  std::string why{};  ///< comment of a person; goes into the history
 };
 /// What leads from one model to another: first what leaves, then what comes in.
 std::vector<ModelEdit> edits_between(const std::vector<std::string>& from,

@@ -14,7 +14,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// Byte at which a position of toml++ stands: lines and columns from 1, columns in code points.
+/// Byte offset of a position of toml++: lines and columns from 1, columns in code points.
 std::size_t offset_of(std::string_view text, toml::source_position at) {
   std::size_t i = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
   for (toml::source_index line = 1; line < at.line; ++line) {
@@ -286,7 +286,7 @@ std::string with_line(std::string_view text, const toml::table& table, const cha
   return out.insert(line_end(text, list ? list->close : at), newline_of(text) + indent + line);
 }
 
-/// With another value of a key that is there: a text or a number.
+/// With another value of a key that exists: a text or a number.
 std::string with_value(std::string_view text, const toml::node& node, const std::string& value) {
   const std::size_t at = offset_of(text, node.source().begin);
   const std::size_t end = node.is_string() ? text_end(text, at) : word_end(text, at);

@@ -208,7 +208,7 @@ void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& wh
 void put_candidates(ModelFit& out, const PartModel& part, const model::Explanation& e) {
   for (const model::Candidate& c : e.candidates) {
     if (!is_ranked(c) || !(c.score > 0.0)) continue;
-    // Evidence of readings that hang together: what the search also finds without a cause is none.
+    // Correlated readings: evidence that the search also finds without a cause does not count.
     if (part.part.kind == model::Part::Kind::course && !(c.p < e.verdict.false_alarms)) continue;
     const bool certain =
         std::find(e.certain.begin(), e.certain.end(), c.term.name()) != e.certain.end();
@@ -266,7 +266,7 @@ std::vector<char> first_of_each(const Observations& o) {
   return kept;
 }
 
-/// Deviations of the part's readings, each replaced by what the compensable effects say.
+/// Deviations of the part's readings, each replaced by the prediction of the compensable effects.
 std::vector<double> compensable_part(const model::Fit& fit) {
   std::vector<double> said(fit.residual.size(), 0.0);
   for (std::size_t t = 0; t < fit.terms.size(); ++t) {

@@ -8,7 +8,7 @@
 #include "nonio/sdk/results.h"
 
 /// The nightly analysis of campaigns with a [model]. It belongs to the host, as it needs the
-/// effects of all plugins; in results.json it stands as plugin "model-fit".
+/// effects of all plugins; in results.json it has the plugin name "model-fit".
 namespace nonio::modelling {
 
 struct ModelFits {
@@ -31,7 +31,7 @@ ModelFit fitted_value(const PartModel& part, const model::Comparison& comparison
 /// readings, whose fits take seconds.
 std::vector<ModelFit::Without> without_each(const PartModel& part);
 
-/// What a table takes where the manifest says compensate = "model": for each target and direction
+/// What a table takes where the manifest states compensate = "model": for each target and direction
 /// that was measured, one reading that is the sum of the model's compensable effects. None of an
 /// axis whose model has no such effect; measurements that are not of an axis stay as they are.
 Expected<std::vector<Observations>> compensable_readings(const reading::ReadCampaign& read,

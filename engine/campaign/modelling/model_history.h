@@ -34,15 +34,15 @@ struct ModelStep {
   Quantity quantity = Quantity::deviation;
   /// m or rad; absent where that model could not be fitted.
   std::optional<double> rms_before{}, rms_after{};
-  std::optional<double> cv_before{}, cv_after{}, floor{};  ///< left-out runs; noise floor
-  std::string why{};  ///< what a person said of it; mostly nothing
+  std::optional<double> cv_before{}, cv_after{}, floor{};  ///< cross-validation; noise floor
+  std::string why{};                                       ///< comment of a person; usually empty
   std::optional<Exclusion> excluded{};
   std::optional<Period> period{};
 };
 
-/// Beside campaign.toml: a JSON object a line for each change of the model, oldest first. It holds
-/// no time, so that the same changes leave the same bytes. It is a record for people: nothing is
-/// computed from it, and a night does not look at it.
+/// File next to campaign.toml: one JSON object per line for each change of the model, oldest first.
+/// It contains no time, so that the same changes give the same bytes. It is a record for people:
+/// nothing is computed from it, and a run does not read it.
 inline constexpr const char* history_name = "model-history.jsonl";
 
 std::string history_line(const ModelStep& step);

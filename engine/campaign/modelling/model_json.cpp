@@ -114,7 +114,7 @@ const char* zero_text(model::Noise::Zero zero) {
   return "steady";
 }
 
-/// How the noise hangs together, and what the weights and u have of it.
+/// Correlation of the noise, and its effect on the weights and u.
 void put_noise(storage::Json& json, const model::Fit& fit, Quantity q) {
   const model::Noise& noise = fit.noise;
   storage::Json one = {{"zero", zero_text(noise.zero)}};
@@ -241,7 +241,8 @@ storage::Json candidate_json(const model::Candidate& c, const PartModel& part, d
   if (c.term.price > 0.0) storage::put(json, "prior_price", c.term.price, Quantity::number);
   json["parameters"] = parameters_json(c.parameters, nullptr);
   json["aliases"] = c.aliases;
-  if (!c.beside.empty()) json["beside"] = c.beside;
+  if (!c.with_descriptions.empty())
+    json["with_descriptions"] = json["beside"] = c.with_descriptions;
   json["says"] = words.candidate(c, part, rms_before);
   if (c.minimal_detectable > 0.0)
     storage::put(json, "minimum_detectable_rms", c.minimal_detectable, q);
@@ -321,8 +322,9 @@ storage::Json verdict_json(const Explained& e, const ModelWords& words) {
     json["values"] = values_json(candidates.front().parameters);
   }
   json["says"] = words.verdict(e.explanation, e.part);
-  for (const char* what : {"is", "cure"})
-    if (const std::string text = words.card(v.effect, what); !text.empty()) json[what] = text;
+  if (const std::string text = words.card(v.effect, "is"); !text.empty()) json["is"] = text;
+  if (const std::string text = words.card(v.effect, "remedy"); !text.empty())
+    json["remedy"] = json["cure"] = text;  // the former name for one version
   storage::put(json, "suspects_share", v.suspects_share, Quantity::ratio);
   return json;
 }
@@ -480,7 +482,7 @@ std::vector<Correlated> correlated(const model::Fit& fit) {
 
 namespace {
 
-std::size_t most_severe_of(const std::vector<Told>& parts) {
+std::size_t most_severe_of(const std::vector<PartVerdict>& parts) {
   using Verdict = model::Verdict::Kind;
   for (const Verdict kind : {Verdict::missing, Verdict::unrepeatable, Verdict::unknown})
     for (std::size_t i = 0; i < parts.size(); ++i)
@@ -490,26 +492,28 @@ std::size_t most_severe_of(const std::vector<Told>& parts) {
 
 }  // namespace
 
-std::vector<Told> told_of(const std::vector<Explained>& all) {
-  std::vector<Told> told;
+std::vector<PartVerdict> verdicts_of(const std::vector<Explained>& all) {
+  std::vector<PartVerdict> verdicts;
   for (const Explained& e : all) {
     const auto& part = e.part.part;
     std::vector<std::string> certain;
     for (const std::string& effect : e.explanation.certain)
       certain.push_back(model::written_for(part, effect));
     const std::string& effect = e.explanation.verdict.effect;
-    told.push_back({to_text(e.explanation.verdict.kind),
-                    effect.empty() ? effect : model::written_for(part, effect), certain});
+    verdicts.push_back({to_text(e.explanation.verdict.kind),
+                        effect.empty() ? effect : model::written_for(part, effect), certain});
   }
-  return told;
+  return verdicts;
 }
 
-std::size_t most_severe(const std::vector<Explained>& all) { return most_severe_of(told_of(all)); }
+std::size_t most_severe(const std::vector<Explained>& all) {
+  return most_severe_of(verdicts_of(all));
+}
 
-std::string next_effect(const std::vector<Told>& parts) {
+std::string next_effect(const std::vector<PartVerdict>& parts) {
   using Verdict = model::Verdict::Kind;
   if (parts.empty()) return {};
-  const Told& worst = parts[most_severe_of(parts)];
+  const PartVerdict& worst = parts[most_severe_of(parts)];
   if (worst.kind == to_text(Verdict::missing)) return worst.effect;
   if (worst.kind == to_text(Verdict::unknown) && !worst.certain.empty())
     return worst.certain.front();
@@ -521,7 +525,7 @@ std::vector<std::string> next_effects(const std::vector<Explained>& all) {
   const Explained& worst = all[most_severe(all)];
   const model::Explanation& e = worst.explanation;
   const model::Part::Kind kind = worst.part.part.kind;
-  const std::string next = next_effect(told_of(all));
+  const std::string next = next_effect(verdicts_of(all));
   if (next.empty()) return {};
   std::vector<std::string> out{next};
   // Of a course the sensors of a set replace each other: it is added as a whole. A volume has many
@@ -548,7 +552,7 @@ std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fi
         std::fabs(p.value) - 2.0 * p.u > model::most_per_kelvin)
       out.push_back(words.gain_too_large(p));
   for (std::size_t t = 0; t < fit.lost.size(); ++t)
-    if (fit.lost[t] > 0) out.push_back(words.not_told(fit.terms[t].name(), fit.lost[t]));
+    if (fit.lost[t] > 0) out.push_back(words.not_identifiable(fit.terms[t].name(), fit.lost[t]));
   if (part.part.kind == model::Part::Kind::space && model::has_unstated_position(part.part))
     out.push_back(words.has_unstated_position());
   for (const std::string& measurement : part.part.order_assumed)

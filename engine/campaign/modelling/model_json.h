@@ -14,10 +14,10 @@ namespace nonio::modelling {
 struct Explained {
   PartModel part;
   model::Explanation explanation;
-  std::optional<std::vector<model::Foresight>> what_if{};  ///< if it was asked for
+  std::optional<std::vector<model::Foresight>> what_if{};  ///< if it was requested
 };
 
-/// The part whose verdict asks most: missing, unrepeatable, unknown, nothing.
+/// The part with the most severe verdict: missing, unrepeatable, unknown, nothing.
 std::size_t most_severe(const std::vector<Explained>& all);
 
 /// Sentences about values below their uncertainty and effects that nothing here measures.
@@ -33,19 +33,19 @@ std::string part_json(const Compared& compared, const Campaign& campaign, const 
 std::string part_json(const Explained& explained, const Campaign& campaign,
                       const ModelWords& words);
 
-/// What belongs into the model beyond doubt, by the verdict that asks most; "": nothing more. This
-/// is one step of `nonio model explain --auto`.
-struct Told {
+/// What belongs into the model beyond doubt, by the most severe verdict; "": nothing more. This is
+/// one step of `nonio model explain --auto`.
+struct PartVerdict {
   std::string kind, effect;          ///< of the verdict of one part
   std::vector<std::string> certain;  ///< most evidence first
 };
-std::vector<Told> told_of(const std::vector<Explained>& all);
-std::string next_effect(const std::vector<Told>& parts);
+std::vector<PartVerdict> verdicts_of(const std::vector<Explained>& all);
+std::string next_effect(const std::vector<PartVerdict>& parts);
 /// The effects that `--auto` adds next, as the manifest has them; empty: nothing more.
 std::vector<std::string> next_effects(const std::vector<Explained>& all);
 
 /// docs/json.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. Where `all` is empty, `errors`
-/// say why; they and `warnings` are those of the campaign.
+/// state why; they and `warnings` are those of the campaign.
 std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
                          const ModelWords& words, const std::vector<std::string>& warnings,
                          const std::vector<Error>& errors);

@@ -88,7 +88,7 @@ Finding description_finding(const model::Description& d, const PartModel& part) 
 }
 
 Finding false_alarms_finding(const model::Verdict& v) {
-  // Of none in n the upper end of Wilson's 95 % interval is told: z^2/(n + z^2).
+  // For none in n the upper end of Wilson's 95 % interval is stated: z^2/(n + z^2).
   const double n = static_cast<double>(v.trials), z2 = 1.959964 * 1.959964;
   const bool any = v.false_alarms > 0.0;
   const double share = any ? v.false_alarms : z2 / (n + z2);
@@ -112,7 +112,7 @@ std::vector<Finding> no_sign_findings(const model::Explanation& e, const PartMod
 namespace {
 
 // docs/dev/constants.md, M24.
-constexpr double told_apart = 4.0;         // standard deviations
+constexpr double separable = 4.0;          // standard deviations
 constexpr double most_longer = 10.0;       // times a test is measured longer
 constexpr std::size_t enough_targets = 9;  // a wave and a bend need as many columns as 5 targets
 
@@ -164,11 +164,11 @@ class Next {
           {{"effect", s.weakest}});
   }
 
-  /// The cheapest that tells them apart.
+  /// The cheapest that separates them.
   void plan() {
     if (e_.plans.empty()) return;
     const auto good = std::find_if(e_.plans.begin(), e_.plans.end(),
-                                   [](const model::Plan& p) { return p.power >= told_apart; });
+                                   [](const model::Plan& p) { return p.power >= separable; });
     if (good != e_.plans.end()) return out_.push_back(plan_finding(*good));
     const auto [low, high] = std::minmax_element(part_.part.along.begin(), part_.part.along.end());
     add("wider",
@@ -377,14 +377,14 @@ std::string ModelWords::candidate(const model::Candidate& c, const PartModel& pa
                                        {"p", c.p, Quantity::probability},
                                        {"detectable", c.minimal_detectable, q}};
   constexpr double worth_saying = 1.05;
-  const char* id = !(c.score > 0.0)     ? "candidate.none"
-                   : !c.beside.empty()  ? "candidate.beside"
-                   : !c.aliases.empty() ? "candidate.alias"
-                                        : "candidate.evidence";
+  const char* id = !(c.score > 0.0)               ? "candidate.none"
+                   : !c.with_descriptions.empty() ? "candidate.with-descriptions"
+                   : !c.aliases.empty()           ? "candidate.alias"
+                                                  : "candidate.evidence";
   std::string text = says(id, numbers,
                           {{"effect", c.term.name()},
                            {"aliases", storage::listed(c.aliases)},
-                           {"beside", storage::listed(c.beside)}});
+                           {"descriptions", storage::listed(c.with_descriptions)}});
   if (c.score > 0.0 && c.bias > worth_saying)
     text += " " + says("candidate.near",
                        {{"detectable", c.minimal_detectable, q}, {"bias", c.bias, Quantity::ratio}},
@@ -482,8 +482,9 @@ std::string ModelWords::gain_too_large(const model::Parameter& gain) const {
               {{"effect", gain.effect}});
 }
 
-std::string ModelWords::not_told(const std::string& effect, std::size_t parameters) const {
-  return says("not-told", {{"parameters", static_cast<double>(parameters), Quantity::count}},
+std::string ModelWords::not_identifiable(const std::string& effect, std::size_t parameters) const {
+  return says("not-identifiable",
+              {{"parameters", static_cast<double>(parameters), Quantity::count}},
               {{"effect", effect}});
 }
 
@@ -491,12 +492,12 @@ std::string ModelWords::has_unstated_position() const { return says("unstated-po
 
 std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartModel& part) const {
   using Zero = model::Noise::Zero;
-  constexpr double told_below = 0.01;
+  constexpr double significant_below = 0.01;
   const model::Noise& noise = fit.noise;
   const Quantity q = part.deviation();
   std::vector<std::string> out;
   if (part.part.kind == model::Part::Kind::course) return out;  // always so, and in u
-  if (noise.neighbours > 0.0 && noise.p < told_below)
+  if (noise.neighbours > 0.0 && noise.p < significant_below)
     out.push_back(says("noise.neighbours",
                        {{"r", std::round(100.0 * noise.measured) / 100.0, Quantity::number},
                         {"p", noise.p, Quantity::probability}},
@@ -547,7 +548,9 @@ std::string ModelWords::card(const std::string& effect, const std::string& what)
   const std::string name = "effect." + kind_of(effect) + "." + what;
   std::string text = words(templates_, language_, name);
   // Causes of the library have English texts at least.
-  return text.empty() ? words(templates_, "en", name) : text;
+  if (text.empty()) text = words(templates_, "en", name);
+  // Words of a plugin that has the former name of the key.
+  return text.empty() && what == "remedy" ? card(effect, "cure") : text;
 }
 
 }  // namespace nonio::modelling

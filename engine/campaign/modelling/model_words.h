@@ -49,8 +49,8 @@ class ModelWords {
   /// A gain that no body has.
   std::string gain_too_large(const model::Parameter& gain) const;
   /// A curve in space some of whose parameters are counted to other effects.
-  std::string not_told(const std::string& effect, std::size_t parameters) const;
-  /// Measurements that do not say where the other axes stood.
+  std::string not_identifiable(const std::string& effect, std::size_t parameters) const;
+  /// Measurements that do not state the positions of the other axes.
   std::string description(const model::Description&, const PartModel&) const;
   std::string order_assumed(const std::string& measurement) const;
   /// How the noise of a fit is other than independent readings of one scatter; mostly nothing.
@@ -60,7 +60,7 @@ class ModelWords {
   std::string order_unknown() const;
   std::string has_unstated_position() const;
   std::string unmeasured(const std::string& effect) const;
-  /// What the catalogue says of an effect by its kind: "is", "size", "looks", "cure"; "" if
+  /// What the catalogue states about an effect by its kind: "is", "size", "looks", "cure"; "" if
   /// nothing.
   std::string card(const std::string& effect, const std::string& what) const;
 

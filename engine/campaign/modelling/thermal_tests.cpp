@@ -12,7 +12,7 @@ namespace {
 
 Number minutes(const char* name, double s) { return {name, s / 60.0, Quantity::number}; }
 
-/// The effect that asks for the time constant of this axis.
+/// The effect that requests the time constant of this axis.
 const model::Term* asks(const PartModel& part, const std::string& axis) {
   for (const auto* list : {&part.terms, &part.catalogue})
     for (const model::Term& term : *list)

@@ -9,7 +9,7 @@
 namespace nonio::modelling {
 
 /// What became of the time constants that the thermal tests of the campaign state for the axes of
-/// this part: who uses them, or why nobody does. Nothing where no effect asks for one.
+/// this part: which effects use them, or why none does. Empty where no effect needs one.
 std::vector<Finding> time_constant_findings(const PartModel& part, const model::Fit& fit);
 
 }  // namespace nonio::modelling

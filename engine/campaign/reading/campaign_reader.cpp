@@ -65,8 +65,8 @@ bool read_manifest(const CampaignSource& from, ReadCampaign& out) {
   return true;
 }
 
-/// What the record says is in the control counts for measurements of later days, where the
-/// manifest does not say what was on.
+/// The compensation that the record states applies to measurements of later days, unless the
+/// manifest states it.
 void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign& out) {
   const auto found = file.record->axes.find(axis.name);
   if (found == file.record->axes.end()) return;
@@ -80,7 +80,7 @@ void take_present_state(const config::RecordFile& file, Axis& axis, ReadCampaign
   if (!axis.active_backlash) axis.active_backlash = state->backlash;
 }
 
-/// What the site's record of the machine says counts where the manifest says nothing.
+/// Takes from the site's record of the machine what the manifest does not state.
 void look_up_machine(const CampaignSource& from, ReadCampaign& out) {
   Machine& machine = out.manifest->campaign.machine;
   const std::string input = config::machine_input(machine);
@@ -135,7 +135,7 @@ void look_up_active_tables(const CampaignSource& from, ReadCampaign& out) {
                                "\"off\" contradicts active_table of axis " + m.axis));
 }
 
-/// What the effect says that is said already; empty if nothing.
+/// The stated part of the effect's prediction; empty if nothing.
 std::string copied(const ReadCampaign& out, const std::vector<model::Part>& parts, const Axis& axis,
                    const Effect& effect) {
   for (const model::Part& part : parts) {

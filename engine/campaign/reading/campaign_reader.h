@@ -17,7 +17,7 @@ namespace nonio::reading {
 /// measurement: documents omit it.
 inline constexpr const char* former_key_note = "manifest.former-key";
 
-/// One campaign folder: what its manifest says and what its measurements hold.
+/// One campaign folder: the content of its manifest and its measurements.
 struct ReadCampaign {
   std::optional<config::Manifest> manifest;  ///< none if it cannot be read; then nothing else is
   std::optional<config::MachineRecord>

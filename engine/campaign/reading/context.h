@@ -40,7 +40,7 @@ std::string shared_name(const std::string& file);
 /// The parts of `Inputs` that all campaigns share.
 Inputs shared_inputs(const Context& context);
 
-/// Told what is about to be called, for the case that it does not come back.
+/// Called with the name of what is called next, for the case that it does not return.
 using Stage = std::function<void(const std::string&)>;
 
 /// Files of readings (the first 64 bits of their SHA-256) that another campaign has too, and its

@@ -91,10 +91,10 @@ std::size_t join_targets(Observations& o) {
   return moved;
 }
 
-/// The reader that is named, or the first that knows the content, or the one for the columns that the
-/// method declares; none if no plugin reads this kind of measurement at all, which is noted and
-/// leaves the others to be evaluated. Where a
-/// plugin was refused, it may be the one that is wanted, and the measurement was not read.
+/// The reader that is named, or the first that knows the content, or the one for the columns that
+/// the method declares; none if no plugin reads this kind of measurement at all, which is noted and
+/// leaves the others to be evaluated. Where a plugin was refused, it may be the one that is
+/// required, and the measurement was not read.
 Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurement& m,
                                       std::string_view bytes, ReadCampaign& out) {
   const auto& readers = from.context.plugins->readers();
@@ -142,7 +142,7 @@ Expected<const Reader*> choose_reader(const CampaignSource& from, const Measurem
   return nullptr;
 }
 
-/// Takes the readings out that the manifest excludes, and says so.
+/// Removes the readings that the manifest excludes, and reports that.
 Expected<void> exclude(const CampaignSource& from, const ReadCampaign& out, const Measurement& m,
                        Observations& o) {
   if (m.exclude.empty()) return {};
@@ -171,7 +171,7 @@ Expected<void> exclude(const CampaignSource& from, const ReadCampaign& out, cons
   return {};
 }
 
-/// What the manifest says of channels that were recorded.
+/// What the manifest states about channels that were recorded.
 Expected<void> describe_channels(const CampaignSource& from, const ReadCampaign& out,
                                  const Measurement& m, Observations& o) {
   for (const Measurement::Channel& stated : m.channels) {
@@ -208,7 +208,7 @@ void note_oddities(const Measurement& m, std::string_view bytes, Observations& o
       doubt.measurement = m.id;
       out.doubts.push_back(std::move(doubt));
     }
-  if (o.missing > 0 && m.kind != "axis")  // of an axis its analyses say it
+  if (o.missing > 0 && m.kind != "axis")  // of an axis its analyses state it
     o.notes.push_back(
         {"readings.not-taken", {{"missing", static_cast<double>(o.missing), Quantity::count}}});
   // A path, a time and an angle have no targets to come back to; lengths are those of the artefact.

@@ -18,7 +18,7 @@ struct CampaignSource {
 /// The measurements of `out.manifest`: observations, and what is noted, doubted and wrong of them.
 void read_measurements(const CampaignSource& from, ReadCampaign& out);
 
-/// What is wrong with a file as a whole is wrong from its first line on.
+/// An error of a whole file is reported at its first line.
 void report_in(ReadCampaign& out, Error error);
 /// An error that a key of the manifest is to blame for.
 Error key_error(const CampaignSource& from, const ReadCampaign& out, std::string key,

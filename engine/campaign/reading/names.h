@@ -17,14 +17,14 @@ std::vector<Error> ownerless_options(const config::RawOptions& options,
 /// What is wrong with the names and options of site.toml: it would be wrong in every campaign.
 std::vector<Error> site_mistakes(const Context& context);
 
-/// Fills in file and line of an error that says by its key what is to blame: an option of
-/// `plugin` or a key of the manifest or, where they do not have it, of site.toml.
+/// Fills in file and line of an error that names the faulty key: an option of `plugin` or a key of
+/// the manifest or, where they do not have it, of site.toml.
 void locate(Error& error, const config::KeyLines& manifest, const config::KeyLines& site,
             const std::string& plugin = {});
 
 /// Gives an error of a file its line: of the manifest that of the nearest key above the one that is
-/// to blame (machine.axes.X for machine.axes.X.slave) or of the first of `others` that is there,
-/// else the first line, from which a file as a whole is wrong.
+/// to blame (machine.axes.X for machine.axes.X.slave) or of the first of `others` that exists, else
+/// the first line, from which a file as a whole is wrong.
 void give_line(Error& error, const config::KeyLines& manifest,
                const std::vector<std::string>& others);
 

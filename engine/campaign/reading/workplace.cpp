@@ -32,9 +32,11 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   place->plugins.load(plugin_folders);
   if (!place->plugins.conflicts().empty()) return fail(place->plugins.conflicts().front());
   place->notes = place->plugins.refusal_notes();
-  for (const Error& warning : context.site.warnings)
+  const auto note = [&](const Error& warning) {
     place->notes.push_back(warning.file + ":" + std::to_string(warning.line) + ": " +
                            warning.message);
+  };
+  for (const Error& warning : context.site.warnings) note(warning);
   context.plugins = &place->plugins;
   // After the process for the plugins was forked: it would copy each page of them when it frees them.
   NONIO_TRY(const auto folders, config::with_site_templates(template_folders, site));
@@ -44,6 +46,7 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   NONIO_TRY(auto templates,
             config::read_templates(folders, context.templates_sha256, nullptr, {}, below));
   context.templates = std::move(templates);
+  for (const Error& warning : config::warnings_of_causes(context.templates)) note(warning);
   return place;
 }
 

@@ -77,7 +77,7 @@ class Loaded {
   }
   /// A plugin's options; two plugins of different kinds may share a name.
   const std::map<std::string, std::vector<const Info*>>& owners() const { return owners_; }
-  /// What [model] effects may say where the campaign has no formulas of its own.
+  /// What [model] effects may state where the campaign has no formulas of its own.
   const std::string& effects() const { return effects_; }
 
  private:
@@ -202,7 +202,7 @@ class SchemaWriter {
     if (!otherwise.empty()) json_.member("default", otherwise);
   }
 
-  /// What an editor shows beside each value.
+  /// What an editor shows with each value.
   void put_meanings(const Names& meanings) {
     json_.key("x-taplo");
     json_.begin_object();
@@ -314,7 +314,7 @@ class SchemaWriter {
     put_conditions(table, assumed);
   }
 
-  /// Below "then" of a condition that always holds: beside an "allOf" taplo offers no keys.
+  /// Below "then" of a condition that is always true: next to an "allOf" taplo offers no keys.
   void put_conditions(const config::Key& table, std::string_view assumed) {
     const auto conditional = [&](const config::Key& key) {
       return !key.only.key.empty() || !key.needed.key.empty() ||
@@ -379,7 +379,7 @@ class SchemaWriter {
     json_.key("else");
     json_.begin_object();
     begin_rule_of(key);
-    // No value is right; the one that is offered tells why.
+    // No value is right; the one that is offered states why.
     list("enum", {"only where " + std::string(key.only.key) + " is " +
                   std::string(key.only.values.front())});
     end_rule();

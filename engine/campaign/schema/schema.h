@@ -10,12 +10,12 @@ class Plugins;
 
 namespace nonio::schema {
 
-/// JSON schema (draft-07) of campaign.toml, site.toml, a machine's record, events.toml,
-/// acknowledged.toml and forgotten.toml, for editors:
-/// from the same declarations that the files are checked with, and what the loaded plugins are
-/// called and take as options. It cannot say everything: what stands in several keys at once (a
-/// measurement's axis among those of the machine), that a date has no quotes, and that 3.0 is no
-/// whole number.
+/// JSON schema (draft-07) of campaign.toml, site.toml, a machine's record,
+/// events.toml, acknowledged.toml and forgotten.toml, for editors: made from the
+/// declarations that check the files, and from names and options of the loaded
+/// plugins. It cannot express everything: relations between several keys (a
+/// measurement's axis is one of the machine's), that a date has no quotes, and that
+/// 3.0 is not an integer.
 std::string campaign_schema(const loader::Plugins& plugins);
 std::string site_schema(const loader::Plugins& plugins);
 std::string machine_schema(const loader::Plugins& plugins);

@@ -156,7 +156,7 @@ Observations without(const Observations& o, const std::string& axis, const Table
   return raw;
 }
 
-/// Of the files themselves, where nobody says another.
+/// That of the files themselves, unless another is stated.
 void state_backlash_of(Settings& options, const Tables& tables) {
   for (const LoadedTable& t : tables)
     if (t.backlash.value_or(0.0) != 0.0 && present_backlash(options, t.output, t.rotary) == 0.0)
@@ -386,7 +386,7 @@ Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controlle
     const Campaign one = with_one(campaign, m);
     const auto files = write(one, {raw[i]});
     if (!files) return tl::unexpected<Error>(files.error());
-    if (files->artifacts.empty()) continue;  // refused; the finding says why
+    if (files->artifacts.empty()) continue;  // refused; the finding states why
     const auto tables = tables_in(controller, files->artifacts, one, options);
     if (!tables) return tl::unexpected<Error>(tables.error());
     const auto test = math::AxisTest::arrange(read.observations[i]);

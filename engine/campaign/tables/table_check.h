@@ -64,11 +64,11 @@ struct Underlay {
 /// one after the other takes both sides.
 Campaign with_one(Campaign campaign, Measurement m);
 
-/// The tables that were on, as manifest and record say; none: there was no table. An error where
+/// The tables that were on, as manifest and record state; none: there was no table. An error where
 /// the control does not read them as tables of these axes.
 Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaign&,
                                                       const Controller&, const Settings& options);
-/// The same readings, or what a model says of them, without these tables; the backlash stays.
+/// The same readings, or what a model predicts of them, without these tables; the backlash stays.
 std::vector<Observations> without_tables(const Campaign&, const std::vector<Observations>&,
                                          const std::vector<LoadedTable>&);
 /// The same of the curves of one axis over another (EYX, EXY_even ...): without what these tables
@@ -77,7 +77,7 @@ Results without_tables(const Results&, const std::vector<LoadedTable>&);
 /// A table was made of readings without what was on: before it, the axis is as it was measured.
 void compare_with_measured(const reading::ReadCampaign&, OutputResult&);
 
-/// The backlash parameter while axis was measured, m or rad, of option `axes`; nothing: not said.
+/// The backlash parameter while axis was measured, m or rad, of option `axes`; nothing: not stated.
 std::optional<double> stated_backlash(const Settings& options, const std::string& axis,
                                       bool rotary);
 /// Adds it.

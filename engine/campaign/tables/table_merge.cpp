@@ -59,7 +59,7 @@ void take_active(OneAxis& one, const MeasuredWith& with, const std::string& axis
   one.readings = without_tables(one.campaign, one.measured, with.tables);
 }
 
-/// What the control would have after the merge, held against what it has and what is new.
+/// The control's tables after the merge, compared with its present tables and the new ones.
 Expected<void> only_this_axis(const ReadTables& present, const ReadTables& fresh,
                               const ReadTables& next, const std::string& axis) {
   constexpr double nothing = 1e-12;  // m, rad
@@ -160,7 +160,7 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
                    .findings = written->findings,
                    .notes = written->notes};
   out.findings.insert(out.findings.begin(), findings.begin(), findings.end());
-  if (written->artifacts.empty()) return out;  // refused; the findings say why
+  if (written->artifacts.empty()) return out;  // refused; the findings state why
   const Campaign& campaign = read.manifest->campaign;
   // Files that contain one axis only are replaced as they are.
   const bool merges = controller.merge != nullptr;

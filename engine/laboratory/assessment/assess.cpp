@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// When a machine is measured again, and which rule says so.
+/// When a machine is measured again, and by which rule.
 struct Due {
   std::string day, why;
 };
@@ -52,17 +52,17 @@ std::string page_of(const fs::path& out, const reports::MachineHistory& machine)
 
 class Assessment::State {
  public:
-  State(const fs::path& out, const Tonight& tonight, const std::function<void()>& alive,
+  State(const fs::path& out, const LastRun& last_run, const std::function<void()>& alive,
         store::StoreReader store, Kept use_kept, const config::SiteLogs* entered)
       : out_(out),
-        tonight_(tonight),
+        last_run_(last_run),
         alive_(alive),
         store_(std::move(store)),
         entered_(entered),
         kept_(out) {
     if (use_kept == Kept::ignored) return;
     before_ = kept_.machines();
-    nights_ = kept_.nights();
+    runs_ = kept_.runs();
   }
 
   Expected<void> make() {
@@ -129,7 +129,7 @@ class Assessment::State {
       changes.machines.push_back({name, all && m.is_new ? &m.kept : nullptr,
                                   trends ? std::optional(m.fits->kept()) : std::nullopt});
     }
-    if (all && nights_are_new_) changes.nights = nights_;
+    if (all && runs_are_new_) changes.runs = runs_;
     kept_.keep(changes);
   }
 
@@ -142,7 +142,7 @@ class Assessment::State {
   void take_entered(const config::SiteLogs& now) {
     logs_.acknowledged = now.acknowledged;
     // Entered after the run: known from now on, not from its day on.
-    for (config::Acknowledgement& a : logs_.acknowledged) a.date = std::min(a.date, tonight_.date);
+    for (config::Acknowledgement& a : logs_.acknowledged) a.date = std::min(a.date, last_run_.date);
     for (const config::Event& e : now.events)
       if (std::none_of(logs_.events.begin(), logs_.events.end(), [&](const config::Event& known) {
             return known.date == e.date && known.machine == e.machine && known.axis == e.axis &&
@@ -191,14 +191,14 @@ class Assessment::State {
       rows(learned_from_);
       put_identity(rows, m);
       for (const store::StoredEvaluation* e : all) {
-        rows(e->campaign, e->sha256, e->night, e->counts, e->day > until_);
+        rows(e->campaign, e->sha256, e->run, e->counts, e->day > until_);
         if (!e->counts) continue;
         m.campaigns.push_back(e->campaign);
         if (const auto n = numbers.find(e->campaign); n != numbers.end()) rows(n->second);
       }
       if (std::all_of(m.campaigns.begin(), m.campaigns.end(),
                       [&](const std::string& id) { return forgotten.contains(id); }))
-        return;  // everything of it was said to be gone on purpose
+        return;  // all of it was removed on purpose
       const std::string rows_key = storage::sha256(rows.take());
       if (const auto kept = before_.find(m.key());
           kept != before_.end() && kept->second.rows == rows_key)
@@ -217,7 +217,7 @@ class Assessment::State {
       if (std::none_of(all.begin(), all.end(), [](const auto* e) { return e->counts; }))
         continue;  // it names its machine by now
       store::MachineState none{};
-      for (const store::StoredEvaluation* e : all) none.night = std::max(none.night, e->night);
+      for (const store::StoredEvaluation* e : all) none.run = std::max(none.run, e->run);
       add({.state = none, .alone = id, .events = {}, .campaigns = {}, .kept = {}}, all);
     }
     return {};
@@ -232,7 +232,7 @@ class Assessment::State {
     for (const config::Acknowledgement& a : logs_.acknowledged) {
       const auto alias = logs_.aliases.find(a.machine);
       const std::string& name = alias == logs_.aliases.end() ? a.machine : alias->second;
-      if (!name.empty() && !names.contains(name) && a.until >= tonight_.date)
+      if (!name.empty() && !names.contains(name) && a.until >= last_run_.date)
         put_unknown(a.machine, config::acknowledged_name, a.line);
     }
     for (const auto& [machine, months] : logs_.due)
@@ -254,27 +254,27 @@ class Assessment::State {
 
   /// The tests of a run are counted once.
   Expected<void> count_tests(const std::vector<store::StoredEvaluation>& evaluations) {
-    std::map<std::uint64_t, storage::ValueWriter> of_night;
+    std::map<std::uint64_t, storage::ValueWriter> of_run;
     for (const store::StoredEvaluation& e : evaluations)
-      of_night[e.night](e.machine, e.campaign, e.sha256);
-    std::map<std::uint64_t, KeptMachines::Night> nights;
+      of_run[e.run](e.machine, e.campaign, e.sha256);
+    std::map<std::uint64_t, KeptMachines::RunResult> runs;
     std::optional<std::uint64_t> first;
-    for (auto& [night, bytes] : of_night) {
+    for (auto& [run, bytes] : of_run) {
       const std::string key = storage::sha256(bytes.take());
-      const auto kept = nights_.find(night);
-      const bool same = kept != nights_.end() && kept->second.made_from == key;
-      nights[night] = {key, same ? kept->second.asked : 0};
-      if (!same && !first) first = night;
+      const auto kept = runs_.find(run);
+      const bool same = kept != runs_.end() && kept->second.made_from == key;
+      runs[run] = {key, same ? kept->second.asked : 0};
+      if (!same && !first) first = run;
     }
     if (first) {
       NONIO_TRY(const auto counted, store_.followed_since(*first));
-      for (auto at = nights.lower_bound(*first); at != nights.end(); ++at) {
+      for (auto at = runs.lower_bound(*first); at != runs.end(); ++at) {
         const auto found = counted.find(at->first);
         at->second.asked = found == counted.end() ? 0 : found->second;
       }
     }
-    nights_are_new_ = first || nights.size() != nights_.size();
-    nights_ = std::move(nights);
+    runs_are_new_ = first || runs.size() != runs_.size();
+    runs_ = std::move(runs);
     return {};
   }
 
@@ -338,25 +338,25 @@ class Assessment::State {
     for (const Assessed& m : machines_)
       for (const KeptMachine::Series& s : m.kept.series) tests.push_back(&s.tests);
     std::map<std::uint64_t, std::uint64_t> asked;
-    for (const auto& [night, of] : nights_) asked[night] = of.asked;
-    auto p = adjusted_by_night(tests, asked);
+    for (const auto& [run, of] : runs_) asked[run] = of.asked;
+    auto p = adjusted_by_run(tests, asked);
     std::size_t next = 0;
     for (Assessed& m : machines_) {
       alive_();
       for (std::size_t k = 0; k < m.kept.series.size(); ++k)
         m.adjusted.push_back(std::move(p[next++]));
       const std::string key = standing_key(m);
-      if (key == m.kept.stood && m.kept.date <= tonight_.date &&
-          tonight_.date <= m.kept.standing.until) {
+      if (key == m.kept.stood && m.kept.date <= last_run_.date &&
+          last_run_.date <= m.kept.standing.until) {
         m.read.reset();
         continue;
       }
       if (auto well = finish(m); !well) return well;
-      m.kept.standing = standing_of(*m.read, *m.described, logs_, tonight_, out_);
+      m.kept.standing = standing_of(*m.read, *m.described, logs_, last_run_, out_);
       m.kept.standing.interval =
           interval_facts(*m.read, months_of_rule(m.state.machine.name, logs_));
       m.kept.stood = key;
-      m.kept.date = tonight_.date;
+      m.kept.date = last_run_.date;
       m.is_new = true;
       m.read.reset();
     }
@@ -371,7 +371,7 @@ class Assessment::State {
       w(s.manner.excess, s.manner.spread, s.manner.drift_below);
       for (std::size_t i = 0; i < s.tests.changes.size(); ++i) {
         const Verdict v = verdict_of(s.tests.changes[i], m.adjusted[k][i]);
-        w(v.told, v.surely, v.mailed, v.told ? m.adjusted[k][i].news : 1.0);
+        w(v.significant, v.surely, v.mailed, v.significant ? m.adjusted[k][i].news : 1.0);
       }
     }
     w(std::int64_t{months_of_rule(m.state.machine.name, logs_).value_or(0)});
@@ -380,7 +380,7 @@ class Assessment::State {
         a->why);
     for (const std::string& campaign : m.campaigns) w(links_.of(campaign));
     // What came with this run is reported as new.
-    if (m.state.night >= tonight_.night) w(tonight_.night);
+    if (m.state.run >= last_run_.run) w(last_run_.run);
     return storage::sha256(w.take());
   }
 
@@ -391,27 +391,27 @@ class Assessment::State {
     if (!m.fitted) fit_series(m);
     for (std::size_t k = 0; k < m.read->followed.size(); ++k) {
       tell(m.read->followed[k], m.adjusted[k]);
-      drop_untold(m.read->followed[k], *m.fits);
+      drop_unstated(m.read->followed[k], *m.fits);
     }
     ask_others(*m.read, *m.fits);
     const Due due = due_of(*m.read, logs_);
-    m.described = describe(*m.read, out_, due.day, due.why, tonight_.date);
+    m.described = describe(*m.read, out_, due.day, due.why, last_run_.date);
     if (!m.alone.empty()) m.described->file.clear();  // it has no page of its own
     m.fitted = false;
     return {};
   }
 
   Expected<void> put_together() {
-    // Only what is lost or failed asks whose it is.
+    // Needed only for what is lost or failed.
     Expected<std::map<std::string, std::string>> machine_of_campaign;
-    if (!tonight_.vanished.empty() || !tonight_.failed.empty())
+    if (!last_run_.vanished.empty() || !last_run_.failed.empty())
       machine_of_campaign = store_.machine_of_campaigns();
     if (!machine_of_campaign) return fail(machine_of_campaign.error());
     NONIO_TRY(const auto spellings, store::spellings_in(out_));
-    site.night = tonight_.night, site.date = tonight_.date;
-    site.campaigns = tonight_.campaigns, site.done = tonight_.done;
-    site.unchanged = tonight_.unchanged;
-    site.certificates = tonight_.issued.size(), site.waiting = tonight_.waiting.size();
+    site.run = last_run_.run, site.date = last_run_.date;
+    site.campaigns = last_run_.campaigns, site.done = last_run_.done;
+    site.unchanged = last_run_.unchanged;
+    site.certificates = last_run_.issued.size(), site.waiting = last_run_.waiting.size();
     std::vector<const Standing*> standings;
     std::vector<const std::vector<reports::InstrumentUse>*> instruments;
     std::vector<const IntervalFacts*> intervals;
@@ -431,8 +431,8 @@ class Assessment::State {
     site.judged = std::any_of(standings.begin(), standings.end(),
                               [](const Standing* s) { return s->judged; });
     site.lines =
-        lines_of({tonight_, standings, *machine_of_campaign, spellings, learned_.of, unknown_});
-    for (const reports::MorningLine& l : site.lines) lines_[l.machine].push_back(l);
+        lines_of({last_run_, standings, *machine_of_campaign, spellings, learned_.of, unknown_});
+    for (const reports::WorkItem& l : site.lines) lines_[l.machine].push_back(l);
     site.instruments = joined(instruments);
     std::vector<ComparedMachine> compared;
     for (const Standing* s : standings)
@@ -455,15 +455,15 @@ class Assessment::State {
   }
 
   fs::path out_;
-  Tonight tonight_;
+  LastRun last_run_;
   std::function<void()> alive_;
   store::StoreReader store_;
   const config::SiteLogs* entered_;
   store::StoredLogs logs_{};
   KeptMachines kept_;
   std::map<std::string, KeptMachine> before_{};
-  std::map<std::uint64_t, KeptMachines::Night> nights_{};
-  bool nights_are_new_ = false;
+  std::map<std::uint64_t, KeptMachines::RunResult> runs_{};
+  bool runs_are_new_ = false;
   Learned learned_{};
   std::uint64_t learned_from_ = 0;  ///< evaluations
   std::vector<Assessed> machines_{};
@@ -471,8 +471,8 @@ class Assessment::State {
   std::vector<std::string> unknown_{};
   const Links links_{out_};
   /// What is dated later is not measured yet.
-  const std::string until_ = tonight_.date.empty() ? "9999-12-31" : tonight_.date;
-  std::map<std::string, std::vector<reports::MorningLine>> lines_{};  ///< by machine
+  const std::string until_ = last_run_.date.empty() ? "9999-12-31" : last_run_.date;
+  std::map<std::string, std::vector<reports::WorkItem>> lines_{};  ///< by machine
 };
 
 Assessment::Assessment(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -480,11 +480,11 @@ Assessment::Assessment(Assessment&&) noexcept = default;
 Assessment& Assessment::operator=(Assessment&&) noexcept = default;
 Assessment::~Assessment() = default;
 
-Expected<Assessment> Assessment::of(const fs::path& out, const Tonight& tonight,
+Expected<Assessment> Assessment::of(const fs::path& out, const LastRun& last_run,
                                     const std::function<void()>& alive, Kept kept,
                                     const config::SiteLogs* entered) {
   NONIO_TRY(auto store, store::StoreReader::open(out));
-  auto state = std::make_unique<State>(out, tonight, alive, std::move(store), kept, entered);
+  auto state = std::make_unique<State>(out, last_run, alive, std::move(store), kept, entered);
   if (auto made = state->make(); !made) return fail(made.error());
   return Assessment(std::move(state));
 }
@@ -502,9 +502,9 @@ void Assessment::note_page(std::size_t machine, const std::string& templates) {
 }
 void Assessment::keep() { state_->keep(Keep::all); }
 
-Expected<reports::SiteHistory> assess(const fs::path& out, const Tonight& tonight,
+Expected<reports::SiteHistory> assess(const fs::path& out, const LastRun& last_run,
                                       const std::function<void()>& alive, Keep keep) {
-  NONIO_TRY(auto made, Assessment::of(out, tonight, alive, Assessment::Kept::ignored));
+  NONIO_TRY(auto made, Assessment::of(out, last_run, alive, Assessment::Kept::ignored));
   return std::move(made).take_whole(keep);
 }
 

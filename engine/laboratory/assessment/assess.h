@@ -7,32 +7,32 @@
 #include <string>
 
 #include "campaign/config/site_logs.h"
-#include "laboratory/assessment/tonight.h"
+#include "laboratory/assessment/last_run.h"
 #include "nonio/reports/site.h"
 
-/// What the history of a laboratory's machines asks for this morning. Everything comes out of the
-/// history's store and of what the night knows: the same bytes for the same store and night.
+/// What the history of a laboratory's machines requires after the last run. It is computed from the
+/// store of the history and from the summary of the run: the same bytes for the same store and run.
 namespace nonio::assessment {
 
-/// What stays in OUT/.nonio/machines.sqlite for the next time: for a night, which has the folder to
-/// itself.
+/// Kept in OUT/.nonio/machines.sqlite for the next time, by a run, which alone writes to the
+/// folder.
 enum class Keep { nothing, trends, all };
 
 /// The machines with their series, what changed, what they will be at their next calibration, and
-/// the lines that ask for a decision, in their order. `alive` is called now and then. An error if
-/// there is no store that this program reads.
-Expected<reports::SiteHistory> assess(const std::filesystem::path& out, const Tonight& tonight,
+/// the lines of the worklist, in their order. `alive` is called repeatedly, as a sign of life. An
+/// error if there is no store that this program reads.
+Expected<reports::SiteHistory> assess(const std::filesystem::path& out, const LastRun& last_run,
                                       const std::function<void()>& alive,
                                       Keep keep = Keep::nothing);
 
-/// The same for sites with very many campaigns: machines of which nothing is new since the night
-/// before are not read again (OUT/.nonio/machines.sqlite), and come without their series.
+/// The same for sites with very many campaigns: machines without a change since the previous run
+/// are not read again (OUT/.nonio/machines.sqlite), and come without their series.
 class Assessment {
  public:
   enum class Kept { ignored, used };
-  /// `entered`: what people have said until now, where the next night should not be waited for: its
-  /// acknowledgements in place of those of the store, its new events besides.
-  static Expected<Assessment> of(const std::filesystem::path& out, const Tonight& tonight,
+  /// `entered`: entries of people since the run that are applied before the next one: its
+  /// acknowledgements replace those of the store, its new events are added.
+  static Expected<Assessment> of(const std::filesystem::path& out, const LastRun& last_run,
                                  const std::function<void()>& alive, Kept kept,
                                  const config::SiteLogs* entered = nullptr);
   Assessment(Assessment&&) noexcept;
@@ -60,7 +60,7 @@ class Assessment {
 };
 
 /// nonio-history/1: what `nonio machine history OUT --json` prints of these machines. Sentences in English.
-std::string history_json(const reports::SiteHistory& site, const Tonight& tonight,
+std::string history_json(const reports::SiteHistory& site, const LastRun& last_run,
                          const Templates& templates);
 
 /// The lines as a list: of summary.json, and what `nonio status --actions --json` prints. Numbers in the

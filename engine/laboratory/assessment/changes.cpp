@@ -34,7 +34,7 @@ std::uint64_t upwards(std::uint64_t n) { return (n + step_of(n) - 1) / step_of(n
 void fit_again(FollowedSeries& s, Fits& fits) {
   s.trend = fits.trend(s.series);
   s.p_adjusted.assign(s.trend.changes.size(), 1.0);
-  s.told.assign(s.trend.changes.size(), false);
+  s.significant.assign(s.trend.changes.size(), false);
   s.mailed.assign(s.trend.changes.size(), false);
 }
 
@@ -82,7 +82,7 @@ std::set<Place> places_of(const AssessedMachine& m) {
   for (const FollowedSeries& s : m.followed)
     for (std::size_t i = 0; i < s.trend.changes.size(); ++i)
       if (const kernel::Change& c = s.trend.changes[i];
-          s.told[i] && !c.declared && c.cause != Cause::instrument)
+          s.significant[i] && !c.declared && c.cause != Cause::instrument)
         out.insert({s.axis, day_of(m, s, c.after), day_of(m, s, c.after + 1)});
   return out;
 }
@@ -113,13 +113,13 @@ void ask_there(FollowedSeries& s, std::size_t gap, double level, Fits& fits) {
       continue;
     c.cause = Cause::undeclared;
     c.declared.reset();
-    tried.told[i] = true;
+    tried.significant[i] = true;
     tried.p_adjusted[i] = c.p;
     // What the run has reported of the others stays.
     for (std::size_t k = 0; k < s.trend.changes.size(); ++k)
       for (std::size_t j = 0; j < tried.trend.changes.size(); ++j)
         if (tried.trend.changes[j].after == s.trend.changes[k].after) {
-          tried.told[j] = s.told[k];
+          tried.significant[j] = s.significant[k];
           tried.p_adjusted[j] = s.p_adjusted[k];
           tried.mailed[j] = s.mailed[k];
         }
@@ -171,7 +171,7 @@ Learned learn(const std::vector<const Lesson*>& lessons) {
     if (const double spread = kernel::spread_of_slopes(slopes); spread > 0.0)
       of.spread = std::exp(std::round(std::log(spread) / spread_step) * spread_step);
   }
-  out.drift_below = told_below / static_cast<double>(upwards(asked));
+  out.drift_below = significant_below / static_cast<double>(upwards(asked));
   return out;
 }
 
@@ -189,15 +189,15 @@ void fit(FollowedSeries& s, const Manner& manner, Fits& fits) {
 }
 
 SeriesTests tests_of(const FollowedSeries& s) {
-  SeriesTests out{s.night, s.trend.model != kernel::Model::none, {}};
+  SeriesTests out{s.run, s.trend.model != kernel::Model::none, {}};
   for (const kernel::Change& c : s.trend.changes)
     out.changes.push_back({c.p, c.declared.has_value(), shows_instrument(s, c.after)});
   return out;
 }
 
-/// News: what nobody has said, and what is known to have happened, are families of their own. For a
+/// Families of tests: changes without an event, and changes with one, are separate families. For a
 /// mail they are one.
-std::vector<std::vector<Adjusted>> adjusted_by_night(
+std::vector<std::vector<Adjusted>> adjusted_by_run(
     const std::vector<const SeriesTests*>& tests,
     const std::map<std::uint64_t, std::uint64_t>& asked) {
   std::vector<std::vector<Adjusted>> out;
@@ -206,18 +206,18 @@ std::vector<std::vector<Adjusted>> adjusted_by_night(
   std::map<std::uint64_t, std::size_t> still;  // of the series whose last run it was
   for (std::size_t k = 0; k < tests.size(); ++k) {
     const SeriesTests& s = *tests[k];
-    still[s.night] += s.has_model;
+    still[s.run] += s.has_model;
     for (std::size_t i = 0; i < s.changes.size(); ++i)
-      (s.changes[i].declared ? said : unsaid)[s.night].push_back({s.changes[i].p, &out[k][i]});
+      (s.changes[i].declared ? said : unsaid)[s.run].push_back({s.changes[i].p, &out[k][i]});
   }
-  for (const auto& [night, open] : still) {
-    const auto found = asked.find(night);
+  for (const auto& [run, open] : still) {
+    const auto found = asked.find(run);
     const std::size_t many = std::max(found == asked.end() ? 0 : found->second, open);
-    std::vector<Asked> all = unsaid[night];
+    std::vector<Asked> all = unsaid[run];
     adjust(all, many, &Adjusted::news, kernel::benjamini_hochberg);
-    adjust(said[night], 0, &Adjusted::news, kernel::benjamini_hochberg);
-    all.insert(all.end(), said[night].begin(), said[night].end());
-    adjust(all, many + said[night].size(), &Adjusted::any, kernel::holm);
+    adjust(said[run], 0, &Adjusted::news, kernel::benjamini_hochberg);
+    all.insert(all.end(), said[run].begin(), said[run].end());
+    adjust(all, many + said[run].size(), &Adjusted::any, kernel::holm);
   }
   return out;
 }
@@ -225,9 +225,10 @@ std::vector<std::vector<Adjusted>> adjusted_by_night(
 Verdict verdict_of(const SeriesTests::Of& test, const Adjusted& adjusted) {
   Verdict out;
   out.surely = adjusted.news < no_instrument_below;
-  out.told = adjusted.news < told_below && (!test.declared || test.p < declared_below);
-  if (test.shows_instrument && test.declared) out.told = out.told && out.surely;
-  out.mailed = out.told && adjusted.any < mailed_below;
+  out.significant =
+      adjusted.news < significant_below && (!test.declared || test.p < declared_below);
+  if (test.shows_instrument && test.declared) out.significant = out.significant && out.surely;
+  out.mailed = out.significant && adjusted.any < mailed_below;
   return out;
 }
 
@@ -237,20 +238,20 @@ void tell(FollowedSeries& s, const std::vector<Adjusted>& adjusted) {
     kernel::Change& c = s.trend.changes[i];
     const Verdict verdict = verdict_of(tests.changes[i], adjusted[i]);
     s.p_adjusted[i] = adjusted[i].news;
-    s.told[i] = verdict.told;
+    s.significant[i] = verdict.significant;
     s.mailed[i] = verdict.mailed;
     if (tests.changes[i].shows_instrument && c.cause == Cause::instrument && verdict.surely)
       c.cause = Cause::undeclared;
   }
 }
 
-void drop_untold(FollowedSeries& s, Fits& fits) {
+void drop_unstated(FollowedSeries& s, Fits& fits) {
   std::vector<std::size_t> places;
   bool all = true;
   for (std::size_t i = 0; i < s.trend.changes.size(); ++i) {
     if (s.trend.changes[i].declared) continue;
-    all = all && s.told[i];
-    if (s.told[i]) places.push_back(s.trend.changes[i].after);
+    all = all && s.significant[i];
+    if (s.significant[i]) places.push_back(s.trend.changes[i].after);
   }
   if (all) return;
   const FollowedSeries judged = s;
@@ -263,7 +264,7 @@ void drop_untold(FollowedSeries& s, Fits& fits) {
       if (c.after != before.after || c.declared != before.declared) continue;
       c.p = before.p, c.cause = before.cause;
       s.p_adjusted[j] = judged.p_adjusted[k];
-      s.told[j] = judged.told[k], s.mailed[j] = judged.mailed[k];
+      s.significant[j] = judged.significant[k], s.mailed[j] = judged.mailed[k];
     }
 }
 
@@ -274,7 +275,7 @@ void ask_others(AssessedMachine& m, Fits& fits) {
       if (s.axis == place.axis && s.trend.model != kernel::Model::none)
         if (const auto gap = gap_of(m, s, place)) others.emplace_back(&s, *gap);
     for (const auto& [series, gap] : others)
-      ask_there(*series, gap, told_below / static_cast<double>(others.size()), fits);
+      ask_there(*series, gap, significant_below / static_cast<double>(others.size()), fits);
   }
 }
 
@@ -308,12 +309,12 @@ void find_changes(std::vector<AssessedMachine>& machines,
   }
   std::vector<const SeriesTests*> all;
   for (const SeriesTests& t : tests) all.push_back(&t);
-  const auto p = adjusted_by_night(all, asked);
+  const auto p = adjusted_by_run(all, asked);
   std::size_t k = 0;
   for (AssessedMachine& m : machines)
     for (FollowedSeries& s : m.followed) {
       tell(s, p[k++]);
-      drop_untold(s, fits);
+      drop_unstated(s, fits);
     }
   for (AssessedMachine& m : machines) ask_others(m, fits);
 }

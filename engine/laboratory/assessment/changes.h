@@ -15,14 +15,14 @@
 /// What changed, over all machines of a site.
 namespace nonio::assessment {
 
-/// False news in this share of nights: for a list that somebody reads, for a mail that wakes him.
-inline constexpr double told_below = 0.05, mailed_below = 0.01;
+/// Share of runs with a false alarm: in the worklist, and in a mail.
+inline constexpr double significant_below = 0.05, mailed_below = 0.01;
 /// A step at a place where something is known to have happened.
 inline constexpr double declared_below = 0.01;
 
-/// What all series of one quantity say together; of which no series can say it alone.
+/// What all series of one quantity show together but none of them alone.
 struct OfQuantity {
-  double excess = 1.0;  ///< by how much campaigns scatter more than each says
+  double excess = 1.0;  ///< by which factor campaigns scatter more than their u
   double spread = 0.0;  ///< standard deviation of slopes, per year, in the printed unit
 };
 
@@ -34,8 +34,8 @@ struct Lesson {
   std::optional<nonio::statistics::Slope> slope{};
 };
 /// From how many of the first evaluations a laboratory is learned: from all, and of 10,000 and more
-/// from the first ones, in two digits of their number. So a new campaign seldom moves what was said
-/// of all other machines.
+/// from the first ones, in two digits of their number. So a new campaign seldom moves what was
+/// stated of all other machines.
 std::uint64_t learned_from(std::uint64_t evaluations);
 /// From the first `evaluations`: of the points before the first one that came later.
 Lesson lesson_of(const FollowedSeries& series, Fits& fits,
@@ -59,7 +59,7 @@ void fit(FollowedSeries& series, const Manner& manner, Fits& fits);
 
 /// The tests of one series in the run of its last point.
 struct SeriesTests {
-  std::uint64_t night = 0;
+  std::uint64_t run = 0;
   bool has_model = false;
   struct Of {
     double p = 1.0;
@@ -69,36 +69,36 @@ struct SeriesTests {
 };
 SeriesTests tests_of(const FollowedSeries& series);
 
-/// p of a change, adjusted for all that its night has asked.
+/// p of a change, adjusted for all tests of its run.
 struct Adjusted {
   double news = 1.0;  ///< Benjamini and Hochberg: few of the reported changes are false
   double any = 1.0;   ///< Holm: the probability that the run reports any false one
 };
 
 /// Of each change of each series. `asked`: number of tests of each run.
-std::vector<std::vector<Adjusted>> adjusted_by_night(
+std::vector<std::vector<Adjusted>> adjusted_by_run(
     const std::vector<const SeriesTests*>& tests,
     const std::map<std::uint64_t, std::uint64_t>& asked);
 
 /// Whether a change is reported, whether it is surely more than its instrument, and whether it is sure
 /// enough for a mail.
 struct Verdict {
-  bool told = false, surely = false, mailed = false;
+  bool significant = false, surely = false, mailed = false;
 };
 Verdict verdict_of(const SeriesTests::Of& test, const Adjusted& adjusted);
 /// Puts the verdicts into a series that was fitted.
 void tell(FollowedSeries& series, const std::vector<Adjusted>& adjusted);
-/// A step that no test of the night confirmed is no part of what is said of the series: one of a
-/// hundred level series has one by chance, and it would bend slope and forecast.
-void drop_untold(FollowedSeries& series, Fits& fits);
-/// What is news in one quantity of an axis is asked of the others at that place.
+/// Removes steps that no test of the run confirmed: one of a hundred level series has one by
+/// chance, and it would change slope and forecast.
+void drop_unstated(FollowedSeries& series, Fits& fits);
+/// A significant change in one quantity of an axis is tested in its other quantities at that place.
 void ask_others(AssessedMachine& machine, Fits& fits);
 
 /// All of the above for all machines of a site: `learn`, put into their series.
 std::map<std::string, OfQuantity> learn(std::vector<AssessedMachine>& machines, Fits& fits);
 
-/// And then: fits the trends and says which of their changes are news. A test belongs to the night in
-/// which its series got its last point.
+/// Then fits the trends and decides which of their changes are significant. A test belongs to the
+/// run in which its series got its last point.
 void find_changes(std::vector<AssessedMachine>& machines,
                   const std::map<std::uint64_t, std::uint64_t>& asked, Fits& fits,
                   const std::function<void()>& alive);

@@ -124,13 +124,13 @@ class Describing {
                               si(g.u_first, q), si(g.u_last, q), si(g.slope, q), si(g.u_slope, q),
                               campaign(s, g.from).id, campaign(s, g.to).id});
     for (std::size_t i = 0; i < s.trend.changes.size(); ++i)
-      if (s.told[i]) out.changes.push_back(change(s, i, q));
+      if (s.significant[i]) out.changes.push_back(change(s, i, q));
     if (s.trend.smallest_change) out.smallest_change = si(*s.trend.smallest_change, q);
     const auto limit = s.ended ? std::nullopt : limit_of(m_, s);
     const bool own = limit && limit->quantity == s.quantity;
     if (own) out.limit = si(limit->limit, q);
     if (!s.ended) out.forecast = forecast(s, q, limit);
-    // What comes of B is said of B: its mean alone has no limit.
+    // A limit of B applies to B only: its mean alone has no limit.
     if (out.forecast && !own) out.forecast->p_out = 0.0, out.forecast->leaves.clear();
     return out;
   }
@@ -320,7 +320,7 @@ std::optional<kernel::Beyond> beyond_mean(const AssessedMachine& m, const Follow
                                           const ShownSeries& B) {
   std::size_t first = 0;
   for (std::size_t i = 0; i < mean.trend.changes.size(); ++i)
-    if (i < mean.told.size() && mean.told[i]) first = mean.trend.changes[i].after + 1;
+    if (i < mean.significant.size() && mean.significant[i]) first = mean.trend.changes[i].after + 1;
   std::vector<double> more;
   double u_of_B = 0.0;
   for (std::size_t k = first; k < mean.results.size(); ++k) {
@@ -338,7 +338,7 @@ std::optional<kernel::Beyond> beyond_mean(const AssessedMachine& m, const Follow
   for (const double x : more) out.value += x / n;
   double squares = 0.0;
   for (const double x : more) squares += (x - out.value) * (x - out.value);
-  constexpr std::size_t fewest_for_scatter = 3;  // of fewer U of B says how it may vary
+  constexpr std::size_t fewest_for_scatter = 3;  // with fewer the variation is taken from U of B
   out.u =
       more.size() < fewest_for_scatter ? u_of_B : std::sqrt(squares / (n - 1.0) * (1.0 + 1.0 / n));
   return out;
@@ -379,7 +379,7 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
   reports::MachineHistory m;
   m.id = named.name, m.maker = named.stated.maker;
   m.model = named.stated.model, m.serial = named.stated.serial;
-  for (const StoredCampaign& c : machine.stored.campaigns) {  // the last that says it
+  for (const StoredCampaign& c : machine.stored.campaigns) {  // the last that states them
     m.customer = c.customer;
     if (!c.place.empty()) m.place = c.place;
     if (!c.control.empty()) m.control = c.control;

@@ -35,8 +35,8 @@ std::string link_of(const std::filesystem::path& out, const std::string& campaig
 /// Days; half of the gaps between campaign days are longer than this; none of one day.
 std::optional<std::int64_t> usual_interval(const std::vector<store::StoredCampaign>& campaigns);
 
-/// The limit that a followed quantity can tell of, in the unit of results.json: its own, or that of B
-/// for the mean reversal, with what B is larger by.
+/// The limit that applies to a followed quantity, in the unit of results.json: its own, or for the
+/// mean reversal that of B, reduced by what B is larger by.
 struct FollowedLimit {
   std::string quantity;  ///< that has the limit
   double limit = 0.0;

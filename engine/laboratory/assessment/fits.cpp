@@ -77,7 +77,7 @@ std::optional<kernel::Slope> Fits::slope(const kernel::Series& series) {
     if (storage::unpack(kept->bytes, slope)) return slope;
   }
   ++computed_;
-  const auto slope = kernel::slope_beside_steps(series);
+  const auto slope = kernel::slope_with_steps(series);
   kept_[key] = {storage::pack(slope), true};
   return slope;
 }

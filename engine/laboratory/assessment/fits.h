@@ -16,11 +16,11 @@ NONIO_MEMBERS(statistics::Slope, a, b)
 
 namespace nonio::assessment {
 
-/// Trends and slopes of series, kept by the digest of all that goes into them: a night computes
-/// those of its new campaigns. What is kept changes no result: what is damaged is none.
+/// Trends and slopes of series, kept by the digest of all their inputs: a run computes those of its
+/// new campaigns. They change no result: a damaged entry is computed again.
 class Fits {
  public:
-  /// Nothing is known.
+  /// No fits are known.
   Fits() = default;
   /// With what `kept` returned.
   static Fits of(std::string_view kept);
@@ -28,9 +28,9 @@ class Fits {
   nonio::statistics::Trend trend(const nonio::statistics::Series& series);
   std::optional<nonio::statistics::Slope> slope(const nonio::statistics::Series& series);
 
-  /// All that was asked for, in the order of the keys.
+  /// All that was requested, in the order of the keys.
   std::string kept() const;
-  /// Whether that is other than what was known before.
+  /// Whether a fit was added to those that were known before.
   bool is_new() const;
   std::size_t computed() const { return computed_; }
 

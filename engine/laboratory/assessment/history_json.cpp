@@ -194,14 +194,14 @@ void put_machine(JsonWriter& json, const reports::MachineHistory& m, const Templ
 
 }  // namespace
 
-std::string history_json(const reports::SiteHistory& site, const Tonight& tonight,
+std::string history_json(const reports::SiteHistory& site, const LastRun& last_run,
                          const Templates& templates) {
   JsonWriter json;
   HistoryWriter writer(json);
   json.begin_object();
   json.member("schema", "nonio-history/1");
-  json.member("night", tonight.night);
-  json.member("date", tonight.date);
+  json.member("night", last_run.run);
+  json.member("date", last_run.date);
   json.key("series");
   json.begin_array();
   for (const reports::MachineHistory& m : site.machines)
@@ -221,11 +221,11 @@ std::string history_json(const reports::SiteHistory& site, const Tonight& tonigh
   }
   json.key("vanished");
   json.begin_array();
-  for (const Tonight::Vanished& v : tonight.vanished) {
+  for (const LastRun::Vanished& v : last_run.vanished) {
     json.begin_object();
     json.member("campaign", v.campaign);
     json.member("folder", v.folder);
-    json.member("last_seen_night", v.last_seen_night);
+    json.member("last_seen_night", v.last_seen_run);
     json.end_object();
   }
   json.end_array();

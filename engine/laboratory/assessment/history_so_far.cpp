@@ -101,7 +101,7 @@ store::StoredMachine campaigns_up_to(const store::StoredMachine& all, const Hist
     if (!wanted.contains(all.campaigns[i].id)) continue;
     place[i] = out.campaigns.size();
     out.campaigns.push_back(all.campaigns[i]);
-    out.campaigns.back().night = 0;
+    out.campaigns.back().run = 0;
     out.findings.push_back(all.findings[i]);
   }
   const auto take = [&](const std::vector<store::StoredResult>& from,

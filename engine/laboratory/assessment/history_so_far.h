@@ -12,8 +12,8 @@
 #include "nonio/sdk/history.h"
 
 /// The machine's history that a campaign's report shows: of the campaigns up to its own day, out of
-/// the store. It depends on no other machine, on nothing later and on no night, so that the same
-/// results give the same report in whatever order they came.
+/// the store. It depends on no other machine, on nothing later and on no run, so that the same
+/// results give the same report in any order.
 namespace nonio::assessment {
 
 /// From what such a history is made.

@@ -10,8 +10,7 @@ namespace nonio::storage {
 NONIO_MEMBERS(Number, a, b, c)
 NONIO_MEMBERS(Finding, a, b, c, d, e, f)
 NONIO_MEMBERS(reports::OpenValue, a, b, c, d, e, f, g, h, i)
-NONIO_MEMBERS(reports::MorningLine, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u,
-              v)
+NONIO_MEMBERS(reports::WorkItem, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v)
 NONIO_MEMBERS(reports::IntervalProposal, a, b, c, d, e)
 /// Without series.
 template <class Archive, class T>
@@ -98,15 +97,15 @@ std::map<std::string, KeptMachine> KeptMachines::machines() {
   return out;
 }
 
-std::map<std::uint64_t, KeptMachines::Night> KeptMachines::nights() {
-  std::map<std::uint64_t, Night> out;
+std::map<std::uint64_t, KeptMachines::RunResult> KeptMachines::runs() {
+  std::map<std::uint64_t, RunResult> out;
   if (!file_ || !has_machines_) return out;
   for (const Database::Row& row : file_->rows("SELECT found FROM night")) {
     const auto body = body_of(row[0]);
     if (!body) continue;
     std::uint64_t number = 0;
-    Night night;
-    if (storage::unpack(*body, number, night.made_from, night.asked)) out[number] = night;
+    RunResult run;
+    if (storage::unpack(*body, number, run.made_from, run.asked)) out[number] = run;
   }
   if (!file_->take_error()) file_.reset();
   return out;
@@ -132,8 +131,8 @@ void KeptMachines::make_anew() {
 }
 
 void KeptMachines::keep(const Changes& changes) {
-  if (changes.machines.empty() && changes.gone.empty() && !changes.nights) return;
-  if (!file_) make_anew();  // it is not there, or not to be read
+  if (changes.machines.empty() && changes.gone.empty() && !changes.runs) return;
+  if (!file_) make_anew();  // it is missing, or not to be read
   if (!file_) return;
   if (put(changes)) return;
   file_.reset();
@@ -162,19 +161,17 @@ Expected<void> KeptMachines::put(const Changes& changes) {
   }
   for (const std::string& name : changes.gone)
     file_->put("DELETE FROM machine WHERE name = ?", {name});
-  if (changes.nights) {
+  if (changes.runs) {
     file_->put("DELETE FROM night");
-    for (const auto& [number, night] : *changes.nights) {
-      const std::string bytes = signed_bytes(storage::pack(number, night.made_from, night.asked));
+    for (const auto& [number, run] : *changes.runs) {
+      const std::string bytes = signed_bytes(storage::pack(number, run.made_from, run.asked));
       file_->put("INSERT INTO night VALUES(?)", {Database::Blob{bytes}});
     }
   }
   return transaction.end();
 }
 
-std::string bytes_of(const std::vector<reports::MorningLine>& lines) {
-  return storage::pack(lines);
-}
+std::string bytes_of(const std::vector<reports::WorkItem>& lines) { return storage::pack(lines); }
 
 std::string bytes_of(const reports::IntervalProposal& proposal) { return storage::pack(proposal); }
 

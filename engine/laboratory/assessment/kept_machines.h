@@ -15,10 +15,10 @@
 
 namespace nonio::assessment {
 
-/// What a night has found out of a machine, so that the next one looks only at those whose results
-/// are others. Each part names what it was made from.
+/// What a run has computed for a machine, so that the next one assesses only machines with other
+/// results. Each part names what it was made from.
 struct KeptMachine {
-  std::string rows{};  ///< digest of what the store and the site say of it
+  std::string rows{};  ///< digest of what the store and the site state about it
   struct Series {
     Lesson lesson;
     Manner manner;      ///< of the trend
@@ -26,7 +26,7 @@ struct KeptMachine {
   };
   std::vector<Series> series{};
   std::string stood{};  ///< digest of all that goes into `standing`, but the date
-  std::string date{};   ///< of the night
+  std::string date{};   ///< of the run
   Standing standing{};
   struct Page {
     std::string made_from{};
@@ -36,12 +36,12 @@ struct KeptMachine {
   Page page{};
 };
 
-/// All of a site, in OUT/.nonio/machines.sqlite: of each machine what was found out, and its trends.
-/// They change no result: what is not there, is damaged or of another version is found out again.
-/// Trouble with the file is no error.
+/// All of a site, in OUT/.nonio/machines.sqlite: of each machine what was found out, and its
+/// trends. They change no result: what is missing, is damaged or of another version is found out
+/// again. Trouble with the file is no error.
 class KeptMachines {
  public:
-  struct Night {
+  struct RunResult {
     std::string made_from{};  ///< digest of its evaluations
     std::uint64_t asked = 0;
   };
@@ -49,7 +49,7 @@ class KeptMachines {
   explicit KeptMachines(std::filesystem::path out);
 
   std::map<std::string, KeptMachine> machines();
-  std::map<std::uint64_t, Night> nights();
+  std::map<std::uint64_t, RunResult> runs();
   /// What `Fits::kept` returned for the machine.
   std::string trends_of(const std::string& machine);
 
@@ -63,7 +63,7 @@ class KeptMachines {
     std::vector<Of> machines;
     std::set<std::string> gone;  ///< machines
     /// All of them, where any is another.
-    std::optional<std::map<std::uint64_t, Night>> nights{};
+    std::optional<std::map<std::uint64_t, RunResult>> runs{};
   };
   void keep(const Changes& changes);
 
@@ -79,7 +79,7 @@ class KeptMachines {
 };
 
 /// The same bytes, the same values.
-std::string bytes_of(const std::vector<reports::MorningLine>& lines);
+std::string bytes_of(const std::vector<reports::WorkItem>& lines);
 std::string bytes_of(const reports::IntervalProposal& proposal);
 
 }  // namespace nonio::assessment

@@ -11,23 +11,23 @@
 
 namespace nonio::assessment {
 
-using reports::MorningLine;
-using Kind = MorningLine::Kind;
+using reports::WorkItem;
+using Kind = WorkItem::Kind;
 
 namespace {
 
-constexpr std::size_t most_alike = 3;     // failures with one message, told one by one
-constexpr std::size_t most_machines = 5;  // that vanish, told one by one
+constexpr std::size_t most_alike = 3;     // failures with one message, listed one by one
+constexpr std::size_t most_machines = 5;  // that are missing, listed one by one
 
-void put_count(MorningLine& line, const char* name, std::size_t n) {
+void put_count(WorkItem& line, const char* name, std::size_t n) {
   line.finding.evidence.push_back({name, static_cast<double>(n), Quantity::count});
 }
 
 /// What vanished, by machine; where many did, by the folder that they had in common.
-std::vector<MorningLine> lost(const Known& known) {
-  std::map<std::string, std::vector<const Tonight::Vanished*>> by_machine, by_folder;
-  std::vector<MorningLine> out;
-  for (const Tonight::Vanished& v : known.tonight.vanished) {
+std::vector<WorkItem> lost(const Known& known) {
+  std::map<std::string, std::vector<const LastRun::Vanished*>> by_machine, by_folder;
+  std::vector<WorkItem> out;
+  for (const LastRun::Vanished& v : known.last_run.vanished) {
     if (!config::is_campaign_id(v.campaign)) {
       out.push_back(line_of(Kind::lost, "morning.lost-part", v.campaign));
       put_text(out.back(), "part", v.campaign);
@@ -41,53 +41,53 @@ std::vector<MorningLine> lost(const Known& known) {
   const bool many = by_machine.size() > most_machines;
   for (const auto& [name, gone] : many ? by_folder : by_machine) {
     if (gone.size() == 1 || (!many && name.empty())) {
-      for (const Tonight::Vanished* v : gone) {
-        MorningLine line = line_of(Kind::lost, "morning.lost", v->campaign);
+      for (const LastRun::Vanished* v : gone) {
+        WorkItem line = line_of(Kind::lost, "morning.lost", v->campaign);
         line.machine = many ? "" : name;
         line.campaign = v->campaign;
-        put_count(line, "night", v->last_seen_night);
+        put_count(line, "night", v->last_seen_run);
         put_text(line, "folder", v->folder);
         put_text(line, "why", v->why);
         out.push_back(std::move(line));
       }
       continue;
     }
-    MorningLine line = line_of(Kind::lost, "morning.lost-several", name);
+    WorkItem line = line_of(Kind::lost, "morning.lost-several", name);
     line.machine = many ? "" : name;
     line.campaign = gone.front()->campaign;
-    std::uint64_t night = 0;
-    for (const Tonight::Vanished* v : gone) night = std::max(night, v->last_seen_night);
-    put_count(line, "night", night);
+    std::uint64_t run = 0;
+    for (const LastRun::Vanished* v : gone) run = std::max(run, v->last_seen_run);
+    put_count(line, "night", run);
     put_count(line, "count", gone.size());
     put_text(line, "of", name);
-    for (const Tonight::Vanished* v : gone) line.campaigns.push_back(v->campaign);
+    for (const LastRun::Vanished* v : gone) line.campaigns.push_back(v->campaign);
     out.push_back(std::move(line));
   }
   return out;
 }
 
 /// One mistake in site.toml fails every campaign, and is one line.
-std::vector<MorningLine> failed(const Known& known) {
-  std::map<std::string, std::vector<const Tonight::Failed*>> by_message;
-  for (const Tonight::Failed& f : known.tonight.failed) by_message[f.message].push_back(&f);
-  std::vector<MorningLine> out;
-  if (!known.tonight.history_error.empty()) {
+std::vector<WorkItem> failed(const Known& known) {
+  std::map<std::string, std::vector<const LastRun::Failed*>> by_message;
+  for (const LastRun::Failed& f : known.last_run.failed) by_message[f.message].push_back(&f);
+  std::vector<WorkItem> out;
+  if (!known.last_run.history_error.empty()) {
     out.push_back(line_of(Kind::failed, "morning.history", "history"));
-    put_text(out.back(), "message", known.tonight.history_error);
+    put_text(out.back(), "message", known.last_run.history_error);
   }
   for (const auto& [message, alike] : by_message) {
     if (alike.size() > most_alike) {
-      MorningLine line = line_of(Kind::failed, "morning.failed-several", alike.front()->campaign);
+      WorkItem line = line_of(Kind::failed, "morning.failed-several", alike.front()->campaign);
       line.campaign = alike.front()->campaign;
       line.since = alike.front()->since;
       put_count(line, "count", alike.size());
       put_text(line, "message", message);
-      for (const Tonight::Failed* f : alike) line.campaigns.push_back(f->campaign);
+      for (const LastRun::Failed* f : alike) line.campaigns.push_back(f->campaign);
       out.push_back(std::move(line));
       continue;
     }
-    for (const Tonight::Failed* f : alike) {
-      MorningLine line = line_of(Kind::failed, "morning.failed", f->campaign);
+    for (const LastRun::Failed* f : alike) {
+      WorkItem line = line_of(Kind::failed, "morning.failed", f->campaign);
       const auto machine = known.machine_of_campaign.find(f->campaign);
       if (machine != known.machine_of_campaign.end()) line.machine = machine->second;
       line.campaign = f->campaign;
@@ -100,7 +100,7 @@ std::vector<MorningLine> failed(const Known& known) {
 }
 
 /// Machines without a stated limit: their conformity was not assessed.
-void not_judged(const Known& known, std::vector<MorningLine>& out) {
+void not_judged(const Known& known, std::vector<WorkItem>& out) {
   std::string names;
   std::size_t count = 0;
   for (const Standing* m : known.machines) {
@@ -114,8 +114,8 @@ void not_judged(const Known& known, std::vector<MorningLine>& out) {
 }
 
 /// Campaigns that state neither an asset nor maker and serial: nothing joins them to others.
-void without_machine(const Known& known, std::vector<MorningLine>& out) {
-  MorningLine line = line_of(Kind::information, "morning.no-machine", "site");
+void without_machine(const Known& known, std::vector<WorkItem>& out) {
+  WorkItem line = line_of(Kind::information, "morning.no-machine", "site");
   for (const Standing* m : known.machines)
     if (m->alone && !m->name.empty()) line.campaigns.push_back(m->name);
   if (line.campaigns.empty()) return;
@@ -125,16 +125,16 @@ void without_machine(const Known& known, std::vector<MorningLine>& out) {
 }
 
 /// Drafts of certificates, which a person issues.
-void drafts(const Known& known, std::vector<MorningLine>& out) {
-  if (known.tonight.waiting.empty()) return;
+void drafts(const Known& known, std::vector<WorkItem>& out) {
+  if (known.last_run.waiting.empty()) return;
   out.push_back(line_of(Kind::information, "morning.draft", "site"));
-  out.back().campaigns = known.tonight.waiting;
-  out.back().campaign = known.tonight.waiting.front();
-  put_count(out.back(), "count", known.tonight.waiting.size());
+  out.back().campaigns = known.last_run.waiting;
+  out.back().campaign = known.last_run.waiting.front();
+  put_count(out.back(), "count", known.last_run.waiting.size());
 }
 
 /// Findings with severity warning in last campaigns of which every judged value conforms.
-void conforming(const Known& known, std::vector<MorningLine>& out) {
+void conforming(const Known& known, std::vector<WorkItem>& out) {
   std::size_t machines = 0, lost_motion = 0;
   for (const Standing* m : known.machines) {
     if (!m->judged || !m->conforms) continue;
@@ -148,7 +148,7 @@ void conforming(const Known& known, std::vector<MorningLine>& out) {
 }
 
 /// An entry for a machine without campaigns applies to no machine: a spelling mistake.
-void unknown(const Known& known, std::vector<MorningLine>& out) {
+void unknown(const Known& known, std::vector<WorkItem>& out) {
   const std::size_t count = known.unknown.size();
   if (count == 0) return;
   std::string names;
@@ -159,8 +159,8 @@ void unknown(const Known& known, std::vector<MorningLine>& out) {
   put_text(out.back(), "where", names + (count > most_machines ? ", ..." : ""));
 }
 
-std::vector<MorningLine> of_site(const Known& known) {
-  std::vector<MorningLine> out;
+std::vector<WorkItem> of_site(const Known& known) {
+  std::vector<WorkItem> out;
   without_machine(known, out);
   drafts(known, out);
   not_judged(known, out);
@@ -190,18 +190,18 @@ std::vector<MorningLine> of_site(const Known& known) {
 }
 
 /// If many days are later than the run, the date of the run is wrong.
-void fold(std::vector<MorningLine>& lines, const char* finding, const char* several) {
-  const auto is_one = [&](const MorningLine& l) {
-    return l.finding.id == finding && l.state == MorningLine::State::fresh;
+void fold(std::vector<WorkItem>& lines, const char* finding, const char* several) {
+  const auto is_one = [&](const WorkItem& l) {
+    return l.finding.id == finding && l.state == WorkItem::State::fresh;
   };
   const auto count = static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), is_one));
   if (count <= most_alike) return;
-  MorningLine all = line_of(Kind::undecided, several, "site");
+  WorkItem all = line_of(Kind::undecided, several, "site");
   std::string names;
   std::size_t named = 0;
-  for (const MorningLine& l : lines)
+  for (const WorkItem& l : lines)
     if (is_one(l)) all.campaigns.push_back(l.campaign);
-  for (const MorningLine& l : lines)
+  for (const WorkItem& l : lines)
     if (is_one(l) && named++ < most_machines)
       names +=
           (names.empty() ? "" : ", ") + l.machine + " " + (l.axis.empty() ? l.campaign : l.axis);
@@ -212,18 +212,18 @@ void fold(std::vector<MorningLine>& lines, const char* finding, const char* seve
 }
 
 /// How much there is of it: of what is as grave, the largest comes first.
-double size_of(const MorningLine& l) {
+double size_of(const WorkItem& l) {
   if (l.value && l.limit && *l.limit > 0.0) return std::fabs(*l.value) / *l.limit;
   if (l.value && l.u && *l.u > 0.0) return std::fabs(*l.value) / *l.u;
   return 0.0;
 }
 
 /// What wears out of its limit has been coming; what was hit is news.
-bool wears(const MorningLine& l) {
+bool wears(const WorkItem& l) {
   return l.kind == Kind::out && !l.finding.id.starts_with("morning.out-changed");
 }
 
-bool comes_before(const MorningLine& a, const MorningLine& b) {
+bool comes_before(const WorkItem& a, const WorkItem& b) {
   return std::tuple(a.kind, a.state, wears(a), -size_of(a), std::tie(a.machine, a.axis, a.id)) <
          std::tuple(b.kind, b.state, wears(b), -size_of(b), std::tie(b.machine, b.axis, b.id));
 }
@@ -253,10 +253,10 @@ std::string axis_of(const std::string& axis, const std::string& quantity) {
   return quantity.substr(colon + 1, quantity.find('.', colon) - colon - 1);
 }
 
-std::vector<MorningLine> lines_of(const Known& known) {
-  std::vector<MorningLine> out;
-  const auto add = [&](std::vector<MorningLine> lines) {
-    for (MorningLine& l : lines) out.push_back(std::move(l));
+std::vector<WorkItem> lines_of(const Known& known) {
+  std::vector<WorkItem> out;
+  const auto add = [&](std::vector<WorkItem> lines) {
+    for (WorkItem& l : lines) out.push_back(std::move(l));
   };
   add(lost(known));
   add(failed(known));

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "laboratory/assessment/changes.h"
+#include "laboratory/assessment/last_run.h"
 #include "laboratory/assessment/standing.h"
-#include "laboratory/assessment/tonight.h"
 #include "laboratory/store/reader.h"
 #include "nonio/reports/site.h"
 
@@ -15,7 +15,7 @@ namespace nonio::assessment {
 
 /// All that lines are made from.
 struct Known {
-  const Tonight& tonight;
+  const LastRun& last_run;
   const std::vector<const Standing*>& machines;
   const std::map<std::string, std::string>& machine_of_campaign;
   const std::vector<store::Spelling>& spellings;
@@ -24,9 +24,9 @@ struct Known {
   const std::vector<std::string>& unknown;
 };
 
-/// What asks for a decision this morning, one line each: in the order of what ignoring it costs,
+/// The actions that the last run requires, one line each: in the order of what ignoring them costs,
 /// within that new before known, then the largest first. One cause is reported once.
-std::vector<reports::MorningLine> lines_of(const Known& known);
+std::vector<reports::WorkItem> lines_of(const Known& known);
 
 /// Of a quantity: reversal, scale, curve, turn, cyclic, scatter, squareness, straightness, centre,
 /// circle, parameter. Its words are `term.what` and `term.look`.

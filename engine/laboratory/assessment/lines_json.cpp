@@ -9,16 +9,16 @@ namespace nonio::assessment {
 
 namespace {
 
-using reports::MorningLine;
+using reports::WorkItem;
 using storage::Json;
 
-const char* name_of(MorningLine::Kind kind) {
+const char* name_of(WorkItem::Kind kind) {
   constexpr const char* names[] = {"lost",    "failed",   "out",       "changed",    "soon",
                                    "overdue", "withheld", "undecided", "information"};
   return names[static_cast<std::size_t>(kind)];
 }
 
-const char* name_of(MorningLine::State state) {
+const char* name_of(WorkItem::State state) {
   constexpr const char* names[] = {"new", "known", "fixed"};
   return names[static_cast<std::size_t>(state)];
 }
@@ -48,7 +48,7 @@ Json json_of(const reports::OpenValue& v) {
   return json;
 }
 
-Json json_of(const MorningLine& l, const Templates& templates, const std::string& language) {
+Json json_of(const WorkItem& l, const Templates& templates, const std::string& language) {
   Json json = {{"id", l.id}, {"kind", name_of(l.kind)}, {"state", name_of(l.state)}};
   put(json, "machine", l.machine);
   put(json, "axis", l.axis);
@@ -76,7 +76,7 @@ Json json_of(const MorningLine& l, const Templates& templates, const std::string
 std::string lines_json(const reports::SiteHistory& site, const Templates& templates,
                        const std::string& language) {
   std::string out = "[";
-  for (const MorningLine& l : site.lines)
+  for (const WorkItem& l : site.lines)
     out += (&l == &site.lines.front() ? "\n  " : ",\n  ") +
            json_of(l, templates, language).dump(-1, ' ', false, Json::error_handler_t::replace);
   return out + (site.lines.empty() ? "]" : "\n ]");

@@ -16,8 +16,8 @@ namespace nonio::assessment {
 
 using reports::HistoryChange;
 using reports::HistorySeries;
-using reports::MorningLine;
-using Kind = MorningLine::Kind;
+using reports::WorkItem;
+using Kind = WorkItem::Kind;
 
 namespace {
 
@@ -30,7 +30,7 @@ struct AxisChange {
     double size() const { return std::fabs(change->size) / change->u; }
   };
   std::vector<Seen> seen;  ///< the largest first
-  bool told = false;       ///< in the line of what does not conform
+  bool listed = false;     ///< in the line of what does not conform
 };
 
 bool is_correction(const HistoryChange& c) {
@@ -39,15 +39,15 @@ bool is_correction(const HistoryChange& c) {
 
 class OfMachine {
  public:
-  OfMachine(const AssessedMachine& m, const reports::MachineHistory& d, const Tonight& tonight)
-      : m_(m), d_(d), tonight_(tonight) {}
+  OfMachine(const AssessedMachine& m, const reports::MachineHistory& d, const LastRun& last_run)
+      : m_(m), d_(d), last_run_(last_run) {}
 
-  std::vector<MorningLine> lines() {
+  std::vector<WorkItem> lines() {
     causes_by_axis();
     judged();
     for (const auto& [axis, all] : causes_)
       for (const AxisChange& cause : all)
-        if (!cause.told) add(changed(axis, cause));
+        if (!cause.listed) add(changed(axis, cause));
     loaded();
     tables();
     held_back();
@@ -59,8 +59,8 @@ class OfMachine {
   }
 
  private:
-  MorningLine line(Kind kind, const char* finding, const std::string& of) const {
-    MorningLine l = line_of(kind, finding, name() + (of.empty() ? "" : ":" + of));
+  WorkItem line(Kind kind, const char* finding, const std::string& of) const {
+    WorkItem l = line_of(kind, finding, name() + (of.empty() ? "" : ":" + of));
     l.machine = d_.id;
     l.customer = d_.customer;
     if (!d_.file.empty()) l.link = "machines/" + d_.file;
@@ -72,7 +72,7 @@ class OfMachine {
     return d_.id.empty() && !m_.stored.campaigns.empty() ? m_.stored.campaigns.back().id : d_.id;
   }
 
-  void add(MorningLine l) { out_.push_back(std::move(l)); }
+  void add(WorkItem l) { out_.push_back(std::move(l)); }
 
   // ---- what changed
 
@@ -105,12 +105,12 @@ class OfMachine {
   bool is_repaired(const std::string& axis, const std::string& after) const {
     return std::any_of(m_.events.begin(), m_.events.end(), [&](const config::Event& e) {
       return (e.kind == "repair" || e.kind == "compensation") && e.date > after &&
-             e.date <= tonight_.date && (e.axis.empty() || axis.empty() || e.axis == axis);
+             e.date <= last_run_.date && (e.axis.empty() || axis.empty() || e.axis == axis);
     });
   }
 
   void put_change(const std::string& axis, const HistorySeries& s, const HistoryChange& c) {
-    // Not all quantities are in all campaigns: what overlaps is one cause.
+    // Not all quantities are in all campaigns: changes that overlap in time have one cause.
     for (AxisChange& cause : causes_[axis])
       if (c.after < cause.before && c.before > cause.after) {
         cause.after = std::max(cause.after, c.after);
@@ -122,7 +122,7 @@ class OfMachine {
   }
 
   /// Size, days, what it is and where to look.
-  void describe(MorningLine& l, const AxisChange& cause) const {
+  void describe(WorkItem& l, const AxisChange& cause) const {
     const AxisChange::Seen& first = cause.seen.front();
     const Quantity q = first.series->unit;
     const double size = first.change->size, U = 2.0 * first.change->u;
@@ -162,7 +162,7 @@ class OfMachine {
     return nullptr;
   }
 
-  static void put_table(MorningLine& l, const reports::TableLoaded& t) {
+  static void put_table(WorkItem& l, const reports::TableLoaded& t) {
     put_text(l, "table", t.table);
     put_text(l, "campaign", t.before_campaign);
     put_text(l, "axis", t.axis);
@@ -171,15 +171,15 @@ class OfMachine {
     l.finding.evidence.push_back({"left", t.left, t.unit});
   }
 
-  MorningLine changed(const std::string& axis, const AxisChange& cause) const {
+  WorkItem changed(const std::string& axis, const AxisChange& cause) const {
     const AxisChange::Seen& first = cause.seen.front();
     const reports::TableLoaded* const table = unstated(axis, cause);
-    MorningLine l = line(Kind::changed,
-                         table != nullptr   ? (table->rms > 0.0 ? "morning.changed-table-likely"
-                                                                : "morning.changed-table-unknown")
-                         : has_event(cause) ? "morning.changed-event"
-                                            : "morning.changed",
-                         "");
+    WorkItem l = line(Kind::changed,
+                      table != nullptr   ? (table->rms > 0.0 ? "morning.changed-table-likely"
+                                                             : "morning.changed-table-unknown")
+                      : has_event(cause) ? "morning.changed-event"
+                                         : "morning.changed",
+                      "");
     if (table != nullptr) put_table(l, *table);
     l.id = "morning.changed:" + d_.id + ":" + axis + ":" + cause.before;
     l.axis = axis;
@@ -244,7 +244,7 @@ class OfMachine {
   }
 
   /// What is open in addition to the values of the line.
-  void also(MorningLine& l, std::vector<Judged> open,
+  void also(WorkItem& l, std::vector<Judged> open,
             const std::vector<reports::OpenValue>& missing) const {
     worst_first(open);
     for (const Judged& j : open) l.also.push_back(open_value(m_.stored, j.result));
@@ -252,8 +252,8 @@ class OfMachine {
   }
 
   /// A limit, and nothing to compare with it.
-  MorningLine no_value(const std::string& place, const std::vector<reports::OpenValue>& all) const {
-    MorningLine l = line(Kind::undecided, "morning.no-value", place);
+  WorkItem no_value(const std::string& place, const std::vector<reports::OpenValue>& all) const {
+    WorkItem l = line(Kind::undecided, "morning.no-value", place);
     const reports::OpenValue& first = all.front();
     l.axis = first.axis, l.quantity = first.quantity, l.campaign = first.campaign;
     l.measurement = first.measurement, l.unit = first.unit, l.limit = first.limit;
@@ -266,7 +266,7 @@ class OfMachine {
 
   void add_fixed(const char* finding, std::vector<Judged>& all) {
     add(limit_line(Kind::out, finding, all));
-    out_.back().state = MorningLine::State::fixed;
+    out_.back().state = WorkItem::State::fixed;
     out_.back().also.clear();  // nothing is open
   }
 
@@ -283,8 +283,8 @@ class OfMachine {
     const auto& last = m_.stored.results[s.judged.back()];
     const auto& before = m_.stored.results[s.judged[s.judged.size() - 2]];
     return last.decision == conforms && before.decision == does_not_conform &&
-           m_.stored.campaigns[last.campaign].night == tonight_.night &&
-           m_.stored.campaigns[before.campaign].night < tonight_.night;
+           m_.stored.campaigns[last.campaign].run == last_run_.run &&
+           m_.stored.campaigns[before.campaign].run < last_run_.run;
   }
 
   double share(const Judged& j) const {
@@ -304,12 +304,12 @@ class OfMachine {
     return m_.stored.campaigns[m_.stored.results[s.judged[first]].campaign].day;
   }
 
-  MorningLine limit_line(Kind kind, const char* finding, std::vector<Judged>& all) const {
+  WorkItem limit_line(Kind kind, const char* finding, std::vector<Judged>& all) const {
     worst_first(all);
     const Judged& worst = all.front();
     const store::StoredResult& last = m_.stored.results[worst.result];
     const reports::OpenValue first = open_value(m_.stored, worst.result);
-    MorningLine l = line(kind, finding, place_of(last));
+    WorkItem l = line(kind, finding, place_of(last));
     l.axis = first.axis, l.quantity = first.quantity, l.measurement = first.measurement;
     l.unit = first.unit, l.value = first.value, l.u = first.u, l.limit = first.limit;
     l.campaign = first.campaign;
@@ -322,8 +322,8 @@ class OfMachine {
   }
 
   /// Beyond its limit; with the change that made it so, if there is one.
-  MorningLine beyond(const std::string& axis, std::vector<Judged>& all) {
-    MorningLine l = limit_line(Kind::out, "morning.out", all);
+  WorkItem beyond(const std::string& axis, std::vector<Judged>& all) {
+    WorkItem l = limit_line(Kind::out, "morning.out", all);
     l.id = "morning.out:" + name() + ":" + axis;
     told_[axis] = true;
     std::string first = l.since;
@@ -332,7 +332,7 @@ class OfMachine {
     AxisChange* explains = nullptr;  // it came with it, or since
     for (AxisChange& cause : causes_[axis]) {
       if (cause.before < first) continue;
-      cause.told = true;
+      cause.listed = true;
       if (explains == nullptr || cause.seen.front().size() > explains->seen.front().size())
         explains = &cause;
     }
@@ -357,7 +357,7 @@ class OfMachine {
     for (const auto& [axis, t] : last) {
       const bool is_right = t->kind == "loaded" || t->kind == "removed";
       if ((is_right && (t->is_stated || is_declared(*t))) || is_repaired(axis, t->before)) continue;
-      MorningLine l = line(Kind::changed, ("morning.table-" + t->kind).c_str(), "");
+      WorkItem l = line(Kind::changed, ("morning.table-" + t->kind).c_str(), "");
       l.id = l.finding.id + ":" + d_.id + ":" + axis + ":" + t->before;
       l.axis = axis, l.unit = t->unit;
       l.campaign = t->before_campaign, l.since = t->before;
@@ -385,7 +385,7 @@ class OfMachine {
   }
 
   bool has_loading_line(const std::string& axis) const {
-    return std::any_of(out_.begin(), out_.end(), [&](const MorningLine& l) {
+    return std::any_of(out_.begin(), out_.end(), [&](const WorkItem& l) {
       return l.axis == axis && l.finding.id.starts_with("morning.table-");
     });
   }
@@ -395,7 +395,7 @@ class OfMachine {
   void tables() {
     for (const reports::TableKept& t : d_.tables) {
       if (t.good || is_measured_since(t.axis, t.date) || has_loading_line(t.axis)) continue;
-      MorningLine l = line(Kind::changed, "morning.table", t.axis + ":" + t.campaign);
+      WorkItem l = line(Kind::changed, "morning.table", t.axis + ":" + t.campaign);
       l.axis = t.axis;
       l.quantity = t.quantity;
       l.unit = t.unit;
@@ -417,16 +417,16 @@ class OfMachine {
 
   /// Tables, results and certificates that were not made: one line for each axis of a campaign.
   void held_back() {
-    std::map<std::string, MorningLine> all;
+    std::map<std::string, WorkItem> all;
     for (const Withheld& w : withheld(m_.stored)) {
       const store::StoredCampaign& c = m_.stored.campaigns[w.campaign];
       const bool table = w.finding.starts_with("table.");
-      MorningLine l = line(Kind::withheld,
-                           table                          ? "morning.no-table"
-                           : is_calibration(w.finding)    ? "morning.calibration"
-                           : store::is_refusal(w.finding) ? "morning.no-result"
-                                                          : "morning.certificate",
-                           c.id + (w.axis.empty() ? "" : ":" + w.axis));
+      WorkItem l = line(Kind::withheld,
+                        table                          ? "morning.no-table"
+                        : is_calibration(w.finding)    ? "morning.calibration"
+                        : store::is_refusal(w.finding) ? "morning.no-result"
+                                                       : "morning.certificate",
+                        c.id + (w.axis.empty() ? "" : ":" + w.axis));
       l.axis = w.axis, l.campaign = c.id, l.since = c.day;
       put_text(l, "campaign", c.id);
       auto& to = all.emplace(l.id, std::move(l)).first->second;
@@ -436,7 +436,7 @@ class OfMachine {
     for (auto& [id, l] : all) add(std::move(l));
   }
 
-  static void add_to_list(MorningLine& l, const char* name, const std::vector<std::string>& more) {
+  static void add_to_list(WorkItem& l, const char* name, const std::vector<std::string>& more) {
     auto at = std::find_if(l.finding.texts.begin(), l.finding.texts.end(),
                            [&](const auto& t) { return t.first == name; });
     if (at == l.finding.texts.end()) at = l.finding.texts.insert(at, {name, ""});
@@ -455,9 +455,9 @@ class OfMachine {
           !(s.forecast->p_out >= nonio::statistics::keep_below))
         continue;
       const std::string leaves = s.forecast->leaves.empty() ? s.forecast->date : s.forecast->leaves;
-      const bool may_be_now = leaves <= tonight_.date || s.forecast->date < tonight_.date;
-      MorningLine l = line(Kind::soon, may_be_now ? "morning.soon-now" : "morning.soon",
-                           axis + ":" + s.quantity);
+      const bool may_be_now = leaves <= last_run_.date || s.forecast->date < last_run_.date;
+      WorkItem l = line(Kind::soon, may_be_now ? "morning.soon-now" : "morning.soon",
+                        axis + ":" + s.quantity);
       l.id = "morning.soon:" + d_.id + ":" + axis + ":" + s.quantity;
       l.axis = axis;
       l.quantity = s.quantity;
@@ -478,8 +478,8 @@ class OfMachine {
   }
 
   void overdue() {
-    if (d_.due.empty() || d_.due >= tonight_.date) return;
-    MorningLine l = line(Kind::overdue, "morning.overdue", "");
+    if (d_.due.empty() || d_.due >= last_run_.date) return;
+    WorkItem l = line(Kind::overdue, "morning.overdue", "");
     l.since = d_.due;
     put_text(l, "due", d_.due);
     put_text(l, "rule", d_.why_due);
@@ -489,7 +489,7 @@ class OfMachine {
   /// A campaign that is dated after the run is not measured yet.
   void later() {
     for (const store::StoredMachine::Later& c : m_.stored.later) {
-      MorningLine l = line(Kind::undecided, "morning.later", c.campaign);
+      WorkItem l = line(Kind::undecided, "morning.later", c.campaign);
       l.campaign = c.campaign;
       l.since = c.day;
       put_text(l, "campaign", c.campaign);
@@ -498,15 +498,15 @@ class OfMachine {
     }
   }
 
-  /// What moved with another instrument and came tonight.
+  /// Changes together with another instrument, in campaigns of this run.
   void instruments() {
     for (std::size_t i = 0; i < m_.followed.size(); ++i) {
-      if (m_.followed[i].night != tonight_.night) continue;
+      if (m_.followed[i].run != last_run_.run) continue;
       const HistorySeries& s = d_.series[i];
       for (const HistoryChange& c : s.changes) {
         if (c.cause != "instrument") continue;
-        MorningLine l = line(Kind::information, "morning.instrument",
-                             s.axis + ":" + s.quantity + ":" + c.before);
+        WorkItem l = line(Kind::information, "morning.instrument",
+                          s.axis + ":" + s.quantity + ":" + c.before);
         l.axis = s.axis;
         l.quantity = s.quantity;
         l.unit = s.unit;
@@ -520,17 +520,17 @@ class OfMachine {
 
   const AssessedMachine& m_;
   const reports::MachineHistory& d_;
-  const Tonight& tonight_;
+  const LastRun& last_run_;
   std::map<std::string, std::vector<AxisChange>> causes_;
-  std::map<std::string, bool> told_;  ///< axes with a line that says all of a change
+  std::map<std::string, bool> told_;  ///< axes with a line that states all of a change
   std::set<std::pair<std::string, std::string>> open_;  ///< axis and quantity of what has a line
-  std::vector<MorningLine> out_;
+  std::vector<WorkItem> out_;
 };
 
 }  // namespace
 
-MorningLine line_of(Kind kind, const char* finding, const std::string& of) {
-  MorningLine line;
+WorkItem line_of(Kind kind, const char* finding, const std::string& of) {
+  WorkItem line;
   line.kind = kind;
   line.id = std::string(finding) + ":" + of;
   line.finding.id = finding;
@@ -538,14 +538,14 @@ MorningLine line_of(Kind kind, const char* finding, const std::string& of) {
   return line;
 }
 
-void put_text(MorningLine& line, const char* name, std::string text) {
+void put_text(WorkItem& line, const char* name, std::string text) {
   line.finding.texts.emplace_back(name, std::move(text));
 }
 
-std::vector<MorningLine> lines_of_machine(const AssessedMachine& machine,
-                                          const reports::MachineHistory& described,
-                                          const Tonight& tonight) {
-  return OfMachine(machine, described, tonight).lines();
+std::vector<WorkItem> lines_of_machine(const AssessedMachine& machine,
+                                       const reports::MachineHistory& described,
+                                       const LastRun& last_run) {
+  return OfMachine(machine, described, last_run).lines();
 }
 
 }  // namespace nonio::assessment

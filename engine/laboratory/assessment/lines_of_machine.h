@@ -4,23 +4,23 @@
 #include <string>
 #include <vector>
 
+#include "laboratory/assessment/last_run.h"
 #include "laboratory/assessment/series.h"
-#include "laboratory/assessment/tonight.h"
 #include "nonio/reports/site.h"
 
 namespace nonio::assessment {
 
 /// A line with an id that is the same in every run: the finding and its subject.
-reports::MorningLine line_of(reports::MorningLine::Kind kind, const char* finding,
-                             const std::string& of);
+reports::WorkItem line_of(reports::WorkItem::Kind kind, const char* finding, const std::string& of);
 
-/// What its words say under that name.
-void put_text(reports::MorningLine& line, const char* name, std::string text);
+/// The text with that name in its words.
+void put_text(reports::WorkItem& line, const char* name, std::string text);
 
-/// Out of tolerance, changed, soon out, overdue, undecided, moved with its instrument, and fixed
-/// tonight; nothing acknowledged yet. What a change explains is told with it.
-std::vector<reports::MorningLine> lines_of_machine(const AssessedMachine& machine,
-                                                   const reports::MachineHistory& described,
-                                                   const Tonight& tonight);
+/// Lines of one machine: out of tolerance, changed, soon out, overdue, indeterminate, changed with
+/// its instrument, and fixed in this run; acknowledgements are not applied yet. What a change
+/// explains is part of its line.
+std::vector<reports::WorkItem> lines_of_machine(const AssessedMachine& machine,
+                                                const reports::MachineHistory& described,
+                                                const LastRun& last_run);
 
 }  // namespace nonio::assessment

@@ -41,7 +41,7 @@ void propose(IntervalProposal& p, double months) {
   p.months = std::max(1, static_cast<int>(std::floor(months + rounding)));
 }
 
-/// Of its interval a machine was left alone for less than this: what was found says nothing of it.
+/// Of its interval a machine was left alone for less than this: what was found shows nothing of it.
 constexpr double early_below = 0.75;
 
 bool is_early(const IntervalFacts& m) { return m.tested < early_below * m.months; }
@@ -103,7 +103,7 @@ IntervalProposal staircase(const IntervalFacts& m) {
   return out;
 }
 
-/// None where they are too few, or say nothing beyond chance.
+/// None where they are too few, or show nothing beyond chance.
 std::optional<IntervalProposal> fleet(const IntervalFacts& m, const Counted& counted) {
   if (static_cast<std::size_t>(counted.machines) < fewest_of_a_fleet) return std::nullopt;
   const kernel::Proposal p =
@@ -118,15 +118,15 @@ std::optional<IntervalProposal> fleet(const IntervalFacts& m, const Counted& cou
   return out;
 }
 
-/// Behind which point the last change lies that was told. What no test confirmed is none; how unsure
-/// it makes the level is in the forecast.
-std::optional<std::size_t> last_told(const FollowedSeries& s) {
+/// The point before the last significant change. Changes that no test confirmed are ignored; their
+/// effect on the uncertainty of the level is in the forecast.
+std::optional<std::size_t> last_significant(const FollowedSeries& s) {
   for (std::size_t i = s.trend.changes.size(); i-- > 0;)
-    if (s.told[i]) return s.trend.changes[i].after;
+    if (s.significant[i]) return s.trend.changes[i].after;
   return std::nullopt;
 }
 
-/// The shortest of what has a limit and is followed; `refusal`: why one of them cannot say.
+/// The shortest of what has a limit and is followed; `refusal`: why one of them gives none.
 std::optional<IntervalProposal> chart(const AssessedMachine& m,
                                       std::optional<IntervalProposal>& refusal) {
   std::optional<IntervalProposal> shortest;
@@ -135,7 +135,7 @@ std::optional<IntervalProposal> chart(const AssessedMachine& m,
     const auto limit = limit_of(m, s);
     if (s.ended || !limit) continue;
     const kernel::Proposal p =
-        kernel::control_chart(s.series, s.trend, limit->limit, last_told(s), limit->beyond);
+        kernel::control_chart(s.series, s.trend, limit->limit, last_significant(s), limit->beyond);
     const Quantity q = quantity_of_unit(s.unit);
     IntervalProposal one = because(control_chart_name, p.why);
     const bool own = limit->quantity == s.quantity;
@@ -193,7 +193,8 @@ IntervalProposal proposal_of(const IntervalFacts& m, const Counted& counted) {
   const auto by_fleet = fleet(m, counted);
   if (by_fleet && (*m.found == Found::conforms || *by_fleet->months < *out.months)) out = *by_fleet;
   if (m.chart && (!m.chart->months || *m.chart->months < *out.months)) out = *m.chart;
-  // Of what is not explained yet nobody knows how long it lasts; half after a failure is no longer.
+  // How long an unexplained change lasts is not known; half the interval after a failure is not
+  // longer.
   if (m.refusal && *m.found != Found::fails) out = *m.refusal;
   return out;
 }

@@ -14,7 +14,7 @@ namespace nonio::assessment {
 
 /// Share of machines that are to be in tolerance when they are measured again.
 inline constexpr double reliability_target = 0.95;
-/// Machines of one model with one interval that differ by chance only.
+/// So many machines of one model and interval are judged together.
 inline constexpr std::size_t fewest_of_a_fleet = 5;
 
 /// What one machine has to do with the proposals of a site.
@@ -26,7 +26,7 @@ struct IntervalFacts {
   /// What each axis was when it was last found: the worst of all that has a limit.
   std::optional<nonio::statistics::Found> found{};
   std::optional<reports::IntervalProposal> chart{};    ///< the shortest of its own readings
-  std::optional<reports::IntervalProposal> refusal{};  ///< why its own readings cannot say
+  std::optional<reports::IntervalProposal> refusal{};  ///< why its own readings give none
   std::optional<reports::IntervalProposal> out_now{};  ///< a value is beyond its limit today
 };
 

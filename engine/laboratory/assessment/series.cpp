@@ -145,8 +145,8 @@ class Happenings {
   const StoredResult& result(std::size_t k) const { return m_.results[s_.results[k]]; }
   const std::string& day(std::size_t k) const { return m_.campaigns[result(k).campaign].day; }
 
-  /// An adjustment lies between a reading as found and one as left; a table that was on and is off.
-  /// What changed between two measurements of one campaign is the work of those who made it.
+  /// An adjustment is between a reading as found and one as left, or a table was activated or
+  /// removed. What changed between two measurements of one campaign was changed on purpose.
   std::string table_between(std::size_t k) const {
     const StoredResult &a = result(k), &b = result(k + 1);
     if (b.state == "as-left") return "as-left";
@@ -301,7 +301,7 @@ class Joining {
       s.stated.push_back(std::move(p));
       if (const StoredTargets* own = targets(i))
         s.targets.push_back(targets_of(*own, s.quantity, r.place));
-      s.night = std::max(s.night, c.night);
+      s.run = std::max(s.run, c.run);
       s.evaluations.push_back(static_cast<std::uint64_t>(c.evaluation));
     }
     if (s.targets.size() < s.stated.size()) s.targets.clear();

@@ -34,15 +34,15 @@ struct FollowedSeries {
   };
   std::vector<Apart> apart{};
   nonio::statistics::Series series;
-  std::vector<std::string> said{};   ///< of each declared happening, in the words of who said it
+  std::vector<std::string> said{};   ///< text of each declared event, as entered
   std::vector<std::string> kinds{};  ///< and its kind: crash, repair, ..., table, instrument
   bool ended = false;                ///< later campaigns measure it otherwise
-  std::uint64_t night = 0;           ///< in which its last point came
+  std::uint64_t run = 0;             ///< in which its last point came
   nonio::statistics::Trend trend{};
-  /// Of each change of the trend: p, adjusted for all that its night has asked.
+  /// Of each change of the trend: p, adjusted for all tests of its run.
   std::vector<double> p_adjusted{};
   /// Whether it is reported, and whether a mail reports it.
-  std::vector<bool> told{}, mailed{};
+  std::vector<bool> significant{}, mailed{};
 };
 
 /// Largest deviations and the like of one axis: shown, and compared with limits.
@@ -76,8 +76,8 @@ struct AssessedMachine {
   std::vector<ShownSeries> shown;
 };
 
-/// Events by machine, each list by day: said under its name, an alias, or a serial number that no
-/// other machine has and that is no machine's name. Looked up once for all machines.
+/// Events by machine, each list by day: stated under its name, an alias, or a serial number that no
+/// other machine has and that is not the name of another machine. Looked up once for all machines.
 class MachineEvents {
  public:
   MachineEvents(const std::vector<store::MachineState>& all, const store::StoredLogs& logs);

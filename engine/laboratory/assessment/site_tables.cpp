@@ -12,7 +12,7 @@
 namespace nonio::assessment {
 
 using reports::MonthOfMachine;
-using Kind = reports::MorningLine::Kind;
+using Kind = reports::WorkItem::Kind;
 
 namespace {
 

@@ -15,12 +15,12 @@
 
 namespace nonio::assessment {
 
-using reports::MorningLine;
+using reports::WorkItem;
 
 namespace {
 
 /// A finding is named by the line's id, by the finding's, or by that without what follows a dash.
-bool is_of(const config::Acknowledgement& a, const MorningLine& l) {
+bool is_of(const config::Acknowledgement& a, const WorkItem& l) {
   const std::string& id = l.finding.id;
   return a.finding == l.id || a.finding == id || a.finding == id.substr(0, id.find('-', 8));
 }
@@ -30,8 +30,7 @@ struct Knew {
   double value = 0.0, U = 0.0;
 };
 
-std::optional<Knew> known_on(const AssessedMachine& m, const MorningLine& l,
-                             const std::string& day) {
+std::optional<Knew> known_on(const AssessedMachine& m, const WorkItem& l, const std::string& day) {
   std::optional<Knew> out;
   for (const store::StoredResult& r : m.stored.results) {
     if (r.axis != l.axis || r.quantity != l.quantity || quantity_of_unit(r.unit) != l.unit ||
@@ -45,8 +44,8 @@ std::optional<Knew> known_on(const AssessedMachine& m, const MorningLine& l,
 }
 
 /// What is expected has been acknowledged until its day, whatever is measured before.
-bool has_moved(const config::Acknowledgement& a, const AssessedMachine& m, const MorningLine& l) {
-  if (!l.value || l.kind == MorningLine::Kind::soon) return false;
+bool has_moved(const config::Acknowledgement& a, const AssessedMachine& m, const WorkItem& l) {
+  if (!l.value || l.kind == WorkItem::Kind::soon) return false;
   const double now = *l.value * unit_of(l.unit).per_si;
   const auto then = known_on(m, l, a.date);
   if (!a.value && !then) return false;
@@ -60,7 +59,7 @@ bool is_of_quantity(const config::Acknowledgement& a, const std::string& quantit
 }
 
 /// Whether this value was open on the day of the acknowledgement, and has not moved since.
-bool was_known(const config::Acknowledgement& a, const AssessedMachine& m, const MorningLine& l,
+bool was_known(const config::Acknowledgement& a, const AssessedMachine& m, const WorkItem& l,
                const reports::OpenValue& v) {
   if (a.finding != l.id && !is_of_quantity(a, v.quantity)) return false;
   if (!v.value)
@@ -83,7 +82,7 @@ bool was_known(const config::Acknowledgement& a, const AssessedMachine& m, const
 }
 
 /// A separate line for what is not acknowledged.
-MorningLine line_of_rest(const MorningLine& known, std::vector<reports::OpenValue> rest) {
+WorkItem line_of_rest(const WorkItem& known, std::vector<reports::OpenValue> rest) {
   const auto first = std::find_if(rest.begin(), rest.end(),
                                   [](const reports::OpenValue& v) { return !v.undecided; });
   if (first != rest.end()) std::rotate(rest.begin(), first, first + 1);
@@ -91,8 +90,8 @@ MorningLine line_of_rest(const MorningLine& known, std::vector<reports::OpenValu
   const char* finding = !v.value      ? "morning.no-value"
                         : v.undecided ? (v.u ? "morning.undecided" : "morning.no-uncertainty")
                                       : "morning.out";
-  MorningLine l = line_of(v.undecided ? MorningLine::Kind::undecided : MorningLine::Kind::out,
-                          finding, known.id.substr(known.id.find(':') + 1) + ":" + v.quantity);
+  WorkItem l = line_of(v.undecided ? WorkItem::Kind::undecided : WorkItem::Kind::out, finding,
+                       known.id.substr(known.id.find(':') + 1) + ":" + v.quantity);
   l.machine = known.machine, l.customer = known.customer, l.link = known.link;
   l.since = known.since;
   l.axis = v.axis, l.quantity = v.quantity, l.campaign = v.campaign, l.measurement = v.measurement;
@@ -103,19 +102,19 @@ MorningLine line_of_rest(const MorningLine& known, std::vector<reports::OpenValu
 }
 
 /// Changes that a later campaign has shown.
-bool is_later(const config::Acknowledgement& a, const MorningLine& l) {
+bool is_later(const config::Acknowledgement& a, const WorkItem& l) {
   const auto before = std::find_if(l.finding.texts.begin(), l.finding.texts.end(),
                                    [](const auto& t) { return t.first == "before"; });
   return before != l.finding.texts.end() && before->second > a.date;
 }
 
-/// A line that a person has acknowledged, until then, is known. It is new again when what it says
+/// A line that a person has acknowledged, until then, is known. It is new again when what it states
 /// happened after that day, or when its value has moved by more than U since: from the value that
 /// the acknowledgement names, else from the last one before its day. What else the line lists is
 /// known if it was open on that day too and has not moved; a new line is returned with the rest.
-std::optional<MorningLine> acknowledge(MorningLine& l, const AssessedMachine& m,
-                                       const store::StoredLogs& logs, const std::string& date) {
-  if (l.state == MorningLine::State::fixed) return std::nullopt;
+std::optional<WorkItem> acknowledge(WorkItem& l, const AssessedMachine& m,
+                                    const store::StoredLogs& logs, const std::string& date) {
+  if (l.state == WorkItem::State::fixed) return std::nullopt;
   for (const config::Acknowledgement& a : logs.acknowledged) {
     const auto alias = logs.aliases.find(a.machine);
     const std::string& machine = alias == logs.aliases.end() ? a.machine : alias->second;
@@ -123,13 +122,13 @@ std::optional<MorningLine> acknowledge(MorningLine& l, const AssessedMachine& m,
         (!a.axis.empty() && a.axis != l.axis) || !is_of_quantity(a, l.quantity) || a.until < date ||
         a.date > date || is_later(a, l) || has_moved(a, m, l))
       continue;
-    l.state = MorningLine::State::known;
+    l.state = WorkItem::State::known;
     l.by = a.by, l.until = a.until, l.why = a.why;
     const auto rest =
         std::stable_partition(l.also.begin(), l.also.end(),
                               [&](const reports::OpenValue& v) { return was_known(a, m, l, v); });
     if (rest == l.also.end()) return std::nullopt;
-    MorningLine anew = line_of_rest(l, {rest, l.also.end()});
+    WorkItem anew = line_of_rest(l, {rest, l.also.end()});
     l.also.erase(rest, l.also.end());
     return anew;
   }
@@ -147,10 +146,10 @@ reports::MachineHistory without_series(const reports::MachineHistory& whole) {
   return out;
 }
 
-/// Overdue begins after the due date, what an event does on its own day; a forecast is worded
-/// differently once its day has passed, and so is a line of what comes soon.
+/// The last day on which the lines of a machine are the same: "overdue" begins after the due date,
+/// an event has its effect on its day, and forecasts are worded otherwise after theirs.
 std::string same_until(const AssessedMachine& m, const reports::MachineHistory& described,
-                       const std::vector<MorningLine>& lines, const std::string& date) {
+                       const std::vector<WorkItem>& lines, const std::string& date) {
   std::string until = for_ever;
   const auto before = [&](const std::string& day) {
     if (const auto number = day_number(day); number && day > date)
@@ -160,9 +159,9 @@ std::string same_until(const AssessedMachine& m, const reports::MachineHistory& 
   if (!described.due.empty() && described.due >= date) until = described.due;
   for (const reports::HistorySeries& s : described.series)
     if (s.forecast && s.forecast->date >= date) until = std::min(until, s.forecast->date);
-  for (const MorningLine& l : lines)
+  for (const WorkItem& l : lines)
     for (const auto& [name, text] : l.finding.texts)
-      if (l.kind == MorningLine::Kind::soon && name == "leaves") before(text);
+      if (l.kind == WorkItem::Kind::soon && name == "leaves") before(text);
   return until;
 }
 
@@ -180,21 +179,21 @@ std::vector<const config::Acknowledgement*> acknowledgements_of(const std::strin
 }
 
 Standing standing_of(const AssessedMachine& m, const reports::MachineHistory& described,
-                     const store::StoredLogs& logs, const Tonight& tonight,
+                     const store::StoredLogs& logs, const LastRun& last_run,
                      const std::filesystem::path& out) {
   Standing s;
   s.shown = without_series(described), s.compared = compared_of(m, described);
   s.alone = described.id.empty();
   s.name = described.id;
   if (s.alone && !m.stored.campaigns.empty()) s.name = m.stored.campaigns.back().id;
-  s.lines = lines_of_machine(m, described, tonight);
-  for (MorningLine& l : s.lines)
+  s.lines = lines_of_machine(m, described, last_run);
+  for (WorkItem& l : s.lines)
     if (l.link.empty() && !l.campaign.empty()) l.link = link_of(out, l.campaign);
   s.until = acknowledgements_of(described.id, logs).empty()
-                ? same_until(m, described, s.lines, tonight.date)
-                : tonight.date;
+                ? same_until(m, described, s.lines, last_run.date)
+                : last_run.date;
   for (std::size_t i = 0; i < s.lines.size(); ++i)  // what is not acknowledged comes last
-    if (auto rest = acknowledge(s.lines[i], m, logs, tonight.date)) s.lines.push_back(*rest);
+    if (auto rest = acknowledge(s.lines[i], m, logs, last_run.date)) s.lines.push_back(*rest);
   s.months = months_of(m, described);
   s.instruments = instruments_of(m, out);
   s.has_results = !m.stored.results.empty();

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "laboratory/assessment/last_run.h"
 #include "laboratory/assessment/proposals.h"
 #include "laboratory/assessment/series.h"
 #include "laboratory/assessment/site_tables.h"
-#include "laboratory/assessment/tonight.h"
 #include "laboratory/store/reader.h"
 #include "nonio/reports/site.h"
 
@@ -20,7 +20,7 @@ struct Standing {
   bool alone = false;             ///< a campaign that belongs to no machine
   reports::MachineHistory shown;  ///< without series
   std::vector<ComparedValue> compared{};
-  std::vector<reports::MorningLine> lines{};
+  std::vector<reports::WorkItem> lines{};
   std::vector<reports::MonthOfMachine> months{};
   std::vector<reports::InstrumentUse> instruments{};
   bool has_results = false;
@@ -34,7 +34,7 @@ struct Standing {
 
 /// `described`: of the same machine, see `describe`.
 Standing standing_of(const AssessedMachine& machine, const reports::MachineHistory& described,
-                     const store::StoredLogs& logs, const Tonight& tonight,
+                     const store::StoredLogs& logs, const LastRun& last_run,
                      const std::filesystem::path& out);
 
 /// Acknowledgements that may concern a machine.

@@ -109,7 +109,7 @@ double of_squares(const std::vector<double>& v) {
 
 /// Half the variance of what differs between the residuals of two fits of one kind, less what the
 /// readings make. divisor: of the sum of squares; the median of chi-square over its mean where a
-/// median is wanted, else 1.
+/// median is required, else 1.
 double half_difference(const StoredFit& a, const StoredFit& b, double divisor) {
   std::vector<double> d(a.residuals.size());
   std::transform(a.residuals.begin(), a.residuals.end(), b.residuals.begin(), d.begin(),

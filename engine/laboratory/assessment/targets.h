@@ -9,8 +9,8 @@
 #include "laboratory/statistics/series.h"
 #include "laboratory/statistics/stretch.h"
 
-/// Comparison of campaigns that have other targets. ISO 230-2 wants random offsets of the targets, so
-/// their ends differ from campaign to campaign.
+/// Comparison of campaigns that have other targets. ISO 230-2 requires random offsets of the
+/// targets, so their ends differ from campaign to campaign.
 namespace nonio::assessment {
 
 /// A fit to values at the targets of a campaign; units of the store.

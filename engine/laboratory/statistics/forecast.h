@@ -26,11 +26,11 @@ struct Beyond {
   double value = 0.0, u = 0.0;
 };
 
-/// State x' b with u^2 = x' C x (+ walk dt). Limit: of the absolute value with what is beyond it. Answers by P(out): below
-/// 5 % keep, up to 50 % watch, beyond it, or if the last point is out already, act. Nothing is said
-/// of fewer than three points or beyond half of their span (one point on a day counts).
-/// Source: ISO 14253-1 and ILAC-G8 for the three answers (general knowledge; the bounds are ours).
-/// u_new: of the next campaign; none: that of the last one.
+/// State x' b with u^2 = x' C x (+ walk dt). Limit: of the absolute value with what is beyond it.
+/// Answers by P(out): below 5 % keep, up to 50 % watch, beyond it, or if the last point is out
+/// already, act. Nothing is stated about fewer than three points or beyond half of their span (one
+/// point on a day counts). Source: ISO 14253-1 and ILAC-G8 for the three answers (general
+/// knowledge; the bounds are ours). u_new: of the next campaign; none: that of the last one.
 Forecast forecast(const Series&, const Trend&, double time, std::optional<double> limit,
                   std::optional<double> u_new = std::nullopt, Beyond beyond = {});
 

@@ -13,7 +13,7 @@ using Method = Proposal::Method;
 
 constexpr double months_a_year = 12.0;
 constexpr double five_days = 5.0 * 12.0 / 365.25;  // months
-constexpr std::size_t fewest_behind_a_change = 2, fewest_campaigns = 3;
+constexpr std::size_t fewest_after_a_change = 2, fewest_campaigns = 3;
 
 Proposal refused(Method method, std::string why,
                  std::vector<std::pair<std::string, double>> numbers = {}) {
@@ -53,7 +53,7 @@ Proposal control_chart(const Series& s, const Trend& t, double limit,
   if (std::fabs(s.points.back().value) + beyond.value > limit)
     return refused(Method::control_chart, "out-already", {{"value", s.points.back().value}});
   const std::size_t behind = s.points.size() - (changed_after ? *changed_after + 1 : 0);
-  if (behind < fewest_behind_a_change)
+  if (behind < fewest_after_a_change)
     return refused(Method::control_chart, "change-not-explained",
                    {{"campaigns", static_cast<double>(behind)}});
   const Forecast f = forecast(s, t, last, limit, std::nullopt, beyond);

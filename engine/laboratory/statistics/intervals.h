@@ -26,15 +26,15 @@ struct Proposal {
 enum class Found { conforms, undecided, fails };
 
 /// Half the interval after a failure; after a success so much longer that both balance at the
-/// target: (1 + a)^R (1/2)^(1-R) = 1, so 1 + a = 2^((1-R)/R) (3.7 % at 95 %). Undecided: as it is.
-/// Why: "passed", "failed", "undecided"; none for "no-interval", "no-target".
+/// target: (1 + a)^R (1/2)^(1-R) = 1, so 1 + a = 2^((1-R)/R) (3.7 % at 95 %). Indeterminate:
+/// unchanged. Why: "passed", "failed"; none for "no-interval", "no-target".
 Proposal staircase(double months, Found, double target = 0.95);
 
 /// From the machine's own readings: the day on which the one-sided 95 % bound of the forecast meets
 /// the limit ("meets-limit"), but not farther than the forecast may look, half the observed span
-/// ("as-far-as-seen"). None: "few-campaigns" (three), "out-already", "change-not-explained" (the
-/// last change that was told, behind the point `changed_after`, has fewer than two campaigns behind
-/// it).
+/// ("as-far-as-seen"). None: "few-campaigns" (three), "out-already", "change-not-explained" (after
+/// the last significant change, which follows the point `changed_after`, there are fewer than two
+/// campaigns).
 Proposal control_chart(const Series&, const Trend&, double limit,
                        std::optional<std::size_t> changed_after = {}, Beyond beyond = {});
 

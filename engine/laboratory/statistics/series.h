@@ -40,25 +40,25 @@ struct Series {
   std::vector<Point> points;
   std::vector<Declared> declared{};
   std::uint64_t seed = 1;  ///< of simulated nulls; the same for the same campaigns
-  /// Factor of all `u`: campaigns of a laboratory may scatter more than each says of itself
+  /// Factor of all `u`: campaigns of a laboratory may scatter more than their own `u` states
   /// (excess_scatter).
   double excess = 1.0;
   /// Standard deviation, per year, of the slopes that such series have in this laboratory
-  /// (spread_of_slopes): what is known of a slope before the points, while steps are asked for.
-  /// 0: nothing is known, and a drift is tested.
+  /// (spread_of_slopes): what is known of a slope before the points, while steps are searched. 0:
+  /// nothing is known, and a drift is tested.
   double spread = 0.0;
-  /// A slope is told of a level too, and its uncertainty is in every forecast: that a drift was not
-  /// seen does not say that there is none.
+  /// A slope is estimated for a level too, and its uncertainty is in every forecast: a drift that
+  /// was not detected may still exist.
   bool own_slope = false;
   /// A drift comes in where chance makes one in fewer series than this share.
   double drift_below = 0.01;
-  /// Behind which points steps are that nobody declared, where that is known: others are not looked
-  /// for.
+  /// Points that are followed by steps without a declared event, where they are known: no others
+  /// are searched.
   std::optional<std::vector<std::size_t>> steps{};
 };
 
 /// An error that names the first point at fault: a value that is not finite, u that is not above 0,
-/// a time before the one before it, an event behind the last point.
+/// a time before the one before it, an event after the last point.
 Expected<void> check(const Series&);
 
 /// By how much points scatter more than their u, over many series: the root of the median of
@@ -75,12 +75,13 @@ struct Scatter {
 std::vector<Scatter> scatter_of(const Series&);
 double excess_of_ratios(std::vector<double> ratios);
 
-/// Slope per year beside a step at each declared event and at each place where chance makes one in
-/// fewer than one of 10,000 series. None for fewer than four points, or if they cannot tell.
+/// Slope per year, fitted together with a step at each declared event and at each place where
+/// chance gives one in fewer than one of 10,000 series. None for fewer than four points, or if it
+/// is not identifiable.
 struct Slope {
   double b = 0.0, u = 0.0;
 };
-std::optional<Slope> slope_beside_steps(const Series&);
+std::optional<Slope> slope_with_steps(const Series&);
 
 /// Standard deviation sigma of the true slopes of many series, per year: the mean of
 /// min(b^2/(sigma^2 + u^2), 9) is what it is of a normal variable, 0.995; so a few series that are

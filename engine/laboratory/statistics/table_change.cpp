@@ -15,7 +15,7 @@ constexpr double most_noise = 0.4;        // of the change, of a rest that is no
 constexpr double most_left = 0.1;         // of h, where the shape of the table is significant
 constexpr double clear = 25.0;            // of chi2, against a change without a table
 constexpr double distinct = 9.0;          // of chi2, against another name
-constexpr double slope_seen = 8.0;        // slope of h over u_slope, where it has no shape
+constexpr double slope_seen = 8.0;        // least slope of h in u_slope, where h is a line
 constexpr int most_points = 5;            // of an offset
 constexpr std::size_t fewest_places = 4;  // that both campaigns have
 

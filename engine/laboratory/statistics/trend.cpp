@@ -93,7 +93,7 @@ class Trending {
   }
 
   /// A column for each place at which something is known to have happened and the values may have
-  /// stepped. An instrument is in the covariance: its places only say whose a step is.
+  /// stepped. An instrument is in the covariance: its places only assign a step to it.
   void declare() {
     for (std::size_t d = 0; d < s_.declared.size(); ++d) {
       const Declared& known = s_.declared[d];
@@ -183,7 +183,7 @@ class Trending {
     return beyond > expected + 5.0 * std::sqrt(expected);
   }
 
-  /// The step or the drift that says most comes in; false if none does.
+  /// The most significant step or drift is added; false if none does.
   bool improve() {
     const auto base = fit(shape_);
     if (!base || !(base->dof > 0.0)) return false;
@@ -229,8 +229,8 @@ class Trending {
     return Change::Cause::undeclared;
   }
 
-  /// What is known of slopes helps to see a step. What is said of this machine's own slope comes from
-  /// its own points alone: its interval holds whatever the slopes of the others are.
+  /// What is known of slopes helps to see a step. What is stated about this machine's own slope
+  /// comes from its own points alone: its interval holds whatever the slopes of the others are.
   void free_slope(Shape& shape) const {
     Shape own = shape;
     own.drifts = own.free = true;
@@ -242,11 +242,11 @@ class Trending {
     Trend out;
     const auto held = fit(shape_);
     if (!held) return out;
-    Shape told = shape_;
-    free_slope(told);
-    const Gls last = *fit(told);
+    Shape with_slope = shape_;
+    free_slope(with_slope);
+    const Gls last = *fit(with_slope);
     const Index p = last.b.size();
-    out.chi2 = held->chi2, out.dof = held->dof, out.drifts = told.drifts;
+    out.chi2 = held->chi2, out.dof = held->dof, out.drifts = with_slope.drifts;
     out.line_or_step = line_or_step_;
     out.coefficients.assign(last.b.begin(), last.b.end());
     for (Index i = 0; i < p; ++i)
@@ -258,7 +258,7 @@ class Trending {
       c.size = held->b(i), c.u = std::sqrt(held->C(i, i));
       if (c.declared) c.p = normal_two_sided(c.size / c.u);
     }
-    segments(last, told, out);
+    segments(last, with_slope, out);
     std::stable_sort(out.changes.begin(), out.changes.end(),
                      [](const Change& a, const Change& b) { return a.after < b.after; });
     const bool undeclared = std::any_of(out.changes.begin(), out.changes.end(),
@@ -277,10 +277,10 @@ class Trending {
            (shape_.free || normal_two_sided(last.b(i) / std::sqrt(last.C(i, i))) < named_below);
   }
 
-  void segments(const Gls& last, const Shape& told, Trend& out) const {
+  void segments(const Gls& last, const Shape& with_slope, Trend& out) const {
     std::set<std::size_t> ends{s_.points.size() - 1};
-    for (const Change& c : told.changes) ends.insert(c.after);
-    const MatrixXd X = columns_.of(told);
+    for (const Change& c : with_slope.changes) ends.insert(c.after);
+    const MatrixXd X = columns_.of(with_slope);
     const auto u_of = [&](std::size_t i) {
       const VectorXd x = X.row(static_cast<Index>(i)).transpose();
       return std::sqrt(x.dot(last.C * x));
@@ -293,7 +293,7 @@ class Trending {
                 X.row(static_cast<Index>(to)).dot(last.b),
                 u_of(from),
                 u_of(to)};
-      if (told.drifts) {
+      if (with_slope.drifts) {
         s.slope = last.b(last.b.size() - 1);
         s.u_slope = std::sqrt(last.C(last.b.size() - 1, last.b.size() - 1));
       }
@@ -312,9 +312,9 @@ class Trending {
     out.smallest_change = (critical + math::normal_quantile(0.8)) / at.length(at.length.size() - 1);
   }
 
-  /// Of a level that does not hold, and of two steps or more that nobody declared: local level, its
-  /// variance by maximum likelihood (independent u), if it is likelier than the steps at their
-  /// price. At the border q = 0 the likelihood ratio is half a chi-square with 1 degree of freedom.
+  /// For a level that does not fit, and for two or more undeclared steps: local level, its variance
+  /// by maximum likelihood (independent u), if it is likelier than the steps at their price. At the
+  /// border q = 0 the likelihood ratio is half a chi-square with 1 degree of freedom.
   void walk(Trend& out) const {
     constexpr double at_border = 5.412;  // its quantile of 1 %
     const bool restless = math::chi2_upper(out.chi2, out.dof) < named_below;
@@ -359,7 +359,7 @@ class Trending {
 
 }  // namespace
 
-std::optional<Slope> slope_beside_steps(const Series& given) {
+std::optional<Slope> slope_with_steps(const Series& given) {
   constexpr double surely = 1e-4;
   Series s = given;
   s.spread = 0.0;

@@ -12,20 +12,21 @@
 ///     b = (X' V^-1 X)^-1 X' V^-1 y,  C = (X' V^-1 X)^-1,  chi2 = r' V^-1 r,
 ///
 /// by whitening with the Cholesky factor of V and a QR decomposition. Columns of X: 1; a step at
-/// each declared event (its size is estimated, not tested away); steps that nobody declared; time.
+/// each declared event (its size is estimated, not tested away); undeclared steps; time.
 ///
-/// A step that nobody declared: G_k, the fall of chi2 by a step behind point k, largest over the
-/// places without a declared one; its p is that of the largest, by Bonferroni's bound where that is
-/// below 0.001 (where it is sharp), else from 10,000 simulated series of the same V and X. A drift:
-/// the fall of chi2 by a column of time, normal. Whichever is significant at 1 % comes in, both:
-/// the drift where it says the same with a chi2 not more than 4 larger. Up to three steps. Of eight
-/// points or more: a level that wanders (random walk) in place of a level that does not hold, or of
-/// two steps or three if it is likelier than they are at a price of 3 ln n each.
+/// An undeclared step: G_k, the decrease of chi2 by a step after point k, largest over the places
+/// without a declared one; its p is that of the largest, by Bonferroni's bound where that is below
+/// 0.001 (where it is sharp), else from 10,000 simulated series of the same V and X. A drift: the
+/// decrease of chi2 by a column of time, normal. Either is added if significant at 1 %; of both the
+/// drift, if its chi2 is at most 4 larger. Up to three steps. Of eight points or more: a level that
+/// wanders (random walk) in place of a level that does not hold, or of two steps or three if it is
+/// likelier than they are at a price of 3 ln n each.
 ///
 /// Where the laboratory's slopes are known to spread (Series::spread), a slope is held near 0 by a
-/// row slope/spread = 0 while steps are asked for, and for their sizes. Slopes, segments and
-/// forecasts are of a fit with a free slope (Series::own_slope: of a level too): an interval that leans on the slopes of other machines covers 95 % of all
-/// slopes together, but too few of those that wear.
+/// row slope/spread = 0 while steps are searched, and for their sizes. Slopes, segments and
+/// forecasts are of a fit with a free slope (Series::own_slope: of a level too): an interval that
+/// leans on the slopes of other machines covers 95 % of all slopes together, but too few of those
+/// that wear.
 ///
 /// Sources: JCGM 100:2008; generalised likelihood ratio (general knowledge; the null of the largest
 /// is simulated here, reference values in tests/unit/history).
@@ -35,7 +36,7 @@ enum class Model { none, level, drift, step, walk };
 
 struct Segment {
   std::size_t from = 0, to = 0;        ///< points, both included
-  double first = 0.0, last = 0.0;      ///< what the model says there
+  double first = 0.0, last = 0.0;      ///< what the model predicts there
   double u_first = 0.0, u_last = 0.0;  ///< with the part that all points have in common
   double slope = 0.0, u_slope = 0.0;   ///< per year
 };
@@ -58,7 +59,7 @@ struct Trend {
   std::optional<double> smallest_change{};
   bool line_or_step = false;  ///< these points cannot separate a drift from a step
 
-  // To go on from here (forecast.h): what the model says at a time after the last point is
+  // To go on from here (forecast.h): what the model predicts at a time after the last point is
   // coefficients . (1, 1 of each change, time).
   std::vector<double> coefficients, covariance;  ///< covariance row by row
   bool drifts = false;

@@ -29,7 +29,7 @@ std::string input(const reading::Inputs& inputs, const char* name) {
 
 IndexedSince since_of(const Record& record, const Entry& entry) {
   if (record.indexed) return *record.indexed;
-  return {{record.night, record.date}, input(record.inputs, "version"), digest_of(entry)};
+  return {{record.run, record.date}, input(record.inputs, "version"), digest_of(entry)};
 }
 
 bool may_pass(const Record& record) {
@@ -57,7 +57,7 @@ std::string if_restored(const fs::path& folder) {
          (folder / evaluation::record_name).string() + " to go on without what was known before";
 }
 
-/// What the record says of it; empty: that there was none, or nothing that can be relied on.
+/// What the record states about it; empty: that there was none, or nothing that can be relied on.
 std::string recorded_digest(const fs::path& folder) {
   const auto last = evaluation::last_record(folder);
   if (!last || !*last || !(*last)->whole) return {};
@@ -96,12 +96,12 @@ Known known_in(dom::object json) {
   reading::Inputs inputs;
   for (const auto [name, digest] : dom::object(json["inputs"]))
     inputs.emplace_back(name, std::string_view(digest));
-  const std::uint64_t night = json["night"];
-  return {{{night, text("date")}, text("version"), text("sha256")},
+  const std::uint64_t run = json["night"];
+  return {{{run, text("date")}, text("version"), text("sha256")},
           read_entry(json["results"], inputs)};
 }
 
-/// What earlier.json says. Damage is an error here too.
+/// What earlier.json states. Damage is an error here too.
 Expected<FolderHistory> earlier_in(const std::string& bytes, const fs::path& folder) {
   FolderHistory history;
   if (bytes.empty()) return history;
@@ -141,8 +141,8 @@ std::string text_of(const std::vector<CertificateRow>& certificates) {
 /// It contains the results as they were.
 std::string text_of(const IndexedSince& since, const reading::Inputs& inputs,
                     std::string_view results) {
-  storage::Json json = {{"night", since.night.number},
-                        {"date", since.night.date},
+  storage::Json json = {{"night", since.run.number},
+                        {"date", since.run.date},
                         {"version", since.version},
                         {"sha256", since.sha256},
                         {"inputs", storage::Json::object()}};
@@ -174,8 +174,8 @@ void add_number(const std::optional<CertificateRow>& more, std::vector<Certifica
   if (!known) numbers.push_back(*more);
 }
 
-/// The results of a record as they were, if that is what still lies there. Where others were on
-/// their way into their place, earlier.json has them already.
+/// The earlier results of a record, if they are still stored there. If newer ones were replacing
+/// them, earlier.json contains the earlier ones already.
 std::optional<std::string> still_there(const Kept& kept) {
   auto bytes = storage::read_file(kept.folder / evaluation::results_name);
   if (!bytes) return std::nullopt;
@@ -200,7 +200,7 @@ Expected<void> put_aside(const Kept& kept, const fs::path& folder, const std::st
   const bool same = carried.indexed && since.sha256 == carried.indexed->sha256;
   if (same) carried.indexed = since;
   const auto is_it = [&](const Known& known) {
-    return known.since.sha256 == since.sha256 && known.since.night.number == since.night.number;
+    return known.since.sha256 == since.sha256 && known.since.run.number == since.run.number;
   };
   const bool superseded =
       !same && (history.evaluations.empty() || !is_it(history.evaluations.back()));
@@ -232,17 +232,17 @@ Expected<FolderHistory> history_of(const fs::path& folder, const std::string& id
   return history;
 }
 
-Expected<std::vector<std::uint64_t>> nights_of(const fs::path& folder) {
+Expected<std::vector<std::uint64_t>> runs_of(const fs::path& folder) {
   NONIO_TRY(const auto bytes, earlier_bytes(folder));
   NONIO_TRY(const auto earlier, earlier_in(bytes, folder));
   NONIO_TRY(const auto kept, kept_in(folder));
-  std::vector<std::uint64_t> nights;
-  for (const Known& known : earlier.evaluations) nights.push_back(known.since.night.number);
+  std::vector<std::uint64_t> runs;
+  for (const Known& known : earlier.evaluations) runs.push_back(known.since.run.number);
   if (kept) {
     const Record& record = kept->record;
-    nights.push_back(record.indexed ? record.indexed->night.number : record.night);
+    runs.push_back(record.indexed ? record.indexed->run.number : record.run);
   }
-  return nights;
+  return runs;
 }
 
 Expected<Carried> carry_over(const fs::path& folder, const Record& fresh, std::string_view results,
@@ -258,7 +258,7 @@ Expected<Carried> carry_over(const fs::path& folder, const Record& fresh, std::s
   }
   NONIO_TRY(const auto entry, entry_of(results, fresh.inputs, id));
   carried.indexed =
-      IndexedSince{{fresh.night, fresh.date}, input(fresh.inputs, "version"), digest_of(entry)};
+      IndexedSince{{fresh.run, fresh.date}, input(fresh.inputs, "version"), digest_of(entry)};
   if (!kept) return carried;
   const Record& old = kept->record;
   const bool same = old.indexed && old.indexed->sha256 == carried.indexed->sha256;

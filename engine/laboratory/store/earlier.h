@@ -11,8 +11,8 @@
 #include "campaign/evaluation/record.h"
 #include "laboratory/store/entry.h"
 
-/// What was known of a campaign before its results were replaced: OUT/<campaign>/earlier.json,
-/// which is there where something else was known.
+/// The entry of a campaign before its results were replaced: OUT/<campaign>/earlier.json, which
+/// exists only if that entry was different.
 namespace nonio::store {
 
 inline constexpr const char* earlier_name = "earlier.json";
@@ -23,7 +23,7 @@ struct Known {
   Entry entry;
 };
 
-/// What the output folder of a campaign says.
+/// What the output folder of a campaign states.
 struct FolderHistory {
   std::vector<Known> evaluations;            ///< each supersedes the one before
   std::vector<CertificateRow> certificates;  ///< all numbers that it was issued
@@ -34,7 +34,7 @@ struct FolderHistory {
 Expected<FolderHistory> history_of(const std::filesystem::path& folder, const std::string& id);
 
 /// The runs of those evaluations, without reading the results.
-Expected<std::vector<std::uint64_t>> nights_of(const std::filesystem::path& folder);
+Expected<std::vector<std::uint64_t>> runs_of(const std::filesystem::path& folder);
 
 /// What is to be stored in addition to new results, so that earlier knowledge is kept.
 struct Carried {

@@ -10,7 +10,7 @@
 #include "campaign/evaluation/record.h"
 #include "nonio/sdk/error.h"
 
-/// The laboratory's memory: what results.json of all campaigns say, as rows of a database that can
+/// The laboratory's memory: what results.json of all campaigns show, as rows of a database that can
 /// be made again from them.
 namespace nonio::store {
 

@@ -9,10 +9,10 @@
 namespace nonio::store {
 
 /// How a machine is called in the history: by its asset, else by maker and serial; empty where a
-/// campaign says neither, and then it belongs to no machine.
+/// campaign states neither, and then it belongs to no machine.
 std::string machine_of(const MachineAsStated& machine);
 
-/// Two names that may be one machine. Nothing is joined until site.toml says so.
+/// Two names that may be one machine. Nothing is joined until site.toml states that.
 struct Spelling {
   std::string one, other;  ///< the name that more campaigns have comes first
   std::string why;         ///< in words: what they have in common

@@ -11,8 +11,8 @@
 
 namespace nonio::store {
 
-/// Where the store of an output folder lies, kept in OUT/.nonio/database: whoever reads the output
-/// folder needs no site.toml for it.
+/// Location of the store of an output folder, kept in OUT/.nonio/database, so that reading the
+/// output folder does not need site.toml.
 struct StorePlace {
   std::optional<storage::Server> server{};  ///< none: OUT/history.sqlite
   std::string owner{};                      ///< random; the schema on the server bears it too
@@ -22,8 +22,8 @@ struct StorePlace {
   std::vector<std::string> turns{};
 };
 
-/// An error if the file is damaged. Where it belongs to somebody else it names no password file:
-/// it would have us send our own password to a server of his choice.
+/// An error if the file is damaged. In a file of another user a password file is ignored: that user
+/// could otherwise make this process send its password to any server.
 Expected<StorePlace> place_of(const std::filesystem::path& out);
 
 /// As site.toml has it. True: the store lay elsewhere before.
@@ -38,7 +38,7 @@ std::string store_in(const std::filesystem::path& out);
 /// The store, opened to be read: on a server all that is read from it belongs to one run.
 Expected<storage::Database> open_store(const std::filesystem::path& out);
 
-/// Makes the server's schema if it is not there. An error if it is another output folder's, or if a
+/// Makes the server's schema if it is missing. An error if it is another output folder's, or if a
 /// copy of this one has written into it.
 Expected<void> take_schema(storage::Database& database, const std::filesystem::path& out);
 

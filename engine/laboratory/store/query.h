@@ -10,7 +10,7 @@
 
 namespace nonio::store {
 
-/// What is wanted; empty: any.
+/// What is required; empty: any.
 struct Query {
   std::string machine{}, axis{}, quantity{}, source{};
   std::string from{}, to{};  ///< days of the campaigns, both included
@@ -30,8 +30,8 @@ struct Point {
 /// store, or nothing of that machine, axis or quantity in it: with the nearest name.
 Expected<std::vector<Point>> query(const std::filesystem::path& out, const Query& wanted);
 
-/// The name under which a machine's campaigns stand, of that or of an alias. An error names the
-/// nearest.
+/// The name under which the campaigns of a machine are stored, from that name or an alias. An error
+/// names the nearest.
 Expected<std::string> machine_named(const std::filesystem::path& out, const std::string& name);
 
 /// The machines of a store, with aliases joined, by name.

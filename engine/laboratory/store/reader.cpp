@@ -141,7 +141,7 @@ void read_results(Database& database, std::size_t campaign, std::int64_t evaluat
   }
 }
 
-/// What says that a table or a certificate was not made, or is not to be used; that the instrument
+/// Findings that a table or a certificate was not made, or is not to be used; that the instrument
 /// had no valid calibration; or that the readings gave no result.
 bool withholds(const FindingRow& f) {
   return f.severity == "attention" &&
@@ -232,7 +232,7 @@ Expected<StoredMachine> StoreReader::stored(Of of, const std::string& name,
                                             .certificate = std::move(r[9]),
                                             .valid_until = std::move(r[10])},
                              .evaluation = whole_of<std::int64_t>(r[11]),
-                             .night = whole_of<std::uint64_t>(r[12]),
+                             .run = whole_of<std::uint64_t>(r[12]),
                              .number = std::move(r[13]),
                              .place = std::move(r[14]),
                              .control = std::move(r[15])});
@@ -313,8 +313,8 @@ Expected<std::map<std::string, std::string>> StoreReader::certificates() {
   return out;
 }
 
-Expected<std::map<std::uint64_t, std::uint64_t>> StoreReader::followed_since(std::uint64_t night) {
-  const auto first = static_cast<std::int64_t>(night);
+Expected<std::map<std::uint64_t, std::uint64_t>> StoreReader::followed_since(std::uint64_t run) {
+  const auto first = static_cast<std::int64_t>(run);
   std::map<std::uint64_t, std::uint64_t> out;
   for (Database::Row& r : database_.rows(followed_sql, {first, first}))
     out[whole_of<std::uint64_t>(r[0])] = whole_of<std::uint64_t>(r[1]);

@@ -23,8 +23,8 @@ struct StoredCampaign {
   std::string id, day, customer, purpose, status;
   InstrumentAsStated instrument;
   std::int64_t evaluation = 0;
-  std::uint64_t night = 0;  ///< in which that evaluation came
-  std::string number{};     ///< of its last certificate
+  std::uint64_t run = 0;  ///< in which that evaluation came
+  std::string number{};   ///< of its last certificate
   std::string place{}, control{};
 };
 
@@ -61,7 +61,7 @@ struct StoredTables {
 /// A finding with which an analysis gives no result: "diagonals.refused-place", "-yaw-needed".
 bool is_refusal(std::string_view finding);
 
-/// All that the store says of one machine. A campaign that failed measured nothing: it is not here.
+/// All that the store has of one machine, without failed campaigns, which measured nothing.
 struct StoredMachine {
   std::vector<StoredCampaign> campaigns;  ///< by day, then by id
   std::vector<StoredResult> results;      ///< in the order of their campaigns
@@ -70,21 +70,21 @@ struct StoredMachine {
   std::vector<std::string> other_targets{};
   /// Severity by finding of the last evaluation of each campaign.
   std::vector<std::map<std::string, std::string>> findings;
-  /// Of the last evaluation of each campaign: findings of tables and certificates that ask for
-  /// attention, and refusals of analyses.
+  /// Of the last evaluation of each campaign: findings of tables and certificates with severity
+  /// warning, and refusals of analyses.
   std::vector<std::vector<FindingRow>> asked{};
   std::vector<LimitWithoutValue> without_value{};
   std::vector<StoredTables> tables{};  ///< in the order of their campaigns
   struct Later {
     std::string campaign, day;
   };
-  std::vector<Later> later{};  ///< campaigns dated after the day that was asked for: not here
+  std::vector<Later> later{};  ///< campaigns dated after the day that was requested: not here
 };
 
 /// A machine, with aliases joined.
 struct MachineState {
   NamedMachine machine;
-  std::uint64_t night = 0;          ///< of the last evaluation that counts
+  std::uint64_t run = 0;            ///< of the last evaluation that counts
   std::set<std::string> serials{};  ///< that its campaigns state
 };
 
@@ -92,7 +92,7 @@ struct MachineState {
 struct StoredEvaluation {
   std::string machine;  ///< aliases joined; empty: of none
   std::string campaign, sha256, day;
-  std::uint64_t night = 0;
+  std::uint64_t run = 0;
   bool counts = true;  ///< no other supersedes it
 };
 
@@ -102,7 +102,7 @@ struct CountedCampaign {
   std::string campaign, day, sha256;
 };
 
-/// What people say, as the store has it.
+/// Entries of people, as the store has them.
 struct StoredLogs {
   std::vector<config::Event> events;
   std::vector<config::Acknowledgement> acknowledged;
@@ -122,7 +122,7 @@ class StoreReader {
   Expected<std::vector<MachineState>> machines();
   /// `until`: what is dated after this day is not measured yet.
   Expected<StoredMachine> machine(const std::string& name, const std::string& until = "9999-12-31");
-  /// A campaign alone: of those that belong to no machine nobody knows which are of one.
+  /// A single campaign: which campaigns without a stated machine belong together is not known.
   Expected<StoredMachine> campaign(const std::string& id, const std::string& until = "9999-12-31");
   Expected<StoredLogs> logs();
   /// The machine of each campaign, aliases joined.
@@ -134,7 +134,7 @@ class StoreReader {
   /// Numbers of each campaign and what they replace, as one text.
   Expected<std::map<std::string, std::string>> certificates();
   /// How many different quantities of axes each run from this one on has evaluated.
-  Expected<std::map<std::uint64_t, std::uint64_t>> followed_since(std::uint64_t night);
+  Expected<std::map<std::uint64_t, std::uint64_t>> followed_since(std::uint64_t run);
 
  private:
   enum class Of { machine, campaign };

@@ -83,7 +83,7 @@ CREATE TABLE covariance (
   PRIMARY KEY (evaluation, first_item));
 )sql";
 
-/// What campaigns say; the others are copies of the site's files as they are now.
+/// What campaigns show; the others are copies of the site's files as they are now.
 constexpr const char* append_only[] = {
     "machine",    "campaign", "evaluation",          "result",        "common_part",
     "covariance", "finding",  "limit_without_value", "control_table", "certificate"};

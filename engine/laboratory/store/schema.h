@@ -15,7 +15,7 @@ inline constexpr std::int64_t schema_version = 7;
 
 bool has_table(storage::Database& database, std::string_view name);
 
-/// The version that a database says it is of; none: it is empty.
+/// The version that a database states it is of; none: it is empty.
 std::optional<std::int64_t> version_of(storage::Database& database);
 
 /// In place of whatever was there, in the transaction that is open.

@@ -91,11 +91,11 @@ void insert(Database& database, std::int64_t evaluation, const Known& known, con
   insert_campaign(database, e);
   const Database::Value supersedes = before.evaluation == 0 ? Database::Value(Database::Null{})
                                                             : Database::Value(before.evaluation);
-  database.put("INSERT INTO evaluation VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-               {evaluation, known.since.sha256, e.campaign, e.campaign_sha256,
-                static_cast<std::int64_t>(known.since.night.number), known.since.night.date,
-                known.since.version, e.status, e.message, supersedes,
-                std::string_view(why(known, before)), e.place, e.control});
+  database.put(
+      "INSERT INTO evaluation VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+      {evaluation, known.since.sha256, e.campaign, e.campaign_sha256,
+       static_cast<std::int64_t>(known.since.run.number), known.since.run.date, known.since.version,
+       e.status, e.message, supersedes, std::string_view(why(known, before)), e.place, e.control});
   for (std::size_t i = 0; i < e.results.size(); ++i)
     insert_result(database, evaluation, number(i), e.results[i]);
   for (const CovarianceRow& c : e.covariance) {
@@ -128,7 +128,7 @@ void insert(Database& database, const std::string& campaign,
                  {c.number, campaign, c.campaign_sha256, c.day, c.replaces});
 }
 
-/// What people say, as the site's files have it now, in place of what they had.
+/// Replaces the entries of people by those that the site's files have now.
 void replace_logs(Database& database, const config::SiteLogs& logs,
                   const std::vector<config::Alias>& aliases,
                   const std::vector<config::Event>& of_records,
@@ -167,10 +167,10 @@ constexpr const char* known_name = "history";
 
 /// Position of an evaluation in the order of the store.
 struct Place {
-  std::uint64_t night = 0;
+  std::uint64_t run = 0;
   std::string campaign;
   std::size_t in_chain = 0;  ///< of its campaign
-  auto key() const { return std::tie(night, campaign, in_chain); }
+  auto key() const { return std::tie(run, campaign, in_chain); }
 };
 bool operator<(const Place& a, const Place& b) { return a.key() < b.key(); }
 
@@ -231,14 +231,14 @@ class Filling {
           {campaign});
       if (database_.failed()) return fail(database_.take_error().error());
       if (!fits(rows, history->evaluations)) return false;
-      std::uint64_t night = 0;
+      std::uint64_t run = 0;
       for (std::size_t i = 0; i < history->evaluations.size(); ++i) {
-        night = std::max(night, history->evaluations[i].since.night.number);
+        run = std::max(run, history->evaluations[i].since.run.number);
         if (i < rows.size()) continue;
         Before before;
         if (i == rows.size() && i > 0)
           before = {std::stoll(rows.back()[0]), rows.back()[2], rows.back()[3]};
-        const Place place{night, campaign, i};
+        const Place place{run, campaign, i};
         if (place < last) return false;
         added.emplace(place, std::pair(std::move(history->evaluations[i]), std::move(before)));
       }
@@ -286,12 +286,12 @@ class Filling {
       if (!config::is_campaign_id(campaign)) return;
       const auto record = storage::is_there(folder / evaluation::results_name);
       if (record && !*record) return;
-      const auto nights = nights_of(folder);
-      if (!nights) return leave_out(campaign, nights.error().message);
-      std::uint64_t night = 0;
-      for (std::size_t i = 0; i < nights->size(); ++i) {
-        night = std::max(night, (*nights)[i]);
-        places.push_back({night, campaign, i});
+      const auto runs = runs_of(folder);
+      if (!runs) return leave_out(campaign, runs.error().message);
+      std::uint64_t run = 0;
+      for (std::size_t i = 0; i < runs->size(); ++i) {
+        run = std::max(run, (*runs)[i]);
+        places.push_back({run, campaign, i});
       }
     });
     if (!listed) return fail(listed.error());
@@ -358,7 +358,7 @@ Expected<void> leave_to_server(const fs::path& out, std::int64_t evaluations) {
 
 /// In one transaction: all of it or nothing.
 Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::string>& campaigns,
-                        const Told& told, const std::function<void()>& alive) {
+                        const SiteRecords& records, const std::function<void()>& alive) {
   const auto place = place_of(out);
   if (!place) return fail(place.error());
   NONIO_TRY(auto opened, open_or_replace(out, *place));
@@ -383,7 +383,7 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
     make_tables(database);
     if (auto filled = filling.all(); !filled) return fail(filled.error());
   }
-  replace_logs(database, told.logs, told.aliases, told.of_records, told.due);
+  replace_logs(database, records.logs, records.aliases, records.of_records, records.due);
   const std::int64_t last = last_number(database);
   if (auto ended = transaction.end(); !ended) return fail(ended.error());
   if (place->server)
@@ -394,36 +394,36 @@ Expected<Updated> write(const fs::path& out, bool all, const std::vector<std::st
 }  // namespace
 
 Expected<Updated> update(const fs::path& out, bool behind, std::vector<std::string> campaigns,
-                         const Told& told, const std::function<void()>& alive) {
+                         const SiteRecords& records, const std::function<void()>& alive) {
   std::sort(campaigns.begin(), campaigns.end());
   campaigns.erase(std::unique(campaigns.begin(), campaigns.end()), campaigns.end());
-  return write(out, behind, campaigns, told, alive);
+  return write(out, behind, campaigns, records, alive);
 }
 
-Expected<Updated> rebuild(const fs::path& out, const Told& told,
+Expected<Updated> rebuild(const fs::path& out, const SiteRecords& records,
                           const std::function<void()>& alive) {
-  return write(out, true, {}, told, alive);
+  return write(out, true, {}, records, alive);
 }
 
-Expected<std::optional<std::uint64_t>> known_night(const fs::path& out) {
+Expected<std::optional<std::uint64_t>> known_run(const fs::path& out) {
   const fs::path path = out / known_folder / known_name;
   NONIO_TRY(const auto there, storage::is_there(path));
   if (!there) return std::nullopt;
   NONIO_TRY(const auto text, storage::read_small_file(path));
-  std::uint64_t night = 0;
+  std::uint64_t run = 0;
   const char* const end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, night);
+  const auto [at, error] = std::from_chars(text.data(), end, run);
   if (error != std::errc() || std::string_view(at, end) != "\n") return std::nullopt;
-  return night;
+  return run;
 }
 
-Expected<void> forget_known_night(const fs::path& out) {
+Expected<void> forget_known_run(const fs::path& out) {
   // Written over and not removed: there are shares on which nothing can be removed.
   return storage::publish(out / known_folder, {{known_name, "none\n"}});
 }
 
-Expected<void> note_known_night(const fs::path& out, std::uint64_t night) {
-  return storage::publish(out / known_folder, {{known_name, std::to_string(night) + "\n"}});
+Expected<void> note_known_run(const fs::path& out, std::uint64_t run) {
+  return storage::publish(out / known_folder, {{known_name, std::to_string(run) + "\n"}});
 }
 
 }  // namespace nonio::store

@@ -11,9 +11,9 @@ namespace nonio::math {
 
 /// A pass is all readings of one run in one direction. The model of a reading is
 ///     x = mean of its target and direction + offset of its pass (+ slope of its pass * z) + e
-/// with z the distance of the target from the middle of the targets. What a pass shares (drift, a
-/// moved zero) is told apart from what a single reading does: one scatter of 5 passes is known
-/// with 4 degrees of freedom, however many targets a pass has.
+/// with z the distance of the target from the middle of the targets. What the readings of a pass
+/// share (drift, a moved zero) is separated from the scatter of single readings: one scatter of 5
+/// passes is known with 4 degrees of freedom, however many targets a pass has.
 struct PassModel {
   struct Pass {
     std::uint32_t run;

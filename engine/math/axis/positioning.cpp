@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Rules of positioning over the statistics of axis_statistics.h. Ranges unless +- stands before them.
+// Rules of positioning over the statistics of axis_statistics.h. Ranges unless +- precedes them.
 //
 //   iso    as iso230_2.cpp, with k of the edition
 //   upr    min(R+, R-), k = 2

@@ -24,8 +24,8 @@
 namespace nonio::math {
 namespace {
 
-// Runs are pooled with single readings if this level does not tell them apart; a pair of runs tells
-// nearly nothing by itself (one degree of freedom) and is given the benefit of the doubt.
+// Runs are pooled with single readings unless they differ at this level; a pair of runs alone shows
+// nearly nothing (one degree of freedom), so that no difference is assumed.
 // docs/dev/constants.md, A3.
 constexpr double pooling_level = 0.5, pooling_level_of_pair = 0.05;
 // docs/dev/constants.md, A4.
@@ -93,7 +93,7 @@ Reversal::Kind decide(const Reversal& r, bool scatter_known) {
   using Kind = Reversal::Kind;
   if (r.largest < negligible) return scatter_known ? Kind::none : Kind::unknown;
   if (std::isnan(r.p_mean))
-    return Kind::unknown;  // one target, one run: no scatter to hold it against
+    return Kind::unknown;  // one target, one run: no scatter to compare it with
   const bool one_value_helps = r.largest_left <= tolerated_share * r.largest;
   const bool exists = significant(r.p_mean, significance) && r.mean != 0.0;
   const bool varies = scatter_known && significant(r.p_varies, significance);

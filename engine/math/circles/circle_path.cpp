@@ -109,7 +109,7 @@ PathCircle least_squares_circle(PathReadings readings, double R) {
 PathCircle minimum_zone(PathReadings readings, double R) {
   PathCircle best = least_squares_circle(readings, R);
   if (readings.size() < 4 || !(best.width() > 0.0)) return best;
-  // Of the readings that hold the zone there are four; more come in until none lies outside.
+  // Four readings define the zone; more are added until none is outside of it.
   std::vector<std::size_t> few{best.innermost, best.outermost};
   for (int q = 0; q < 8; ++q) {
     double low = INFINITY, high = -INFINITY;

@@ -94,8 +94,8 @@ double scatter_of_windows(const CauseFit& fit) {
 /// What the spikes of an axis leave behind the zone that is left out, both directions and both
 /// reversals together: how much the residuals in the next window differ from those in the one after
 /// the one behind it, in u of such differences. The larger of both axes.
-double left_behind(std::span<const CircleReading> readings, const CircleModel& model,
-                   const CauseFit& fit) {
+double left_over(std::span<const CircleReading> readings, const CircleModel& model,
+                 const CauseFit& fit) {
   const double edge = model.leave_out, scatter = scatter_of_windows(fit);
   std::array<double, 2> sum{}, n{};
   for (const int direction : {1, -1})
@@ -121,7 +121,7 @@ Expected<CauseFit> fit_causes_without_spikes(std::span<const CircleReading> read
   constexpr double step = full_turn / 360.0;
   auto fit = fit_causes(readings, model);
   double enough = begins;
-  while (fit && model.leave_out + step <= most && left_behind(readings, model, *fit) > enough) {
+  while (fit && model.leave_out + step <= most && left_over(readings, model, *fit) > enough) {
     enough = goes_on;
     CircleModel wider = model;
     wider.leave_out += step;

@@ -9,8 +9,8 @@ namespace nonio::math {
 inline constexpr double full_turn = 2.0 * std::numbers::pi;  // rad
 // docs/dev/constants.md, A1.
 inline constexpr double significance = 0.01;  // of the tests behind findings
-inline constexpr double rounding = 1e-10;     // m or rad: less is no machine's scatter
-/// Standard uncertainty of what lies within a full range of 1, and of a limit of 1 that is reached
+inline constexpr double rounding = 1e-10;     // m or rad: less than the scatter of any machine
+/// Standard uncertainty of a quantity within a full range of 1, and of a limit of 1 that is reached
 /// from one side.
 inline constexpr double of_full_range = std::numbers::inv_sqrt3 / 2.0,
                         of_limit = std::numbers::inv_sqrt3;

@@ -220,7 +220,7 @@ std::optional<ErrorCurve> closed_turn(const ErrorCurve& curve) {
     order.emplace_back(x, i);
   }
   std::sort(order.begin(), order.end());
-  // The value at 0 where none was measured lies on the line across the end of the turn.
+  // If 0 was not measured, its value is interpolated across the end of the turn.
   const auto folded = [&](const std::vector<double>& value, std::vector<double>& position) {
     std::vector<double> x, y;
     for (std::size_t k = 0; k < n;) {

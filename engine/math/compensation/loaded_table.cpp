@@ -7,7 +7,7 @@
 namespace nonio::math {
 namespace {
 
-/// Between which points a position lies; `part` of the way from the lower one.
+/// The interval of points that contains a position; `part`: share of the way from the lower one.
 struct Place {
   std::size_t below = 0;
   double part = 0.0;

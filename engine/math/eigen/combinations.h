@@ -13,8 +13,8 @@ namespace nonio::math {
 using OpenCombination = std::vector<std::pair<std::size_t, double>>;
 
 /// By elimination from the left: a column that is no pivot is a sum of pivots before it. told: unit
-/// vectors of what the readings tell, as columns. Sizes up to `least` are 0. Unknowns on which no
-/// reading depends are combinations of themselves alone.
+/// vectors of what the readings determine, as columns. Sizes up to `least` are 0. Unknowns on which
+/// no reading depends are combinations of themselves alone.
 inline std::vector<OpenCombination> open_combinations(const Eigen::MatrixXd& told, double least) {
   Eigen::MatrixXd R = told.transpose();
   std::vector<Eigen::Index> pivots;

@@ -26,8 +26,8 @@ struct Spectrum {
   Eigen::MatrixXd vectors;
 };
 
-/// Of a symmetric matrix. A function, so that nobody else compiles its loops: -O3 makes them
-/// 1.7 times as fast.
+/// Eigenvalues of a symmetric matrix. A function, so that its loops are compiled only here: -O3
+/// makes them 1.7 times as fast.
 Spectrum spectrum(const Eigen::MatrixXd& symmetric);
 
 /// Products and solutions of dense matrices, compiled once in statistics/dense.cpp. A product written
@@ -93,7 +93,7 @@ Eigen::MatrixXd columns(const Eigen::MatrixXd& A, Eigen::Index first, Eigen::Ind
 /// A with y as a further column.
 Eigen::MatrixXd with_column(const Eigen::MatrixXd& A, const Eigen::VectorXd& y);
 
-/// A count or position as Eigen wants it.
+/// A count or position as Eigen requires it.
 inline Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
 }  // namespace nonio::math

@@ -37,7 +37,7 @@ Expected<AxisAnalysis> begin_axis_analysis(const AnalysisInput& in) {
   a.test = choose_targets(all, in.options.text("incomplete_targets") == "leave-out", a.findings);
   a.deviation = deviation_of(a.test.rotary);
   a.position = position_of(a.test.rotary);
-  a.approaches = approaches_behind_means(a.test);
+  a.approaches = approaches_per_mean(a.test);
   const Axis* stated = in.campaign.machine.axis(in.measurement.axis);
   Axis axis = stated != nullptr ? *stated : Axis{};
   if (in.measurement.compensation == "off") axis.active_backlash = 0.0;

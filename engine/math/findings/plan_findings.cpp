@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the test plan of ISO 230-2:2014 (clauses on tests for linear and rotary axes) asks and a
+// What the test plan of ISO 230-2:2014 (clauses on tests for linear and rotary axes) requires and a
 // campaign did not do:
 //   linear to 2 m   5 targets a metre, never fewer than 5; 5 approaches from each direction
 //   linear above    the whole travel once, targets every 250 mm; 2 m of it by the full test
@@ -119,9 +119,9 @@ void counts(const AxisTest& test, const Observations& o, std::vector<Finding>& f
     findings.push_back(FindingBuilder("runs.single", false, test.rotary)
                            .text("absent", "R, R+, R-, A, A+, A-")
                            .done());
-  if (!is_long(test) && approaches_behind_means(test) < 5)
+  if (!is_long(test) && approaches_per_mean(test) < 5)
     findings.push_back(FindingBuilder("plan.too-few-runs", false, test.rotary)
-                           .count("runs", number(approaches_behind_means(test)))
+                           .count("runs", number(approaches_per_mean(test)))
                            .count("wanted", 5.0)
                            .done());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Scatter of the two directions, suspected readings, and the target that stands apart.
+// Scatter of the two directions, suspected readings, and a single outlying target.
 //
 // repeatability.asymmetric: F tests between the directions, two-sided, of the scatter of single
 //   readings (about the means of their target and pass) and of the scatter of the passes (what
@@ -11,7 +11,7 @@
 //   of the model of pass_model.h; R. D. Cook, S. Weisberg 1982, Residuals and Influence in Regression,
 //   section 2.1. 1 % over all readings (Bonferroni). At least three readings at the target.
 // target.worst: q_i = distance of the mean at i from the line between its neighbours, scaled to the
-//   variance of one mean. A single target that stands out leaves the pattern (-w, 1, -w) in q; its
+//   variance of one mean. A single outlying target gives the pattern (-w, 1, -w) in q; its
 //   height is compared with the q_j that it does not touch: t, 1 % over all targets.
 #include <algorithm>
 #include <cmath>

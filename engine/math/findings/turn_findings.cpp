@@ -6,7 +6,7 @@
 //   t     mean of the two directions' mean g against the scatter of g_p about them; level 1 %,
 //         degrees of freedom: passes less directions. A drift within the passes has opposite signs
 //         in the two directions and drops out as well.
-// With one pass in each direction no scatter is known and nothing is said.
+// With one pass in each direction no scatter is known and nothing is reported.
 #include <cmath>
 #include <map>
 #include <vector>

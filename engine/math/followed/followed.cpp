@@ -13,7 +13,7 @@ namespace nonio::math {
 namespace {
 
 constexpr double largest_gap = full_turn / 3.0;  // of targets that cover a turn
-/// Readings may tell a sinusoid at most so much worse than phases that are spread evenly.
+/// Largest factor by which a sinusoid may be determined worse than by evenly spread phases.
 constexpr double most_inflated = 2.0;
 constexpr std::size_t fewest_for_curve = 5, fewest_for_sinusoid = 10;
 
@@ -23,7 +23,7 @@ struct Following {
   RunComponents components;
   FollowedAxis out{};
   std::vector<TargetWeights> weights{};  ///< of each quantity; none of ln_s
-  /// What the means are a sum of beside a line or polynomial: periods of sinusoids that are followed.
+  /// Periods of the sinusoids that are followed, in addition to a line or polynomial.
   std::vector<double> periods{};
 };
 
@@ -51,13 +51,13 @@ void add_curve(Following& work) {
   add_followed(work, "curve_3", deviation_along(test), of_means(test, curve.row(3)));
 }
 
-/// beside: columns of what is fitted with the sinusoid.
+/// others: columns that are fitted together with the sinusoid.
 void add_sinusoid(Following& work, const std::string& name, double period,
-                  const Eigen::MatrixXd& beside) {
+                  const Eigen::MatrixXd& others) {
   const AxisTest& test = work.test;
   const auto targets = static_cast<double>(test.targets.size());
   if (test.targets.size() < fewest_for_sinusoid || test.length() < period / 2.0) return;
-  const Eigen::MatrixXd X = with_sinusoid(beside, test, period);
+  const Eigen::MatrixXd X = with_sinusoid(others, test, period);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(X);
   if (qr.rank() < X.cols()) return;
   const Eigen::MatrixXd rows = fit_rows(X).bottomRows(2);
@@ -84,12 +84,12 @@ std::optional<double> drive_period(const Axis* axis, bool rotary) {
 void add_shapes(Following& work, const Axis* axis, Across across) {
   const AxisTest& test = work.test;
   const bool turn = test.rotary && covers_a_turn(test);
-  const Eigen::MatrixXd beside = turn ? legendre_columns(test, 1) : legendre_columns(test, 4);
-  if (turn) add_sinusoid(work, "turn", full_turn, beside);
+  const Eigen::MatrixXd others = turn ? legendre_columns(test, 1) : legendre_columns(test, 4);
+  if (turn) add_sinusoid(work, "turn", full_turn, others);
   if (!test.rotary && across == Across::no) add_scale(work);  // the slope across it is set-up
   if (!test.rotary) add_curve(work);
   const auto period = drive_period(axis, test.rotary);
-  if (period && *period > 0.0) add_sinusoid(work, "cyclic", *period, beside);
+  if (period && *period > 0.0) add_sinusoid(work, "cyclic", *period, others);
 }
 
 void put_uncertainties(Following& work) {

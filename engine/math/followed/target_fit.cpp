@@ -96,10 +96,10 @@ TargetFit fit_columns(const AxisTest& test, const RunComponents& c, const Matrix
   return out;
 }
 
-std::size_t degree_for(std::size_t targets, std::size_t beside) {
+std::size_t degree_for(std::size_t targets, std::size_t others) {
   if (targets < fewest_for_cubic) return 1;
   std::size_t degree = std::clamp((targets - 1) / 2, std::size_t{3}, most_degree);
-  while (degree > 3 && degree + 1 + beside + least_rest > targets) --degree;
+  while (degree > 3 && degree + 1 + others + least_rest > targets) --degree;
   return degree;
 }
 
@@ -118,12 +118,12 @@ MatrixXd legendre_columns(const AxisTest& test, int columns) {
   return X;
 }
 
-MatrixXd with_sinusoid(const MatrixXd& beside, const AxisTest& test, double period) {
-  MatrixXd X(beside.rows(), beside.cols() + 2);
-  X.leftCols(beside.cols()) = beside;
+MatrixXd with_sinusoid(const MatrixXd& others, const AxisTest& test, double period) {
+  MatrixXd X(others.rows(), others.cols() + 2);
+  X.leftCols(others.cols()) = others;
   for (Index i = 0; i < X.rows(); ++i) {
     const double phase = full_turn * test.targets[static_cast<std::size_t>(i)] / period;
-    X(i, beside.cols()) = std::cos(phase), X(i, beside.cols() + 1) = std::sin(phase);
+    X(i, others.cols()) = std::cos(phase), X(i, others.cols() + 1) = std::sin(phase);
   }
   return X;
 }

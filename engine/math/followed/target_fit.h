@@ -11,7 +11,7 @@ namespace nonio::math {
 Eigen::MatrixXd legendre_columns(const AxisTest&, int columns);
 
 /// And cos and sin of 2 pi x/period.
-Eigen::MatrixXd with_sinusoid(const Eigen::MatrixXd& beside, const AxisTest&, double period);
+Eigen::MatrixXd with_sinusoid(const Eigen::MatrixXd& others, const AxisTest&, double period);
 
 /// Rows: coefficient of each column, which are independent, in a least-squares fit to the targets, by
 /// target. No larger than X: there may be many targets.

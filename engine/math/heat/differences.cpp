@@ -67,7 +67,7 @@ void put_differences(const Campaign& campaign, const std::vector<Difference>& al
   if (all.empty()) return;
   ReadingModel model = model_of(campaign, all);
   put_ball(campaign, all, model);
-  ReadingModel without = model;  // for what holds a ball of unknown form
+  ReadingModel without = model;  // for values that include a ball of unknown form
   bool ball_missing = false;
   double most = 0.0;
   for (const Difference& d : all) {

@@ -36,7 +36,7 @@ LengthAnswer judge_lengths(const std::vector<LengthError>& all, const LengthLimi
   constexpr std::size_t most_forgiven = 5;
   LengthAnswer out;
   double nearest = -INFINITY;
-  std::vector<int> verdict(all.size());  // -1 inside, 0 undecided, 1 outside
+  std::vector<int> verdict(all.size());  // -1 inside, 0 indeterminate, 1 outside
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double most = limit.at(all[i].L), over = std::fabs(all[i].E) - most;
     const Decision one = decide(std::fabs(all[i].E), U[i], most, rule);

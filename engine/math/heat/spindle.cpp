@@ -137,8 +137,8 @@ std::vector<OfTurn> turn_by_turn(const Turns& k) {
   return out;
 }
 
-/// Correlation of the asynchronous motion with that of the turn before, over all angles: the mean of
-/// N turns is as good as N (1 - rho)/(1 + rho) that do not hang together.
+/// Correlation of the asynchronous motion with that of the turn before, over all angles: the mean
+/// of N turns are as good as N (1 - rho)/(1 + rho) independent ones.
 double turns_that_count(const Turns& k, const std::vector<double>& left) {
   double with = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < left.size(); ++i) {
@@ -213,7 +213,7 @@ Separated multi_step(std::span<const std::vector<double>> T) {
   out.spindle.assign(n, 0.0), out.ball.assign(n, 0.0);
   for (const auto& one : T)
     for (std::size_t i = 0; i < n; ++i) out.spindle[i] += one[i] / static_cast<double>(K);
-  // T_k(t) - S(t) = P(-t - 360 k/K): of the first set-up as it stands, the others turned back.
+  // T_k(t) - S(t) = P(-t - 360 k/K): of the first set-up as measured, the others turned back.
   for (std::size_t k = 0; k < K; ++k)
     for (std::size_t i = 0; i < n; ++i) {
       const double from =

@@ -2,10 +2,10 @@
 //
 // d(t) = d0 + sum_k c_k (1 - exp(-t/tau_k)) + noise. Readings become means of at most 120 equal
 // intervals. tau_k: a search over ln tau, then Gauss-Newton in (d0, c_k, ln tau_k); the noise is
-// white with a slow one beside it (statistics/path_noise.h), estimated with the columns of the last
-// step. cov = s^2 (J' V^-1 J)^-1. Effective degrees of freedom: n/g less the parameters/g, g the
-// variance of a slow column against that of white noise, at least 1.
-// Second constant: only if it makes the rest significantly smaller (F, level 1 %).
+// white plus a slow part (statistics/path_noise.h), estimated with the columns of the last step.
+// cov = s^2 (J' V^-1 J)^-1. Effective degrees of freedom: n/g less the parameters/g, g the variance
+// of a slow column against that of white noise, at least 1. Second constant: only if it makes the
+// rest significantly smaller (F, level 1 %).
 #include <algorithm>
 #include <cmath>
 

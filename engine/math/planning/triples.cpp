@@ -44,7 +44,7 @@ struct Search {
   std::vector<Triple> triples;
 };
 
-/// Fewest steps and largest step that ISO 230-2 asks of an axis of this length.
+/// Fewest steps and largest step that ISO 230-2 requires for an axis of this length.
 struct Sampling {
   std::int64_t steps = fewest_steps;
   double largest_step = 1e9;
@@ -113,7 +113,7 @@ bool is_multiple(std::int64_t step, const std::vector<std::int64_t>& pitches) {
 }
 
 /// The largest multiple of `m` up to `q` whose steps meet no multiple of a pitch; 0 if none does.
-std::int64_t beside_pitch(const Search& s, const Triple& t, std::int64_t q, std::int64_t m) {
+std::int64_t with_pitch(const Search& s, const Triple& t, std::int64_t q, std::int64_t m) {
   // A pitch forbids every q or every m-th, m >= 2: among few neighbours one is free, if any is.
   const std::int64_t tries = 2 * static_cast<std::int64_t>(s.pitch_x.size() + s.pitch_y.size() + 1);
   q -= q % m;
@@ -129,7 +129,7 @@ struct Found {
 };
 
 /// Every triple and number of steps that keeps the limits, with its largest step, until `take`
-/// says that it is enough.
+/// states that it is enough.
 template <class Take>
 void for_each_plan(const Search& s, const Take& take) {
   for (const Triple& t : s.triples) {
@@ -139,7 +139,7 @@ void for_each_plan(const Search& s, const Take& take) {
     const std::int64_t multiple = multiple_of(s, t);
     for (std::int64_t n = s.least_n; n <= std::min(s.most_n, products); ++n) {
       if (s.even && n % 2 != 0) continue;
-      const std::int64_t q = beside_pitch(s, t, std::min(products / n, q_step), multiple);
+      const std::int64_t q = with_pitch(s, t, std::min(products / n, q_step), multiple);
       if (q > 0 && take(Found{&t, q, n})) return;
     }
   }
@@ -200,16 +200,15 @@ class Leaders {
  public:
   Leaders(std::size_t most, EvenSteps even) : most_(most), even_(even) {}
   void see(const TriplePlan& p) {
-    if (list_.size() == most_ && !stands_before(p, list_.back(), even_)) return;
+    if (list_.size() == most_ && !comes_before(p, list_.back(), even_)) return;
     for (auto it = list_.begin(); it != list_.end(); ++it)
       if (same_triple(*it, p)) {
-        if (!stands_before(p, *it, even_)) return;
+        if (!comes_before(p, *it, even_)) return;
         list_.erase(it);
         break;
       }
-    const auto place = std::find_if(list_.begin(), list_.end(), [&](const TriplePlan& o) {
-      return stands_before(p, o, even_);
-    });
+    const auto place = std::find_if(list_.begin(), list_.end(),
+                                    [&](const TriplePlan& o) { return comes_before(p, o, even_); });
     list_.insert(place, p);
     if (list_.size() > most_) list_.pop_back();
   }
@@ -223,7 +222,7 @@ class Leaders {
 
 std::vector<Best> kinds(const TriplePlan& best, EvenSteps even) {
   const auto rank = [even](const TriplePlan& p, const TriplePlan& o) {
-    return stands_before(p, o, even);
+    return comes_before(p, o, even);
   };
   const auto near = [least = near_best * best.worst_cover()](const TriplePlan& p) {
     return p.worst_cover() >= least;
@@ -278,7 +277,7 @@ std::vector<TriplePlan> chosen(const Search& s, const TripleRequest& w) {
     if (b.plan()) list(plans, *b.plan(), b.reason(), w.count);
   for (const TriplePlan& p : leaders.list()) list(plans, p, TripleReason::next, w.count);
   std::stable_sort(plans.begin() + 1, plans.end(), [&](const TriplePlan& p, const TriplePlan& o) {
-    return stands_before(p, o, w.even);
+    return comes_before(p, o, w.even);
   });
   return plans;
 }
@@ -395,7 +394,7 @@ std::vector<Triple> primitive_triples(std::int64_t hypotenuse) {
 double TriplePlan::gain_EYX_even() const { return even_part_gain * length_d / length_y; }
 double TriplePlan::gain_EXY_even() const { return even_part_gain * length_d / length_x; }
 
-bool stands_before(const TriplePlan& one, const TriplePlan& other, EvenSteps even) {
+bool comes_before(const TriplePlan& one, const TriplePlan& other, EvenSteps even) {
   // Coverage to 1e-12: plans that cover the same must not be ordered by rounding.
   const auto whole = [](double share) { return std::llround(share * 1e12); };
   const auto worst = [&](const TriplePlan& p) {

@@ -27,8 +27,8 @@ using Eigen::VectorXd;
 constexpr std::size_t kept = 4;        // starts that go on
 constexpr double least_share = 1e-12;  // of an eigenvalue: below it a combination is open
 constexpr double good_enough =
-    0.05;                        // rms of a start against that of the ways from the first reading
-constexpr double stands = 1e-9;  // rad
+    0.05;  // rms of a start against that of the ways from the first reading
+constexpr double same_angle = 1e-9;  // rad
 
 using Directions = std::vector<Vector3>;
 
@@ -125,14 +125,14 @@ class Linear {
   double sum_ = 0.0;
 };
 
-/// The best of all directions of each axis; one of an axis that stands still.
+/// The best of all directions of each axis; of an axis at rest the only one.
 std::vector<Linear> best_of(const std::vector<ChainReading>& all, const ChainOrder& order,
                             bool between) {
   std::vector<Directions> tried(1);
   for (std::size_t l = 0; l < order.axes(); ++l) {
     Directions each = directions(between);
     if (std::all_of(all.begin(), all.end(), [&](const ChainReading& r) {
-          return std::fabs(r.angle[l] - all.front().angle[l]) < stands;
+          return std::fabs(r.angle[l] - all.front().angle[l]) < same_angle;
         }))
       each.resize(1);
     std::vector<Directions> longer;

@@ -150,7 +150,7 @@ std::optional<Circle> geometric(const Plane& p) {
   return {};
 }
 
-/// +1 if the points go round the normal as the encoder says, -1 if the other way; with the angle
+/// +1 if the points go round the normal as the encoder states, -1 if the other way; with the angle
 /// of the point at encoder zero. The way that follows better, or nothing if neither does.
 struct Sense {
   double sign = 1.0, zero = 0.0;

@@ -127,8 +127,8 @@ class Descent {
 
   const ChainState& state() const { return state_; }
   double sum() const { return left_.squaredNorm(); }
-  /// Whether the readings tell the direction of an axis.
-  bool tells_direction(std::size_t axis) const {
+  /// Whether the readings determine the direction of an axis.
+  bool identifies_direction(std::size_t axis) const {
     for (const Index k : {4 * at(axis) + 2, 4 * at(axis) + 3})
       if (std::fabs(V_.row(k).norm() - 1.0) > changes_nothing) return false;
     return true;
@@ -259,7 +259,8 @@ ChainFit Descent::fit() const {
 
 bool other_chain(const Descent& best, const ChainState& other) {
   for (std::size_t l = 0; l < other.lines.size(); ++l)
-    if (best.tells_direction(l) && angle_between(best.state().lines[l], other.lines[l]) > other_way)
+    if (best.identifies_direction(l) &&
+        angle_between(best.state().lines[l], other.lines[l]) > other_way)
       return true;
   return false;
 }

@@ -209,7 +209,7 @@ class Readings {
   Eigen::Index unknowns_ = 4;
 };
 
-/// Least squares by the singular values: what the columns do not tell stays out.
+/// Least squares by singular values: combinations that the columns do not determine are 0.
 struct Solved {
   MatrixXd inverse;  ///< pseudoinverse
   Eigen::Index rank = 0;
@@ -257,8 +257,8 @@ tl::expected<RtcpFit, RtcpRefusal> fit_rtcp(const std::vector<RtcpReading>& all,
   if (const auto refused = readings.prepare()) return tl::unexpected(*refused);
   const VectorXd y = readings.deviations();
   VectorXd x = VectorXd::Zero(readings.unknowns());
-  // What is told is a matter of the set-up: of the Jacobian where the control has the axis. Errors
-  // of 1e-3 rad leave 1e-3 of the rest in each round.
+  // What is identifiable depends on the set-up: on the Jacobian at the axis of the control. Errors
+  // of 1e-3 rad leave 1e-3 of the remainder in each iteration.
   const MatrixXd j = readings.jacobian(x);
   const Solved solution = solved(j);
   for (int round = 0; round < 6; ++round) x += times(solution.inverse, y - readings.predicted(x));

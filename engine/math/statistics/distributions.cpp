@@ -14,7 +14,7 @@
 namespace nonio::math {
 namespace {
 namespace bp = boost::math::policies;
-// Nothing throws: a value that cannot be had is NaN, and asked for below.
+// Nothing throws: a value that does not exist is NaN, and tested below.
 using Quiet = bp::policy<bp::domain_error<bp::ignore_error>, bp::pole_error<bp::ignore_error>,
                          bp::overflow_error<bp::ignore_error>,
                          bp::evaluation_error<bp::ignore_error>, bp::promote_double<false>>;

@@ -7,7 +7,7 @@
 
 namespace nonio::math {
 
-/// Noise of means along the path: white, and a first-order autoregressive process beside it.
+/// Noise of means along the path: the sum of white noise and a first-order autoregressive process.
 ///
 ///     cov(y_i, y_j) = s^2 [(1 - w) (i == j) + w rho^|i - j|]
 ///

@@ -22,7 +22,8 @@ struct Knots {
 std::pair<int, std::array<double, 4>> b_splines(const Knots& knots, double x) {
   const double at = (x - knots.first) / knots.step;
   const double last = knots.intervals - 1;
-  const double interval = at >= 0.0 ? std::min(std::floor(at), last) : 0.0;  // NaN: the first
+  const double interval =
+      at >= 0.0 ? std::min(std::floor(at), last) : 0.0;  // NaN: the first interval
   const double s = at - interval, r = 1.0 - s;
   return {static_cast<int>(interval),
           {r * r * r / 6.0, ((3.0 * s - 6.0) * s * s + 4.0) / 6.0,

@@ -10,7 +10,7 @@
 namespace nonio::math {
 namespace {}
 
-// The second pass takes away what rounding left of the first: sum(x - m)/n is 0 only in exact sums.
+// The second pass removes the rounding error of the first: sum(x - m)/n is 0 only in exact sums.
 double mean(std::span<const double> x) {
   if (x.empty()) return not_given;
   const double n = static_cast<double>(x.size());

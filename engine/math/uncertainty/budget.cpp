@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A quantity that lies within a full range r, all places equally likely, has the standard
-// uncertainty r/(2 sqrt 3). A limit that a quantity of one sign reaches at most (the short path of
-// a beam beside the axis) and that nobody corrects has the root mean square r/sqrt 3.
+// A quantity within a full range r, all places equally likely, has the standard uncertainty r/(2
+// sqrt 3). A limit that a quantity of one sign reaches at most (the short path of a misaligned
+// beam) and that is not corrected has the root mean square r/sqrt 3.
 //   device-fixed      U_fixed/2                    each reading (coordinates: one for a line)
 //   device-length     U_per_length/2 d             one for the instrument (coordinates: for a line)
 //   misalignment      R_mis^2/(2 L^2)/sqrt 3 d     one for a line of length L; its mean, half of
 //   the
 //                     limit, is in all lines: 3/4 of the variance
-//   temperature       alpha R(theta)/(2 sqrt 3) d  one for a line if the sensor lies anew, one for
+//   temperature       alpha R(theta)/(2 sqrt 3) d  one for a line if the sensor is placed anew, one for
 //                     all if it stays: the larger
 //   expansion         dT R(alpha)/(2 sqrt 3) d     one for a line if each has a temperature of its
 //                     own, one for all if the shop keeps one: the larger
 //   device-temperature, device-expansion           the same of a device with a length of its own,
 //                                                  one for the instrument
-//   drift             E_VE/sqrt 3 at a line's end  a walk along each line; not less for more runs
+//   drift             E_VE/sqrt 3 at a line's end  a random walk along each line; not less for more runs
 //   sphere            r/(2 sqrt 3)                 each reading: the ball turns under the probe
 //   probe             r/(2 sqrt 3)                 one for a coordinate
 #include "nonio/math/budget.h"
@@ -215,7 +215,7 @@ std::vector<double> reading_times(const Observations& o) {
   const bool timed =
       o.time.size() == o.size() &&
       std::all_of(o.time.begin(), o.time.end(), [](double t) { return std::isfinite(t); });
-  // The order of rows says nothing: run by run, up and then down.
+  // The order of rows has no meaning: run by run, up and then down.
   const auto when = [&](std::size_t i) {
     if (timed) return std::tuple(o.time[i], 0, 0.0);
     const bool down =
@@ -370,7 +370,7 @@ void BudgetOf::put(Series& s, std::span<const double> u_repetition,
   for (std::size_t i = 0; i < u_repetition.size(); ++i) {
     const Expanded e = expand(u_repetition[i], shares[i]);
     u.push_back(whole ? e.u : u_repetition[i]);
-    if (u.back() > 0.0) k = std::max(k, e.k);  // a point that is 0 by definition has no say
+    if (u.back() > 0.0) k = std::max(k, e.k);  // a point that is 0 by definition has no effect
   }
   s.k = k > 0.0 ? k : 2.0;
   for (const double one : u) (whole ? s.U : s.repeatability).push_back(s.k * one);

@@ -98,7 +98,7 @@ const Square* square_named(const Campaign& c, const std::string& name) {
 }  // namespace
 
 std::vector<std::size_t> SquareLines::all() const {
-  std::vector<std::size_t> out = as_stands;
+  std::vector<std::size_t> out = unturned;
   out.insert(out.end(), turned.begin(), turned.end());
   std::sort(out.begin(), out.end());
   return out;
@@ -119,7 +119,7 @@ std::vector<SquareLines> squares_of(const Campaign& campaign) {
     });
     if (at == out.end())
       at = out.insert(out.end(), {m.square, state, plane->name, first, second, {}, {}});
-    auto& lines = m.square_turned ? at->turned : at->as_stands;
+    auto& lines = m.square_turned ? at->turned : at->unturned;
     lines.insert(is_first ? lines.begin() : lines.end(), i);
   }
   return out;
@@ -133,7 +133,7 @@ tl::expected<Squareness, NoSquareness> squareness_of(const Campaign& campaign,
   const bool turned = !s.turned.empty();
   if (!turned && (square == nullptr || !square->error))
     return tl::unexpected(NoSquareness{"unknown", s.square});
-  std::vector<std::size_t> lines = s.as_stands;
+  std::vector<std::size_t> lines = s.unturned;
   lines.insert(lines.end(), s.turned.begin(), s.turned.end());
 
   Squareness out;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Uncertainty of a positioning test, after ISO/TR 230-9:2005 Annex C and ISO 230-2:2006 Annex A.
+// Uncertainty of a positioning test, according to ISO/TR 230-9:2005 Annex C and ISO 230-2:2006
+// Annex A.
 //
-// A quantity that lies within a full range r, all places equally likely, has the standard
-// uncertainty r/(2 sqrt 3) and the expanded one (k = 2) r/sqrt 3 = 0.577 r, rounded up to 0.6 r.
+// A quantity within a full range r, all places equally likely, has the standard uncertainty r/(2
+// sqrt 3) and the expanded one (k = 2) r/sqrt 3 = 0.577 r, rounded up to 0.6 r.
 //   U_DEV = U_fixed + U_per_length L              m      certificate of the instrument
 //   U_MIS = 0.6 R_mis^2/(2 L)                     m      R_mis: beam against axis over L, m
 //   U_M   = 0.6 alpha L R(theta)                  m      alpha: 1/K, R(theta): K
@@ -98,7 +99,7 @@ BudgetOrGap uncertainty_budget(const Campaign& campaign, const Environment& envi
   return out;
 }
 
-std::size_t approaches_behind_means(const AxisTest& test) {
+std::size_t approaches_per_mean(const AxisTest& test) {
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (std::size_t i = 0; i < test.targets.size(); ++i)
     for (const std::size_t n : {test.plus(i).size(), test.minus(i).size()})

@@ -325,7 +325,7 @@ class Solution {
   }
   /// Derivative of a functional by the readings; there is a model.
   Row by_readings(const Row& h) const { return by(h, jacobian_); }
-  /// Of what is made of the readings directly.
+  /// Uncertainty shares of a result with these derivatives by the readings.
   Shares shares_of_readings(const Row& J) const {
     if (model_ == nullptr) return {};
     return model_->shares({J.data(), static_cast<std::size_t>(J.size())});
@@ -450,7 +450,7 @@ void fill_yaw(const DiagonalReadings& r, const System& system, const Solution& s
   const auto X = of_direction(r.X, r.D1.x_direction);
   if (X.size() == 1 && r.ECX.empty()) return;
   const auto readings = system.N().cols();
-  // The scatter of lengths says nothing of an angle.
+  // The scatter of lengths shows nothing of an angle.
   const bool known = system.noise_known() || X.size() == 2;
   const auto put = [&](double value, double u, const Row& J) {
     out.ECX.value.push_back(value);

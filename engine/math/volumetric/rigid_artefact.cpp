@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
 constexpr double no_lever = 1e-6;  // of the size of an artefact: a turn that moves no ball
-constexpr double no_plane = 1e-3;  // of the size: balls on one line do not say how it is turned
+constexpr double no_plane = 1e-3;  // of the size: balls on one line do not state how it is turned
 constexpr double least_u = 1e-9;   // m, m/m; what is stated counts with no smaller one
 
 Vector3d vector_of(const Corner& c) { return {c[0], c[1], c[2]}; }
@@ -30,16 +30,16 @@ Vector3d place_of(const ArtefactPlacement& p, std::size_t i) {
   return at;
 }
 
-/// Where an artefact stands: a ball at q is at R (q - from) + to.
+/// The placement of an artefact: a ball at q is at R (q - from) + to.
 struct Stand {
   Matrix3d R = Matrix3d::Identity();
   Vector3d from = Vector3d::Zero(), to = Vector3d::Zero();
-  bool turned_by_all = false;  ///< the balls are not on one line
+  bool turned_by_all = false;  ///< balls not on one line: all rotations can be determined
   Vector3d place(const Vector3d& q) const { return R * (q - from) + to; }
   Vector3d back(const Vector3d& p) const { return R.transpose() * (p - to) + from; }
 };
 
-/// The stand that fits pairs best: rotation U diag(1, 1, det) V' of the matrix sum p q'.
+/// The placement that fits pairs best: rotation U diag(1, 1, det) V' of the matrix sum p q'.
 Stand best_stand(const std::vector<Vector3d>& q, const std::vector<Vector3d>& p) {
   Stand s;
   const auto n = static_cast<double>(q.size());
@@ -58,7 +58,7 @@ Stand best_stand(const std::vector<Vector3d>& q, const std::vector<Vector3d>& p)
 /// Places the balls in one frame and the placements about them.
 class Frame {
  public:
-  explicit Frame(const Artefact& a) : a_(a), q_(a.balls.size()), stands_(a.placements.size()) {}
+  explicit Frame(const Artefact& a) : a_(a), q_(a.balls.size()), is_placed_(a.placements.size()) {}
 
   tl::expected<void, ArtefactRefusal> find() {
     const bool stated = std::any_of(a_.balls.begin(), a_.balls.end(),
@@ -71,10 +71,10 @@ class Frame {
     }
     for (bool more = true; more;) {
       more = false;
-      for (std::size_t p = 0; p < stands_.size(); ++p) more |= !stands_[p] && link(p);
+      for (std::size_t p = 0; p < is_placed_.size(); ++p) more |= !is_placed_[p] && link(p);
     }
-    for (std::size_t p = 0; p < stands_.size(); ++p)
-      if (!stands_[p])
+    for (std::size_t p = 0; p < is_placed_.size(); ++p)
+      if (!is_placed_[p])
         return tl::unexpected(
             ArtefactRefusal{ArtefactRefusal::Why::not_linked, a_.placements[p].name, {}, 0.0});
     return check();
@@ -82,10 +82,10 @@ class Frame {
 
   const Vector3d& ball(std::size_t b) const { return *q_[b]; }
   bool known(std::size_t b) const { return q_[b].has_value(); }
-  const Stand& stand(std::size_t p) const { return *stands_[p]; }
+  const Stand& stand(std::size_t p) const { return *is_placed_[p]; }
 
  private:
-  /// By its balls that are known; it then says where the others are.
+  /// By its balls that are known; it then gives the positions of the others.
   bool link(std::size_t p) {
     const ArtefactPlacement& placement = a_.placements[p];
     std::vector<Vector3d> q, at;
@@ -98,7 +98,7 @@ class Frame {
     if (!all && !stand.turned_by_all) return false;
     for (std::size_t i = 0; i < placement.ball.size(); ++i)
       if (auto& ball = q_[placement.ball[i]]; !ball) ball = stand.back(place_of(placement, i));
-    stands_[p] = stand;
+    is_placed_[p] = stand;
     return true;
   }
 
@@ -107,10 +107,10 @@ class Frame {
     const auto see = [&](double d, const std::string& placement, const std::string& ball) {
       if (d > worst.distance || !std::isfinite(d)) worst = {worst.why, placement, ball, d};
     };
-    for (std::size_t p = 0; p < stands_.size(); ++p)
+    for (std::size_t p = 0; p < is_placed_.size(); ++p)
       for (std::size_t i = 0; i < a_.placements[p].ball.size(); ++i) {
         const std::size_t b = a_.placements[p].ball[i];
-        Vector3d apart = stands_[p]->place(*q_[b]) - place_of(a_.placements[p], i);
+        Vector3d apart = is_placed_[p]->place(*q_[b]) - place_of(a_.placements[p], i);
         for (std::size_t k = 0; k < 3; ++k)
           if (!a_.placements[p].measured[k]) apart[at(k)] = 0.0;
         see(apart.norm(), a_.placements[p].name, a_.balls[b].name);
@@ -125,7 +125,7 @@ class Frame {
 
   const Artefact& a_;
   std::vector<std::optional<Vector3d>> q_;
-  std::vector<std::optional<Stand>> stands_;
+  std::vector<std::optional<Stand>> is_placed_;
 };
 
 void put_placement(const Artefact& a, const Frame& frame, std::size_t p, std::size_t first,
@@ -150,8 +150,8 @@ void put_placement(const Artefact& a, const Frame& frame, std::size_t p, std::si
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t b = placement.ball[i];
       const Vector3d place = stand.place(frame.ball(b)), lever = place - stand.to;
-      // The errors are those where the stand has the ball: at the places as read, their scatter would seem to
-      // tell the scale, which only a certificate does.
+      // The errors are evaluated where the placement has the ball: at the positions as read, their
+      // scatter would seem to determine the scale, which only a certificate does.
       Corner where = placement.at[i];
       for (std::size_t c = 0; c < 3; ++c)
         if (placement.measured[c]) where[c] = place[at(c)];

@@ -45,7 +45,7 @@ void find_combinations(const RigidFit& f, RigidSolution& out) {
   }
 }
 
-/// The terms of the direction that the readings tell least, the largest first.
+/// The terms of the least identifiable direction, the largest first.
 Combination weakest_of(const RigidFit& f) {
   Combination out;
   if (f.solved.rank == 0) return out;
@@ -61,7 +61,7 @@ Combination weakest_of(const RigidFit& f) {
   return out;
 }
 
-/// What is asked of the fit, as far as it can be told.
+/// The requested results of the fit, as far as they are identifiable.
 class Results {
  public:
   Results(const RigidFit& f, const RigidBox& box, const ReadingModel* model) : f_(f), box_(box) {

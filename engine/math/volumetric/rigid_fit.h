@@ -6,7 +6,7 @@
 #include "dense.h"
 #include "rigid_terms.h"
 
-/// The least-squares fit of rigid_body.h: terms, what of them is told, scatter of the groups.
+/// The least-squares fit of rigid_body.h: terms, which are identifiable, scatter of the groups.
 namespace nonio::math {
 
 /// Readings, their terms and the set-up, in one matrix each.

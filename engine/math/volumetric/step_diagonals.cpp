@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Index = Eigen::Index;
 
-constexpr double undetermined = 1e-10;  // an eigenvalue beside the largest: not determined
+constexpr double undetermined = 1e-10;  // share of the largest eigenvalue: not determined
 constexpr double unmoved = 1e-6;        // a part of a unit vector
 constexpr int corrections = 2;          // of second order
 
@@ -132,7 +132,7 @@ Design design_of(const StepDiagonals& d, const std::vector<AxisSeries>& series,
     }
   }
   if (choices.set_up_known) return design;
-  // Mirrors that stand anyhow leave the rotations free: EYX, EZX, EZY are 0 at the far end.
+  // Mirrors of unknown orientation leave the rotations free: EYX, EZX, EZY are 0 at the far end.
   for (const auto& [axis, along] : {std::pair{0U, 1U}, std::pair{0U, 2U}, std::pair{1U, 2U}})
     design.A(r++, static_cast<Index>(function_column(axis, along, d.n, d.n))) = 1.0;
   return design;
@@ -201,7 +201,7 @@ VectorXd without_second_order(const StepDiagonals& d, const Design& design, cons
   return b;
 }
 
-/// Scatter of the readings about the best functions, whatever the axis series say.
+/// Scatter of the readings about the best functions, whatever the axis series show.
 struct Scatter {
   double u = 0.0, dof = 0.0;
 };
@@ -294,7 +294,7 @@ AxisSeries inside(const StepDiagonals& d, const AxisSeries& s) {
   return in;
 }
 
-/// What each series says against the functions that the diagonals alone give.
+/// Compares each series with the functions that the diagonals alone give.
 std::vector<ShapeContrast> contrast_shapes(const StepDiagonals& d,
                                            const std::vector<AxisSeries>& series,
                                            const StepChoices& choices, const Design& design,

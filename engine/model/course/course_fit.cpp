@@ -159,7 +159,7 @@ class CourseFit {
       terms_[k].shape = chosen_[k].shape;
   }
 
-  /// Of the columns of all terms; its rank says whether they can be separated.
+  /// Of the columns of all terms; its rank shows whether they can be separated.
   Eigen::ColPivHouseholderQR<MatrixXd> decomposed() const {
     Eigen::ColPivHouseholderQR<MatrixXd> qr(
         of_unit_length(CourseWhitening(data_, noise_).of(chosen().columns)));

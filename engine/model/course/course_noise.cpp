@@ -56,7 +56,7 @@ MatrixXd CourseWhitening::of(MatrixXd columns) const {
 
 namespace {
 
-/// Every noise that is looked for: its correlation time as a part of the test.
+/// Every noise that is searched: its correlation time as a part of the test.
 template <class Visit>
 void for_each_noise(const CourseData& data, const CourseModel& model, const MatrixXd& displacements,
                     const Visit& visit) {

@@ -19,7 +19,7 @@ struct CourseSides;
 /// does.
 class CoursePool {
  public:
-  /// Scatter that is looked for (`CourseNoise`).
+  /// Scatter that is searched (`CourseNoise`).
   static constexpr std::array scatters{0.0, 1.0, 30.0, 1000.0};
 
   CoursePool(const CourseData& data, const CourseNoise& noise);
@@ -27,7 +27,7 @@ class CoursePool {
   /// Where the columns are; bins x k. `of`: what their coefficients are; the last one counts for all
   /// further columns.
   std::vector<Index> add(const MatrixXd& columns, const std::vector<Quantity>& of);
-  /// Before anything else is asked.
+  /// Before any other call.
   void finish();
 
   /// - ln of the evidence of these columns for each side. The zero, the coefficients and the variance

@@ -36,13 +36,13 @@ std::vector<Term> offered_to(const std::vector<Term>& model, const std::vector<T
 // docs/dev/constants.md, M42.
 inline constexpr double curve_threshold = 1e-4, weakest_of_curve = 0.03;
 
-/// Whether a term may say less beside those before it than it says alone: curves in space, and
+/// Whether a term may determine less together with earlier terms than alone: curves in space, and
 /// descriptions.
 bool may_lose(const Observations& o, const Term& term);
 
-/// The columns of all terms. Of a curve in space whose readings cannot tell it wholly from the
-/// terms before it (the odd parts of two straightnesses on two diagonals) only the combinations
-/// that they can tell; `lost`: how many of each term's are not.
+/// The columns of all terms. Of a curve in space that the readings do not separate completely from
+/// the terms before it (the odd parts of two straightnesses on two diagonals) only the identifiable
+/// combinations; `lost`: how many of each term are not.
 Expected<std::vector<MatrixXd>> blocks_of(const Observations& o, const std::vector<Term>& terms,
                                           const VectorXd& root, std::vector<Index>* lost = nullptr);
 
@@ -79,8 +79,8 @@ inline Quantity quantity_of(const Effect::Parameter& p, const Axis& axis) {
   return axis.rotary ? p.rotary : p.quantity;
 }
 
-/// `fit` with shapes that are near their best already: `searched` says whose are looked for
-/// between the neighbours on their grids.
+/// `fit` with shapes that are near their best already: `searched`: terms whose shapes are searched
+/// between neighbours of their grids.
 Expected<Fit> fit_near(const Observations& o, std::vector<Term> terms,
                        const std::vector<char>& searched, std::vector<double> weight,
                        const Noise& noise = {});

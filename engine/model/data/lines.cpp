@@ -38,7 +38,7 @@ Passes passes_of(const Observations& o) {
   return passes;
 }
 
-/// All readings of one direction stand before all of the other, and there are several runs.
+/// Whether all readings of one direction precede all of the other, and there are several runs.
 bool grouped(const Passes& passes) {
   std::map<std::int8_t, Rows> side;
   std::map<std::int8_t, int> runs;

@@ -28,8 +28,8 @@ std::vector<std::size_t> coordinates_of(const Observations&);
 /// readings were taken.
 void append_run(Part& part, const Observations& listed, const Measurement& m);
 
-/// The measurements `members` of a campaign as the table of a part in space. Where an axis stood
-/// still it is where the measurement says (`at`, `from`), else NaN.
+/// The measurements `members` of a campaign as the table of a part in space. The position of an
+/// axis at rest is the one that the measurement states (`at`, `from`), else NaN.
 void append_space(Part& part, const Campaign& campaign, const std::vector<Observations>& read,
                   const std::vector<std::size_t>& members);
 

@@ -17,10 +17,10 @@ constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_dof = 8.0;
 constexpr double most_neighbours = 0.95;
 
-/// What is left of a pass of m readings with correlation rho when k powers of the order are taken
-/// out: M = P V P, its trace, what stands beside its diagonal, and its sum of squares.
+/// The residuals of a pass of m readings with correlation rho after a polynomial of k terms in the
+/// order is fitted: of M = P V P the trace, the sum next to its diagonal, and the sum of squares.
 struct Moments {
-  double trace = 0.0, beside = 0.0, squares = 0.0;
+  double trace = 0.0, lagged = 0.0, squares = 0.0;
 };
 
 MatrixXd powers_of_order(Index m, Index k) {
@@ -85,7 +85,7 @@ class AlikePasses {
     for (const auto& [pass, share] : share_) {
       const Moments one = moments(pass.first, pass.second, rho);
       sum.trace += share * one.trace;
-      sum.beside += share * one.beside;
+      sum.lagged += share * one.lagged;
       sum.squares += share * one.squares;
     }
     return sum;
@@ -104,7 +104,7 @@ class AlikePasses {
 
 /// Products of neighbours in a pass, and squares.
 struct Products {
-  double beside = 0.0, squares = 0.0;
+  double lagged = 0.0, squares = 0.0;
 };
 
 Products products_of(const Repeats& r, const Saturated& s, const std::vector<double>& weight) {
@@ -114,7 +114,7 @@ Products products_of(const Repeats& r, const Saturated& s, const std::vector<dou
     double& last = before[r.pass[i]];
     const double e = weight[i] > 0.0 ? std::sqrt(weight[i]) * s.e[i] : not_measured;
     if (std::isfinite(e)) out.squares += e * e;
-    if (std::isfinite(e) && std::isfinite(last)) out.beside += e * last;
+    if (std::isfinite(e) && std::isfinite(last)) out.lagged += e * last;
     last = e;
   }
   return out;
@@ -126,7 +126,7 @@ class ExpectedRatio {
   explicit ExpectedRatio(const AlikePasses& passes) {
     for (int k = 0; k <= steps; ++k) {
       const Moments m = passes(step * k);
-      ratio_.push_back(m.beside / m.trace);
+      ratio_.push_back(m.lagged / m.trace);
     }
   }
   double operator()(double rho) const {
@@ -154,14 +154,14 @@ void find_neighbours(const Repeats& r, const Saturated& s, const std::vector<dou
   const AlikePasses passes(r, weight);
   const Moments none = passes(0.0);
   if (!(none.trace > 0.0)) return;
-  const double ratio = found.beside / found.squares;
+  const double ratio = found.lagged / found.squares;
   const double sd = std::sqrt(passes.variance()) / none.trace;
-  const double z = (ratio - none.beside / none.trace) / sd;
+  const double z = (ratio - none.lagged / none.trace) / sd;
   if (!std::isfinite(z)) return;
   noise.p = 0.5 * std::erfc(z / std::sqrt(2.0));
-  if (z <= least_seen) {  // not used, so told coarsely: near 0 the ratio is a straight line
+  if (z <= least_seen) {  // not used, so estimated coarsely: near 0 the ratio is a straight line
     const Moments little = passes(0.05);
-    const double slope = (little.beside / little.trace - none.beside / none.trace) / 0.05;
+    const double slope = (little.lagged / little.trace - none.lagged / none.trace) / 0.05;
     noise.measured = std::clamp(z * sd / slope, -most_neighbours, most_neighbours);
     return;
   }
@@ -204,7 +204,7 @@ TargetScatter scatter_of(const Part& part, const Repeats& repeats, const Saturat
   return out;
 }
 
-/// What a stretch says of each reading.
+/// What a stretch predicts for each reading.
 void spread_out(const Part& part, Noise& noise) {
   noise.rough.clear();
   for (const double x : part.table.axes.front().position)
@@ -233,7 +233,7 @@ void find_stretch(const Part& part, const Repeats& repeats, const Saturated& s,
   }
   const double all = squares.back(), n = dof.back();
   const double stretches = 0.5 * static_cast<double>(targets * targets);
-  double best = 12.0;  // below, chance gives it to one stretch in two thousand
+  double best = 12.0;  // smaller values occur by chance in one of 2000 stretches
   for (std::size_t a = 0; a + fewest <= targets; ++a)
     for (std::size_t b = a + fewest; b <= targets; ++b) {
       const double in = squares[b] - squares[a], f = dof[b] - dof[a];

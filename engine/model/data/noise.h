@@ -10,7 +10,7 @@
 #include "nonio/model/comparison.h"
 #include "repeats.h"
 
-/// How the noise hangs together, from what repeats leave (docs/model.md).
+/// Correlation of the noise, from the residuals of repeats (docs/model.md).
 namespace nonio::model {
 
 /// Largest step of which all readings are whole multiples from each other; 0 if there is none.
@@ -34,16 +34,16 @@ std::optional<NoiseFloor> noise_floor(const Repeats& repeats, const Saturated& s
 Noise with_zero(const Observations& o, const std::vector<Term>& terms,
                 const std::vector<double>& weight, const Noise& noise);
 
-/// n ln(squares/n) + ln|V| of a model beside a zero that is not steady, as far as a size of it
-/// makes this least: what `Workbench::State::criterion` is without its price.
+/// n ln(squares/n) + ln|V| of a model together with a zero that is not steady, minimised over its
+/// size: `Workbench::State::criterion` without its price.
 struct Unsteady {
   double walks = std::numeric_limits<double>::infinity();   ///< a zero that walks, row by row
   double of_run = std::numeric_limits<double>::infinity();  ///< each run has its own
   double least() const { return std::min(walks, of_run); }
 };
 /// `model` holds the model's columns; rows in their order, of weight 0 are left out.
-Unsteady beside_walk(const Observations& o, const std::vector<double>& weight, Noise noise,
-                     const MatrixXd& model);
+Unsteady walk_with(const Observations& o, const std::vector<double>& weight, Noise noise,
+                   const MatrixXd& model);
 
 /// The criterion of neighbours that are alike, of a steady zero, with the correlation that makes it
 /// least; 0 of |V| are the independent readings.

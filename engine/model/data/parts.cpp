@@ -57,7 +57,7 @@ class Parts {
     }
     // No effects of the model: the first two run over time and angle, the third has no places.
     if (kind == "thermal" || kind == "spindle" || kind == "lengths") return;
-    if (kind.starts_with("artefact")) return;  // rigid-body has where it stood
+    if (kind.starts_with("artefact")) return;  // rigid-body contains its placement
     if (kind == "ball-centres") {
       kind_[m] = Kind::balls;
     } else if (sensed_along_one_axis(o)) {
@@ -146,7 +146,7 @@ class Parts {
   std::vector<Part> parts_;
 };
 
-/// Whether an effect of one axis has anything to say in this part.
+/// Whether an effect of one axis concerns this part.
 bool concerns(const Part& part, const Axis& axis) {
   if (part.kind == Part::Kind::axis) return true;
   if (part.kind == Part::Kind::balls || part.kind == Part::Kind::course || axis.rotary)
@@ -201,7 +201,8 @@ std::vector<std::shared_ptr<const Grouping>> groupings_of(const Part& part,
   return out;
 }
 
-/// The term with groups; none if they divide other lines, or the effect says nothing in one of them.
+/// The term with groups; none if they divide other lines, or the effect predicts nothing in one of
+/// them.
 std::optional<Term> grouped(const Part& part, Term term, const std::string& by) {
   if (term.effect->description || term.effect->is_nuisance) return std::nullopt;
   for (const auto& grouping : part.groupings)

@@ -251,7 +251,7 @@ std::vector<double> polished(const Repeats& r, const std::vector<double>& y) {
 std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::uint32_t>& rows,
                                       const std::vector<double>& e) {
   const Groups groups(r);
-  // Of each group that is asked for, its values in order: one left out moves the middle by one.
+  // Of each group that is requested, its values in order: one left out moves the middle by one.
   std::vector<std::size_t> asked(groups.count, 0);
   std::size_t lists = 0;
   for (const auto i : rows)
@@ -279,8 +279,8 @@ std::vector<double> apart_from_others(const Repeats& r, const std::vector<std::u
 
 namespace {
 
-/// Deviations without what the set-up says of them (a mirror's tilt jumps from reading to reading):
-/// by least absolute residuals, which a misread value does not move much.
+/// Deviations without what the set-up predicts of them (a mirror's tilt jumps from reading to
+/// reading): by least absolute residuals, which a misread value does not move much.
 std::vector<double> without_set_up(const Observations& o, const std::vector<Term>& model) {
   std::vector<Term> set_up;
   for (const Term& term : model)

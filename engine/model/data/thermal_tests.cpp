@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A body that is heated evenly and cools by its surface goes from whatever state to its end as
-// 1 - exp(-t/tau): a start that is warm, and a clock that starts later, change the amplitude (and
-// what a constant growth says), not tau. Several tests of one axis: mean of ln tau, weights 1/u^2.
+// A body that is heated evenly and cools by its surface goes from whatever state to its end as 1 -
+// exp(-t/tau): a start that is warm, and a clock that starts later, change the amplitude (and what
+// a constant growth states), not tau. Several tests of one axis: mean of ln tau, weights 1/u^2.
 #include "thermal_tests.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ OfTest of_test(const Measurement& m, const Observations& o) {
   const math::Track growth = math::growth(math::visits_of(o));
   if (growth.size() < 2) return out;
   const auto fit = math::time_constants(growth);
-  // The effects that ask for it have one time constant.
+  // The effects that need it have one time constant.
   if (fit.answer != math::TimeConstants::Answer::resolved || fit.parts.size() != 1) return out;
   const auto& part = fit.parts.front();
   if (!(part.tau > 0.0) || !(part.u_tau > 0.0)) return out;

@@ -13,8 +13,8 @@ namespace nonio::model {
 void put_time_constants(const Campaign& campaign, const std::vector<Observations>& read,
                         std::vector<Part>& parts);
 
-/// The time constant that the thermal tests state for this effect. None where the part's readings
-/// have no times, or where it lies beyond those that the effect looks for in them.
+/// The time constant that the thermal tests state for this effect. None if the part's readings have
+/// no times, or if it is outside of the range that the effect searches.
 std::optional<Term::Stated> stated_time_constant(const Part& part, const Effect& effect,
                                                  const Axis& axis);
 

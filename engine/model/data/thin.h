@@ -5,7 +5,7 @@
 
 namespace nonio::model {
 
-/// Longer tables are searched, and their places are told, from means of their readings.
+/// Longer tables are searched, and their positions described, from means of their readings.
 inline constexpr std::size_t thin_beyond = 6000;
 
 /// Means of readings that lie close together: of one line and direction, of neighbouring runs and

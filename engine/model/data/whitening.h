@@ -10,7 +10,7 @@ namespace nonio::model {
 /// Rows of a table times their root weights and, where the noise is not independent, less what the
 /// rows before predict: what comes out is independent noise of one scatter. Each line by itself,
 /// rows in their order; rows of weight 0 become 0. The filter of a first-order autoregression in
-/// each line beside a level: Durbin and Koopman, Time Series Analysis by State Space Methods, 4.3.
+/// each line with a level: Durbin and Koopman, Time Series Analysis by State Space Methods, 4.3.
 class Whitening {
  public:
   /// The noise as the repeats show it, which weights and tests have; a zero that walks or is

@@ -13,7 +13,7 @@ namespace {
 
 using Zero = Noise::Zero;
 
-/// Columns of a model, one beside the other, each of unit length.
+/// Columns of a model as one matrix, each of unit length.
 MatrixXd columns_of_model(const std::vector<MatrixXd>& blocks, Index rows) {
   MatrixXd out(rows, 0);
   for (const MatrixXd& block : blocks) {
@@ -255,8 +255,8 @@ double deviance(const Observations& o, const std::vector<double>& weight, const 
 
 }  // namespace
 
-Unsteady beside_walk(const Observations& o, const std::vector<double>& weight, Noise noise,
-                     const MatrixXd& model) {
+Unsteady walk_with(const Observations& o, const std::vector<double>& weight, Noise noise,
+                   const MatrixXd& model) {
   constexpr double beyond_minimum = 12.0;
   MatrixXd columns(model.rows(), model.cols() + 1);
   columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), model.rows());

@@ -115,7 +115,7 @@ struct Means {
   double plus = 0.0, minus = 0.0, n_plus = 0.0, n_minus = 0.0;
 };
 
-/// Whether the term says the same of all readings of a target from one side.
+/// Whether the term predicts the same for all readings of a target from one side.
 bool of_place(const Finding& f, const Term& term) {
   const auto columns = columns_of(f.part.table, term, term.shape);
   if (!columns) return false;
@@ -131,7 +131,7 @@ bool of_place(const Finding& f, const Term& term) {
   return true;
 }
 
-/// What a description says: of each target a value or a reversal, else of each reading.
+/// What a description predicts: of each target a value or a reversal, else of each reading.
 void measure(const Finding& f, const std::vector<double>& says, Description& d) {
   std::vector<double> values = says;
   if (of_place(f, d.term)) {
@@ -236,7 +236,7 @@ void take_over(Candidate found, const std::vector<std::string>& descriptions, Ex
   if (known == out.candidates.end()) return;
   found.rms = known->rms;
   found.cv_rms = known->cv_rms;
-  found.beside = descriptions;
+  found.with_descriptions = descriptions;
   *known = std::move(found);
   out.certain.push_back(name);
 }
@@ -249,17 +249,17 @@ double rms_with_certain(const Finding& finding, const Explanation& out) {
   return std::isfinite(rms) ? rms : finding.of_model.fit.rms;
 }
 
-/// Where the search is worth repeating with free values of place: with few targets, in which
-/// the catalogue cannot say what repeats there. More would cost more than they tell.
+/// Whether the search is repeated with a free value for each target: only with few targets, because
+/// more free values would cost more evidence than they show.
 bool few_places(const Finding& finding) {
   constexpr std::uint32_t most_targets = 60;
   return finding.part.kind == Part::Kind::axis && finding.repeats.targets <= most_targets;
 }
 
 /// Where the verdict is `unknown`: explained again with descriptions of place alone (a value for
-/// each target, a reversal for each), which hold whatever of the rest repeats at a place and cannot
-/// stand for what time does. What is certain there is certain; it comes into `out.certain`, and its
-/// candidate names them. Then what all certain effects leave is described.
+/// each target, a reversal for each), which describe all of the remainder that repeats at a place,
+/// but not what changes in time. An effect that is significant there is added to `out.certain`, and
+/// its candidate names the descriptions. Then what all significant effects leave is described.
 void describe(const Finding& finding, const std::vector<Term>& catalogue, Explanation& out) {
   out.descriptions = described(finding, certain_terms(out));
   std::vector<Term> model = finding.of_model.fit.terms;

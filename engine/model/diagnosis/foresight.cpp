@@ -42,7 +42,7 @@ Longer longer_by(const Further& f, const Fit& fit, std::size_t n) {
   return out;
 }
 
-/// What a fit's term says of longer readings; empty where its columns are others there.
+/// What a fit's term predicts for longer readings; empty where its columns are others there.
 VectorXd said_of(const Observations& o, const Fit& fit, std::size_t term) {
   VectorXd value(static_cast<Index>(fit.parameters.size()));
   Index linear = 0;

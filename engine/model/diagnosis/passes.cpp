@@ -154,7 +154,7 @@ bool PassZeros::shows(const std::string& name) const {
                        std::min(dof, of_passes)) < named_below;
 }
 
-/// Of what an effect says, how much is the same all through a pass.
+/// Of what an effect predicts, how much is the same all through a pass.
 double PassZeros::share_of_passes(const std::string& name) const {
   const std::vector<double>* part = nullptr;
   for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t)

@@ -73,7 +73,7 @@ void append(Observations& o, const Course& course, double interval) {
 }
 
 /// Distance, in standard deviations, between what one effect has `said` and the nearest that
-/// `other` with the model can say. Its shapes are searched.
+/// `other` with the model can predict. Its shapes are searched.
 double distance(const Observations& o, const std::vector<Term>& model, const VectorXd& said,
                 const Term& other, double s) {
   Observations imagined = o;

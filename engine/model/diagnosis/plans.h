@@ -11,8 +11,8 @@ struct Further {
   Observations table;
 };
 
-/// What is measured beside deviations, of planned readings at the end that nobody took: as it was
-/// last known. Weights and columns need an entry for each reading.
+/// Further measured quantities of planned readings at the end of the table: as they were last
+/// known. Weights and columns need an entry for each reading.
 void fill_measured(Observations& o);
 
 /// Further runs of an axis, laid behind its readings.
@@ -21,15 +21,15 @@ std::vector<Further> further_runs(const Part& part, const Axis& axis);
 /// What could be measured besides on a machine with several axes, or on a ball.
 std::vector<Further> further_in_space(const Part& part);
 
-/// Further measurements that would tell a candidate from its aliases: each plan's readings are laid
-/// beside those that are there, and the distance that the alias cannot bridge is computed. Plans
+/// Further measurements that would separate a candidate from its aliases: each plan's readings are
+/// added to the existing ones, and the distance that the alias cannot explain is computed. Plans
 /// that reach four standard deviations, cheapest first; the best one if none does.
 std::vector<Plan> plans_for(const Part& part, const std::vector<Term>& model,
                             const Candidate& candidate, const std::vector<Term>& catalogue,
                             double s);
 
 /// The same for two effects that cancel each other, with the values of their linear parameters:
-/// what they say together against what each of them can say alone.
+/// their joint effect compared with that of each alone.
 std::vector<Plan> plans_for_pair(const Part& part, const std::vector<Term>& model,
                                  const std::vector<Term>& pair, const std::vector<double>& value,
                                  double s);

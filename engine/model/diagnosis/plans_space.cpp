@@ -60,7 +60,7 @@ Volume volume_of(const Observations& o) {
   return v;
 }
 
-/// All stops of one axis; the others stand at `at`.
+/// All stops of one axis; the others are at `at`.
 std::vector<Vector> along(const Volume& v, std::size_t k, const Vector& at) {
   std::vector<Vector> stops;
   for (const double x : v.places[k]) {
@@ -93,7 +93,7 @@ void add_other_lines(const Part& part, const Volume& v, std::vector<Further>& ou
       Vector at = v.low;
       at[other] = v.high[other];
       Further f{"other-line", {letter_of(axis), letter_of(other)}, part.table};
-      // Both ends: a run that nobody placed stands at the corner.
+      // Both ends: a run without a stated position is at the corner.
       append_line(f.table, "plan 1", along(v, axis, v.low), unit_along(axis));
       append_line(f.table, "plan 2", along(v, axis, at), unit_along(axis));
       out.push_back(std::move(f));

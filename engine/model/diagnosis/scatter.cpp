@@ -105,9 +105,9 @@ std::vector<char> in_repeated_cells(const Observations& o, const Repeats& repeat
 
 }  // namespace
 
-std::optional<Place> beside_a_misread_target(const Observations& o, const Repeats& repeats,
-                                             const std::vector<double>& residual,
-                                             const std::vector<double>& weight) {
+std::optional<Place> next_to_a_misread_target(const Observations& o, const Repeats& repeats,
+                                              const std::vector<double>& residual,
+                                              const std::vector<double>& weight) {
   constexpr std::size_t fewest = 5;
   const std::size_t n = residual.size(), m = repeats.targets;
   if (o.axes.size() > 1 || m < fewest || n != 2 * m || repeats.cells != n || repeats.sides != 2)

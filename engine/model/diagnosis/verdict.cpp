@@ -21,19 +21,19 @@ namespace nonio::model {
 
 namespace {
 
-// What is left in the same place, of what the candidate says: beyond, the candidate is not it.
+// What is left in the same place, of what the candidate predicts: beyond, the candidate is not it.
 // docs/dev/constants.md, M6.
 constexpr double unexplained_share = 0.04;
 // The same of an effect that is certain, whatever else there is.
 // docs/dev/constants.md, M7.
 constexpr double certain_share = 0.06;
-// Far more than chance asks for: what is left beside it is no independent noise.
+// Far more than chance requires, because the remainder is not independent noise.
 // docs/dev/constants.md, M8.
 constexpr double certain_evidence = 50.0;
 // docs/dev/constants.md, M9.
 constexpr double most_of_one_target = 0.3;
-// Evidence of effects below it is not asked whether a zero that is not steady gives as much: sizes
-// that are printed as the smallest would be lost.
+// Effects with less evidence are not compared with a zero that is not steady:
+// sizes that are printed as the smallest would be lost.
 // docs/dev/constants.md, M29.
 constexpr double least_against_zero = 30.0;
 // Two effects whose parts run against each other like this are one thing without a name.
@@ -84,7 +84,7 @@ class Judge {
     const bool of_passes =
         passes_.scatter() && !out_.together.empty() && !passes_.shows(out_.together.front());
     if (!out_.together.empty() && !walks && !of_passes && !cancels(out_.together.front()) &&
-        !beside_cancelling(out_.together.front()) &&
+        !with_cancelling(out_.together.front()) &&
         !in_doubt(out_.together.front(), left, unexplained_share)) {
       v.kind = Verdict::Kind::missing;
       v.effect = out_.together.front();
@@ -133,7 +133,7 @@ class Judge {
                least_serious(f_.of_best.floor);
   }
 
-  /// Of cells less what the passes of a side share and what the best explanation says.
+  /// Of cells less what the passes of a side share and what the best explanation predicts.
   double degrees_of_cells() const {
     std::vector<Index> in_pass(f_.repeats.passes, 0), shared(f_.repeats.sides, 0);
     std::vector<char> used(f_.repeats.cells, 0);
@@ -163,13 +163,13 @@ class Judge {
   std::optional<Place> of_targets() const {
     if (!out_.together.empty()) return std::nullopt;
     auto place =
-        beside_a_misread_target(f_.part.table, f_.repeats, f_.of_best.fit.residual, f_.weight);
+        next_to_a_misread_target(f_.part.table, f_.repeats, f_.of_best.fit.residual, f_.weight);
     if (!place || !(place->p < serious_p)) return std::nullopt;
     return place;
   }
 
-  /// The zero that is not steady, if the model beside it, or it in the place of the first effect,
-  /// is a better explanation than the best set of effects.
+  /// The zero that is not steady, if the model with it, or with it in place of the first effect, is
+  /// a better explanation than the best set of effects.
   Noise::Zero unsteady_zero() const {
     if (out_.together.empty()) return Noise::Zero::steady;
     const Noise::Zero instead = better_zero(f_.of_model.fit.terms, f_.start);
@@ -181,27 +181,27 @@ class Judge {
   }
 
   Noise::Zero better_zero(const std::vector<Term>& terms, const Workbench::State& state) const {
-    const Unsteady beside = f_.beside_walk(terms);
+    const Unsteady with_terms = f_.walk_with(terms);
     const double own = f_.best.criterion - state.price - f_.price_of_zero();
     const double evidence = state.criterion - f_.best.criterion;
     if (evidence < least_against_zero) return Noise::Zero::steady;
-    if (beside.of_run < std::min(beside.walks, own + as_good_as(evidence)))
+    if (with_terms.of_run < std::min(with_terms.walks, own + as_good_as(evidence)))
       return Noise::Zero::of_run;
-    return beside.walks < own ? Noise::Zero::walks : Noise::Zero::steady;
+    return with_terms.walks < own ? Noise::Zero::walks : Noise::Zero::steady;
   }
 
-  /// How much less evidence is as good for zeros of runs, of so much: a small effect is not lost
-  /// for zeros that might be there; a large one would leave far more of itself beside them.
+  /// By how much evidence for zeros of runs must exceed this: a small effect is not rejected in
+  /// favour of possible zeros, whereas a large one would leave far more of itself with them.
   static double as_good_as(double evidence) {
     // docs/dev/constants.md, M30.
     constexpr double share = 0.1;
     return std::clamp(share * evidence, 0.0, alias_evidence);
   }
 
-  /// Whether an effect of the best set is there also if the zero walks.
-  bool beside_walk(const std::string& name) const {
+  /// Whether an effect of the best set is significant also with a random walk of the zero.
+  bool walk_with(const std::string& name) const {
     std::vector<Term> terms = f_.of_model.fit.terms;
-    const double without = f_.beside_walk(terms).least();
+    const double without = f_.walk_with(terms).least();
     double price = 0.0;
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t)
       if (f_.of_best.fit.terms[t].name() == name) {
@@ -209,7 +209,7 @@ class Judge {
         price = f_.bench->price(block);
         terms.push_back(f_.of_best.fit.terms[t]);
       }
-    return without - f_.beside_walk(terms).least() - price > certain_evidence;
+    return without - f_.walk_with(terms).least() - price > certain_evidence;
   }
 
   /// Whether something else is left in the places where this effect works: then it may be no more
@@ -217,7 +217,7 @@ class Judge {
   bool in_doubt(const std::string& name, const std::vector<Place>& serious, double share) const {
     for (std::size_t t = 0; t < f_.of_best.fit.terms.size(); ++t) {
       if (f_.of_best.fit.terms[t].name() != name) continue;
-      // What it alone can say: effects that cancel each other may both be large.
+      // Its own contribution: effects that cancel each other may both be large.
       const double rms2 =
           (f_.bench->without(f_.best, f_.index_of(name)).squares - f_.best.squares) /
           f_.bench->readings();
@@ -236,7 +236,7 @@ class Judge {
     return nullptr;
   }
 
-  /// Correlation of what two effects say of the readings, without the zeros of lines.
+  /// Correlation of what two effects predict for the readings, without the zeros of lines.
   double correlation(const std::string& one, const std::string& other) const {
     const auto *a = part_of(one), *b = part_of(other);
     if (a == nullptr || b == nullptr) return 0.0;
@@ -249,7 +249,8 @@ class Judge {
     return size > 0.0 ? both.col(0).dot(both.col(1)) / size : 0.0;
   }
 
-  /// Not the same at every reading of a target: what is constant in time is told by the first runs.
+  /// Not the same at every reading of a target: what is constant in time is visible in the first
+  /// runs.
   bool in_time(const std::string& name) const {
     const std::size_t e = f_.index_of(name);
     return std::none_of(f_.best.blocks.begin(), f_.best.blocks.end(), [&](std::size_t b) {
@@ -297,8 +298,9 @@ class Judge {
     if (drift < growth) std::iter_swap(drift, growth);
   }
 
-  /// Whether what a cancelling pair says together, which has no name, works where an effect does.
-  bool beside_cancelling(const std::string& name) const {
+  /// Whether what a cancelling pair predicts together, which has no name, works where an effect
+  /// does.
+  bool with_cancelling(const std::string& name) const {
     const auto* own = part_of(name);
     if (own == nullptr) return false;
     const auto works_in = places_of(*own);
@@ -331,15 +333,15 @@ class Judge {
     out_.plans = plans_for_pair(f_.part, f_.of_model.fit.terms, pair, value, f_.of_best.fit.s);
   }
 
-  /// Effects whose evidence stands whatever the rest is: overwhelming, and of what is left in their
-  /// places nothing as large as they are.
+  /// Effects whose evidence is valid whatever the remainder is: overwhelming, and nothing of their
+  /// size is left at their positions.
   void list_certain(const std::vector<Place>& serious, bool walks) {
     for (const std::string& name : out_.together) {
       const auto c = std::find_if(out_.candidates.begin(), out_.candidates.end(),
                                   [&](const Candidate& k) { return k.term.name() == name; });
       if (c->within < certain_evidence || !c->aliases.empty() || cancels(name)) continue;
       if (in_doubt(name, serious, certain_share)) continue;
-      if (of_one_target(name) || (walks && !beside_walk(name)) ||
+      if (of_one_target(name) || (walks && !walk_with(name)) ||
           (passes_.scatter() && !passes_.shows(name)))
         continue;
       out_.certain.push_back(name);
@@ -357,7 +359,7 @@ class Judge {
            most_of_one_target * explained.dot(without);
   }
 
-  /// Where something that says so much of each reading works.
+  /// Where something that predicts so much for each reading works.
   std::vector<Where> places_of(const std::vector<double>& says) const {
     const VectorXd part = Eigen::Map<const VectorXd>(says.data(), static_cast<Index>(says.size()));
     const VectorXd centred = part.array() - part.mean();

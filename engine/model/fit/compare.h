@@ -11,7 +11,7 @@ namespace nonio::model {
 
 std::vector<double> weights_without(std::size_t readings, const std::vector<Suspect>& suspects);
 
-/// What the comparison with one table stands on.
+/// The inputs of a comparison with one table.
 struct Ground {
   Repeats repeats;
   std::vector<Suspect> suspects{};
@@ -21,7 +21,7 @@ struct Ground {
 
 struct Groundwork::Found {
   Ground whole;
-  /// Of a long table its means, which places are looked for in and shapes are searched on.
+  /// Of a long table its means, which places are searched in and shapes are searched on.
   std::optional<Part> thin{};
   std::optional<Ground> of_thin{};
 };
@@ -41,14 +41,14 @@ class GroundworkOf {
   const Groundwork::Found* found_;
 };
 
-/// The comparison with these readings suspected, around a fit that is there already.
+/// The comparison with these readings suspected, around a fit that exists already.
 Comparison comparison_of(const Part& part, const Repeats& repeats, Fit fit,
                          std::vector<Suspect> suspects);
 
 /// Of each term whether its shapes are searched.
 std::vector<char> searched_in(const std::vector<Term>& terms);
 
-/// The fit anew, where its zero walks or is another one in each run.
+/// The fit repeated, where the zero is a random walk or differs from run to run.
 Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector<char>& searched);
 
 /// The comparison with these readings suspected; no places of a long table, whose shapes are

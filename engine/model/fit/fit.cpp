@@ -28,7 +28,7 @@ struct Design {
   std::vector<std::string> names;  // of all columns
   std::vector<Index> first;        // first column of each term, and the end
   std::vector<MatrixXd> blocks;    // of each term
-  std::vector<Index> lost;         // columns of a curve that the readings cannot tell from others
+  std::vector<Index> lost;  // columns of a curve that the readings do not separate from others
 };
 
 Expected<Design> design_of(const Observations& o, const std::vector<Term>& terms,
@@ -282,7 +282,7 @@ void step_shapes(const Observations& o, std::vector<Term>& terms, const std::vec
   }
 }
 
-/// Times that nobody measured are counted in readings, and not called seconds.
+/// Where times were not measured, they are numbers of readings, not seconds.
 bool untimed(const Observations& o, const Axis& axis) {
   const auto r = readings_of(o, axis);
   return r && !r->timed;
@@ -345,7 +345,7 @@ double s_for_uncertainty(const Fit& fit, const Observations& o, const Solution& 
 }
 
 /// Adds what interpolated temperatures may do to the parameters, in units of s^2 of the fit; where
-/// nobody knows how wrong they are, nothing has an uncertainty. `plain`: cofactors of the solution.
+/// their error is not known, no parameter has an uncertainty. `plain`: cofactors of the solution.
 void add_interpolation(MatrixXd& cofactor, const MatrixXd& plain, const Observations& o,
                        const std::vector<Term>& terms, const Design& design, const Solution& s,
                        const Whitening& white, double s_of_fit) {
@@ -461,7 +461,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
   for (std::size_t i = 0; i < p; ++i) {
     out.correlation[i][i] = 1.0;
     if (place[i] < 0) continue;
-    // What a zero of unknown size makes of it nobody can say.
+    // The effect of a zero of unknown size cannot be determined.
     out.parameters[i].u = open[static_cast<std::size_t>(place[i])] != 0
                               ? std::numeric_limits<double>::quiet_NaN()
                               : s_of_u * std::sqrt(cofactor(place[i], place[i]));

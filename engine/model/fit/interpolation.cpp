@@ -47,7 +47,7 @@ class Wrong {
  public:
   Wrong(const TemperatureCourse& course, const AxisReadings& r) : known_(course.known), r_(r) {}
 
-  /// In the middle of a gap, K; NaN where nobody knows.
+  /// In the middle of a gap, K; NaN if not known.
   double inside(double span) const {
     double sum = 0.0, count = 0.0;
     for_stretches(span, 2, [&](std::size_t a, std::size_t b, double scale) {
@@ -80,8 +80,8 @@ class Wrong {
     return (t(k) - t(a)) / (t(b) - t(a));
   }
 
-  /// From each known temperature to the first that lies `span` later, and so many further on. A
-  /// longer stretch is further off: in proportion at least, for anything that does not jump.
+  /// From each known temperature to the first that is `span` later, and so many further on. Over a
+  /// longer stretch the error grows at least in proportion, if nothing jumps.
   template <typename Use>
   void for_stretches(double span, std::size_t fewest_on, const Use& use) const {
     std::size_t b = 0;
@@ -96,11 +96,11 @@ class Wrong {
   const AxisReadings& r_;
 };
 
-/// False where too few temperatures are known to tell how wrong the line is.
+/// False if too few temperatures are known to estimate the error of the line.
 bool add_gaps(const TemperatureCourse& course, const AxisReadings& r, std::vector<Gap>& gaps) {
   const Wrong wrong(course, r);
   const auto& known = course.known;
-  std::size_t at = known.size() + 1;  // of the known temperature behind the last gap
+  std::size_t at = known.size() + 1;  // of the known temperature after the last gap
   for (const std::uint32_t i : course.blank) {
     const auto after = std::upper_bound(known.begin(), known.end(), r.t[i],
                                         [&](double t, std::uint32_t k) { return t < r.t[k]; });
@@ -139,7 +139,7 @@ struct Said {
   }
 };
 
-/// Those terms of this axis that ask for the temperature.
+/// The terms of this axis that need the temperature.
 Expected<Said> warmed(const Observations& filled, const AxisReadings& r,
                       const std::vector<Term>& terms, const std::vector<VectorXd>& linear,
                       const std::string& axis) {
@@ -159,7 +159,7 @@ Expected<Said> warmed(const Observations& filled, const AxisReadings& r,
   return out;
 }
 
-/// A column for each gap: what it changes of what is said.
+/// A column for each gap: what it changes of what is stated.
 Expected<MatrixXd> columns_of_gaps(const Observations& filled, const Said& said,
                                    const std::vector<Gap>& gaps) {
   NONIO_TRY(const auto as_fitted, said.of(filled));

@@ -9,7 +9,7 @@ namespace nonio::model {
 /// n rows each, m or rad, independent of each other and of one standard uncertainty each. How far
 /// the straight line goes wrong is measured where temperatures are known, over stretches as long as
 /// the gap. `linear` holds the linear parameters of each term. None where nothing is interpolated
-/// or no term uses it; an error where too few temperatures are known to tell.
+/// or no term uses it; an error if too few temperatures are known for it.
 Expected<MatrixXd> wrong_by_interpolation(const Observations& o, const std::vector<Term>& terms,
                                           const std::vector<VectorXd>& linear);
 

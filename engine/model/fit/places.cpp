@@ -12,7 +12,7 @@
 
 namespace nonio::model {
 
-/// Columns that vary with one factor only; `repeated`: told by differences between repeats of one
+/// Columns that vary with one factor only; `repeated`: found by differences between repeats of one
 /// cell (time, run, temperature), else by the cells themselves (position, direction, phase).
 struct FactorColumns {
   Where of;
@@ -326,9 +326,9 @@ class Cells {
   Eigen::LLT<MatrixXd> products_{};
 };
 
-/// Whether what a factor says differs between repeats of a cell: what comes back in every run sits
-/// in the cells, even where a wave of time describes it with fewer columns.
-bool tells_repeats_apart(const Cells& cells, const MatrixXd& basis, const VectorXd& residual) {
+/// Whether what a factor predicts differs between repeats of a cell: what comes back in every run
+/// sits in the cells, even where a wave of time describes it with fewer columns.
+bool separates_repeats(const Cells& cells, const MatrixXd& basis, const VectorXd& residual) {
   // docs/dev/constants.md, M19.
   constexpr double least = 0.1;  // of its squares; of a line in time over two runs, a fifth
   MatrixXd said = math::times(basis, math::transposed_times(basis, residual));
@@ -337,7 +337,7 @@ bool tells_repeats_apart(const Cells& cells, const MatrixXd& basis, const Vector
   return said.squaredNorm() > least * all;
 }
 
-/// Orthonormal columns of every factor: without zeros of lines, without what the model can say,
+/// Orthonormal columns of every factor: without zeros of lines, without what the model can predict,
 /// pairs without their factors.
 std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
                                const Whitening& white, const MatrixXd& model) {
@@ -353,7 +353,7 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
     if (f.of.second)
       for (const auto& of : {std::pair{f.of.first, std::string()}, std::pair{*f.of.second, f.line}})
         if (const MatrixXd& one = single[of]; one.cols() > 0) math::take_out(one, columns);
-    // A column that the model says already leaves rounding, not a direction.
+    // A column that the model predicts already leaves rounding, not a direction.
     for (Index k = 0; k < columns.cols(); ++k)
       if (!(columns.col(k).norm() > 1e-3 * before(k))) columns.col(k).setZero();
     MatrixXd basis = orthonormal(std::move(columns));
@@ -363,7 +363,7 @@ std::vector<MatrixXd> bases_of(const Factors& factors, const Repeats& repeats,
   return out;
 }
 
-/// Whitened columns of a factor whose levels can be told apart; of another none.
+/// Whitened columns of a factor whose levels are separable; of another none.
 MatrixXd levels_of(const FactorColumns& f, const Whitening& white) {
   return f.levels.size() < 3 ? MatrixXd(f.columns.rows(), 0) : white(f.columns);
 }
@@ -464,8 +464,7 @@ std::vector<Place> seats_of(const Residuals& left) {
       const double here = math::transposed_times(bases[f], rest).squaredNorm();
       const double value = -n * std::log1p(-std::min(here / rest.squaredNorm(), 1.0 - 1e-12)) -
                            k * std::log(n) - 10.0;  // 10: one place in a hundred by chance
-      if (value > gain &&
-          (!factors.all()[f].repeated || tells_repeats_apart(cells, bases[f], rest)))
+      if (value > gain && (!factors.all()[f].repeated || separates_repeats(cells, bases[f], rest)))
         best = f, gain = value, fall = here;
     }
     if (best == bases.size()) break;

@@ -37,8 +37,8 @@ class PlaceTests {
 };
 
 /// The fewest places that hold what is left: one after the other, each with all that its factors
-/// say together ("direction x time" with what is constant in time), as long as the evidence pays
-/// for their columns. For structure that no effect explains.
+/// predict together ("direction x time" with what is constant in time), as long as the evidence
+/// pays for their columns. For structure that no effect explains.
 std::vector<Place> seats_of(const Residuals&);
 
 /// What a term's part varies with (direction, position, direction x time, ...), by the share

@@ -57,8 +57,8 @@ std::size_t Workbench::usual_ones(const Term& term, const std::vector<double>& s
   return out;
 }
 
-/// A block with usual values of its shapes was chosen from those that have them: of the others
-/// evidence is asked that they are needed.
+/// A block with usual values of its shapes was chosen from those that have them: the others need
+/// evidence.
 void Workbench::fill_search(Block& block) const {
   const Instance& instance = instances_[block.effect];
   const auto tried = static_cast<double>(instance.tried[usual_ones(instance.term, block.shape)]);
@@ -71,7 +71,7 @@ void Workbench::fill_search(Block& block) const {
     block.searched += instance.free[k] != 0 && !is_usual(instance.term, block.shape, k);
 }
 
-/// Whether a block, beside so many unknowns of position, comes near to one free value per target.
+/// Whether a block, with so many unknowns of position, has nearly one free value per target.
 bool Workbench::follows_targets(const Block& block, Index of_position) const {
   if (!block.of_position) return false;
   const bool stated = block.effect < stated_;
@@ -462,7 +462,7 @@ Workbench::State Workbench::with(const State& state, const Gains& gains, std::si
   return more;
 }
 
-/// A curve counts with as many parameters as it has directions of its own beside the state's.
+/// A curve counts with as many parameters as it has directions independent of the state's.
 Workbench::State Workbench::with_curve(const State& state, const Gains& gains,
                                        std::size_t effect) const {
   State best = state;

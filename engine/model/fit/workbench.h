@@ -70,7 +70,7 @@ class Workbench {
   Index zeros() const { return zeros_; }
   bool in_space() const { return several_axes_; }
 
-  /// One more value of an effect's shapes, beside those of its grid.
+  /// One more value of an effect's shapes, in addition to those of its grid.
   void add_shape(const Observations& o, std::size_t effect, const std::vector<double>& shape);
 
   State state(std::vector<std::size_t> blocks) const;
@@ -87,8 +87,8 @@ class Workbench {
   /// The state with the best block of this effect added, or nothing that can be added (blocks as
   /// before).
   State with(const State& state, const Gains& gains, std::size_t effect) const;
-  /// The same, where it is better with curves of fewer knots: a curve that is there follows what
-  /// the new effect has to say, and takes the targets that it would need.
+  /// The same, where it is better with curves of fewer knots: a curve that is there adapts to the
+  /// new effect, and takes the targets that it would need.
   State joined(const State& state, const Gains& gains, std::size_t effect) const;
   /// Each effect's shapes looked for again while the others stay, until nothing improves.
   State settled(State state) const;
@@ -156,7 +156,7 @@ class Workbench {
   std::vector<Instance> instances_;
   std::vector<Block> blocks_;
   MatrixXd x_;
-  mutable std::vector<MatrixXd> products_;  // of all columns with each block's, where asked for
+  mutable std::vector<MatrixXd> products_;  // of all columns with each block's, if requested
   mutable std::map<std::pair<std::size_t, std::size_t>, MatrixXd>
       pairs_;  // of two blocks' columns, likewise
   Whitening white_;

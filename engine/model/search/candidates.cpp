@@ -94,7 +94,7 @@ class Sizes {
   std::size_t effect_;
   double s_, dof_;
   std::vector<Shown> shown_;
-  mutable double price_ = -1.0, unknowns_ = 0.0, wanted_ = 0.0;  // of the last block asked for
+  mutable double price_ = -1.0, unknowns_ = 0.0, wanted_ = 0.0;  // of the last requested block
 };
 
 class CandidateOf {
@@ -138,7 +138,7 @@ class CandidateOf {
   }
 
  private:
-  /// Effects that can stand for a member of the best explanation at hardly any loss.
+  /// Effects that can replace a member of the best explanation at hardly any loss.
   std::vector<std::string> aliases_of(std::size_t member) const {
     std::vector<std::string> names;
     const State rest = f_.bench->without(f_.best, member);
@@ -158,9 +158,9 @@ class CandidateOf {
     return names;
   }
 
-  /// Hardly any evidence is lost, or hardly any likelihood beside what further columns cost: what
-  /// the search has cost says which is named, not which it is. In space, where one curve can hold
-  /// another effect wholly, also where the readings lose nothing and only the parameters cost more.
+  /// Hardly any evidence is lost, or hardly any likelihood apart from the cost of further columns:
+  /// the cost of the search decides which effect is named, not which is the true one. In space,
+  /// where one curve can contain another effect completely, also if only the parameters cost more.
   bool as_good(const State& changed) const {
     if (changed.criterion < f_.best.criterion + alias_evidence) return true;
     const double n = f_.bench->readings();

@@ -54,7 +54,7 @@ class Finder {
     NONIO_TRY(auto start, best_start());
     f_.start = std::move(start);
     f_.best = best_explanation(*f_.bench, f_.start);
-    // What lies between the values of a grid would be taken for an effect of its own.
+    // An effect between the values of a grid would be taken for another effect.
     constexpr double worth_another_round = 1.0;
     for (int round = 0; round < 3; ++round) {
       const bool finer = add_refined(f_.start), alone = round == 0 && add_refined_alone();
@@ -74,9 +74,9 @@ class Finder {
     return repeated.dof >= fewest ? std::sqrt(repeated.squares / repeated.dof) : 0.0;
   }
 
-  /// Within a pass a zero that walks looks like neighbours that are alike. Whether it is the better
-  /// explanation, beside the model, than those with all that was found: then readings are taken for
-  /// independent, and the walk stays to be seen.
+  /// Within a pass a random walk of the zero looks like correlated neighbours. Whether it is, with
+  /// the model, a better explanation than all that was found: then the readings are treated as
+  /// independent, and the random walk stays visible.
   bool walks_rather() {
     if (!(f_.noise.in_repeats > 0.0)) return false;
     Noise alone = f_.noise;
@@ -88,12 +88,12 @@ class Finder {
     const double alike = criterion_of_neighbours(o, f_.weight, alone, *all) + f_.best.price +
                          std::log(f_.bench->readings());
     const double walk =
-        beside_walk(o, f_.weight, alone, *model).least() + f_.start.price + f_.price_of_zero();
+        walk_with(o, f_.weight, alone, *model).least() + f_.start.price + f_.price_of_zero();
     return walk < alike;
   }
 
-  /// Each effect of the best explanation alone beside the model: what a coarse grid leaves of a
-  /// large one is not to be fitted by others.
+  /// Each effect of the best explanation alone with the model: others must not fit the remainder
+  /// that a coarse grid leaves of a large one.
   bool add_refined_alone() {
     bool any = false;
     const State best = f_.best;
@@ -159,7 +159,7 @@ class Finder {
   bool add_refined(const State& state) {
     bool any = add_fitted(state, terms_of_state(state));
     any = add_moved(state) || any;
-    // Another effect may stand for what such a value leaves.
+    // Another effect may fit the remainder of such a value.
     for (const std::size_t b : state.blocks)
       if (const std::size_t e = f_.bench->effect_of(b); e >= f_.in_model)
         any = add_without(state, e) || any;
@@ -241,7 +241,8 @@ class Finder {
     return least < all ? std::vector<Suspect>{worst} : std::vector<Suspect>{};
   }
 
-  /// A reading of weight 0 against what the best explanation of the others says of it: none if (it) /// is as far away as one of so many may be.
+  /// A reading of weight 0 compared with the prediction of the best explanation of the others: none
+  /// if (it) /// is as far away as one of so many may be.
   std::optional<Suspect> predicted(std::size_t row) const {
     // docs/dev/constants.md, M12.
     constexpr double rarely = 0.01;
@@ -371,9 +372,9 @@ double Finding::dof(const State& state) const {
 
 double Finding::left() const { return std::sqrt(best.squares / std::max(dof(best), 1.0)); }
 
-Unsteady Finding::beside_walk(const std::vector<Term>& some) const {
+Unsteady Finding::walk_with(const std::vector<Term>& some) const {
   const auto columns = columns_of(some);
-  return columns ? model::beside_walk(part.table, weight, noise, *columns) : Unsteady{};
+  return columns ? model::walk_with(part.table, weight, noise, *columns) : Unsteady{};
 }
 
 Expected<MatrixXd> Finding::columns_of(const std::vector<Term>& some) const {

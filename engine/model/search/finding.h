@@ -41,10 +41,10 @@ struct Finding {
   double dof(const Workbench::State& state) const;
   /// Standard deviation that the best explanation leaves.
   double left() const;
-  /// Of these terms, one beside the other.
+  /// Of these terms together.
   Expected<MatrixXd> columns_of(const std::vector<Term>& some) const;
-  /// These terms beside a zero that is not steady.
-  Unsteady beside_walk(const std::vector<Term>& some) const;
+  /// These terms with a zero that is not steady.
+  Unsteady walk_with(const std::vector<Term>& some) const;
   /// What a zero that is not steady costs: one parameter, one name.
   double price_of_zero() const;
   /// What a state leaves, whitened.

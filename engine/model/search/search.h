@@ -22,7 +22,7 @@ struct Chance {
 };
 
 /// Noise made of `residual`: the signs of short stretches of its passes flipped at random (what
-/// neighbours share within a pass stays), less what the zeros and a state's columns say of it.
+/// neighbours share within a pass stays), less its part in the zeros and a state's columns.
 struct SignFlips {
   MatrixXd noise;        ///< a column for each shuffle
   MatrixXd products;     ///< a row for each shuffle: with all columns of the bench

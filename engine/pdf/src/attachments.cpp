@@ -12,8 +12,8 @@ std::string text_at(const File& file, const Value* dictionary, const char* key) 
   return value == nullptr ? "" : value->text;
 }
 
-/// What `reserve` writes, and no other way to say it: a name that two readers read differently, or
-/// a file that one of them finds elsewhere, would be two files.
+/// Exactly what `reserve` writes: a name that two readers read differently, or a file that one of
+/// them finds elsewhere, would be two files.
 Expected<void> check_form(const File& file, const Value* specification, const std::string& key,
                           const std::string& name) {
   const Value* files = file.find(specification, "EF");

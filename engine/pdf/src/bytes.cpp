@@ -34,7 +34,7 @@ void append_int(std::string& out, long long value) {
 }
 
 /// Written by the ten thousand: digits from the last to the first, by hand.
-void append_real(std::string& out, double value, char behind) {
+void append_real(std::string& out, double value, char after) {
   if (!(std::fabs(value) < 30000.0))
     value = std::copysign(30000.0, std::isnan(value) ? 0.0 : value);
   const double exact = std::fabs(value) * 100.0;
@@ -42,7 +42,7 @@ void append_real(std::string& out, double value, char behind) {
   if (exact - hundredths >= 0.5) ++hundredths;
   std::array<char, 12> text;
   char* at = text.data() + text.size();
-  *--at = behind;
+  *--at = after;
   std::uint32_t whole = hundredths / 100;
   if (const std::uint32_t rest = hundredths % 100; rest != 0) {
     if (rest % 10 != 0) *--at = static_cast<char>('0' + rest % 10);

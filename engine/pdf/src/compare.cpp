@@ -7,8 +7,8 @@ namespace nonio::pdf {
 
 namespace {
 
-/// Two files of `reserve`, object by object. How a stream is packed is of no account: that may be
-/// another version of the library that packs.
+/// Two files of `reserve`, object by object. The compression of streams is ignored, because another
+/// version of the library may have made it.
 class Comparison {
  public:
   Comparison(const File& a, const File& b, const Value* signature)

@@ -75,7 +75,7 @@ class FileReader {
     if (!b.starts_with("%PDF-1.") || b.size() < 64 || b[7] < '3' || b[7] > '7' || b[8] != '\n')
       return fail("is not a PDF of version 1.3 to 1.7");
     std::size_t at = 9;
-    if (b[at] == '%') {  // four bytes that say that the file is not text
+    if (b[at] == '%') {  // four bytes that state that the file is not text
       if (b[at + 5] != '\n') return refuse(at, "expected a comment of four bytes");
       for (std::size_t i = at + 1; i < at + 5; ++i)
         if (static_cast<unsigned char>(b[i]) < 0x80) return refuse(i, "expected a byte above 127");
@@ -212,7 +212,7 @@ Expected<File> parse(std::string_view bytes) { return FileReader(bytes).read(); 
 
 namespace {
 
-/// As many bytes as are asked for, neither more nor less.
+/// As many bytes as are requested, neither more nor less.
 enum class Unpacked { well, badly, longer };
 
 Unpacked unpack(std::string_view packed, std::string& into) {

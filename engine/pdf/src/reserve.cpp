@@ -31,8 +31,8 @@ std::string formatted(const char* format, Numbers... numbers) {
   return {text.data(), static_cast<std::size_t>(n)};
 }
 
-/// The file written anew: its own objects as they stand, two of them with more entries, then those
-/// of the attachments and of the signature.
+/// The file written anew: its own objects unchanged, except two with more entries, then those of
+/// the attachments and of the signature.
 class Reservation {
  public:
   Reservation(const File& file, Time time, std::size_t room)
@@ -196,9 +196,9 @@ class Reservation {
   }
 
   void fill_range() {
-    const std::size_t behind = gap_ + 2 * room_ + 2;
+    const std::size_t after = gap_ + 2 * room_ + 2;
     out_.replace(range_, 36,
-                 formatted("[0 %010zu %010zu %010zu]", gap_, behind, out_.size() - behind));
+                 formatted("[0 %010zu %010zu %010zu]", gap_, after, out_.size() - after));
   }
 
   const File& file_;

@@ -60,18 +60,18 @@ Expected<PdfSignature> signature_at_end(std::string_view bytes) {
   }
   PdfSignature signature;
   signature.gap = at - 1 + then.size();
-  const std::size_t behind = numbers[1];
-  if (numbers[0] != signature.gap || behind <= signature.gap + 2 || behind > bytes.size() ||
-      numbers[2] != bytes.size() - behind)
+  const std::size_t after = numbers[1];
+  if (numbers[0] != signature.gap || after <= signature.gap + 2 || after > bytes.size() ||
+      numbers[2] != bytes.size() - after)
     return fail("the signed range is not the whole file but for the signature itself");
-  if (behind - signature.gap > 2 * max_room + 2)
+  if (after - signature.gap > 2 * max_room + 2)
     return fail("/Contents: longer than any signature of Nonio");
-  signature.contents = bytes.substr(signature.gap + 1, behind - signature.gap - 2);
-  if (bytes[signature.gap] != '<' || bytes[behind - 1] != '>' ||
+  signature.contents = bytes.substr(signature.gap + 1, after - signature.gap - 2);
+  if (bytes[signature.gap] != '<' || bytes[after - 1] != '>' ||
       signature.contents.size() % 2 != 0 || !is_lower_hexadecimal(signature.contents))
     return fail("/Contents: expected digits and small letters a to f");
   signature.before = bytes.substr(0, signature.gap);
-  signature.behind = bytes.substr(behind);
+  signature.after = bytes.substr(after);
   NONIO_TRY(const auto time, time_in(bytes.substr(from + found - time_size, time_size)));
   signature.time = time;
   return signature;
@@ -98,10 +98,10 @@ Expected<PdfSignature> signature_of(const File& file, const Value& dictionary) {
   PdfSignature signature;
   signature.dictionary = &dictionary;
   signature.before = file.bytes.substr(0, contents->begin);
-  signature.behind = file.bytes.substr(contents->end);
+  signature.after = file.bytes.substr(contents->end);
   signature.gap = contents->begin;
   signature.contents = file.bytes.substr(contents->begin + 1, contents->end - contents->begin - 2);
-  // Upper case would say the same in other bytes: a file has one form.
+  // Upper case would be the same content in other bytes: only one form is accepted.
   if (!is_lower_hexadecimal(signature.contents))
     return fail("/Contents: expected digits and small letters a to f");
   const Value* time = dictionary.find("M");

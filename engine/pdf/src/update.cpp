@@ -25,7 +25,7 @@ std::optional<std::size_t> number_in(std::string_view text) {
   return number;
 }
 
-/// Of the part that ends there: where its table says that the part before it has its own.
+/// Of the part that ends there: where its table states that the part before it has its own.
 std::optional<std::size_t> table_before(std::string_view bytes, std::size_t end) {
   constexpr std::size_t longest = 30000;  // a table and a trailer of an update
   constexpr std::string_view word = "\nstartxref\n", previous = "\n/Prev ";
@@ -208,10 +208,10 @@ class Updater::Objects {
     bytes_ += to_.table(places_, at, bytes_);
     if (out.has_stamp) {
       out.gap = gap_;
-      out.behind = gap_ + 2 * usual_room + 2;
+      out.after = gap_ + 2 * usual_room + 2;
       std::array<char, 64> text{};
-      std::snprintf(text.data(), text.size(), "[0 %010zu %010zu %010zu]", out.gap, out.behind,
-                    to_.end_ + bytes_.size() - out.behind);
+      std::snprintf(text.data(), text.size(), "[0 %010zu %010zu %010zu]", out.gap, out.after,
+                    to_.end_ + bytes_.size() - out.after);
       bytes_.replace(range_, 36, text.data());
     }
     to_.end_ += bytes_.size();
@@ -260,7 +260,7 @@ std::size_t new_ones(const Value& store, const char* key, std::size_t first) {
 
 }  // namespace
 
-/// The streams, then the object that says what they are.
+/// The streams, then the object that describes them.
 Expected<Store> Updater::read_store(std::string_view bytes, std::size_t& at) const {
   std::vector<std::string> streams;
   std::size_t number = size_;
@@ -320,9 +320,9 @@ Expected<Update> Updater::read(std::string_view bytes, std::size_t end) {
   if (!again) return strange(again.error().message);
   const std::string_view found = part.substr(begin), wanted = again->bytes;
   const std::size_t gap = has_stamp ? again->gap + 1 - begin : wanted.size(),
-                    behind = has_stamp ? again->behind - 1 - begin : wanted.size();
+                    after = has_stamp ? again->after - 1 - begin : wanted.size();
   if (found.size() != wanted.size() || found.substr(0, gap) != wanted.substr(0, gap) ||
-      found.substr(behind) != wanted.substr(behind))
+      found.substr(after) != wanted.substr(after))
     return strange(what);
   again->bytes = found;
   return again;

@@ -123,7 +123,7 @@ HPDF_STATUS append(HPDF_Stream stream, const HPDF_BYTE* bytes, HPDF_UINT size) {
   return HPDF_OK;
 }
 
-/// libharu drops a /Filter that it did not apply itself; what is written here stands behind the
+/// libharu drops a /Filter that it did not apply itself; what is written here follows the
 /// dictionary's own entries.
 HPDF_STATUS write_filter(HPDF_Dict, HPDF_Stream stream) {
   return HPDF_Stream_WriteStr(stream, "/Filter /FlateDecode\012");
@@ -312,7 +312,7 @@ void add_properties(HPDF_Doc doc, const NewFile& file) {
     HPDF_Dict_Add(doc->catalog, "Lang", HPDF_String_New(doc->mmgr, file.language.c_str(), nullptr));
 }
 
-/// What a file that is kept for long says of itself.
+/// What a file that is kept for long states about itself.
 struct Kept {
   std::string profile, xmp, identifier;
 };

@@ -38,7 +38,7 @@ std::filesystem::path& own_folder() {
   return folder;
 }
 
-/// What the child says while it loads what was not tried; it has no value if there is no memory.
+/// Message of the child while it loads an untried plugin; it has no value if there is no memory.
 SharedStatus& loading_untried() {
   static SharedStatus words;
   return words;
@@ -109,7 +109,7 @@ void step_aside() {
   const bool can_tell = loading_untried().valid();
   pid_t child = ::fork();
   while (child > 0) {
-    ::signal(SIGINT, SIG_IGN);  // the child gets it too, and says how it ends
+    ::signal(SIGINT, SIG_IGN);  // the child receives the signal too and reports its end
     const int status = end_of(child, children_before);
     if (try_all || !can_tell || loading_untried().get().empty()) end_as(status);
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) end_as(status);

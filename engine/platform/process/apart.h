@@ -6,7 +6,7 @@
 
 namespace nonio::process {
 
-/// Goes on in a child if `keep_plugins_apart` was asked for; the first time only.
+/// Goes on in a child if `keep_plugins_apart` was requested; the first time only.
 void step_aside();
 
 /// Whatever a child inherits unwritten, it may write too.
@@ -15,8 +15,8 @@ void flush_output();
 /// Whether this is such a child, or one of its own.
 bool is_apart();
 
-/// Whether a plugin must first be tried in a child of its own: it lies elsewhere than beside the
-/// program, with which it was tested, or this process cannot be made anew.
+/// Whether a plugin must first be tried in a child of its own: it is not in the folder of the
+/// program, with which it was tested, or this process cannot be restarted.
 bool must_be_tried(const std::filesystem::path& plugin);
 
 /// While it lives, plugins are loaded that were not tried: what ends this process, or hangs, makes

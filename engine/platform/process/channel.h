@@ -37,12 +37,12 @@ class Handle {
 /// `type`: SOCK_STREAM or SOCK_SEQPACKET.
 Expected<std::array<Handle, 2>> channel_pair(int type, const std::string& to_whom);
 
-/// Length, then bytes, over a stream. False if the other side has gone; `read` also if it says more
-/// than anybody has to say.
+/// Length, then bytes, over a stream. False if the other side has ended; `read` also if it sends
+/// more than the limit.
 bool write_text(int stream, std::string_view bytes);
 bool read_text(int stream, std::string& bytes);
 
-/// A byte and some descriptors with it, over any channel. False if the other side has gone.
+/// A byte and some descriptors with it, over any channel. False if the other side has ended.
 bool send_descriptors(int channel, char word, const std::vector<int>& descriptors);
 
 struct Received {
@@ -50,7 +50,7 @@ struct Received {
   std::vector<Handle> descriptors;  ///< closed when another program is started
   pid_t sender = -1;                ///< as the kernel knows it; -1 where SO_PASSCRED is not set
 };
-/// An error if the other side has gone.
+/// An error if the other side has ended.
 Expected<Received> receive_descriptors(int channel);
 
 }  // namespace nonio::process

@@ -34,8 +34,8 @@ void end_children(const std::vector<pid_t>& kept);
 /// standard output joined to the standard error so that results on stdout stay clean.
 void init_child();
 
-/// To be called then where nothing is printed: who reads what the parent prints waits until nobody
-/// can print any more, also for a child that was left behind.
+/// To be called by a child that prints nothing: a reader of the parent's output waits until every
+/// process has closed it, also a child that outlives the parent.
 void keep_silent();
 
 /// Private memory that the process may have from now on. Without effect under a sanitizer, whose

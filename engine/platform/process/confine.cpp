@@ -32,7 +32,7 @@ struct Ruleset {
   std::uint64_t files = 0, net = 0, scoped = 0;
 };
 
-/// Of which later headers than Debian 12's have the names.
+/// Rights of newer kernels, which the headers of Debian 12 do not name.
 constexpr std::uint64_t truncate_right = 1ULL << 14, device_right = 1ULL << 15;
 constexpr std::uint64_t bind_and_connect = 3, abstract_sockets_and_signals = 3;
 
@@ -60,7 +60,7 @@ void allow_reading(int ruleset, const fs::path& path,
                                           LANDLOCK_ACCESS_FS_READ_DIR) {
   landlock_path_beneath_attr rule{};
   rule.parent_fd = ::open(path.c_str(), O_PATH | O_CLOEXEC);
-  if (rule.parent_fd < 0) return;  // what is not there need not be read
+  if (rule.parent_fd < 0) return;  // what is missing need not be read
   std::error_code error;
   rule.allowed_access = rights;
   if (!fs::is_directory(path, error)) rule.allowed_access &= LANDLOCK_ACCESS_FS_READ_FILE;
@@ -77,7 +77,7 @@ std::string apply(int ruleset) {
 
 std::string restrict_files(const std::vector<fs::path>& readable) {
   const int abi = landlock_abi();
-  if (abi < 1) return {};  // said by lacking_confinement
+  if (abi < 1) return {};  // reported by lacking_confinement
   const Ruleset all = everything(abi);
   const auto fd = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &all, sizeof all, 0));
   if (fd < 0) return why_not("Landlock");
@@ -85,7 +85,7 @@ std::string restrict_files(const std::vector<fs::path>& readable) {
   return apply(fd);
 }
 
-/// Everything below a folder but the secrets: Landlock says what is allowed, not what is not.
+/// Everything below a folder but the secrets: Landlock states what is allowed, not what is not.
 void allow_all_but(int ruleset, const fs::path& folder, const std::set<fs::path>& above,
                    const std::set<fs::path>& secrets) {
   std::error_code error;

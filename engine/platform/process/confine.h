@@ -7,15 +7,15 @@
 
 namespace nonio::process {
 
-/// What a process with plugin code may still do. Everything here only takes away, for good, and
-/// holds for all processes that the process makes.
+/// What a process with plugin code may still do. Everything here only removes rights, permanently,
+/// and applies to all processes that the process makes.
 
-/// What this kernel lacks of it, in words for the morning's reader; empty: nothing.
+/// What this kernel lacks of it, in words for the summary; empty: nothing.
 std::vector<std::string> lacking_confinement();
 
 /// Before plugins are loaded: no new rights, no capability; below `readable` files can be read and
-/// nowhere else, nothing can be written; no program can be started, nobody be spoken to or
-/// signalled. An error if the kernel has such a thing and refuses it.
+/// nowhere else, nothing can be written; no program can be started, no process be contacted or
+/// signalled. An error if the kernel supports this and refuses it.
 std::string confine_loading(const std::vector<std::filesystem::path>& readable);
 
 /// When plugins are loaded: no file can be opened at all. An error as above.
@@ -25,12 +25,12 @@ std::string confine_files();
 std::string confine_computing();
 
 /// For the work of one command, which reads and writes files and makes processes: no new rights, no
-/// program started, nobody spoken to.
+/// program started, no connection to another process.
 std::string confine_visit();
 
 /// For one call of a plugin that should need nothing but its arguments: files, sockets, processes,
-/// signals, another folder or mode mask are not to be had. `told` gets the name of the system call
-/// that was tried, and must not return. An error as above.
+/// signals, another folder or mode mask are not to be had. `told` is called with the name of the
+/// system call that was tried, and must not return. An error as above.
 std::string confine_pure(void (*told)(const char* call));
 
 /// These files can be read no more; nor what is made from now on in the folders above them.

@@ -23,7 +23,7 @@ auto leaving_all_as_it_is(const std::string& who, const Call& call) -> decltype(
   return result;
 }
 
-/// Nobody throws on purpose; whatever a plugin does throw ends here, with its name.
+/// No code throws on purpose; whatever a plugin throws is caught here and reported with its name.
 template <class Call>
 auto guarded(const std::string& who, const Call& call) -> decltype(call()) {
   return leaving_all_as_it_is(who, [&]() -> decltype(call()) {
@@ -41,7 +41,7 @@ auto guarded(const std::string& who, const Call& call) -> decltype(call()) {
   });
 }
 
-/// What a plugin says of itself.
+/// What a plugin reports of itself.
 template <class Ask>
 Expected<bool> guarded_answer(const std::string& who, const Ask& ask) {
   return guarded(who, [&]() -> Expected<bool> { return ask(); });

@@ -6,9 +6,9 @@
 namespace nonio::process {
 
 /// For a program that does one thing and ends: when it first loads plugins, all that is still to do
-/// goes on in a child, which can start no program and talk to nobody, and the process that was
-/// started only waits for it and ends as it does. What plugins print goes to the standard error.
-/// `own_plugins`: the folder beside the program, whose plugins were tested with it.
+/// goes on in a child, which can start no program and connect to no process, and the process that
+/// was started only waits for it and ends with its exit status. What plugins print goes to the
+/// standard error. `own_plugins`: the folder of the program, whose plugins were tested with it.
 void keep_plugins_apart(std::filesystem::path own_plugins);
 
 }  // namespace nonio::process

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the filters of filters.h as a C++ source. Run when Nonio is built: libseccomp then may
-// fail, but not in a night, where a refused allocation makes it loop, free twice, or leave rules
+// fail, but not during a run, where a refused allocation makes it loop, free twice, or leave rules
 // out without a word (2.5.4, 397 allocations: 56, 25 and 134 of them).
 #include <fcntl.h>
 #include <sched.h>
@@ -290,14 +290,14 @@ void print_visit() {
   filter.print("visit");
 }
 
-/// Besides what `loading` forbids, and only what is named.
+/// Forbids what `loading` forbids, and all calls that are not named here.
 void print_computing() {
   Filter filter(SCMP_ACT_ERRNO(EPERM));
   for (const char* call : computing) filter.add(SCMP_ACT_ALLOW, call);
   constexpr unsigned flags = 3;
   filter.add(SCMP_ACT_ALLOW, "mmap", masked(flags, MAP_GROWSDOWN, 0));
   filter.add(SCMP_ACT_ALLOW, "prlimit64", is(0, 0), is(2, 0));
-  // abort() and raise(), to nobody else
+  // abort() and raise(), to no other process
   filter.add(SCMP_ACT_ALLOW, "tgkill", is(0, own_process));
   filter.add(SCMP_ACT_KILL_PROCESS, "tgkill", is_not(0, own_process));
   filter.add(SCMP_ACT_ERRNO(EAGAIN), "clone");

@@ -43,7 +43,7 @@ class Outbox {
   void send() {
     for (std::string_view rest = buffer_; !rest.empty();) {
       const ssize_t n = ::write(channel_, rest.data(), rest.size());
-      if (n < 0 && errno != EINTR) ::_exit(1);  // nobody listens
+      if (n < 0 && errno != EINTR) ::_exit(1);  // no process reads
       if (n > 0) rest.remove_prefix(static_cast<std::size_t>(n));
     }
     buffer_.clear();

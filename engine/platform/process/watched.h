@@ -71,7 +71,7 @@ class Watched {
   Clock::time_point last_beat_ = Clock::now();
 };
 
-/// What is said of a place that hangs.
+/// Message about a place without response.
 std::string no_answer(double seconds);
 
 /// Returns when one of them may have sent something, or soon.

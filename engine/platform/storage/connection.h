@@ -8,7 +8,7 @@
 
 #include "platform/storage/database.h"
 
-/// What stands behind `Database`: one class for SQLite, one for PostgreSQL.
+/// The implementation of `Database`: one class for SQLite, one for PostgreSQL.
 namespace nonio::storage {
 
 /// Each call gives an error, "" if it went well. After an error `rollback` comes next, or nothing.

@@ -27,8 +27,8 @@ struct Server {
 /// Whether libpq reads this address and no password is in it. The error never repeats it.
 Expected<void> check_address(const std::string& url);
 
-/// A connection to an SQLite file or a server: one process, one thread, never across a fork. After the first
-/// trouble in a transaction nothing more of it is done, and `Transaction::end` says what it was.
+/// A connection to an SQLite file or a server: one process, one thread, never across a fork. After
+/// the first error in a transaction nothing more of it is done, and `Transaction::end` returns it.
 class Database {
  public:
   struct Blob {
@@ -40,9 +40,9 @@ class Database {
 
   enum class Use { write, create, read };
   static constexpr double usual_patience = 60.0;
-  /// Made if it is not there with Use::create. With Use::read nothing is written, no lock is taken and
-  /// no journal is looked for: for a file that nobody changes, and that may come from anywhere. Whoever finds it locked waits up to `patience`
-  /// seconds; the error is then one of which `is_locked` is true.
+  /// Made if it is missing with Use::create. With Use::read nothing is written, no lock is taken
+  /// and no journal is searched: for a file from anywhere that no process changes. A locked
+  /// database is waited for up to `patience` seconds; then `is_locked` of the error is true.
   static Expected<Database> open(const std::filesystem::path& path, Use use,
                                  double patience = usual_patience);
   /// Names of tables are those of the server's schema, whether it is there or not.
@@ -57,7 +57,7 @@ class Database {
   /// The rows of one statement whose `?` are these values. NULL comes as "", a double in the fewest
   /// digits that give it back. A statement is prepared once and kept.
   std::vector<Row> rows(const char* sql, std::initializer_list<Value> values = {});
-  /// The same, each row as it comes: what `take` gets is gone after it. It may not use the database.
+  /// The same, row by row, valid during the call of `take`, which may not use the database.
   using Take = std::function<void(const std::vector<std::string_view>& row)>;
   void each(const char* sql, std::initializer_list<Value> values, const Take& take);
   /// The first column of the first row; "" if there is none.
@@ -68,7 +68,7 @@ class Database {
   /// Statements one after the other, without values and rows.
   void script(const std::string& sql);
   bool failed() const { return !error_.empty(); }
-  /// The first trouble since it was asked last.
+  /// The first error since the last call.
   Expected<void> take_error();
 
   /// Statements that are done all or not at all; taken back unless `end` was called.

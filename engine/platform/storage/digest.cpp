@@ -14,7 +14,7 @@
 
 namespace nonio::storage {
 
-/// Poco's engine goes on where OpenSSL has no memory, and then reads what is not there.
+/// Poco's engine goes on where OpenSSL has no memory, and then reads what is missing.
 struct RunningDigest::State {
   std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context{::EVP_MD_CTX_new(),
                                                              &::EVP_MD_CTX_free};

@@ -9,7 +9,7 @@
 
 namespace nonio::storage {
 
-/// The file system of the output folder, for the processes of one night. The kernel tells of a lost
+/// The file system of the output folder, for the processes of one run. The kernel reports a lost
 /// write once, and only to descriptors that were open at the time: so this is made before the first
 /// process that writes, and all of them share it.
 class Disk {
@@ -19,11 +19,11 @@ class Disk {
   Disk& operator=(const Disk&) = delete;
   ~Disk();
 
-  /// Returns when everything that was written is on disk; an error if the disk lost something since
-  /// it was asked last.
+  /// Returns when everything that was written is on disk; an error if the disk lost a write since
+  /// the last call.
   Expected<void> flush() const;
-  /// How often it did, in any process. What was begun at another count than this is not to be
-  /// relied on: nobody knows which writes were lost.
+  /// How often it did, in any process. What was begun at another count is not reliable, because it
+  /// is not known which writes were lost.
   std::uint32_t losses() const { return losses_ == nullptr ? 0 : losses_->load(); }
 
  private:

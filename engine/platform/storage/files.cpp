@@ -54,7 +54,7 @@ tl::unexpected<Error> system_error(std::string_view what, const fs::path& path) 
   return fail(std::string(what) + " " + path.string() + ": " + std::strerror(code));
 }
 
-/// Made and filled, not yet flushed; the system is asked to begin writing.
+/// Made and filled, not yet flushed; the system is requested to begin writing.
 Expected<Descriptor> write_new(const fs::path& path, std::string_view bytes) {
   Descriptor file(
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0644));
@@ -222,7 +222,7 @@ Expected<std::string> read_file(const fs::path& path) {
   if (auto packed = read_from_pack(path)) return std::move(*packed);
   NONIO_TRY(const auto file, open_regular(path));
   std::string bytes;
-  // A byte more than there is: that none comes says that the file ends there.
+  // A byte more than there is: that none comes shows that the file ends there.
   for (std::size_t size = 0, room = std::min(file.size, most_at_once) + 1;; room *= 2) {
     bytes.resize(room);
     NONIO_TRY(const auto read,
@@ -473,7 +473,7 @@ Expected<bool> disk_gives_back(const fs::path& path, std::uint64_t size, std::st
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!file) return system_error("cannot read", path);
   ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED);
-  // A byte more than it is to have: that none comes says that it ends there.
+  // A byte more than it is to have: that none comes shows that it ends there.
   std::string buffer(std::min<std::uint64_t>(size + 1, 1 << 20), '\0');
   RunningDigest digest;
   std::uint64_t seen = 0;

@@ -37,7 +37,7 @@ class MappedFile {
 };
 
 /// A file as it was at one moment, read once into memory of its own: what is hashed is what is
-/// evaluated, whatever somebody writes into the file meanwhile. Not copyable.
+/// evaluated, whatever another process writes into the file meanwhile. Not copyable.
 class ReadFile {
  public:
   /// An error if the file changes while it is read, several times in a row.
@@ -47,7 +47,7 @@ class ReadFile {
   ~ReadFile();
 
   std::string_view bytes() const { return {data_, size_}; }
-  /// Gives the pages before `offset` back to the system; nobody may read them any more.
+  /// Gives the pages before `offset` back to the system; they must not be read after that.
   void release(std::size_t offset);
 
  private:
@@ -59,8 +59,8 @@ class ReadFile {
   std::size_t released_ = 0;  ///< whole pages at the front
 };
 
-/// A file in parts of up to a megabyte. Unlike a mapping it bears that the file is cut short by
-/// somebody else meanwhile, so the main process reads in this way only.
+/// A file in parts of up to a megabyte. Unlike a mapping it is safe if another process truncates
+/// the file meanwhile, so the main process reads in this way only.
 Expected<void> read_parts(const std::filesystem::path& path,
                           const std::function<void(std::string_view)>& take);
 /// Like `read_parts` and `is_there`, of a path that leads into a pack (pack.h) too.
@@ -68,7 +68,7 @@ Expected<std::string> read_file(const std::filesystem::path& path);
 /// A file that people write (campaign.toml, site.toml): refused above 1 MB, by its size and unread.
 Expected<std::string> read_small_file(const std::filesystem::path& path);
 
-/// Whether there is something, a link that leads nowhere included; an error if that cannot be told.
+/// Whether anything exists there, also a broken link; an error if that is not known.
 Expected<bool> is_there(const std::filesystem::path& path);
 
 /// A path as text: bytes that are not UTF-8 (a name in Latin-1) become \\xe9.
@@ -84,7 +84,7 @@ bool is_artifact_name(std::string_view name);
 /// Writes files that appear whole or not at all: under a temporary name, fsync, rename, fsync of
 /// the folder. All are complete on disk before the first one is renamed, and all others have their
 /// names on disk before the last one gets its own: whoever sees the last file may rely on the
-/// others. On an error the temporary files are gone. Folders that are missing are made.
+/// others. On an error the temporary files are removed. Folders that are missing are made.
 Expected<void> publish(const std::filesystem::path& folder, const std::vector<Artifact>& files);
 
 /// From now on the temporary names of this process, and of those that it makes, are its own: several
@@ -92,23 +92,23 @@ Expected<void> publish(const std::filesystem::path& folder, const std::vector<Ar
 void take_own_names(const std::string& token);
 bool has_own_names();
 
-/// Writes files under their temporary names, not flushed. On an error they are gone. Folders that
-/// are missing are made.
+/// Writes files under their temporary names, not flushed. On an error they are removed. Folders
+/// that are missing are made.
 Expected<void> write_temporaries(const std::filesystem::path& folder,
                                  const std::vector<Artifact>& files);
 /// The names that files under temporary names in a folder are to get, in order; none if there is no
 /// such folder.
 Expected<std::vector<std::string>> temporaries(const std::filesystem::path& folder);
-/// What was flushed of this file is read from the disk the next time.
+/// Drops the cached pages of this file, so that it is read from the disk.
 void drop_cached(const std::filesystem::path& path);
-/// Both in one: reads a file that was flushed from the disk, and says whether it has exactly these bytes by their size
-/// and SHA-256. An error if it cannot be read. Takes half of the system calls.
+/// Both in one: reads a flushed file from the disk, and returns whether it has exactly these bytes,
+/// by size and SHA-256. An error if it cannot be read. Takes half of the system calls.
 Expected<bool> disk_gives_back(const std::filesystem::path& path, std::uint64_t size,
                                std::string_view sha256);
 
-/// Gives a file another name. On a network file system the answer to a request that was done may be lost, and the
-/// request that is sent again finds no such file: that is not believed, but looked into. `is_ours` says whether the
-/// file that is there under the new name has the right bytes; without it, whether it is the same one (inode).
+/// Renames a file. On a network file system the answer to a request may be lost, and the repeated
+/// request finds no such file: then the file with the new name is checked. `is_ours`: whether it
+/// has the right bytes; without it, whether it is the same one (inode).
 Expected<void> rename_file(const std::filesystem::path& from, const std::filesystem::path& to,
                            const std::function<bool()>& is_ours = {});
 

@@ -36,8 +36,8 @@ inline Json parse_once(std::string_view text) {
   return twice ? Json(Json::value_t::discarded) : json;
 }
 
-/// Indented by one, so that a diff of two nights reads well. Text that is not UTF-8 (a file name, a
-/// plugin's message) gets replacement characters instead of stopping the night.
+/// Indented by one, so that a diff of two runs is readable. Text that is not UTF-8 (a file name, a
+/// plugin's message) gets replacement characters instead of stopping the run.
 inline std::string dump(const Json& json) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -61,7 +61,7 @@ inline std::string key(const std::string& name, Quantity q) {
   return name + std::string(unit_of(q).suffix);
 }
 
-/// What is not a number, or not there, is left out.
+/// What is not a number, or missing, is left out.
 inline void put(Json& json, const std::string& name, const std::optional<double>& value,
                 Quantity q) {
   if (!value) return;

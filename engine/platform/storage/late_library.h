@@ -5,8 +5,8 @@
 
 namespace nonio::storage {
 
-/// What a library of ours exports under this name. It lies beside this one and is loaded when it is first asked for,
-/// and never unloaded: clients of servers bring thirty libraries of others, which would take half of the start of
+/// A symbol of a library of Nonio in the folder of this one, which is loaded at its first use and
+/// never unloaded: clients of servers bring thirty third-party libraries, half of the start of
 /// every command. Not for processes that may open no file any more.
 Expected<const void*> exported(const char* library, const char* symbol);
 

@@ -86,7 +86,7 @@ Expected<Database*> open_pack(Opened& all, const fs::path& pack) {
                 "; bring it back from a copy of the output folder");
   auto database = Database::open(pack, Database::Use::read);
   if (!database) return fail(damaged(pack, "", database.error().message));
-  // No view takes the place of a table: what it says could depend on anything.
+  // No view takes the place of a table: its content could depend on anything.
   const std::string both = database->first(
       "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('sqlar', 'digest')");
   if (const std::string why = trouble_of(*database); !why.empty() || both != "2")
@@ -103,7 +103,7 @@ std::optional<std::uint64_t> number(const std::string& text) {
   return value;
 }
 
-/// What the archive says of a file before its bytes are read: a plain one, not compressed.
+/// What the archive states about a file before its bytes are read: a plain one, not compressed.
 Expected<std::optional<std::uint64_t>> size_in(Database& database, const PackAddress& at) {
   const auto rows = database.rows(
       "SELECT mode, sz, length(data), typeof(data) FROM sqlar WHERE name = ?", {at.name});

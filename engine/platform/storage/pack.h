@@ -12,9 +12,9 @@
 #include "platform/storage/database.h"
 #include "platform/storage/packed_results.h"
 
-/// A pack: one file with the results of many campaigns. It is an SQLite archive, which `sqlite3 -At -f FILE` lists
-/// and anybody's SQLite reads, with a table `digest` beside it. A name in it is the id of a campaign, '/' and the
-/// name of a file. It holds no time: the same files give the same bytes.
+/// A pack: one file with the results of many campaigns. It is an SQLite archive (`sqlite3 -At -f
+/// FILE` lists it) with a table `digest`. A name in it is the id of a campaign, '/' and the name of
+/// a file. It contains no time: the same files give the same bytes.
 ///
 /// PACK/ID/FILE is the address of a file in a pack. `read_file`, `read_parts`, `sha256_of_file` and `is_there` of
 /// files.h take it as any other path. Whatever is read is compared with its digest.
@@ -32,7 +32,7 @@ std::optional<PackAddress> in_pack(const std::filesystem::path& path);
 
 class PackWriter {
  public:
-  /// In a folder that nobody else uses: nothing is flushed.
+  /// In a folder that no other process uses: nothing is flushed.
   static Expected<PackWriter> create(const std::filesystem::path& path);
   /// In the order of the names: it decides how the bytes lie.
   Expected<void> add(const std::string& name, std::string_view bytes);

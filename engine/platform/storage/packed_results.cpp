@@ -209,7 +209,7 @@ fs::path results_folder(const fs::path& out, const std::string& id) {
   fs::path own = own_folder(out, id);
   std::shared_ptr<const Catalogue> catalogue;
   if (!catalogue_of(out, catalogue)) return own;
-  // An address that says what is wrong to whoever reads there.
+  // An address whose text is the error message for its reader.
   if (!catalogue) return out / packs_folder / catalogue_name / id;
   const PackFile* pack = catalogue->find(id);
   if (pack == nullptr || has_record(own)) return own;

@@ -15,17 +15,17 @@
 /// Where the results of a campaign lie: in a folder of their own, or in a pack (pack.h).
 namespace nonio::storage {
 
-/// OUT/<id>, or OUT/ab/<id> in an output folder whose campaigns lie by the first two digits of the SHA-256 of their
-/// ids: where a night writes the results of a campaign, and where links lead.
+/// Folder of a campaign's results, to which links lead: OUT/<id>, or OUT/ab/<id> where campaigns
+/// are sorted by the first two digits of the SHA-256 of their ids.
 std::filesystem::path own_folder(const std::filesystem::path& out, const std::string& id);
-/// Beside the night's own files; there in such an output folder.
+/// A file that marks such an output folder, next to the files of the run.
 inline constexpr const char* hashed_mark = ".nonio/hashed";
 /// Where they are to be read: its own folder, if there is a record; else the pack that the catalogue names for it, as
 /// an address that the functions of files.h take (OUT/.nonio/packs/NAME.sqlar/<id>); else its own folder. A pack that
 /// is missing or damaged is an error where it is read, never a campaign without results.
 std::filesystem::path results_folder(const std::filesystem::path& out, const std::string& id);
-/// Every place in which results of a campaign may lie, in no order: folders, and addresses in packs. The id is its
-/// last part. An output folder that is not there has none.
+/// Every place in which results of a campaign may lie, in no order: folders, and addresses in
+/// packs. The id is its last part. An output folder that is missing has none.
 Expected<void> each_results_folder(const std::filesystem::path& out,
                                    const std::function<void(const std::filesystem::path&)>& take);
 
@@ -35,8 +35,8 @@ struct PackFile {
   std::string sha256;
 };
 
-/// Which campaign lies in which pack: OUT/.nonio/packs/catalogue, a text that appears whole or not at all. A campaign
-/// with a record in its own folder is none of a pack, whatever the catalogue says.
+/// Which campaign is in which pack: OUT/.nonio/packs/catalogue, a text that appears whole or not at
+/// all. A campaign with a record in its own folder is not in a pack, whatever the catalogue states.
 class Catalogue {
  public:
   /// Without an entry if there is none.
@@ -65,10 +65,10 @@ bool is_pack_name(std::string_view name);
 inline constexpr const char* catalogue_name = "catalogue";
 Expected<void> check_catalogue(const std::filesystem::path& out);
 
-/// Removes the packs in which no campaign lies, and what a copy left half-written.
+/// Removes the packs that contain no campaign, and incomplete copies.
 Expected<void> sweep_packs(const std::filesystem::path& out);
 
-/// Size of a file of results, and when it was written; in a pack: when that was. None: it is not there.
+/// Size of a file of results and when it, or its pack, was written. None: it is missing.
 struct Written {
   std::uint64_t size = 0;
   std::int64_t seconds = 0, nanoseconds = 0;

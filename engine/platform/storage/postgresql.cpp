@@ -216,8 +216,8 @@ class Postgresql final : public Connection {
     if (state == "55P03" || state == "40P01" || state == "40001")
       return name_ + ": " + locked_words;
     const char* message = ::PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY);
-    // It is shut down, has crashed or starts again; class 08, and what libpq says
-    // itself, without a code: the connection is lost.
+    // It is shut down, has crashed or starts again; class 08, and what libpq reports itself,
+    // without a code: the connection is lost.
     if ((was_there_ && state.empty()) || state.starts_with("08") || state == "57P01" ||
         state == "57P02" || state == "57P03")
       return lost_words(message);
@@ -285,7 +285,7 @@ Expected<void> check(const std::string& url) {
   char* why = nullptr;
   PQconninfoOption* options = ::PQconninfoParse(url.c_str(), &why);
   if (options == nullptr) {
-    // What libpq says of it repeats parts of the address.
+    // What libpq reports of it repeats parts of the address.
     ::PQfreemem(why);
     return fail("expected postgresql://user@host/name?option=value as libpq reads it");
   }
@@ -309,7 +309,7 @@ Expected<std::unique_ptr<Connection>> connect(const Server& server, double patie
     NONIO_TRY(auto read, server_password(server.password_file));
     password = std::move(read);
   }
-  // What comes later counts: the address may say how long it waits.
+  // What comes later counts: the address may set its time limit.
   const char* keywords[] = {"connect_timeout",
                             "fallback_application_name",
                             "dbname",
@@ -318,8 +318,8 @@ Expected<std::unique_ptr<Connection>> connect(const Server& server, double patie
                             nullptr};
   const char* values[] = {connect_seconds, "nonio",          server.url.c_str(),
                           "UTF8",          password.c_str(), nullptr};
-  // A server that refuses us is there; one that starts or stops is not, and may be there again when
-  // it is asked. Only what it says again and again is its answer.
+  // A server that refuses us is there; one that starts or stops is not, and may be available at the
+  // next attempt. Only a repeated answer is accepted.
   constexpr int trials = 4;
   for (int trial = 1;; ++trial) {
     auto connection =

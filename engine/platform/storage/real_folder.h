@@ -6,9 +6,9 @@
 
 namespace nonio::storage {
 
-/// As `fs::canonical`, of a folder. Those beside each other take a few calls: what was found of their
-/// parent the last time is taken again while both its path and what was found lead to the same folder
-/// as then.
+/// As `fs::canonical`, of a folder. Neighbouring folders take only a few calls: the result for
+/// their parent is used again while both its path and that result lead to the same folder as
+/// before.
 std::filesystem::path real_folder(const std::filesystem::path& folder, std::error_code& error);
 
 }  // namespace nonio::storage

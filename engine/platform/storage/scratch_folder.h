@@ -6,7 +6,7 @@
 
 namespace nonio::storage {
 
-/// A folder for a moment, of this user alone; gone with the object.
+/// A folder for a moment, of this user alone; removed with the object.
 class ScratchFolder {
  public:
   /// Below this folder, or the system's for such (TMPDIR): "nonio-<purpose>-...".

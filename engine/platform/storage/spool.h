@@ -10,13 +10,13 @@
 
 namespace nonio::storage {
 
-/// A text that may be too long for memory, in a file. Trouble while it is filled is told by
-/// `flush`, also of those that were added to it.
+/// A text that may be too long for memory, in a file. An error while it is filled is returned by
+/// `flush`, also of texts that were added to it.
 class Spool {
  public:
   /// Of a path that is to stay.
   static Spool at(const std::filesystem::path& path);
-  /// Of a file without a name, in a folder that nobody else writes to.
+  /// A file without a name, in a folder that no other process writes to.
   static Spool in(const std::filesystem::path& folder);
 
   void add(std::string_view text);

@@ -51,7 +51,7 @@ bool known_temperatures(const Observations& o, AxisReadings& r) {
     gaps = gaps || !has;
   }
   if (!gaps) return true;
-  if (!(r.duration > 0.0)) return false;  // nobody knows what lies between what
+  if (!(r.duration > 0.0)) return false;  // the order in time is not known
   const std::size_t lines = std::max<std::size_t>(o.line.empty() ? 1 : o.lines.size(), 1);
   std::vector<std::vector<std::uint32_t>> known(lines), blank(lines);
   for (std::uint32_t i = 0; i < o.size(); ++i)

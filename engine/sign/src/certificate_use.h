@@ -5,7 +5,7 @@
 
 namespace nonio::sign {
 
-/// Whether a certificate says that its key may sign documents: key usage digitalSignature or
+/// Whether a certificate states that its key may sign documents: key usage digitalSignature or
 /// nonRepudiation, and where there is an extended key usage, one for documents or mail.
 Expected<void> check_signer_use(X509* certificate);
 

@@ -119,9 +119,9 @@ Expected<void> check_only(const std::vector<CertificatePtr>& certificates,
     const auto same = [&](const CertificatePtr& c) {
       return X509_cmp(c.get(), certificates[i].get()) == 0;
     };
-    const auto behind = certificates.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    const auto after = certificates.begin() + static_cast<std::ptrdiff_t>(i) + 1;
     if (std::none_of(chain.begin(), chain.end(), same) ||
-        std::any_of(behind, certificates.end(), same))
+        std::any_of(after, certificates.end(), same))
       return fail("the certificate of " + quoted(subject_of(certificates[i].get())) +
                   " is also present, or present twice, and leads to no trusted certificate");
   }

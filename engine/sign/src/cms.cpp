@@ -68,7 +68,7 @@ Expected<void> add_time_stamp(CMS_SignerInfo* signer, const TimeStamping& stampi
 }  // namespace
 
 Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
-                               std::string_view behind, Time now, const TimeStamping& stamping,
+                               std::string_view after, Time now, const TimeStamping& stamping,
                                std::string& no_time_stamp) {
   ERR_clear_error();
   const Borrowed chain(sk_X509_new_null());
@@ -79,7 +79,7 @@ Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
       cms ? CMS_add1_signer(cms.get(), key.certificate.get(), key.key.get(), EVP_sha256(), flags)
           : nullptr;
   if (signer == nullptr) return fail("no signature: " + reason());
-  if (auto done = sign_attributes(key, signer, sha256(before, behind)); !done)
+  if (auto done = sign_attributes(key, signer, sha256(before, after)); !done)
     return fail(done.error());
   if (!stamping.url.empty())
     if (auto stamped = add_time_stamp(signer, stamping, now); !stamped) {

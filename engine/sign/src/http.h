@@ -11,7 +11,7 @@ namespace nonio::sign {
 /// A question over plain HTTP. The answer is signed, so that it needs no TLS.
 struct Question {
   const char* query = nullptr;  ///< media type of the body; null: there is no body (GET)
-  const char* reply = nullptr;  ///< media type that is wanted; null: any
+  const char* reply = nullptr;  ///< media type that is required; null: any
   std::string body{};
   std::size_t longest = 0;  ///< bytes that the answer may have
   int seconds = 10;

@@ -129,7 +129,7 @@ Expected<Signed> sign_pdf(const Key::Impl& key, std::string bytes, Time now,
   if (place->contents.find_first_not_of('0') != std::string_view::npos)
     return fail("is signed already");
   Signed out;
-  const auto cms = make_cms(key, place->before, place->behind, now, stamping, out.no_time_stamp);
+  const auto cms = make_cms(key, place->before, place->after, now, stamping, out.no_time_stamp);
   if (!cms) return fail(cms.error());
   if (cms->size() > place->room())
     return fail("the signature has " + std::to_string(cms->size()) +

@@ -20,7 +20,7 @@ Expected<Key::Impl> open_token(const KeyPlace& place, const std::string& passwor
 
 /// The CMS object over two parts of a file, in DER.
 Expected<std::string> make_cms(const Key::Impl& key, std::string_view before,
-                               std::string_view behind, Time now, const TimeStamping& stamping,
+                               std::string_view after, Time now, const TimeStamping& stamping,
                                std::string& no_time_stamp);
 
 Expected<Signed> sign_xml(const Key::Impl& key, std::string_view document, Time now,

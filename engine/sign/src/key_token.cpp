@@ -27,7 +27,7 @@ CertificatePtr load_certificate(ENGINE* engine, const std::string& uri) {
 }  // namespace
 
 Expected<Key::Impl> open_token(const KeyPlace& place, const std::string& password) {
-  // Without a PIN the engine would ask for one at the terminal.
+  // Without a PIN the engine would prompt for one at the terminal.
   if (password.empty()) return fail("the token " + place.pkcs11 + " needs a PIN");
   OPENSSL_init_crypto(OPENSSL_INIT_ENGINE_DYNAMIC, nullptr);
   ERR_clear_error();

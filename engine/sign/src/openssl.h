@@ -35,7 +35,7 @@ using RevocationPtr = std::unique_ptr<X509_CRL, Freed<X509_CRL_free>>;
 using Borrowed = std::unique_ptr<STACK_OF(X509), Freed<free_stack>>;  ///< of certificates not owned
 using Owned = std::unique_ptr<STACK_OF(X509), Freed<free_owned_stack>>;
 
-/// What OpenSSL says of the last thing that went wrong; forgets it.
+/// OpenSSL's message about the last error; forgets it.
 std::string reason();
 
 inline const unsigned char* data_of(std::string_view bytes) {

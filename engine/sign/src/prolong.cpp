@@ -247,7 +247,7 @@ class Prolongation {
     if (update.has_stamp) {
       const std::string_view all = out.bytes;
       const auto token = ask_for_time_stamp(
-          how_.stamping, sha256(all.substr(0, update.gap), all.substr(update.behind)),
+          how_.stamping, sha256(all.substr(0, update.gap), all.substr(update.after)),
           how_.verifier.now);
       if (!token) return fail("no time stamp: " + token.error().message);
       if (token->size() > pdf::usual_room)

@@ -43,7 +43,7 @@ tl::unexpected<Error> refuse_list(X509* issuer, const std::string& why) {
   return fail("the revocation list of " + quoted(subject_of(issuer)) + " " + why);
 }
 
-/// Delta lists and lists of some certificates only say so in critical extensions.
+/// Delta lists and lists of some certificates only state that in critical extensions.
 Expected<void> check_whole(const X509_CRL* list, X509* issuer) {
   for (int i = 0; i < X509_CRL_get_ext_count(list); ++i)
     if (X509_EXTENSION_get_critical(X509_CRL_get_ext(list, i)) != 0)
@@ -72,7 +72,8 @@ Time revoked_from(const X509_REVOKED* entry) {
   return stated == 0 ? when : std::min(when, stated);
 }
 
-/// RFC 3161, 4, 1: unspecified, affiliationChanged, superseded, cessationOfOperation, and stated.
+/// RFC 3161, 4, 1: the stated reasons unspecified, affiliationChanged, superseded,
+/// cessationOfOperation.
 bool is_harmless(long code) { return code == 0 || (code >= 3 && code <= 5); }
 
 bool leaves_stamps_good(const X509_REVOKED* entry) {
@@ -82,7 +83,7 @@ bool leaves_stamps_good(const X509_REVOKED* entry) {
   return stated && is_harmless(ASN1_ENUMERATED_get(stated.get()));
 }
 
-/// What a list or an answer says of one certificate.
+/// The entry of a list or an answer for one certificate.
 struct Said {
   Time made = 0, next = 0;
   Time revoked = 0;  ///< 0: it is not
@@ -165,7 +166,7 @@ std::optional<Said> said_by(OCSP_BASICRESP* answer, X509* one, X509* issuer) {
   return std::nullopt;
 }
 
-/// What it says, if it is of this issuer and about that certificate.
+/// Its answer, if it is of this issuer and about that certificate.
 Expected<std::optional<Said>> heard(const Statement& s, X509* one, X509* issuer) {
   if (s.answer) {
     const auto said = said_by(s.answer.get(), one, issuer);
@@ -246,9 +247,9 @@ class Line {
     if (auto done = check_given(); !done) return done;
     return check_kept();
   }
-  bool told() const { return told_; }
+  bool is_known() const { return is_known_; }
   std::string says() const {
-    return told_ || !says_.empty() ? says_ : "no list of " + quoted(subject_of(issuer_));
+    return is_known_ || !says_.empty() ? says_ : "no list of " + quoted(subject_of(issuer_));
   }
 
  private:
@@ -284,18 +285,18 @@ class Line {
   }
 
   void note(const std::string& why, const std::string& kind, Time made, const char* where) {
-    if (told_) return;
-    told_ = why.empty();
-    says_ = told_ ? quoted(subject_of(one_)) + " is not revoked by the " + kind + " of " +
-                        text_of(made) + where
-                  : "the " + kind + " of " + quoted(subject_of(issuer_)) + where + " " + why;
+    if (is_known_) return;
+    is_known_ = why.empty();
+    says_ = is_known_ ? quoted(subject_of(one_)) + " is not revoked by the " + kind + " of " +
+                            text_of(made) + where
+                      : "the " + kind + " of " + quoted(subject_of(issuer_)) + where + " " + why;
   }
 
   X509* one_;
   X509* issuer_;
   const Trusted& known_;
   const Revocation& revocation_;
-  bool told_ = false;
+  bool is_known_ = false;
   std::string says_;
 };
 
@@ -309,7 +310,7 @@ Expected<std::string> check_revocation(const std::vector<CertificatePtr>& chain,
   for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
     Line line(chain[i].get(), chain[i + 1].get(), known, revocation);
     if (auto good = line.check(); !good) return fail(good.error());
-    if (i == 0) looked = line.told();
+    if (i == 0) looked = line.is_known();
     says += (says.empty() ? "" : "; ") + line.says();
   }
   return says;

@@ -184,7 +184,7 @@ Expected<void> SignedData::check_attributes() const {
   return {};
 }
 
-Expected<void> SignedData::check_signature(std::string_view before, std::string_view behind) const {
+Expected<void> SignedData::check_signature(std::string_view before, std::string_view after) const {
   ERR_clear_error();
   const auto* type = static_cast<const ASN1_OBJECT*>(
       CMS_signed_get0_data_by_OBJ(signer_, OBJ_nid2obj(NID_pkcs9_contentType), -3, V_ASN1_OBJECT));
@@ -193,7 +193,7 @@ Expected<void> SignedData::check_signature(std::string_view before, std::string_
   const auto* said = static_cast<const ASN1_STRING*>(CMS_signed_get0_data_by_OBJ(
       signer_, OBJ_nid2obj(NID_pkcs9_messageDigest), -3, V_ASN1_OCTET_STRING));
   if (said == nullptr) return malformed("the signed digest");
-  if (bytes_of(said) != digest(digest_, before, behind))
+  if (bytes_of(said) != digest(digest_, before, after))
     return fail("does not fit the content: it was changed after it was signed");
   if (CMS_SignerInfo_verify(signer_) != 1) {
     ERR_clear_error();

@@ -22,14 +22,14 @@ class SignedData {
  public:
   enum class Content { detached, time_stamp };
 
-  /// Strict: one signer, DER, known algorithms, nothing beside what is wanted. Every byte that is
+  /// Strict: one signer, DER, known algorithms, nothing beyond what is required. Every byte that is
   /// not signed has one value that is accepted.
   static Expected<SignedData> parse(std::string_view der, Content content);
 
   /// The signed attributes of a detached signature are those that Nonio signs, once each.
   Expected<void> check_attributes() const;
   /// The digest of the content and the signature over it hold.
-  Expected<void> check_signature(std::string_view before, std::string_view behind) const;
+  Expected<void> check_signature(std::string_view before, std::string_view after) const;
   /// The signed attributes name the signer's certificate (ESS signing-certificate, RFC 5035).
   Expected<void> check_certificate_named() const;
 
@@ -69,7 +69,8 @@ Expected<std::vector<CertificatePtr>> chain_of(X509* certificate,
 Expected<void> check_issued(const std::vector<CertificatePtr>& certificates,
                             const std::vector<CertificatePtr>& roots);
 
-/// Each of them is in the chain, and none twice: nobody signs which ones are put in.
+/// Each of them must be in the chain, and none twice, because no signature covers the list of
+/// certificates.
 Expected<void> check_only(const std::vector<CertificatePtr>& certificates,
                           const std::vector<CertificatePtr>& chain);
 /// Those of `others` that lead from the certificate upwards, in their order.

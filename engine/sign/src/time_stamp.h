@@ -17,9 +17,9 @@ struct Stamp {
   std::string nonce;  ///< as in the token; empty if it has none
   std::vector<CertificatePtr> chain{};
 };
-/// Over what has this SHA-256, by somebody who may, whom the verifier trusts, and whose certificate
-/// was not revoked; not later than `now`, give or take a minute. `until`: when the stamp is proved
-/// to have existed; what became of its server later is of no account.
+/// Checks a stamp: over this SHA-256, by an authority that the verifier trusts and whose
+/// certificate was not revoked, not later than `now` plus a minute. `until`: when the stamp is
+/// proved to have existed; a later revocation has no effect.
 Expected<Stamp> check_time_stamp(std::string_view token, std::string_view imprint,
                                  const Trusted& trusted, Time now,
                                  Time until = std::numeric_limits<Time>::max());

@@ -133,8 +133,8 @@ std::vector<CertificatePtr> Report::check_chain(X509* certificate,
 
 namespace {
 
-/// The signature first, by its place in the file; what is in the file only where it holds and is of
-/// somebody who is trusted.
+/// The signature first, by its place in the file; the content of the file only if the signature is
+/// valid and of a trusted signer.
 class PdfCheck {
  public:
   PdfCheck(std::string_view bytes, const Verifier& verifier)
@@ -201,7 +201,7 @@ class PdfCheck {
         "signature.form", to_void(data),
         data ? *algorithm_of(X509_get0_pubkey(data->certificate()), true) + " over SHA-2" : "");
     if (!data) return;
-    report_.add("signature.content", data->check_signature(place.before, place.behind),
+    report_.add("signature.content", data->check_signature(place.before, place.after),
                 "the content is as it was signed");
     report_.add("signature.certificate", data->check_certificate_named(),
                 "the certificate is the one that was signed with");
@@ -243,8 +243,8 @@ class PdfCheck {
            chain_of(signer, data.certificates(), known.signer_roots, std::min(verifier_.now, last));
   }
 
-  /// Only in a file that somebody signed who is trusted: anybody may add to it what is signed by
-  /// itself, and nothing else.
+  /// Only in a file of a trusted signer: anyone may add data to it that is signed by itself, and
+  /// nothing else.
   Expected<Added> check_updates(Trusted& known, std::vector<std::vector<CertificatePtr>>& chains) {
     if (!out_.holds()) return fail("are not read: the signature does not hold");
     if (!file()) return fail(file().error());

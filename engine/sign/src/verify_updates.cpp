@@ -19,13 +19,13 @@ class FileDigest {
   }
 
   /// `to` never goes back.
-  std::string of(std::size_t to, std::string_view behind) {
+  std::string of(std::size_t to, std::string_view after) {
     const std::string_view more = bytes_.substr(done_, to - done_);
     EVP_DigestUpdate(context_.get(), more.data(), more.size());
     done_ = to;
     const Context copy(EVP_MD_CTX_new());
     EVP_MD_CTX_copy_ex(copy.get(), context_.get());
-    EVP_DigestUpdate(copy.get(), behind.data(), behind.size());
+    EVP_DigestUpdate(copy.get(), after.data(), after.size());
     std::string out(32, '\0');
     EVP_DigestFinal_ex(copy.get(), reinterpret_cast<unsigned char*>(out.data()), nullptr);
     return out;
@@ -82,11 +82,11 @@ Expected<Added> read_updates(std::string_view bytes, const std::vector<std::size
     if (auto done = take_store(update.store, added); !done)
       return fail("an update holds " + done.error().message);
     if (!update.has_stamp) continue;
-    auto token = der_in(bytes.substr(update.gap + 1, update.behind - update.gap - 2));
+    auto token = der_in(bytes.substr(update.gap + 1, update.after - update.gap - 2));
     if (!token) return fail("a time stamp of the document " + token.error().message);
     added.stamps.push_back(
         {std::move(*token),
-         digest.of(update.gap, bytes.substr(update.behind, ends[i] - update.behind))});
+         digest.of(update.gap, bytes.substr(update.after, ends[i] - update.after))});
   }
   return added;
 }

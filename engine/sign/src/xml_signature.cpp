@@ -29,7 +29,7 @@ namespace {
 using ContextPtr = std::unique_ptr<xmlSecDSigCtx, Freed<xmlSecDSigCtxDestroy>>;
 using XmlKeyPtr = std::unique_ptr<xmlSecKey, Freed<xmlSecKeyDestroy>>;
 
-/// Once in a process: that is how xmlsec wants it.
+/// Once in a process: that is how xmlsec requires it.
 bool started() {
   static const bool well = [] {
     xmlInitParser();
@@ -95,7 +95,7 @@ Expected<std::string> canonical_form(std::string_view bytes) {
   return text;
 }
 
-/// XML wants r and s side by side where ECDSA gives a sequence of two numbers (RFC 4050).
+/// XML requires r and s side by side where ECDSA gives a sequence of two numbers (RFC 4050).
 Expected<std::string> side_by_side(const std::string& der, std::size_t size) {
   const unsigned char* at = data_of(der);
   const std::unique_ptr<ECDSA_SIG, Freed<ECDSA_SIG_free>> pair(
@@ -171,10 +171,10 @@ Expected<Signed> sign_xml(const Key::Impl& key, std::string_view bytes, Time now
 
 namespace {
 
-/// A signed document as bytes: since it is its own canonical form, nobody need read it as XML to
-/// know what was signed.
+/// A signed document as bytes: since it is its own canonical form, it need not be parsed as XML to
+/// determine what was signed.
 struct Parts {
-  std::string_view before, behind;  ///< around the signature
+  std::string_view before, after;  ///< around the signature
   XmlSignature signature;
 
   static Expected<Parts> of(std::string_view bytes) {
@@ -185,7 +185,7 @@ struct Parts {
           "with its root and a new line");
     bytes.remove_prefix(xml_head.size());
     bytes.remove_suffix(1);
-    // Only where the signature must be: nobody has proven yet that the rest is worth reading.
+    // Only where the signature must be: the rest is not authenticated yet.
     const std::size_t root_end = bytes.rfind('<');
     const std::size_t from = bytes.size() - std::min(bytes.size(), longest_xml_signature);
     const std::size_t begin = bytes.find(signature_begin, from);
@@ -194,8 +194,8 @@ struct Parts {
       return fail("is not signed, or has data after its signature");
     Parts parts;
     parts.before = bytes.substr(0, begin);
-    parts.behind = bytes.substr(root_end);
-    if (!parts.behind.starts_with("</")) return fail("has data after its signature");
+    parts.after = bytes.substr(root_end);
+    if (!parts.after.starts_with("</")) return fail("has data after its signature");
     NONIO_TRY(auto signature, read_xml_signature(bytes.substr(begin, root_end - begin)));
     parts.signature = std::move(signature);
     return parts;
@@ -235,7 +235,7 @@ Expected<void> check_value(const XmlSignature& s, X509* certificate) {
 
 Expected<void> check_digests(const Parts& parts) {
   const XmlSignature& s = parts.signature;
-  if (s.content != sha256(parts.before, parts.behind))
+  if (s.content != sha256(parts.before, parts.after))
     return fail("the document was changed after it was signed");
   if (s.properties != sha256(s.signed_properties()))
     return fail("the properties of the signature were changed after it was signed");
@@ -342,7 +342,7 @@ Verified verify_xml(std::string_view bytes, const Verifier& verifier, std::strin
 Expected<void> same_document(std::string_view signed_bytes, std::string_view written) {
   NONIO_TRY(const auto parts, Parts::of(signed_bytes));
   NONIO_TRY(const auto form, canonical_form(written));
-  const std::string was = std::string(parts.before) + std::string(parts.behind);
+  const std::string was = std::string(parts.before) + std::string(parts.after);
   if (was == form) return {};
   const auto differ = std::mismatch(was.begin(), was.end(), form.begin(), form.end());
   const auto line = 2 + std::count(was.begin(), differ.first, '\n');

@@ -44,7 +44,7 @@ std::string from_base64(std::string_view text) {
   return out;
 }
 
-/// An element; empty ones have an end of their own, as the canonical form wants it.
+/// An element; empty ones have an end of their own, as the canonical form requires it.
 std::string element(std::string_view name, std::string_view attributes, std::string_view content) {
   std::string out = "<";
   out += name;
@@ -72,7 +72,7 @@ std::string without_line_end(std::string text) {
   return text;
 }
 
-/// `alone`: as its own apex, where it declares what its surroundings declare else.
+/// `alone`: as a document of its own, with the namespaces that its parents declare otherwise.
 std::string info(const XmlSignature& s, bool alone) {
   const std::string content = element(
       "Reference", attribute("Id", "content") + " " + attribute("URI", ""),

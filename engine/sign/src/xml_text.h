@@ -13,15 +13,15 @@ namespace nonio::sign {
 /// line.
 inline constexpr std::string_view xml_head = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 
-/// What an enveloped XML signature of Nonio says (XML-DSig; XAdES B-B, with `token` B-T). It has
-/// one way to be written, so that whoever reads one writes it again and compares.
+/// The content of an enveloped XML signature of Nonio (XML-DSig; XAdES B-B, with `token` B-T). It
+/// has one way to be written, so that whoever reads one writes it again and compares.
 struct XmlSignature {
   bool rsa = false;        ///< else ECDSA
   std::string content;     ///< SHA-256 of the document's canonical form without signature
   std::string properties;  ///< SHA-256 of `signed_properties`
   std::string value;       ///< of the signature over `signed_info`
   std::vector<std::string> certificates;  ///< DER, the signer's first
-  std::string time;                       ///< 2026-11-22T14:20:00Z, as the signer says
+  std::string time;                       ///< 2026-11-22T14:20:00Z, as the signer states
   std::string certificate;                ///< SHA-256 of the signer's, signed with the rest
   std::string token{};                    ///< RFC 3161, over `value_element`; empty: none
 

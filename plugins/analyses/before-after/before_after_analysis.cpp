@@ -111,7 +111,7 @@ double u_of_reversal(const AnalysisInput& in, const Environment& environment,
   const math::Budget budget =
       math::uncertainty_budget(in.campaign, environment, in.measurement.axis, test)
           .budget.value_or(math::Budget{.seen = math::drift_share(test)});
-  const std::size_t n = std::max<std::size_t>(math::approaches_behind_means(test), 1);
+  const std::size_t n = std::max<std::size_t>(math::approaches_per_mean(test), 1);
   return math::iso230_2_uncertainty(budget, n, 2.0).B_mean / 2.0;
 }
 
@@ -137,8 +137,8 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
     const double rest = is.mean - share * was.mean;
     return !math::significant(math::t_two_sided(math::test_ratio(rest, u_of(share)), 1e6), level);
   };
-  // Where one value helps and is known, the table takes B_mean away; else it leaves the value as it was,
-  // unless somebody has entered one that worked.
+  // Where one value helps and is known, the table compensates B_mean; else it leaves the value
+  // unchanged, unless a suitable value was entered by hand.
   const bool helps = was.kind != Kind::not_constant && was.largest_left < was.largest;
   const bool taken = helps && (math::is_reversal_known(was.mean, 2.0 * u_before) || fits(0.0));
   const double wanted = taken ? 0.0 : 1.0;
@@ -164,7 +164,7 @@ ReversalJudged judge_reversal(const AnalysisInput& in, const Observations& o,
                                              {"change", -(is.mean - wanted * was.mean), q}}}};
 }
 
-/// "Worked" is said of a table only if the pitch and the reversal are both what it predicts.
+/// "Worked" is stated about a table only if the pitch and the reversal are both what it predicts.
 const char* name_of(BeforeAfter::Answer answer, const ReversalJudged& reversal) {
   if (answer == BeforeAfter::Answer::worked && !reversal.as_predicted)
     return "before-after.mean-as-predicted";

@@ -128,7 +128,7 @@ class Values {
   }
 
   /// A part of a cyclic error by the machine's own zero: given whether it is significant or not, so
-  /// that it can be followed; the amplitude says what it is worth.
+  /// that it can be followed; the amplitude shows what it is worth.
   void waves(Cause c, std::string name) {
     const auto& v = of(fit_, c);
     out_.push_back({std::move(name), "", "", v.value, Quantity::deviation, v.u, v.by_bin, 0.0});

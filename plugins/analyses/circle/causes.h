@@ -21,7 +21,7 @@ struct CauseValue {
   double alone = 0.0;          ///< circular deviation that it makes alone, m
 };
 
-/// What an analysis is asked for.
+/// What an analysis is requested.
 struct Wish {
   bool calibrated_length = false;
   std::optional<double> feed{};  ///< m/s

@@ -195,7 +195,7 @@ double noise_adds(const Work& w, int direction, std::uint32_t run, const Of& val
 }
 
 /// Repetition of a value that is the largest of many: noise of `readings` single readings, and what
-/// noise adds to the largest. Nobody takes that out of the value, so its uncertainty has it.
+/// noise adds to the largest. The value is not corrected for it, so its uncertainty contains it.
 double repetition(const Work& w, double readings, double adds) {
   return std::hypot(std::sqrt(readings) * w.fit.s_reading, adds);
 }
@@ -238,7 +238,7 @@ void path_values(Work& w) {
   add(w, "H", H->H, Quantity::deviation, repetition(w, 2.0, adds), by_bins(w, pair, 0, 1));
 }
 
-/// Centres, and what asks for a known length.
+/// Centres, and what requests a known length.
 void circle_values(Work& w) {
   const auto ls = math::least_squares_circle(w.circle.readings, w.circle.R),
              mz = math::minimum_zone(w.circle.readings, w.circle.R);
@@ -322,7 +322,7 @@ void causes(Work& w, const Wish& wish) {
                      {"share", share, Quantity::ratio}},
         .texts = {{"name", v.name}, {"first", w.circle.axis[0]}, {"second", w.circle.axis[1]}}};
     if (!v.axis.empty()) f.texts.emplace_back("axis", v.axis);
-    if (v.quantity == Quantity::time) {  // a sentence says 0.42 ms, not 0.00042 s
+    if (v.quantity == Quantity::time) {  // a sentence states 0.42 ms, not 0.00042 s
       f.evidence.push_back({"value_ms", 1e3 * v.value, Quantity::number});
       f.evidence.push_back({"U_ms", 1e3 * U, Quantity::number});
     }

@@ -32,7 +32,7 @@ std::string list(const std::vector<std::string>& ids) {
   return out;
 }
 
-/// Gathers one set; the steps stand in the order in which `run` calls them.
+/// Gathers one set; the steps are in the order in which `run` calls them.
 class Gatherer {
  public:
   Gatherer(const AnalysisInput& in, const std::vector<Set>& sets, const Set& set)
@@ -348,7 +348,7 @@ class Gatherer {
   /// How the manifest states the place of a line of X; the advice shows it.
   std::string place_example() const { return "{ " + out_.y_axis + " = 500 }"; }
 
-  /// Where a line of X lies: `at` by the name of the other axis.
+  /// Position of a line of X: `at` by the name of the other axis.
   const double* place(std::size_t i) const {
     const auto& at = measurement(i).at;
     const auto it = at.find(out_.y_axis);
@@ -495,7 +495,7 @@ class Gatherer {
     return {};
   }
 
-  /// Lines beside the two diagonals, as far as their stops are points of the grid.
+  /// Lines other than the two diagonals, as far as their stops are points of the grid.
   void add_third_lines() {
     for (const std::size_t i : third_) {
       const math::MeasuredLine curve = curve_of_line(i);

@@ -21,7 +21,7 @@ std::vector<Set> sets_of(const Campaign&);
 /// The set whose first line this measurement is; none for the others.
 const Set* set_led_by(const std::vector<Set>&, const Campaign&, const Measurement&);
 
-/// Everything that the kernel needs, and what the results are told with.
+/// Everything that the kernel needs, and the names for the results.
 struct Collected {
   math::DiagonalReadings readings;
   std::string x_axis, y_axis;

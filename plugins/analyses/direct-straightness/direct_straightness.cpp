@@ -49,8 +49,8 @@ tl::unexpected<Finding> refuse(std::string id, std::vector<Number> evidence,
 
 char letter(const std::string& axis) { return axis.empty() ? '?' : axis[0]; }
 
-/// Component along which a turn about one axis moves a point that lies along the other: the vector
-/// product of their directions. "+Y", "-Z".
+/// Component along which a turn about one axis moves a point on the other: the vector product of
+/// their directions. "+Y", "-Z".
 std::pair<char, double> moved_along(char about, char axis) {
   static constexpr std::string_view order = "XYZ";
   const std::size_t a = order.find(about), b = order.find(axis);
@@ -211,7 +211,7 @@ bool applies(const Campaign&, const Measurement& m) {
   return m.kind == "straightness" ? m.reversal_of.empty() : m.kind == "angle" && m.foot.has_value();
 }
 
-/// The three lines, and what is said of them.
+/// The three lines, and what is stated about them.
 struct Lines {
   math::Straightness least_squares, minimum_zone, end_points;
 };
@@ -310,7 +310,7 @@ std::vector<const Observations*> observations_of(const AnalysisInput& in, const 
   return out;
 }
 
-/// The scatter alone makes points look as crooked: what stands then for the value.
+/// The scatter alone makes points look as crooked: the estimate that replaces the value then.
 void judge_noise(const Points& p, const Lines& lines, Evaluation& e) {
   double most = 0.0;
   for (std::size_t i = 0; i < p.by.size(); ++i) {

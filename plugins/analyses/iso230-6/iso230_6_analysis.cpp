@@ -100,7 +100,7 @@ std::optional<Tested> tested(const AnalysisInput& in, std::size_t i) {
   out.test = AxisTest::arrange(line);
   if (out.test.targets.size() < 2) return std::nullopt;
   out.result = evaluate_iso230_2(out.test, k_of_2002);
-  out.approaches = approaches_behind_means(out.test);
+  out.approaches = approaches_per_mean(out.test);
   const Observations* own = &o;
   HeldLimits limits = limits_held(in.campaign, {&own, 1});
   out.budget = budget_along(in.campaign, limits.environment, m, out.test);
@@ -170,7 +170,7 @@ Finding blind_finding(const Campaign& campaign, const std::vector<Diagonal>& set
                     {"combinations", joined(combinations, "; ")}}};
 }
 
-/// Which of the names of a set nobody measured.
+/// The names of a set that were not measured.
 std::vector<std::string> missing_of(const std::vector<Diagonal>& set) {
   std::vector<std::string> names{"PP", "PN"}, out;
   if (set.front().axes.size() == 3) names = {"PPP", "NPP", "PNP", "PPN"};

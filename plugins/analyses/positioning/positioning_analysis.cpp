@@ -228,7 +228,7 @@ void name_absent(std::vector<Finding>& findings, const std::string& absent) {
       if (name == "absent") text = absent.empty() ? "–" : absent;
 }
 
-/// Rules that ask more approaches than there are, by what they ask.
+/// Rules that require more approaches than there are, by that number.
 void plan(Evaluation& e, const AxisAnalysis& a, const Rules& rules) {
   for (const std::size_t asked : {5U, 7U}) {
     std::string titles;

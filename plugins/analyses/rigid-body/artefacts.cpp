@@ -48,7 +48,7 @@ void put_certificate(const Observations& o, Artefact& a) {
   }
 }
 
-/// Where the axes stood that were not read: as the manifest states it, else NaN.
+/// Positions of the axes that were not read: as the manifest states them, else NaN.
 Corner stood_at(const Measurement& m) {
   Corner at;
   at.fill(std::numeric_limits<double>::quiet_NaN());

@@ -12,7 +12,7 @@ namespace nonio::rigid_body {
 /// stated. `unknowns`: those that are shared so far.
 void take_artefacts(const AnalysisInput&, std::size_t& unknowns, Lines&);
 
-/// Inputs of balls and of what is stated, and the keys that nobody stated.
+/// Inputs of balls and of what is stated, and the keys that are not stated.
 void put_stated_inputs(const AnalysisInput&, const Lines&, math::ReadingModel&);
 
 /// A part of the budget of a line of what is stated.

@@ -35,7 +35,7 @@ BudgetLine::Kind budget_kind(RigidLine::Kind kind) {
   return kind == RigidLine::Kind::angle ? BudgetLine::Kind::angle : BudgetLine::Kind::length;
 }
 
-/// Where a reading was; a coordinate that nobody said is NaN.
+/// Position of a reading; a coordinate that is not stated is NaN.
 Corner place_of(const Observations& o, const Measurement& m, std::size_t row) {
   Corner at;
   at.fill(std::numeric_limits<double>::quiet_NaN());
@@ -47,7 +47,7 @@ Corner place_of(const Observations& o, const Measurement& m, std::size_t row) {
   return at;
 }
 
-/// +1 or -1 along the line: by the first axis that says from where it came.
+/// +1 or -1 along the line: by the first axis that states from where it came.
 int way_of(const Observations& o, std::size_t row) {
   for (const auto& column : o.axes)
     if (column.approach.size() == o.size() && column.approach[row] != 0)
@@ -137,7 +137,7 @@ struct Reader {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return times[a] < times[b]; });
-    if (m.kind == "step-diagonal" && o.time.empty())  // along the beam, whatever the rows say
+    if (m.kind == "step-diagonal" && o.time.empty())  // along the beam, whatever the rows state
       std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         const auto when = [&](std::size_t row) {
           const Corner at = place_of(o, m, row);
@@ -206,7 +206,7 @@ void find_box(Lines& out) {
     if (!(out.low[k] <= out.high[k])) out.low[k] = out.high[k] = 0.0;
 }
 
-/// Places that nobody said are in the middle of the volume.
+/// Positions that are not stated are in the middle of the volume.
 void centre(Lines& out) {
   for (std::size_t l = 0; l < out.lines.size(); ++l) {
     bool any = false;
@@ -243,7 +243,7 @@ bool is_taken(const Campaign& c, const Measurement& m) {
   return m.kind == "angle" && linear(c, m.axis) && coordinate_of(m.lateral) < 3 && !m.foot;
 }
 
-bool tells_squareness(const Campaign& c, const Measurement& m) {
+bool shows_squareness(const Campaign& c, const Measurement& m) {
   return m.kind == "diagonal" || m.kind == "step-diagonal" || m.kind == "artefact" ||
          on_square(c, m).has_value();
 }

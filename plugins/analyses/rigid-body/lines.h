@@ -28,7 +28,7 @@ struct Lines {
   std::vector<Stated> stated;
   std::vector<std::string> certificates;  ///< ids of measurements that state something
   std::vector<std::string> uncalibrated;  ///< artefacts without a certificate
-  std::vector<std::string> free_slope;    ///< lines on a square of which nobody states the error
+  std::vector<std::string> free_slope;    ///< lines on a square whose error is not stated
   std::vector<Finding> findings;
   math::Corner low{}, high{};  ///< that holds all readings
 
@@ -38,8 +38,8 @@ struct Lines {
 
 /// Whether a measurement is of linear axes, of a kind that the fit takes.
 bool is_taken(const Campaign&, const Measurement&);
-/// Whether with such a measurement the readings of its state can tell a squareness.
-bool tells_squareness(const Campaign&, const Measurement&);
+/// Whether with such a measurement the readings of its state can determine a squareness.
+bool shows_squareness(const Campaign&, const Measurement&);
 /// Of the same state as this one, or of every state.
 Lines lines_of(const AnalysisInput&);
 

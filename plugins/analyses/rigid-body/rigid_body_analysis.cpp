@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The 21 errors of three linear axes together, as far as the readings of a campaign tell them, and
-// the error of the tool point in the whole volume.
+// The 21 errors of three linear axes together, as far as the readings of a campaign determine them,
+// and the error of the tool point in the whole volume.
 #include <algorithm>
 #include <cmath>
 
@@ -175,7 +175,7 @@ void put_results(Work& w) {
   if (w.model.missing.empty()) w.out.budget = budget.budget();
 }
 
-/// The names of the axes stand in the series; X1 of a gantry counts as X.
+/// The names of the axes as in the series; X1 of a gantry is X.
 Expected<Evaluation> analyse(const AnalysisInput& in) {
   Work w{in, lines_of(in), {}, {}, {}};
   std::size_t moving = 0;
@@ -204,15 +204,15 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   return std::move(w.out);
 }
 
-/// Whether a state has what tells a squareness: without it no volume is told.
+/// Whether a state has a line that determines a squareness: without it no volume is given.
 bool has_squareness(const Campaign& c, const std::string& state) {
   return std::any_of(c.measurements.begin(), c.measurements.end(), [&](const Measurement& m) {
-    return tells_squareness(c, m) && is_taken(c, m) &&
+    return shows_squareness(c, m) && is_taken(c, m) &&
            (state_of(m).empty() || state_of(m) == state);
   });
 }
 
-/// The first measurement of a state; of every state where nobody names one.
+/// The first measurement of a state; of every state if none is named.
 bool applies(const Campaign& c, const Measurement& of) {
   if (!is_taken(c, of) || !has_squareness(c, state_of(of))) return false;
   const bool states = std::any_of(c.measurements.begin(), c.measurements.end(), [&](const auto& m) {

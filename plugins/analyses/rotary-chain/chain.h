@@ -15,7 +15,7 @@ namespace nonio::rotary_chain {
 /// Names with commas between them.
 std::string listed(const std::vector<std::string>& names);
 
-/// What the user wants and knows; SI.
+/// What the user requires and knows; SI.
 struct Wish {
   std::optional<double> sigma;        ///< standard uncertainty of a coordinate, stated
   std::optional<double> linear_axes;  ///< bound of squareness and scale difference, rad
@@ -48,9 +48,9 @@ struct Candidate {
   double by_tool = 0.0;  ///< derivative by the stated length of the tool
   bool is_direction() const { return quantity != Quantity::length; }
 };
-/// All values of the chain, told or not, in the order in which they are given.
+/// All values of the chain, identifiable or not, in the order in which they are given.
 std::vector<Candidate> candidates(const Chain&, const Places&, const math::ChainFit&);
-/// What the two longest stated tools say of their axis.
+/// What the two longest stated tools show of their axis.
 struct Tools {
   bool two = false;              ///< two stated ones of different length
   std::size_t from = 0, to = 0;  ///< the shorter and the longer

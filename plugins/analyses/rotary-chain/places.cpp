@@ -39,7 +39,7 @@ class Collector {
   }
 
   /// Of the measurement's ball and tool, ordered by time, or by run and position. A finding instead
-  /// where a position stands twice.
+  /// where a position is given twice.
   tl::expected<std::vector<Place>, Finding> places(std::size_t ball, std::size_t tool) {
     for (std::size_t i = 0; i < o_.size(); ++i) {
       if (o_.line_of(i) != 0) continue;  // three readings a centre, each with the whole position
@@ -83,7 +83,8 @@ class Collector {
     place.mean.weight += 1.0;
     for (std::size_t k = 0; k < 3; ++k)
       place.mean.at[k] += (r.at[k] - place.mean.at[k]) / place.mean.weight;
-    // Where there are no times, run and position say when it was: the order of rows says nothing.
+    // Where there are no times, run and position state when it was: the order of rows has no
+    // meaning.
     place.when = std::min(place.when, timed_ ? o_.time[i] : static_cast<double>(o_.run_of(i)));
   }
 

@@ -30,7 +30,7 @@ struct Places {
 };
 
 /// Readings of several runs or directions at one position of both axes are one centre with their
-/// number as weight. A position that stands twice in one run and direction is a finding.
+/// number as weight. A position that is given twice in one run and direction is a finding.
 Places places_of(const AnalysisInput&, const Chain&);
 
 /// Of the same state of the machine, before or after an adjustment.

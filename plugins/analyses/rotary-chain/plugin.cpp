@@ -150,7 +150,7 @@ void say_separation(Work& w, const std::vector<std::string>& withheld) {
       one += (one.empty() ? "" : " + ") + (k < names.size() ? names[k] : "?");
     add(one);
   }
-  w.say("rotary-chain.not-told", true,
+  w.say("rotary-chain.not-identifiable", true,
         {{"unknowns", static_cast<double>(fit.unknowns), Quantity::count},
          {"rank", static_cast<double>(fit.rank), Quantity::count}},
         {{"names", listed(withheld)}, {"which", which}});
@@ -231,7 +231,7 @@ void put_values(Work& w, math::BudgetOf& budget) {
       withheld.push_back(c.name);
       continue;
     }
-    if (c.name.starts_with("pivot_") && !pivot_stated(w)) continue;  // a finding says so
+    if (c.name.starts_with("pivot_") && !pivot_stated(w)) continue;  // a finding states that
     const double u = repetition_in(w, c.value.by);
     const math::Shares shares = shares_of(w, c);
     const math::Expanded e = budget.expand(u, shares);

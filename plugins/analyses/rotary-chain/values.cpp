@@ -39,7 +39,7 @@ Vector3 tool_vector(const Places& places, const Tools& tools, const ChainState& 
 }
 
 /// All of a direction or nothing: the component along it hardly changes with the others.
-bool tells_direction(const math::ChainFit& fit, std::size_t axis) {
+bool identifies_direction(const math::ChainFit& fit, std::size_t axis) {
   return std::all_of(fit.across[axis].begin(), fit.across[axis].end(), [&](std::size_t k) {
     return math::chain_value(fit, [&](const ChainState& s) { return s.lines[axis].direction[k]; })
         .identifiable;
@@ -55,7 +55,7 @@ void put_line(const Chain& chain, const math::ChainFit& fit, std::size_t axis,
   for (std::size_t k = 0; k < 3; ++k)
     out.push_back({std::string("centre_") + "xyz"[k] + "_" + name, Quantity::length,
                    math::chain_value(fit, [&](const ChainState& s) { return centre(s)[k]; })});
-  const bool identifiable = tells_direction(fit, axis);
+  const bool identifiable = identifies_direction(fit, axis);
   for (std::size_t k = 0; k < 3; ++k) {
     auto value =
         math::chain_value(fit, [&](const ChainState& s) { return s.lines[axis].direction[k]; });
@@ -122,7 +122,7 @@ std::vector<Candidate> candidates(const Chain& chain, const Places& places,
   bool identifiable = true;
   for (std::size_t axis = 0; axis < chain.axes.size(); ++axis) {
     put_line(chain, fit, axis, out);
-    identifiable = identifiable && tells_direction(fit, axis);
+    identifiable = identifiable && identifies_direction(fit, axis);
   }
   // The linear axes move a head past a table: their lines have an angle, and no distance.
   if (chain.is_head(0) == chain.is_head(1)) {

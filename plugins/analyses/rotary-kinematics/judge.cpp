@@ -26,7 +26,7 @@ const Observations::AxisColumn* column(const Observations& o, std::string_view a
 
 /// The centres of a measurement by position of the axis, ascending: readings of several runs,
 /// directions or turns at one position are one centre with their number as weight. A position that
-/// stands twice in one run and direction is a finding.
+/// is given twice in one run and direction is a finding.
 tl::expected<std::vector<math::BallCentre>, Finding> centres_of(const Observations& o) {
   const auto *x = column(o, "X"), *y = column(o, "Y"), *z = column(o, "Z");
   std::vector<math::BallCentre> out;
@@ -68,7 +68,7 @@ constexpr double half_turn = std::numbers::pi, full_turn = 2.0 * std::numbers::p
 constexpr double opposite = 1e-3;     // rad, of half a turn between two places
 constexpr double least_sine = 0.5;    // of half the angle between them: 60 deg
 constexpr double few = 7;             // degrees of freedom below which Student's factor is large
-constexpr double shear_unit = 10e-6;  // rad, in which the sensitivity of an arc is told
+constexpr double shear_unit = 10e-6;  // rad, for which the sensitivity of an arc is stated
 
 Finding finding(const char* id, bool attention, std::vector<Number> evidence) {
   return {.id = id, .attention = attention, .evidence = std::move(evidence)};
@@ -269,7 +269,7 @@ class Judge {
   }
 
   /// The classic method: two places and the angle between them, the axis taken as parallel to an
-  /// axis m of the machine. What it would have said of these readings.
+  /// axis m of the machine. What it would have stated about these readings.
   ///
   ///     c = (p + q)/2 + cot(t/2)/2 m x (q - p)      u = s/2 sqrt(1/w_p + 1/w_q)/|sin(t/2)|
   ///

@@ -10,7 +10,7 @@
 
 namespace nonio::rotary_kinematics {
 
-/// What the user wants and knows; SI.
+/// What the user requires and knows; SI.
 struct Wish {
   bool use_angles = false;
   std::optional<double> sigma;         ///< of one coordinate of one reading, stated
@@ -24,7 +24,7 @@ struct Wish {
 /// A fitted axis with its uncertainty, or the reason why there is none.
 struct Judged {
   std::vector<math::BallCentre> centres;
-  bool given = false;  ///< else refused, and the findings say why
+  bool given = false;  ///< else refused, and the findings state why
   math::RotaryFit fit;
   double sigma = 0.0;             ///< standard uncertainty that the covariance is scaled with
   double dof = INFINITY;          ///< of sigma; infinite if it is stated

@@ -246,7 +246,7 @@ void add_relation(Work& w, const std::string& id, const Judged& j) {
   w.out.values.push_back(w.budget.value("angle_" + id, r.angle, Quantity::angle, r.u_angle, angle));
 }
 
-/// Against the axes that stand before this one in the manifest: only where the user says that their
+/// Compared with the axes before this one in the manifest: only if the user states that their
 /// centres have one reference point.
 void add_relations(Work& w) {
   const AnalysisInput& in = w.in;
@@ -267,7 +267,7 @@ void add_relations(Work& w) {
       continue;
     }
     const Judged j = judge((*in.all)[i], wish_of(in.campaign, (*in.all)[i], in.options));
-    if (!j.given) continue;  // its own findings say why
+    if (!j.given) continue;  // its own findings state why
     add_relation(w, other.id, j);
     w.out.uses.push_back(other.id);
     w.out.notes.push_back({"rotary.chain", {}, {{"one", other.id}, {"other", in.measurement.id}}});

@@ -45,7 +45,7 @@ class Check {
       name();
       budget();
       tell_wide();
-      tell_not_told();
+      report_not_identifiable();
     }
     return std::move(out_);
   }
@@ -64,7 +64,7 @@ class Check {
       return line.name.ends_with(" found x") || line.name.ends_with(" found y") ||
              line.name.ends_with(" found z");
     });
-    // By the names of the lines and by time: the order of the rows says nothing.
+    // By the names of the lines and by time: the order of the rows has no meaning.
     std::vector<std::size_t> rank(o_.lines.size());
     for (const auto& line : o_.lines) names_.push_back(line.name);
     std::sort(names_.begin(), names_.end());
@@ -222,8 +222,8 @@ class Check {
     }
   }
 
-  /// What the directions of sensing cannot tell, by its name.
-  void tell_not_told() {
+  /// The values that the directions of sensing do not determine, by name.
+  void report_not_identifiable() {
     std::string by_ball, by_direction;
     for (std::size_t k = 0; k < 4; ++k) {
       if (out_.fit.identifiable[k]) continue;
@@ -233,10 +233,10 @@ class Check {
     std::string lines;
     for (const std::string& line : names_) lines += (lines.empty() ? "" : ", ") + line;
     if (!by_ball.empty())
-      out_.findings.push_back(finding("rtcp.not-told-ball", {}, {{"names", by_ball}}));
+      out_.findings.push_back(finding("rtcp.not-identifiable-ball", {}, {{"names", by_ball}}));
     if (!by_direction.empty())
       out_.findings.push_back(
-          finding("rtcp.not-told", {}, {{"names", by_direction}, {"lines", lines}}));
+          finding("rtcp.not-identifiable", {}, {{"names", by_direction}, {"lines", lines}}));
   }
 
   const Campaign& campaign_;

@@ -39,7 +39,7 @@ Quantity quantity_of(std::size_t value) {
 
 void add_values(const Checked& c, math::BudgetOf& budget, Evaluation& out) {
   for (std::size_t k = 0; k < 4; ++k)
-    if (c.tells(k))
+    if (c.is_identifiable(k))
       out.values.push_back(budget.value(c.names[k], c.fit.value[k], quantity_of(k),
                                         c.u_repetition(k), c.model.shares(c.fit.by[k])));
 }
@@ -56,7 +56,8 @@ void add_span(const Checked& c, Evaluation& out) {
   for (std::size_t l = 0; l < low.size(); ++l)
     if (low[l] <= high[l]) span = std::max(span, high[l] - low[l]);
   out.values.push_back({"span", span, Quantity::deviation});
-  // What new parameters can take away: the readings about their lines, and what the fit leaves.
+  // What new parameters can compensate: the readings about their lines, and the residuals of the
+  // fit.
   std::vector<double> sum(low.size(), 0.0), n(low.size(), 0.0);
   for (const auto& r : c.readings) sum[r.line] += r.deviation, n[r.line] += 1.0;
   double measured = 0.0, optimised = 0.0;
@@ -111,8 +112,8 @@ void add_curves(const Checked& c, const Observations& o, Evaluation& out) {
   }
 }
 
-/// Whether something is left that U does not explain: beyond three standard uncertainties, so that of
-/// four good values one in a hundred campaigns says so.
+/// Whether something is left that U does not explain: beyond three standard uncertainties, so that
+/// of four good values one in a hundred campaigns states that.
 void tell_left(const Checked& c, Evaluation& out) {
   std::string names;
   bool any = false;
@@ -152,7 +153,8 @@ void compare(const Checked& one, const Checked& two, const std::string& before, 
     double chi = 0.0;
     n = 0.0;
     for (std::size_t k = 0; k < 4; ++k) {
-      if (!one.tells(k) || !two.tells(k) || one.names[k] != two.names[k]) continue;
+      if (!one.is_identifiable(k) || !two.is_identifiable(k) || one.names[k] != two.names[k])
+        continue;
       const double share = f == 0 ? 1.0 : f, u = std::hypot(share * u_one[k], u_two[k]),
                    left = two.fit.value[k] - f * one.fit.value[k];
       if (!(u > 0.0)) continue;

@@ -34,7 +34,7 @@ struct SetUps {
 /// round in even steps.
 struct Separation {
   enum class Kind { none, donaldson, multi_step } kind = Kind::none;
-  std::vector<Place> places;  ///< of a pair the first one stands as its values are given
+  std::vector<Place> places;  ///< of a pair the values are in the orientation of the first one
 };
 
 constexpr double full = 2.0 * std::numbers::pi;
@@ -187,7 +187,7 @@ class Worker {
   void one(const Channel& c, const Separation* how) {
     const ErrorMotion e = math::error_motion(c.turns);
     const double half = e.total / 2.0, N = static_cast<double>(c.turns.N);
-    // What these turns did is what is asked for: no repetition of its own.
+    // What these turns did is what is requested: no repetition of its own.
     const double total = c.axial ? e.total_with_once : e.total;
     put(c, "total", total, 0.0, INFINITY, -total / 2.0, total / 2.0, c.with_ball && !c.axial);
     std::vector<double> curve = c.axial ? e.with_once : e.motion;
@@ -243,7 +243,7 @@ class Worker {
           {.id = "spindle.reversal", .attention = false, .texts = {{"sensor", c.name}}});
   }
 
-  /// The wave of the synchronous motion that is largest: its number tells where to look.
+  /// The wave of the synchronous motion that is largest: its number shows where to look.
   void waves(const Channel& c, const std::vector<double>& curve, double u_mean) {
     constexpr int most = 64;
     const auto n = static_cast<double>(curve.size());

@@ -116,7 +116,7 @@ std::array<std::size_t, 3> order_of(const Line& line) {
   return best;
 }
 
-/// "sd.csv:17", for words; only the file where nobody said which line it was.
+/// "sd.csv:17", for words; only the file if the line is not known.
 std::string place_of(const AnalysisInput& in, std::size_t row) {
   const auto& lines = in.observations.source_line;
   return in.measurement.file + (row < lines.size() ? ":" + std::to_string(lines[row]) : "");

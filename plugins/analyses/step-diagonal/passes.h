@@ -10,7 +10,7 @@
 /// What the observations of a campaign give to the kernel of step diagonals.
 namespace nonio::step_diagonal {
 
-/// The passes of a measurement, or the finding that says why they cannot be evaluated together.
+/// The passes of a measurement, or the finding that states why they cannot be evaluated together.
 struct Passes {
   math::StepDiagonals readings;
   std::vector<std::string> axes;   ///< their names along X, Y, Z

@@ -92,7 +92,7 @@ double lateral(const StepDiagonals& d) {
   return most;
 }
 
-/// What the analysis goes through, with what it may say.
+/// What the analysis goes through, with what it may state.
 struct Work {
   const AnalysisInput& in;
   const Passes& passes;
@@ -243,7 +243,7 @@ void put_notes(Work& w, const StepSolution& s) {
     w.out.notes.push_back({"step-diagonal.set-up",
                            {number("angle", *std::max_element(s.set_up.begin(), s.set_up.end()),
                                    Quantity::small_angle)}});
-  w.out.notes.push_back({"step-diagonal.angles-not-told"});
+  w.out.notes.push_back({"step-diagonal.angles-not-identifiable"});
 }
 
 bool refuse_mirror(Work& w) {

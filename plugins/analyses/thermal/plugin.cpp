@@ -15,7 +15,7 @@ namespace {
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "thermal"; }
 
-/// What a machine at rest says of the drift that budgets of its other campaigns should have.
+/// What a machine at rest states about the drift that budgets of its other campaigns should have.
 void propose_drift(const AnalysisInput& in, const Worked& worked, const Wish& wish,
                    Evaluation& out) {
   if (!(worked.drift > 0.0)) return;

@@ -237,7 +237,7 @@ class Worker {
       propose_effect(fit, g.time.front(), low, high);
   }
 
-  /// The effect of the model that says the same: w (p - fixed) (1 - exp(-t/tau)).
+  /// The effect of the model that is the same: w (p - fixed) (1 - exp(-t/tau)).
   void propose_effect(const TimeConstants& fit, double first, double low, double high) {
     if (fit.parts.size() != 1) return once("thermal.two-for-the-model", {});
     const auto& p = fit.parts.front();
@@ -296,7 +296,7 @@ class Worker {
       }
   }
 
-  /// How long to warm up, where every sensor that moves says it.
+  /// How long to warm up, where every sensor that moves states it.
   void settle() {
     if (tracks_.test == Test::etve || slowest_name_.empty()) return;
     out_.findings.push_back({.id = open_ ? "thermal.warm-up-at-least" : "thermal.warm-up-time",

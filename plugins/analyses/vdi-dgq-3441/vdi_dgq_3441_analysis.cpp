@@ -54,7 +54,7 @@ void name_absent(std::vector<Finding>& findings) {
             f.id == "runs.single" ? "P, Ps_max, Ps_mean" : "P, Pa, Ps_max, Ps_mean, U_max, U_mean";
 }
 
-// What the same readings say by ISO 230-2 and this standard averages away.
+// What the same readings show by ISO 230-2 and this standard averages away.
 void hidden(const AxisAnalysis& a, const VdiResult& vdi, Evaluation& e) {
   const Iso230Result iso = evaluate_iso230_2(a.test, 2.0);
   if (scatter_is_asymmetric(a.test) && std::isfinite(iso.R_plus) && std::isfinite(iso.R_minus) &&

@@ -93,7 +93,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   const std::vector<std::size_t> all = lines_of(in.campaign, in.measurement);
   Evaluation e;
   const Measurement& first = in.campaign.measurements[all.front()];
-  if (first.id != in.measurement.id) return e;  // they stand with the first line
+  if (first.id != in.measurement.id) return e;  // they are given with the first line
   std::vector<Line> lines;
   for (const std::size_t i : all) {
     NONIO_TRY(auto l, line(in, i));

@@ -89,7 +89,7 @@ std::vector<std::string> about(const ControllerInput& input, const AxisJob& job)
   return lines;
 }
 
-// The table stage looks itself: the analyses that would say so may not have been asked for.
+// The table stage looks itself: the analyses that would report it may not have been requested.
 std::vector<std::string> drift_of(const math::AxisTest& test) {
   std::vector<Finding> findings;
   math::drift_findings(test, findings);
@@ -197,8 +197,8 @@ Expected<void> name_files(std::vector<AxisJob>& jobs, OutputResult& result) {
   return {};
 }
 
-/// A gantry axis measured on lines beside each other, and nobody said which side has which: the
-/// tables of master and slave would be taken for each other.
+/// A gantry axis measured on parallel lines, without a statement which side has which line: the
+/// tables of master and slave could be confused.
 std::set<std::string> unsided_axes(const Campaign& campaign) {
   std::set<std::string> axes;
   if (campaign.machine.structure != "gantry") return axes;
@@ -214,7 +214,7 @@ std::set<std::string> unsided_axes(const Campaign& campaign) {
   return axes;
 }
 
-/// Whether a control that counts its axes would get a table under a number that nobody stated.
+/// Whether a control that numbers its axes would get a table under a number that is not stated.
 bool number_unsaid(const AxisJob& job, const std::vector<std::string_view>& keys) {
   return job.number == 0 && std::find(keys.begin(), keys.end(), "number:") != keys.end();
 }

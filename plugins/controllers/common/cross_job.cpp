@@ -69,7 +69,7 @@ TableSize size_of_curve(const CrossCurve& curve) {
   return size;
 }
 
-/// Settings of option `axes`; one that is malformed is said where the axes themselves are read.
+/// Settings of option `axes`; one that is malformed is stated where the axes themselves are read.
 NumberTables known_settings(const ControllerInput& in) {
   return settings_of_axes(in.options).value_or(NumberTables{});
 }
@@ -119,8 +119,8 @@ std::vector<int> ways_of(const ControllerInput& in, const Results::Analysed& a, 
 std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::Analysed& a) {
   const Evaluation& e = a.evaluation;
   const bool even_only = series_of(e, "q_odd") != nullptr;
-  // After a compensation from the same two diagonals they say nothing new: what they show is left by the tables in
-  // the control, and a table of that would take their place.
+  // After a compensation from the same two diagonals they state nothing new: what they show is left
+  // by the tables in the control, and a table of that would take their place.
   if (even_only && std::any_of(e.findings.begin(), e.findings.end(), [](const Finding& found) {
         return found.id == "diagonals.remeasured";
       }))
@@ -153,8 +153,8 @@ std::optional<CrossJob> of_diagonals(const ControllerInput& in, const Results::A
   return job;
 }
 
-/// The body diagonals as read where all axes have moved as far: what a mirror that stands askew
-/// adds to single moves is not in these.
+/// The body diagonals as read where all axes have moved equally far: they do not contain what a
+/// tilted mirror adds to single moves.
 std::vector<ReadLine> body_diagonals(const Measurement& m, const Observations& o) {
   constexpr double same_part = 1e-6;
   std::vector<ReadLine> lines;

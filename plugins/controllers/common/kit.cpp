@@ -51,7 +51,7 @@ math::GridRule rule_of(const AxisJob& job, const ControllerInput& input, const W
   return rule;
 }
 
-/// Increments begin beside the reference: there is an interval on both sides of it, so that a
+/// Increments begin next to the reference: there is an interval on both sides of it, so that a
 /// control whose axis is homed at its end has its numbers too.
 void surround(math::Grid& grid, double reference) {
   if (reference - grid.first < grid.step / 2.0) {
@@ -70,7 +70,7 @@ std::vector<double> wanted(const AxisJob& job, const Writer& w) {
   return rows;
 }
 
-/// The targets as rows; those that the digits do not tell apart are one.
+/// The targets as rows; those that are equal when printed are one.
 std::vector<double> listed(const AxisJob& job, const Writer& w, const ControlTable& t) {
   const double unit = t.position_unit.of(job.rotary);
   const int digits = decimals_of(t.position_step.of(job.rotary), unit);
@@ -237,7 +237,7 @@ Expected<Sheet> sheet_of(const AxisJob& job, const ControlTable& table,
   return s;
 }
 
-/// What of the reversal is left to a parameter, or to nobody.
+/// The part of the reversal that is left to a parameter, or not compensated.
 void look_at_reversal(const AxisJob& job, const ControlTable& t, OutputResult& result) {
   if (!t.backlash.empty()) return doubt_backlash(job, result);
   Remark stays = remark(job, "table.reversal-stays");

@@ -95,7 +95,7 @@ std::vector<Beam> beams_of(const Campaign& campaign) {
     for (const auto& [axis, place] : one->at) {
       const auto there = other->at.find(axis);
       if (there == other->at.end() || there->second == place) continue;
-      // Sides at other places of two axes: along which of them the beam lies is not known.
+      // Sides that differ in two axes: the axis along which the beam runs is not known.
       if (!beam.along.empty()) {
         beam.along.clear();
         break;

@@ -27,7 +27,7 @@ Uncertainties uncertainties(const Campaign& campaign, const Measurement& m, cons
   auto budget = math::uncertainty_budget(campaign, limits.environment, m.axis, test).budget;
   if (budget && !drift_is_in) budget->seen = {};
   const auto U = math::iso230_2_uncertainty(budget.value_or(math::Budget{}),
-                                            math::approaches_behind_means(test), 2.0);
+                                            math::approaches_per_mean(test), 2.0);
   const double seen = drift_is_in ? math::drift_share(test).B_mean : 0.0;
   return budget ? Uncertainties{std::max(U.B_mean, seen), U.E, U.M} : Uncertainties{seen, 0.0, 0.0};
 }

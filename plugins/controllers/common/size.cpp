@@ -12,10 +12,10 @@
 namespace nonio::controllers {
 namespace {
 
-/// A table that is zero at a target cannot be larger than E; twice that is no table of this axis.
+/// A table that is zero at a target is at most E; twice that cannot belong to this axis.
 constexpr double times_explained = 2.0;
 
-/// What the readings themselves say: range of all mean deviations, and their steepest change.
+/// What the readings themselves show: range of all mean deviations, and their steepest change.
 struct Explained {
   double E = 0.0, slope = 0.0;
 };

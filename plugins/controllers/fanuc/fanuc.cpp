@@ -53,7 +53,7 @@ ControlTable table_of(const Settings& o) {
   return t;
 }
 
-// What the parameters of one axis are, beside its numbers.
+// The parameters of one axis, other than its numbers.
 struct Parameters {
   std::int64_t reference = 0, low = 0, high = 0;  // 3620, 3621, 3622
   std::int64_t magnification = 1;                 // 3623
@@ -84,13 +84,13 @@ Expected<Parameters> parameters_of(const Sheet& s) {
   return p;
 }
 
-// Numbers of all axes share one list; each axis gets the next free ones unless it is told.
+// Numbers of all axes share one list; each axis gets the next free ones unless they are stated.
 struct Numbering {
   std::int64_t next = 0;
   struct Range {
     std::string axis;
     std::int64_t low, high;
-    bool chosen = false;  ///< nobody asked for them
+    bool chosen = false;  ///< not stated by the user
   };
   std::vector<Range> taken{};
 

@@ -85,7 +85,7 @@ class Backup {
     return it == axes_.end() || value == it->second.end() ? std::nullopt
                                                           : std::optional(value->second);
   }
-  /// Of other axes; and numbers that are not 0 and belong to nobody known.
+  /// Of other axes; and numbers that are not 0 and belong to no known axis.
   std::vector<Range> foreign(std::int64_t axis) const {
     std::vector<Range> out;
     for (const auto& [other, values] : axes_)

@@ -115,7 +115,7 @@ Expected<LoadedTable> table(const Memory& m, const ParameterValues& p,
   auto plus = staircase(m, p, 0);
   if (!plus) return tl::unexpected<Error>(plus.error());
   auto minus = plus;
-  // 3605#0 is set by hand where there are two sets; a whole backup says it.
+  // 3605#0 is set by hand where there are two sets; a whole backup states it.
   const auto bits = p.find(3605);
   const bool directions = bits == p.end() ? p.count(3626) != 0 : bits->second % 10 == 1;
   if (directions) {
@@ -181,7 +181,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (o.flag("extended")) memory.least = -128, memory.most = 127;
   bool any = false;
   for (const Artifact& f : in.files) {
-    if (f.bytes.rfind('%', 0) != 0) continue;  // the words beside it
+    if (f.bytes.rfind('%', 0) != 0) continue;  // the text that goes with it
     any = true;
     if (auto done = punched(memory, f.bytes); !done) return tl::unexpected<Error>(done.error());
   }

@@ -71,7 +71,7 @@ std::vector<std::string> axis_columns(const Campaign& campaign, const AxisJob& j
   return names;
 }
 
-// The .COM text; it takes no comments, the words are in the file beside it.
+// The .COM text; it accepts no comments, the text is in a second file.
 std::string com_table(const Sheet& s, const std::vector<std::string>& axes, const Crosses& crosses,
                       const Layout& layout) {
   const auto place = [&](std::size_t i) { return s.position[i] / s.position_unit(); };
@@ -110,7 +110,7 @@ bool unfit_for_columns(const std::vector<std::string>& axes) {
   return false;
 }
 
-/// Where the rows of a table are wanted: at the targets, and where other axes have their points.
+/// Where the rows of a table are required: at the targets, and where other axes have their points.
 std::vector<double> wanted(const AxisJob& job, const Crosses& crosses, const Layout& layout) {
   std::vector<double> at = job.table_curve().position;
   if (crosses.empty()) return at;
@@ -192,11 +192,11 @@ Crosses columns_of(const std::vector<CrossJob>& sets, const AxisJob& job,
   return states == 1 ? columns : Crosses{};
 }
 
-/// What the control makes of the columns of other axes and of the pitch beside them, read from the tables of each.
+/// What the control computes from columns of other axes and the pitch, from the tables of each.
 void predict_columns(const CrossJob& set, const std::vector<AxisJob>& jobs,
                      const ControllerInput& input, OutputResult& result) {
   const controllers::Replay replay = controllers::replay_of(set, jobs, input);
-  // A table that was refused takes its columns with it; its finding says why.
+  // A table that was refused takes its columns with it; its finding states why.
   const bool any = std::any_of(set.curves.begin(), set.curves.end(), [&](const CrossCurve& curve) {
     return std::any_of(replay.tables.begin(), replay.tables.end(), [&](const LoadedTable& t) {
       return t.output == curve.output && t.input.front() == curve.input;

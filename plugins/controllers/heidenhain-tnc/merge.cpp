@@ -94,7 +94,7 @@ Expected<std::vector<Artifact>> merge(const MergeInput& in) {
     if (!text) return fail(text.error());
     out.push_back({cma->name, std::move(*text)});
   }
-  for (const Artifact& a : in.table)  // the words beside it: the backlash value
+  for (const Artifact& a : in.table)  // the text that goes with it: the backlash value
     if (!is_table(a) && !is_assignment(a)) out.push_back(a);
   return out;
 }

@@ -42,7 +42,7 @@ std::optional<double> after(std::string_view line, std::string_view key) {
   return at == std::string_view::npos ? std::nullopt : real(cell(line, at + key.size()));
 }
 
-/// Positions of all rows; DATUM and DISTANCE say them again where line 1 has them.
+/// Positions of all rows; DATUM and DISTANCE state them again where line 1 has them.
 Expected<std::vector<double>> positions(const Lines& lines, std::size_t end) {
   const auto datum = after(lines[0], "DATUM:"), distance = after(lines[0], "DISTANCE:");
   if (datum.has_value() != distance.has_value() || (distance && !(*distance > 0.0)))
@@ -88,7 +88,7 @@ LoadedTable table(const KnownAxis& input, const KnownAxis& output, const std::ve
   return t;
 }
 
-/// Which axis a table is of, as CONFIG.CMA says: by the table's name.
+/// Which axis a table is of, as CONFIG.CMA states: by the table's name.
 using Owners = std::map<std::string, std::string, std::less<>>;
 
 void note_owners(std::string_view cma, Owners& owners) {

@@ -47,7 +47,7 @@ std::string comp_file(const Sheet& s) {
   return out;
 }
 
-/// As the machine counts them, from 0; nothing where nobody says it.
+/// As the machine numbers them, from 0; none if not stated.
 std::optional<std::string> joint_of(const AxisJob& job) {
   const auto joint = job.setting("joint"), number = job.setting("number");
   if (!joint && !number) return std::nullopt;
@@ -65,7 +65,7 @@ std::string section_of(const AxisJob& job) {
          "], or number in the machine's record\n";
 }
 
-/// The table itself has no end that shows: how long it is stands beside it.
+/// The table itself has no visible end: its length is stated in the second file.
 std::string lines_said(const std::string& comp, const Sheet& s) {
   return comp + " has " + std::to_string(s.position.size()) + " lines";
 }
@@ -121,8 +121,8 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
       {comp, comp_file(s)}, {stem + ".ini", ini_snippet(s, comp)}, {stem + ".txt", words(s, comp)}};
 }
 
-/// The controller stops reading for good at the first line that is not three numbers, and says
-/// nothing: a file that was cut, or of which a part has no effect, is no table to count on.
+/// The controller stops reading for good at the first line that is not three numbers, and states
+/// nothing: a file that was cut, or of which a part has no effect, cannot be relied on.
 Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Artifact>& beside) {
   const auto all = controllers::lines_of(f.bytes);
   std::size_t last = all.size();
@@ -151,10 +151,10 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
 }
 
 // As the controller's source and runs of it show: reading stops for good at the first line that is
-// not three numbers; a nominal that does not rise drops its line, which no table is meant to have;
+// not three numbers; a nominal that does not increase drops its line, which is never intended;
 // trims are floats. The file knows
 // no axis: its name does, or there is one axis only.
-/// The settings of a joint beside its table say how the table is meant.
+/// The settings of a joint that go with its table state how to interpret it.
 Expected<void> check_type(const TableInput& in) {
   const std::int64_t type = in.options.integer("type");
   const std::string units = in.options.text("units", "mm");

@@ -110,7 +110,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   std::vector<LoadedTable> tables;
   std::map<std::string, double> backlash;
   for (const Artifact& f : in.files) {
-    if (f.bytes.rfind('#', 0) != 0) {  // the words beside it
+    if (f.bytes.rfind('#', 0) != 0) {  // the text that goes with it
       if (const auto v = controllers::parameter_in(f.bytes, declared().backlash))
         backlash[axis_of_file(*axes, f.name, "pmac-").name] = *v;
       continue;

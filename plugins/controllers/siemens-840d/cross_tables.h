@@ -10,10 +10,10 @@ namespace nonio::siemens_840d {
 /// was written of the axes themselves.
 /// An error where one of these CEC tables is in use: option `taken`.
 Expected<void> free_tables(std::int64_t first, std::size_t count, const Settings& options);
-/// That nobody has read these numbers from the control.
+/// States that these numbers were not read from the control.
 std::string chosen_words(std::int64_t first, std::size_t count);
 
-/// A note that says so.
+/// A note that states that.
 void note_chosen(const std::string& axis, std::int64_t first, std::size_t count,
                  OutputResult& result);
 

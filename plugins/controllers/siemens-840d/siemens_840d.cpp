@@ -18,7 +18,7 @@ ControlTable declared() {
   t.zero = ControlTable::Zero::reference;
   t.position_step = {1e-4 / 1e3, 1e-3 / deg_per_rad};
   t.value_step = {1e-9, 1e-6 / deg_per_rad};  // of no limit: 1 nm, 0.004 arcsec
-  t.points = 200;                             // 808D, 828D; else MD38000 and MD18342 say
+  t.points = 200;                             // 808D, 828D; else MD38000 and MD18342 state
   t.bidirectional = t.straightness = t.squareness = true;
   t.backlash = "MD32450";
   t.facts = {{"sign", Confidence::documented, "A positive entry drives the axis towards minus."},
@@ -32,7 +32,7 @@ ControlTable declared() {
 
 std::string axis_name(const Sheet& s) { return "AX" + std::to_string(s.job.number); }
 
-// The same words stand in every file of an axis; then come those about this table.
+// Every file of an axis has the same text; then follows that about this table.
 std::string remarks(const Sheet& s, const std::vector<std::string>& of_table) {
   return controllers::comments(s.warning, "; ") + controllers::comments(s.job.about, "; ") +
          controllers::comments(of_table, "; ");

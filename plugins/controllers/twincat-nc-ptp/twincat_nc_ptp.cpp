@@ -48,7 +48,7 @@ std::optional<std::int64_t> number_behind(std::string_view text, std::string_vie
   return words.empty() ? std::nullopt : controllers::whole(words.front());
 }
 
-/// The text says how many elements there are, and ends: one that was cut is no shorter table.
+/// The text states how many elements there are, and ends: one that was cut is no shorter table.
 Expected<void> whole(const Artifact& f) {
   const std::string_view text = f.bytes;
   const std::string_view element = "Compensation :=";

@@ -172,7 +172,7 @@ Expected<OutputResult> write(const ControllerInput& in) {
            controllers::refused(j, controllers::Columns::mean, result);
   });
   const auto twice =
-      [all = *jobs](const AxisJob& j) {  // whose positioning is it? Not told apart here
+      [all = *jobs](const AxisJob& j) {  // which axis it belongs to is not distinguished here
         return std::count_if(all.begin(), all.end(),
                              [&](const AxisJob& o) { return o.axis == j.axis; }) > 1;
       };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Circles: lines whose readings are sensed along the radius, at P = c + R n. With n = (cos t, sin t)
 // in the plane and d = +1 counter-clockwise, -1 clockwise:
-//     circle-centre    in every model: a n_1 + b n_2, where the instrument stood; a, b: m
+//     circle-centre    in every model: a n_1 + b n_2, position of the instrument; a, b: m
 //     servo-mismatch   XY, YZ, ZX: w d sin t cos t; w: m, path lag F/Kv of the first axis less that
 //                      of the second: lag opposes the motion, e = -F/Kv v
 #include <algorithm>

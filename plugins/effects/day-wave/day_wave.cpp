@@ -12,7 +12,7 @@
 namespace nonio::day_wave {
 
 constexpr double day = 86400.0;         // s
-constexpr double shortest = day / 6.0;  // of a shorter piece nobody can say that it is a wave
+constexpr double shortest = day / 6.0;  // a shorter piece cannot be recognised as a wave
 constexpr double of_time = 2.0 * std::numbers::pi / day;
 
 static bool long_enough(const Observations& o, const Axis& axis) {

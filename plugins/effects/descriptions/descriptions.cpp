@@ -11,7 +11,7 @@
 
 namespace nonio::descriptions {
 
-constexpr std::size_t fewest_targets = 5;  // ISO 230-2 wants no fewer
+constexpr std::size_t fewest_targets = 5;  // ISO 230-2 requires no fewer
 constexpr std::size_t most_targets = 400;
 
 static std::vector<double> targets(const Observations& o, const Axis& axis) {

@@ -52,7 +52,7 @@ std::vector<std::string> sources(const Observations& o) {
   return names(o, [](const Channel& c) { return is_source(c) && varies(c, 0.0); });
 }
 
-/// Of the structure, where the manifest says what a sensor measures.
+/// Of the structure, where the manifest states what a sensor measures.
 bool may_bend(const Channel& c) {
   return c.is_temperature() && (c.role.empty() || c.role == "structure") && varies(c, least_range);
 }

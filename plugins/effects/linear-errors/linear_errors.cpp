@@ -17,7 +17,7 @@ struct Pair {
 constexpr Pair squares[] = {{"XY", 0, 1, +1.0}, {"XZ", 0, 2, -1.0}, {"YZ", 1, 2, +1.0}};
 constexpr Pair scales[] = {{"X", 0, 0, -1.0}, {"Y", 1, 1, -1.0}, {"Z", 2, 2, -1.0}};
 
-/// A ball that hardly leaves a plane tells nothing of the coordinate across it.
+/// A ball that hardly leaves a plane does not determine the coordinate across it.
 bool seen(const SpaceReadings& s, const Pair& pair) {
   const double widest = *std::max_element(s.length.begin(), s.length.end());
   return s.length[pair.lever] > 0.05 * widest && s.length[pair.error] > 0.05 * widest;

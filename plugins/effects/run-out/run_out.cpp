@@ -10,8 +10,8 @@ namespace nonio::run_out {
 
 namespace {
 
-/// Waves of 2 .. m + 1 a turn; of n angles n - 3 values are left beside the circle, half of which
-/// are looked at.
+/// Waves of 2 .. m + 1 a turn; of n angles n - 3 values are left after the circle, half of which
+/// are used.
 std::vector<double> grid(const Observations& o, const Axis&) {
   if (!of_ball_centres(o)) return {};
   const std::set<double> angles(o.axes.front().position.begin(), o.axes.front().position.end());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // EYX: e_y = sum c_k s_k(x), and the five others; s_k: smooth basis of cubic splines without
-// constant and slope over the places where lines tell it (nonio/math/spline.h), rms 1; c_k: m. A slope is
-// squareness, or the set-up of the line.
+// constant and slope over the positions where lines determine it (nonio/math/spline.h), rms 1; c_k:
+// m. A slope is squareness, or the set-up of the line.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -33,8 +33,8 @@ std::vector<std::string> of(const Observations& o) {
 }
 
 /// The readings with a place along the axis only on lines that move along it and sense the error.
-/// Elsewhere the zero of the line takes what the curve says; a slope over such places would be left
-/// in the curve on the others, where it is squareness.
+/// Elsewhere the zero of the line takes what the curve predicts; a slope over such places would be
+/// left in the curve on the others, where it is squareness.
 SpaceReadings told(const Observations& o, const Name& name) {
   constexpr double least = 1e-9;  // m; of a unit vector
   SpaceReadings s = space_of(o);

@@ -115,7 +115,7 @@ std::vector<double> levers_of(const Observations& o, const SpaceReadings& s, con
     });
     if (!one_sense || !line.is_stepwise()) continue;  // a circle is sensed all round
     const auto turned = SpaceLine::cross(about, line.sense);
-    // The beam meets the far corner: there all axes have gone all steps.
+    // The beam meets the far corner: there all axes have moved all steps.
     const auto far = *std::max_element(
         line.way.begin(), line.way.end(), [&](const auto& one, const auto& other) {
           return SpaceLine::dot(one, line.sense) < SpaceLine::dot(other, line.sense);

@@ -7,7 +7,7 @@
 #include "dcc.h"
 #include "pages.h"
 
-/// The document that goes to the customer: what ISO/IEC 17025:2017, 7.8 asks for.
+/// The document that goes to the customer: what ISO/IEC 17025:2017, 7.8 requests.
 namespace nonio::certificate {
 
 using pages::Blocks;
@@ -86,10 +86,11 @@ bool has_directions(const OutputInput&);
 /// the certificate in spite of it, for which reason; empty if there are none.
 std::string expired_text(const Source&);
 
-/// What it says of the certificate that it replaces, with every change; empty if there is none.
+/// What it states about the certificate that it replaces, with every change; empty if there is
+/// none.
 std::string amendment_text(const Source&);
 
-/// What the DCC says in words; a source for each language.
+/// What the DCC states in words; a source for each language.
 dcc::About about_of(const std::vector<Source>&, const char* release);
 
 /// The document in one language.

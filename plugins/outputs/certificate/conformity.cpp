@@ -36,8 +36,8 @@ bool is_named(const Source& source, const Evaluation& e, const std::string& name
                                           [&](const Value& v) { return v.name == both && v.U; });
 }
 
-/// All that have a limit: the paper says nowhere else what was decided. And those that the template
-/// names; of very many not those of a measurement that has others.
+/// All that have a limit: the paper states nowhere else what was decided. And those that the
+/// template names; of very many not those of a measurement that has others.
 std::vector<Shown> shown_results(const Source& source,
                                  const std::vector<pages::Measured>& measured) {
   constexpr std::size_t most = 18;
@@ -70,7 +70,7 @@ std::vector<Shown> shown_results(const Source& source,
 /// In two languages a column of meanings makes each row two lines high: they are printed below.
 bool is_brief(const Source& source) { return source.in.campaign.certificate.languages.size() > 1; }
 
-/// "A: Accuracy, both directions. B: Reversal error, largest."
+/// "A: bi-directional accuracy. B: largest reversal error."
 std::string meanings(const Source& source, const std::vector<Shown>& all) {
   std::string text;
   std::set<std::string> said;

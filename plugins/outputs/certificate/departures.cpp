@@ -33,7 +33,7 @@ std::string excluded(const Source& source, const pages::Measured& m) {
                                                        {"reason", reason.empty() ? "–" : reason}}));
 }
 
-/// Of ISO 230-2, where it is not the one that everybody takes it for.
+/// Of ISO 230-2, if it is not the usual edition.
 std::string edition(const Source& source, const Results::Analysed& a) {
   for (const Remark& note : a.evaluation.notes)
     for (const Number& n : note.evidence)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the DCC says in words: the same as the pages, in the same languages.
+// What the DCC states in words: the same as the pages, in the same languages.
 #include <algorithm>
 
 #include "certificate.h"
@@ -91,14 +91,14 @@ dcc::Words words_of(const std::vector<Source>& sources, const Results::Analysed&
 void add_decided(const std::vector<Source>& sources, dcc::About& about) {
   const OutputInput& in = sources.front().in;
   for (const Conformity& c : in.results.conformity) {
-    const bool told = std::any_of(
+    const bool is_stated = std::any_of(
         in.results.analyses.begin(), in.results.analyses.end(), [&](const Results::Analysed& a) {
           const auto& values = a.evaluation.values;
           return a.plugin == c.plugin && a.measurement == c.measurement &&
                  std::any_of(values.begin(), values.end(),
                              [&](const Value& v) { return v.name == c.name && v.U; });
         });
-    if (!told) continue;
+    if (!is_stated) continue;
     dcc::Decided d;
     d.name = in_all(sources, [&](const Source& s) {
       return pages::symbol(c.name) + ", " + c.measurement + ": " + s.words.get("conformity.limit") +

@@ -119,7 +119,7 @@ bool looks_alike(const Curve& a, const Curve& b) {
   return a.kind == b.kind && a.colour == b.colour && a.dash == b.dash && a.marker == b.marker;
 }
 
-/// What the lines of several plots are, said once above them. A plot in which a line of the same
+/// What the lines of several plots are, stated once above them. A plot in which a line of the same
 /// name looks otherwise (its last run is another one) keeps its own.
 Plot common_legend(std::vector<Plot>& plots) {
   Plot common;

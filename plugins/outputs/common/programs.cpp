@@ -80,7 +80,7 @@ class Requests {
     }
     for (auto it = asked.begin(); it != asked.end(); ++it) {
       const std::string& what = *it;
-      if (std::find(asked.begin(), it, what) != it) continue;  // said twice
+      if (std::find(asked.begin(), it, what) != it) continue;  // stated twice
       const auto done = what == "axes"             ? axes()
                         : what == "diagonals"      ? diagonals(false)
                         : what == "half-diagonal"  ? diagonals(true)
@@ -123,7 +123,7 @@ class Requests {
                                        number(travel / mm) + " mm");
   }
 
-  /// That the program does not become longer than anybody measures.
+  /// Limits the length of the program to that of a realistic measurement.
   Expected<void> bounded(const std::string& name, double stops) const {
     const double readings = stops * wish_.runs * (wish_.both_directions ? 2.0 : 1.0);
     if (readings <= most_readings) return {};
@@ -197,7 +197,7 @@ class Requests {
     return {from, from + full_turn};
   }
 
-  /// Targets as ISO 230-2 asks for them.
+  /// Targets as ISO 230-2 requests them.
   Expected<void> spread(const Axis& a, const std::string& choice, math::AxisTargets& wanted,
                         std::string& how) const {
     const double length = wanted.last - wanted.first;
@@ -341,7 +341,7 @@ class Requests {
   std::vector<Program> programs_;
 };
 
-/// What the options ask for, made into paths.
+/// The paths that the options request.
 Expected<std::vector<Program>> requested(const OutputInput& in) { return Requests(in).all(); }
 
 std::string trimmed(std::string text) {

@@ -9,7 +9,7 @@
 #include "nonio/sdk/plugin.h"
 
 /// What every writer of part programs does alike: which lines to measure, where to stop, what to
-/// say about it. A dialect only formats. Compiled into each plugin.
+/// state about it. A dialect only formats. Compiled into each plugin.
 namespace nonio::programs {
 
 /// One part program: a path and what a person at the machine must know.

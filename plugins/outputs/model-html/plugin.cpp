@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The model of each part of the machine as a page for a browser, in one file that needs nothing
-// else. What it says is in templates/words/<language>/pictures.toml.
+// else. What it states is in templates/words/<language>/pictures.toml.
 #include "nonio/sdk/plugin.h"
 
 #include <algorithm>
@@ -82,12 +82,12 @@ void add_parameters(View& view, const Source& source) {
     if (!text.empty()) view.add("about_fit").set("about_fit", text);
 }
 
-/// What effects are and what cures them, as the catalogue says it.
+/// What effects are and their remedies, from the catalogue.
 void add_cards(View& view, const Source& source) {
   bool any = false;
   for (const ModelFit::Candidate& c : source.fit.candidates) {
     View* card = nullptr;
-    for (const char* what : {"is", "looks", "cure"}) {
+    for (const char* what : {"is", "appearance", "remedy"}) {
       const std::string text =
           nonio::words(source.in.templates, source.words.language(),
                        "effect." + c.effect.substr(0, c.effect.find(':')) + "." + what);

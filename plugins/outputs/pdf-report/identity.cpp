@@ -91,7 +91,7 @@ namespace {
 void add_conformity(const Source& source, std::vector<std::string>& lines) {
   const Wording& w = source.words;
   for (const Conformity& c : source.in.results.conformity) {
-    if (c.decision == Decision::conforms || c.reason == "no-value") continue;  // said below
+    if (c.decision == Decision::conforms || c.reason == "no-value") continue;  // stated below
     const Value* value = nullptr;
     for (const Results::Analysed& a : source.in.results.analyses)
       if (a.plugin == c.plugin && a.measurement == c.measurement)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Readings with their model, and the page of residuals. Its nine pictures have the same places whatever the data are, so that the
-// eye learns where to look; one whose data are not there says so in its frame.
+// Readings with their model, and the page of residuals. Its nine pictures have the same places
+// whatever the data are, so that the eye learns where to look; one whose data are missing states
+// that in its frame.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -420,7 +421,7 @@ void add_pictures(const Source& source, const ModelFit& fit, Blocks& blocks) {
   blocks.push_back(
       {Heading{source.pictures.get("picture.heading", {{"part", fit.part}}), 1}, field});
   blocks.push_back({Paragraph{pictures.legend(), Paragraph::Look::small}, field});
-  // What heading, legend, captions of up to three lines and gaps need is not there for the plots.
+  // What heading, legend, captions of up to three lines and gaps need is missing for the plots.
   constexpr double between = 7;
   const double heading = 9 + 1.3 * style.heading + 6, legend = 3 * 1.3 * style.small + 2;
   const double around = 5 + 3 * 1.3 * style.small + 2 + between;

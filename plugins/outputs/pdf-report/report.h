@@ -32,7 +32,7 @@ void add_title(const Source&, Blocks&);
 void add_identity(const Source&, Blocks&);
 void add_status(const Source&, Blocks&);
 
-/// What analyses of the whole campaign say: rows of a plan, and their findings.
+/// What analyses of the whole campaign state: rows of a plan, and their findings.
 void add_plans(const Source&, Blocks&);
 /// Whether advice is printed in a part of its own, block "laboratory".
 bool has_laboratory_part(const Source&);
@@ -40,7 +40,8 @@ bool has_laboratory_part(const Source&);
 bool is_for_laboratory(const Source&, const Finding&);
 void add_laboratory(const Source&, Blocks&);
 void add_findings(const Source&, const Measured&, Blocks&);
-/// What controllers' tables have to say; what several of them say alike once, with all their names.
+/// What controllers' tables have to state; what several of them state alike once, with all their
+/// names.
 struct TableFinding {
   const Finding* finding;
   std::string outputs;
@@ -58,7 +59,7 @@ void add_residuals(const Source&, Blocks&);
 /// Always the same nine, in the same places, together with their heading on one page.
 void add_pictures(const Source&, const ModelFit&, Blocks&);
 
-/// The machine over its campaigns up to this one: a page, where the options ask for it.
+/// The machine over its campaigns up to this one: a page, if the options request it.
 void add_history(const Source&, Blocks&);
 
 void add_tables(const Source&, Blocks&);

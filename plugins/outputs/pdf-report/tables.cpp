@@ -62,13 +62,14 @@ bool has_laboratory_part(const Source& source) {
 /// before it has the whole result.
 void add_laboratory(const Source& source, Blocks& blocks) {
   Blocks advice;
-  std::set<std::string> told;
+  std::set<std::string> printed_already;
   for (const Measured& m : measured(source.in))
     for (const Finding* f : m.findings) {
       Block block = note_of(source, *f);
       Note& note = std::get<Note>(block.what);
       const bool whole = is_for_laboratory(source, *f);  // its words are not printed elsewhere
-      if ((note.advice.empty() && !whole) || !told.insert(m.measurement.id + note.title).second)
+      if ((note.advice.empty() && !whole) ||
+          !printed_already.insert(m.measurement.id + note.title).second)
         continue;
       note.title = m.measurement.id + ": " + note.title;
       if (!whole) note.says.clear();
@@ -167,7 +168,7 @@ std::string remark(const Source& source, const Remark& note) {
   return remark_text(source.in.templates, source.language(), note);
 }
 
-/// Whether the measurement's own findings have already said it.
+/// Whether the measurement's own findings have already stated it.
 bool already_said(const Source& source, const Finding& f) {
   for (const Results::Analysed& a : source.in.results.analyses)
     for (const Finding& known : a.evaluation.findings)
@@ -235,7 +236,7 @@ void add_tables(const Source& source, Blocks& blocks) {
   }
   for (const Results::Written& output : outputs) {
     std::string notes;
-    std::set<std::string> said;  // of two measurements of an axis the same is said once
+    std::set<std::string> said;  // of two measurements of an axis the same is stated once
     for (const Remark& note : output.result.notes)
       if (const std::string text = remark(source, note); said.insert(text).second)
         notes += (notes.empty() ? "" : " ") + text;

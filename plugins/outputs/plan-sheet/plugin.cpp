@@ -81,10 +81,10 @@ using Cells = std::vector<Table::Cell>;
 
 /// Triples with their ratio, as blocks of columns side by side.
 Block look_up(const Sheet& s) {
-  constexpr std::size_t beside = 3;
-  const std::size_t height = (s.count() + beside - 1) / beside;
+  constexpr std::size_t columns_per_row = 3;
+  const std::size_t height = (s.count() + columns_per_row - 1) / columns_per_row;
   Columns columns;
-  for (std::size_t part = 0; part < beside; ++part) {
+  for (std::size_t part = 0; part < columns_per_row; ++part) {
     Table table;
     table.columns = {{"a", "", true}, {"b", "", true}, {"c", "", true}, {"b/a", "", true}};
     for (std::size_t i = part * height; i < std::min(s.count(), (part + 1) * height); ++i)
@@ -143,7 +143,7 @@ Table::Cell place(const Sheet& s, double si, int decimals) { return {s.length(si
 
 /// The stops of one plan, in blocks side by side.
 void add_stops(const Sheet& s, std::size_t row, std::vector<Block>& blocks) {
-  constexpr std::size_t beside = 2;
+  constexpr std::size_t columns_per_row = 2;
   const Wording& w = s.words;
   const auto n = static_cast<std::size_t>(std::llround(s.at("n", row)));
   const double step_x = s.at("step_x", row), step_y = s.at("step_y", row),
@@ -163,9 +163,9 @@ void add_stops(const Sheet& s, std::size_t row, std::vector<Block>& blocks) {
   for (const double step : {step_x, step_y, step_d}) all.push_back(step);
   const int decimals = decimals_for(all, Quantity::length, 4);
   const std::string unit = unit_text(Quantity::length);
-  const std::size_t height = (n + 1 + beside - 1) / beside;
+  const std::size_t height = (n + 1 + columns_per_row - 1) / columns_per_row;
   Columns columns;
-  for (std::size_t part = 0; part < beside; ++part) {
+  for (std::size_t part = 0; part < columns_per_row; ++part) {
     Table table;
     table.columns = {{"i", "", true},
                      {s.x->name, unit, true},

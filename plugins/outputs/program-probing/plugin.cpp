@@ -112,7 +112,7 @@ std::vector<Touch> touches(const Ball& ball, const Place& place) {
 
 constexpr std::array<const char*, 3> linear{"X", "Y", "Z"};
 
-/// What the options ask for, mm and deg.
+/// The values of the options, mm and deg.
 struct Wish {
   std::string dialect;
   Ball ball;

@@ -61,13 +61,13 @@ TiltingTable tilting_table(const std::vector<Line>& lines) {
   return t;
 }
 
-/// A chain says how it goes: here the tilting axis has to carry C, and both the workpiece.
+/// A chain states how it goes: here the tilting axis has to carry C, and both the workpiece.
 bool of_another_chain(const TiltingTable& t) {
   const std::string wanted = t.tilt->axis + ", C";
   return (t.c->of_chain && t.c->tables != wanted) || (t.tilt->of_chain && t.tilt->tables != wanted);
 }
 
-/// Where the lines pass each other: C at the height of the tilting axis, that one beside C.
+/// Nearest points of the lines: that of C at the height of the tilting axis, and that of the latter.
 void meet(TiltingTable& t) {
   t.c_point = point_at(*t.c, 2, t.tilt->centre[2].value);
   t.tilt_point = point_at(*t.tilt, t.about, t.c_point[t.about]);
@@ -79,7 +79,7 @@ struct Field {
   std::string name;  ///< as the control has it
   double value = 0.0;
   bool length = true;      ///< mm, else a plain number
-  bool documented = true;  ///< else inferred, and `why` says from what
+  bool documented = true;  ///< else inferred, and `why` states from what
   const char* why = "";
 };
 

@@ -102,7 +102,7 @@ Expected<std::vector<Entry>> entries_of(std::string_view bytes,
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// What the log cannot say.
+/// What the log cannot state.
 struct Wiring {
   std::string target, reference, test;             ///< names of PVs
   double target_unit = 0.0, reference_unit = 0.0;  ///< SI value of 1
@@ -153,7 +153,7 @@ Expected<Wiring> wiring_of(const ReadInput& input, bool rotary) {
 }
 
 /// 1101: forward, cycle 1, position 1; 2109: backward, cycle 1, position 9. From 3000 on they are
-/// those of other tests (limit switches, stand-still).
+/// those of other tests (limit switches, standstill).
 struct Step {
   int direction = 0;  ///< 1 forward, -1 backward; 0: no step of the test
   std::uint32_t cycle = 0, position = 0;

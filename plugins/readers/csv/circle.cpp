@@ -124,7 +124,7 @@ Expected<Observations> read_rows_of(const ReadInput& input, const Circle& circle
               deviation[row] * 1e-6);
       obs.line.push_back(static_cast<std::uint32_t>(obs.lines.size()));
       obs.run.push_back(run);
-      put_beside(obs, table, row);
+      put_further_columns(obs, table, row);
     }
     if (!obs.sense.empty()) line.sense = obs.sense.back();
     obs.lines.push_back(std::move(line));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t head_and_foot = 65536;  ///< bytes of each that are looked at
 
-/// A word of a comment, in small letters; what stands before it and behind it.
+/// A word of a comment, in lower case; the characters before and after it.
 struct Word {
   std::string text;
   char before = ' ', behind = ' ';

@@ -51,7 +51,7 @@ class Rows {
         obs_(obs) {}
 
   void reserve(std::size_t rows);
-  /// False if the line is not a row; `error` then says why. Bool, because this runs once a row.
+  /// False if the line is not a row; `error` then states why. Bool, because this runs once a row.
   bool add(std::string_view line, std::uint64_t number);
   const Error& error() const { return error_; }
   Expected<void> finish();
@@ -137,7 +137,7 @@ Error Rows::bad_number(std::size_t column) const {
   return at(column, std::move(message));
 }
 
-/// 1.234 in a file with decimal commas may mean 1234; nobody can tell, so nobody guesses.
+/// 1.234 in a file with decimal commas may mean 1234; it is ambiguous and not guessed.
 bool Rows::consistent_mark(const Field& number, std::size_t column) {
   const bool point = number.mark == DecimalMark::point;
   std::uint64_t& first = point ? first_point_ : first_comma_;

@@ -23,7 +23,7 @@ struct Key {
 };
 
 /// Watches the rows go by. As long as the targets of every pass (run, direction) only rise or only
-/// fall, whatever stands between them, no key can have occurred twice, and nothing needs sorting.
+/// fall, whatever is between them, no key can have occurred twice, and nothing needs sorting.
 class PassOrder {
  public:
   void see(const Key& key);

@@ -44,7 +44,7 @@ const Known* find(std::string_view name) {
 
 tl::unexpected<Error> fail_at(std::string_view column, std::string message) {
   Error error{std::move(message)};
-  // A name that cannot be shown as it is stands in the message only.
+  // A name that cannot be shown unchanged is in the message only.
   if (shown(column) == "\"" + std::string(column) + "\"") error.column = column;
   return fail(std::move(error));
 }

@@ -169,7 +169,7 @@ Expected<Observations> read_nest(const ReadInput& input, const Table& table) {
       obs.run.push_back(1);
       obs.axes[0].position.push_back(turning.angle[row]);
       obs.axes[0].approach.push_back(turning.turns[row]);
-      put_beside(obs, table, row);
+      put_further_columns(obs, table, row);
     }
   }
   return complete(std::move(obs));
@@ -203,13 +203,13 @@ Expected<Observations> read_exercised(const ReadInput& input, const Table& table
     obs.axes[0].approach.push_back(direction[row] > 0.0 ? std::int8_t{1} : std::int8_t{-1});
     obs.deviation.push_back(deviation[row] * 1e-6);
     obs.run.push_back(cycle);
-    put_beside(obs, table, row);
+    put_further_columns(obs, table, row);
   }
   return complete(std::move(obs));
 }
 
 /// Angles of a file with a pulse a turn: rows between two pulses are equally far apart. Rows before
-/// the first pulse and behind the last one have none.
+/// the first pulse and after the last one have none.
 std::vector<double> angles_by_pulses(const std::vector<double>& index) {
   std::vector<double> out(index.size(), NAN);
   std::vector<std::size_t> pulses;
@@ -223,7 +223,8 @@ std::vector<double> angles_by_pulses(const std::vector<double>& index) {
   return out;
 }
 
-/// The place of a row in its set-up: how the ball stands on the spindle, where the sensors stand.
+/// The position of a row in its set-up: orientation of the ball on the spindle, positions of the
+/// sensors.
 struct SetUp {
   double ball = 0.0, sensor = 0.0;
   auto operator<=>(const SetUp&) const = default;
@@ -293,7 +294,7 @@ Expected<void> put_set_up(Observations& obs, const Table& table, const Sensor& s
     obs.deviation.push_back(deviation[rows[k]] * 1e-6);
     obs.line.push_back(number);
     obs.run.push_back(1);
-    put_beside(obs, table, rows[k]);
+    put_further_columns(obs, table, rows[k]);
   }
   return {};
 }

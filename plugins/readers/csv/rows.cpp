@@ -12,7 +12,7 @@ std::vector<ColumnSpec> with_common(std::vector<ColumnSpec> columns) {
   return columns;
 }
 
-void put_beside(Observations& obs, const Table& table, std::size_t row) {
+void put_further_columns(Observations& obs, const Table& table, std::size_t row) {
   const auto put = [&](const char* name, std::vector<double>& to) {
     if (const auto* column = table.column(name)) to.push_back((*column)[row]);
   };
@@ -27,7 +27,7 @@ void put_beside(Observations& obs, const Table& table, std::size_t row) {
 void put_common(Observations& obs, const Table& table, std::size_t row) {
   const auto* run = table.column("run");
   obs.run.push_back(run == nullptr ? 1 : static_cast<std::uint32_t>((*run)[row]));
-  put_beside(obs, table, row);
+  put_further_columns(obs, table, row);
 }
 
 Observations begin(const Measurement& m, const Table& table) {

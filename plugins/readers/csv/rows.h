@@ -20,8 +20,8 @@ inline constexpr std::string_view coordinates = "XYZ";
 /// And columns of time and air that every kind may have.
 std::vector<ColumnSpec> with_common(std::vector<ColumnSpec> columns);
 
-/// Of a reading: time and air, as they stand in row `row` of the table, and the line of the file.
-void put_beside(Observations& obs, const Table& table, std::size_t row);
+/// Of a reading: time and air, from row `row` of the table, and the line of the file.
+void put_further_columns(Observations& obs, const Table& table, std::size_t row);
 
 /// The same, and its run: 1 where the table has none.
 void put_common(Observations& obs, const Table& table, std::size_t row);

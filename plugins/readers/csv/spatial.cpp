@@ -19,7 +19,7 @@ Expected<Span> span_of(const Campaign& campaign, const Measurement& m) {
   for (const auto& [axis, from] : m.from) {
     const auto to = m.to.find(axis);
     if (to == m.to.end()) return bad("`from` has axis " + axis + ", `to` has not");
-    if (to->second == from) continue;  // it stands still
+    if (to->second == from) continue;  // it does not move
     const Axis* known = campaign.machine.axis(axis);
     if (known != nullptr && known->rotary)
       return bad("expected linear axes in `from` and `to`, found the rotary axis " + axis);
@@ -60,7 +60,7 @@ void spread(Observations& obs, const Span& span) {
 
 namespace {
 
-/// Beside the axis of the measurement, those that may stand in a table of ball centres.
+/// In addition to the axis of the measurement, the axes that a table of ball centres may have.
 std::vector<std::string> other_rotary_axes(const Campaign& campaign, const std::string& axis) {
   std::vector<std::string> names;
   for (const Axis& other : campaign.machine.axes)

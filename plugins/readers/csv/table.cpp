@@ -209,7 +209,7 @@ class TableReader {
     return std::nullopt;
   }
 
-  /// 1.234 in a file with decimal commas may mean 1234; nobody can tell, so nobody guesses.
+  /// 1.234 in a file with decimal commas may mean 1234; it is ambiguous and not guessed.
   std::optional<Error> mixed_marks(std::size_t i, DecimalMark mark) {
     const bool point = mark == DecimalMark::point;
     std::uint64_t& first = point ? first_point_ : first_comma_;

@@ -20,7 +20,7 @@ struct ColumnSpec {
     place,   ///< a number that must be there: a coordinate, an angle
     whole,   ///< 1, 2, ...
     sign,    ///< + or -
-    motion,  ///< + or -, or blank where the axis stood still
+    motion,  ///< + or -, or blank where the axis did not move
     word,
   };
   std::string name;

@@ -105,7 +105,7 @@ class ToolCentreRows {
       }
     return false;
   }
-  /// A sweep: run, and direction where the file says it.
+  /// A sweep: run, and direction where the file states it.
   int run(std::size_t row) const {
     const auto *runs = table_.column("run"), *directions = table_.column("direction");
     return 2 * static_cast<int>(runs == nullptr ? 1.0 : (*runs)[row]) +

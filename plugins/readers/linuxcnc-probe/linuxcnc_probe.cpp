@@ -30,7 +30,7 @@ struct Touch {
   std::uint64_t line = 0;
 };
 
-/// What the log does not say.
+/// What the log does not state.
 struct Wish {
   double unit = 0.0;               ///< m
   std::size_t axis = 0;            ///< of A, B and C the one of the measurement
@@ -126,7 +126,7 @@ Expected<std::vector<std::size_t>> also_turned(const std::vector<Touch>& touches
   return also;
 }
 
-/// Touches of one centre: as many as stated, or as long as all rotary axes stand still.
+/// Touches of one centre: as many as stated, or as long as no rotary axis moves.
 Expected<std::vector<Group>> groups_of(const std::vector<Touch>& touches, const Wish& wish,
                                        const std::vector<std::size_t>& also) {
   std::vector<Group> groups;
@@ -210,7 +210,7 @@ void note_spheres(const std::vector<Centre>& centres, double s, int dof, Observa
 
 void put(const std::vector<Centre>& centres, const Wish& wish, const std::vector<std::size_t>& also,
          double s, Observations& obs) {
-  std::map<std::array<std::int64_t, 3>, std::uint32_t> visits;  // how often the axes stood there
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> visits;  // how often the axes stopped there
   for (const Centre& c : centres) {
     const Angles& angle = c.group->front().angle;
     std::array<std::int64_t, 3> place{};
@@ -249,7 +249,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
   const double s = std::sqrt(rss / dof);
   Observations obs = begin(input.measurement, also);
   put(centres, wish, also, s, obs);
-  if (!(s > 0.0)) obs.u.clear();  // touches without any scatter say nothing of it
+  if (!(s > 0.0)) obs.u.clear();  // touches without any scatter show nothing of it
   note_spheres(centres, s, dof, obs);
   return obs;
 }

@@ -158,7 +158,7 @@ class TableReader {
   std::vector<Row> rows_;
 };
 
-/// How the first run that went forward lists its targets; 0 if nobody can tell.
+/// How the first run that went forward lists its targets; 0 if it is not known.
 int listed_in(const std::vector<Row>& rows) {
   const auto first =
       std::find_if(rows.begin(), rows.end(), [](const Row& r) { return r.way == Way::forward; });
@@ -199,7 +199,7 @@ Reader reader() {
             {{"columns", std::vector<std::string>{}, "",
               "What each column is, in order: target, value, cycle, pos, direction, ignore."}}};
   for (Option& option : table_map_options()) r.info.options.push_back(std::move(option));
-  // Nobody could tell it from any other table.
+  // It could not be distinguished from any other table.
   r.recognises = [](std::string_view) { return false; };
   r.reads = [](std::string_view kind) { return kind == "axis"; };
   r.read = [](const ReadInput& input) { return read_of_axis(input, read_file); };

@@ -17,7 +17,7 @@ const std::map<std::string, double, std::less<>>& value_units() {
   return units;
 }
 
-/// What nobody but the user can say; one reader of such files is all that is known.
+/// What only the user can state; the format is known from a single reader of such files.
 Expected<Units> confirmed(const Settings& options, bool rotary) {
   const auto unit = value_units().find(options.text("unit"));
   if (unit == value_units().end())

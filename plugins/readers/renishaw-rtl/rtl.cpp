@@ -48,8 +48,9 @@ double mean_material(const Environment& e, bool at_end) {
   return sum / static_cast<double>(e.material.size());
 }
 
-/// Env factor = (half wavelength in air)(1 - alpha (T - 20)) says whether the deviations have been
-/// brought to 20 degC with alpha: +1 yes, -1 no, 0 cannot be told. NaN fails every comparison.
+/// Env factor = (half wavelength in air)(1 - alpha (T - 20)) states whether the deviations have
+/// been brought to 20 degC with alpha: +1 yes, -1 no, 0 not determinable. NaN fails every
+/// comparison.
 int normalised(const Environment& e, bool at_end) {
   const auto at = [&](const Environment::Pair& p) { return at_end ? p.end : p.start; };
   const Air air{at(e.air), 1e3 * at(e.pressure), at(e.humidity)};

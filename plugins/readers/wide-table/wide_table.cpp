@@ -19,7 +19,7 @@ using namespace readers;
 
 namespace {
 
-/// What the user says of one column.
+/// What the user states about one column.
 struct Column {
   enum class Role : std::uint8_t { ignore, target, reading, mean, two_sigma, both, dead_zone };
   Role role = Role::ignore;
@@ -34,7 +34,7 @@ struct Map : TableMap {
   std::vector<Column> columns;
 
   bool means() const;
-  /// Of one of the tables: columns that say a run only have the way of the table.
+  /// Of one of the tables: columns that state a run only have the way of the table.
   Map of(const RowRange& table) const;
 };
 
@@ -136,7 +136,7 @@ Expected<Map> map_of(const Settings& options, bool rotary) {
   return map;
 }
 
-/// The numbers of the table as they stand there; NaN where there is none.
+/// The numbers of the table unchanged; NaN where there is none.
 struct Table {
   std::vector<std::vector<double>> rows;
   std::vector<std::uint64_t> lines;
@@ -217,7 +217,7 @@ std::size_t column(const Map& map, Role role, int way, int listed) {
   return std::string::npos;
 }
 
-/// A column of averages beside the runs, taken for one more run, would make every scatter smaller.
+/// A column of averages next to the runs, taken for one more run, would make every scatter smaller.
 Expected<void> no_average(const Map& map, const Table& table, int listed) {
   if (table.rows.size() < 3) return {};
   for (std::size_t k = 0; k < map.columns.size(); ++k) {
@@ -237,7 +237,7 @@ Expected<void> no_average(const Map& map, const Table& table, int listed) {
         size = std::max(size, std::fabs(row[j] - row[k]));
       }
       largest = std::max(largest, std::fabs(sum / static_cast<double>(others) - row[k]));
-      if (std::isnan(sum) || std::isnan(row[k])) size = 0.0;  // cannot be told
+      if (std::isnan(sum) || std::isnan(row[k])) size = 0.0;  // not determinable
     }
     if (others >= 2 && size > 0.0 && largest <= 0.01 * size)
       return fail(of_option("columns", "column " + std::to_string(k + 1) +
@@ -336,7 +336,7 @@ Reader reader() {
         "What each column is, in order: target, ignore, \"1 +\", \"1 -\", \"1 forward\", \"1\", "
         "\"mean +\", \"2s +\", mean, \"dead zone\"."}}};
   for (Option& option : table_map_options()) r.info.options.push_back(std::move(option));
-  // Nobody could tell it from any other table.
+  // It could not be distinguished from any other table.
   r.recognises = [](std::string_view) { return false; };
   r.reads = [](std::string_view kind) { return kind == "axis"; };
   r.read = [](const ReadInput& input) { return read_of_axis(input, read_file); };

@@ -127,9 +127,9 @@ const effects = (() => {
     const part = (word, text) => text && items.push(el("dt", {}, say(word)), el("dd", {}, typeset(text)));
     part("about.is", card.is);
     part("about.size", card.size);
-    part("about.looks", card.looks);
-    part("about.alike", card.alike);
-    part("about.cure", card.cure);
+    part("about.appearance", card.appearance);
+    part("about.similar", card.similar);
+    part("about.remedy", card.remedy);
     const correlated = ((shown.fit && shown.fit.compare.correlations) || []).filter((c) => [c.one, c.other].filter((p) => p.startsWith(effect + " ")).length === 1);
     const evidence = [];
     if (candidate && shown.fit && !shown.explainIsOld && !shown.learning) {

@@ -215,7 +215,7 @@ class Shards(NightTest):
         self.run_nonio("--date", "2026-11-02", expect=1)
         self.night(2, "--date", "2026-11-02", out=outs[1], expect=1)
         self.same(*outs)
-        (self.site / "site.toml").write_text("format = 1\n[limits]\nvanished = 1\n")
+        (self.site / "site.toml").write_text("format = 1\n[limits]\nmissing_campaigns = 1\n")
         self.run_nonio("--date", "2026-11-03", expect=0)
         self.night(2, "--date", "2026-11-03", out=outs[1], expect=0)
         self.same(*outs)

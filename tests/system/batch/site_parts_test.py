@@ -61,7 +61,7 @@ def put(path, content):
 class SiteParts(NightTest):
     def setUp(self):
         super().setUp()
-        self.parts = {"site.toml": 'language = "en"\n[limits]\nvanished = 9\n',
+        self.parts = {"site.toml": 'language = "en"\n[limits]\nmissing_campaigns = 9\n',
                       "events.toml": 'format = 1\n[[event]]\ndate = 2026-10-01\nmachine = "S-1"\nkind = "crash"\ntext = "hit"\n'
                                      '[[event]]\ndate = 2026-10-02\nmachine = "S-1"\nkind = "repair"\ntext = "nut"\n',
                       "acknowledged.toml": 'format = 1\n[[acknowledged]]\ndate = 2026-10-01\nfinding = "reversal.constant"\n'

@@ -101,7 +101,7 @@ def site():
         "language": "de",
         "laboratory": {"name": "L", "address": "A", "country": "IT", "accreditation": "N", "authoriser": "B",
                        "contact": "C", "cmc": {"fixed_um": 0.3, "per_m_um": 0.5, "arcsec": 0.1}},
-        "limits": {"seconds": 60, "memory_MB": 2000.5, "disk_seconds": 5, "vanished": 2},
+        "limits": {"seconds": 60, "memory_MB": 2000.5, "disk_seconds": 5, "missing_campaigns": 2},
         "results": {"folders": "hashed"},
         "run": {"analyses": ["iso230-2"], "outputs": ["json"]},
         "options": {"iso230-2": {"edition": 2006}},

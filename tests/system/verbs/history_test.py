@@ -99,7 +99,7 @@ class HistoryVerbs(VerbTest):
             path.unlink()
         (self.site / "d").rmdir()
         self.assertIn("d has vanished", self.night(expect=1).stderr)
-        (self.site / "site.toml").write_text("[limits]\nvanished = 1\n")
+        (self.site / "site.toml").write_text("[limits]\nmissing_campaigns = 1\n")
         self.night()
         (self.site / "site.toml").write_text("# all limits are removed\n")
         self.nonio("machine", "remove", self.site, "d", "--by", "B", "--why", "sold")

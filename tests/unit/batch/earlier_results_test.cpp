@@ -45,7 +45,7 @@ TEST(Vanished, ResultsOfAFolderThatIsGoneAreNamed) {
   const auto gone = site.vanished({{"c", "2026/c", 7, false}});
   ASSERT_EQ(gone.size(), 1U);
   EXPECT_EQ(gone[0].id, "c");
-  EXPECT_EQ(gone[0].night, 7U);
+  EXPECT_EQ(gone[0].run, 7U);
   EXPECT_NE(gone[0].why.find("its folder 2026/c no longer exists"), std::string::npos)
       << gone[0].why;
 }

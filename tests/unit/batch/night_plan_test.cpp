@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/state/night_plan.h"
-
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
+
+#include "batch/state/run_plan.h"
 
 namespace nonio::batch::night_plan_test {
 namespace {
@@ -32,7 +32,7 @@ class NightPlanTest : public ::testing::Test {
     campaigns_[5].status = evaluation::Status::failed;
     campaigns_[5].errors = {Error{"why"}, Error{"and why"}};
     campaigns_[7].twins.emplace_back(0xfeedULL, 3);
-    plan_.night = {4, "2026-01-01"};
+    plan_.run = {4, "2026-01-01"};
     plan_.shards.resize(7);
   }
   ~NightPlanTest() override { fs::remove_all(out_); }
@@ -41,7 +41,7 @@ class NightPlanTest : public ::testing::Test {
 
   fs::path out_;
   std::vector<CampaignState> campaigns_;
-  NightPlan plan_;
+  RunPlan plan_;
 };
 
 TEST_F(NightPlanTest, EveryCampaignIsOnTheListOfItsShardOrOnTheRest) {

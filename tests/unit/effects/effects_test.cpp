@@ -245,7 +245,7 @@ TEST(Effects, EveryOneHasACardInEveryLanguage) {
     all.insert(all.end(), kinds_of_channels.begin(), kinds_of_channels.end());
     all.insert(all.end(), descriptions.begin(), descriptions.end());
     for (const auto& kind : all) {
-      for (const char* part : {"title", "is", "size", "looks", "alike", "cure"})
+      for (const char* part : {"title", "is", "size", "appearance", "similar", "remedy"})
         expect("effect." + kind + "." + part);
       for (const auto& p : effect(kind).linear) expect("effect." + kind + ".parameter." + p.name);
       for (const auto& s : effect(kind).shapes)

@@ -87,7 +87,7 @@ inline MachineHistory made_machine(const std::string& id) {
 }
 
 inline SiteHistory made_site() {
-  SiteHistory site{.night = 12,
+  SiteHistory site{.run = 12,
                    .campaigns = 510,
                    .done = 3,
                    .unchanged = 507,
@@ -100,22 +100,22 @@ inline SiteHistory made_site() {
                    .instruments = {},
                    .comparisons = {}};
   for (const char* id : {"S-0017", "S-0031", "S-0042"}) site.machines.push_back(made_machine(id));
-  using Kind = MorningLine::Kind;
-  MorningLine out{.kind = Kind::out,
-                  .id = "out.S-0042.X.B",
-                  .machine = "S-0042",
-                  .axis = "X",
-                  .quantity = "B",
-                  .campaign = "2025-1",
-                  .customer = "Rossi",
-                  .value = 11.2e-6,
-                  .u = 0.2e-6,
-                  .limit = 8e-6,
-                  .unit = Quantity::deviation,
-                  .finding = {"morning.out", true, {{"limit", 8e-6, Quantity::deviation}}},
-                  .since = "2025-01-14",
-                  .link = "c5/report.pdf"};
-  MorningLine lost{
+  using Kind = WorkItem::Kind;
+  WorkItem out{.kind = Kind::out,
+               .id = "out.S-0042.X.B",
+               .machine = "S-0042",
+               .axis = "X",
+               .quantity = "B",
+               .campaign = "2025-1",
+               .customer = "Rossi",
+               .value = 11.2e-6,
+               .u = 0.2e-6,
+               .limit = 8e-6,
+               .unit = Quantity::deviation,
+               .finding = {"morning.out", true, {{"limit", 8e-6, Quantity::deviation}}},
+               .since = "2025-01-14",
+               .link = "c5/report.pdf"};
+  WorkItem lost{
       .kind = Kind::lost,
       .id = "lost.m08",
       .machine = "",
@@ -125,7 +125,7 @@ inline SiteHistory made_site() {
       .customer = "",
       .finding = {
           "morning.lost", true, {{"night", 11, Quantity::count}}, {{"folder", "site-b/2024-m08"}}}};
-  MorningLine changed = out;
+  WorkItem changed = out;
   changed.kind = Kind::changed, changed.machine = "S-0017", changed.quantity = "B_mean",
   changed.value = -9.4e-6, changed.limit.reset();
   changed.finding = {"morning.changed",
@@ -135,8 +135,8 @@ inline SiteHistory made_site() {
                       {"before", "2025-01-14"},
                       {"what", "reversal"},
                       {"look", "reversal"}}};
-  MorningLine known = changed;
-  known.state = MorningLine::State::known, known.by = "B. Sample", known.until = "2026-06-01",
+  WorkItem known = changed;
+  known.state = WorkItem::State::known, known.by = "B. Sample", known.until = "2026-06-01",
   known.why = "repair ordered", known.customer = "Bianchi", known.machine = "S-0031";
   site.lines = {lost, out, changed, known};
   for (const char* machine : {"S-0017", "S-0031", "S-0042"})

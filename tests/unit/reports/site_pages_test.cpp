@@ -146,7 +146,7 @@ TEST(SitePages, AQuietNightIsOneSentence) {
 
 TEST(SitePages, ALargeSiteIsOnePageThatSaysWhatItLeavesOut) {
   SiteHistory site = made_site();
-  const MorningLine one = site.lines[2];
+  const WorkItem one = site.lines[2];
   site.lines.clear();
   site.months.clear();
   for (int i = 0; i < 5000; ++i) {
@@ -158,7 +158,7 @@ TEST(SitePages, ALargeSiteIsOnePageThatSaysWhatItLeavesOut) {
       site.months.push_back(
           {id,
            std::to_string(2022 + k / 12) + (k % 12 < 9 ? "-0" : "-") + std::to_string(1 + k % 12),
-           k % 2 == 0 ? std::optional(MorningLine::Kind::out) : std::nullopt, k % 2 == 0, false});
+           k % 2 == 0 ? std::optional(WorkItem::Kind::out) : std::nullopt, k % 2 == 0, false});
   }
   const std::string page = pages_of(site).at("index.html");
   EXPECT_LT(page.size(), 300000U);

@@ -15,7 +15,7 @@ using Words = std::string_view;
 
 inline constexpr Words not_negative = "expected a number that is not negative";
 inline constexpr Words above_0 = "expected a number above 0";
-// Beyond these nobody measures: a slip of the unit or of the keyboard.
+// Values beyond these are typing errors, or are in another unit.
 inline constexpr Words some_um = "expected a number that is not negative, at most 10000 um";
 inline constexpr Words some_arcsec = "expected a number that is not negative, at most 36000 arcsec";
 inline constexpr Words some_K =

@@ -130,11 +130,12 @@ constexpr Key limits_keys[] = {
      .least = 0.0,
      .most = 1e6,
      .above = true},
-    {.name = "vanished",
+    {.name = "missing_campaigns",
      .holds = whole,
      .help = "Number of campaigns of the previous run that may be missing; with more of them the "
              "exit status is 1. Record campaigns removed on purpose with `nonio machine remove`.",
-     .otherwise = "0"},
+     .otherwise = "0",
+     .former = "vanished"},
 };
 
 constexpr Key alias_keys[] = {

@@ -13,13 +13,13 @@
 namespace nonio::reading {
 namespace {
 
-/// Beyond these a machine tool is no machine tool, or its readings are in another unit.
+/// Beyond these limits the readings are not those of a machine tool, or are in another unit.
 struct Bounds {
   double slope = 0.02;        ///< of the deviation over the travel
   double share = 0.002;       ///< of the travel, if it is also more than `size`
   double size, most;          ///< of the range of the deviations
   double small_share = 0.05;  ///< of a short stretch, if it is also more than `small_size`
-  double small_size;          ///< below it a short stretch says nothing
+  double small_size;          ///< below it a short stretch shows nothing
   double scatter;             ///< standard deviation of repeated readings
   double least;               ///< range that no machine keeps over a travel of `least_travel`
   double least_travel;
@@ -269,7 +269,7 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
                           .attention = true,
                           .evidence = {{"span", span, position}, {"other", widest, position}}});
   if (axis->travel || axis->rotary) {
-    // A turn, where nobody stated how far it goes.
+    // One turn, if the travel is not stated.
     const double travel =
         axis->travel ? axis->travel->second - axis->travel->first : 360.0 / deg_per_rad;
     if (!axis->travel && widest > 7.0 / deg_per_rad && span <= most_of_travel * travel) return;
@@ -334,7 +334,7 @@ void short_diagonal(const Measurement& m, const Observations& o, std::vector<Fin
                             .texts = {{"axis", axis}}});
 }
 
-/// U of what was evaluated against all of it: then the test says nothing of the axis.
+/// U of what was evaluated against all of it: then the test shows nothing of the axis.
 void uncertain(const std::vector<Results::Analysed>& analyses, const std::string& measurement,
                std::vector<Finding>& out) {
   constexpr double most = 5.0;
@@ -357,7 +357,7 @@ void uncertain(const std::vector<Results::Analysed>& analyses, const std::string
   }
 }
 
-/// What the readings of a measurement say. `all`: of each measurement of the campaign.
+/// The findings of the readings of a measurement. `all`: of each measurement of the campaign.
 std::vector<Finding> implausible_readings(const Campaign& campaign, std::size_t measurement,
                                           const std::vector<Observations>& all,
                                           const Passes& passes) {

@@ -31,12 +31,12 @@ std::vector<Results::Analysed> implausible(const ReadCampaign& read, const Conte
 /// Which of the files another campaign has too becomes one of the inputs.
 void note_shared(const Twins& twins, Inputs& inputs);
 
-/// What the manifest alone says. `today`: YYYY-MM-DD, or empty: no day is too late.
+/// The findings of the manifest alone. `today`: YYYY-MM-DD, or empty: no day is too late.
 std::vector<Finding> implausible_campaign(const config::Manifest& manifest,
                                           const std::string& today);
 
-/// A pitch in inches under a name that says mm: no usual one, and a usual one 25.4 times as large;
-/// or that of another axis of the machine, 25.4 times as large.
+/// A pitch in inches under a name that states mm: no usual one, and a usual one 25.4 times as
+/// large; or that of another axis of the machine, 25.4 times as large.
 void implausible_pitch(const Campaign& campaign, std::vector<Finding>& out);
 
 /// The same as the readings betray it.

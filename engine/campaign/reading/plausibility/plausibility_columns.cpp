@@ -9,7 +9,7 @@
 namespace nonio::reading {
 namespace {
 
-/// What stands in a column: mean and range of the readings that have one.
+/// Statistics of a column: mean and range of the readings that have a value.
 struct Climate {
   double mean = 0.0, range = 0.0;
   bool known = false;
@@ -62,7 +62,7 @@ void implausible_air(const Observations& o, std::vector<Finding>& out) {
   }
 }
 
-/// Times against the ways that were gone, and against the order of the rows.
+/// Times compared with the distances moved, and with the order of the rows.
 void implausible_times(const Measurement& m, const std::vector<Stroke>& strokes,
                        const Observations& o, std::vector<Finding>& out) {
   constexpr double slowest = 3600.0;                      // s for a reading
@@ -168,7 +168,7 @@ void implausible_centres(const Measurement& m, const Observations& o, std::vecto
   const std::size_t named = m.axis.empty() ? std::string::npos : std::string("ABC").find(m.axis[0]);
   if (named == std::string::npos || !math::other_turning_axis(o).empty()) return;
   const double cosine = std::fabs(normal_of(centres)[named]);
-  constexpr double least = 0.5;  // 60 deg; swivelling axes stand at 45 deg
+  constexpr double least = 0.5;  // 60 deg; swivelling axes are mounted at 45 deg
   if (cosine < least)
     out.push_back({.id = "plausibility.axis-direction",
                    .attention = true,

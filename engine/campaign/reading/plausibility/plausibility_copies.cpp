@@ -42,7 +42,7 @@ class Copies {
       const auto n = static_cast<double>(std::get<2>(what).size());
       const auto [low, high] =
           std::minmax_element(std::get<2>(what).begin(), std::get<2>(what).end());
-      if (*low == *high) continue;  // nothing was read at all: said elsewhere
+      if (*low == *high) continue;  // nothing was read at all: reported elsewhere
       const double least = scatter_known_ ? least_scatter_ / 3.0 : least_scatter_;
       const double one = step_ / (std::max(pair_scatter, least) * 3.5449);
       const auto pairs = static_cast<double>(strokes_.size() * strokes_.size()) / 2.0;
@@ -120,7 +120,7 @@ class Copies {
     return std::min(*calm, scatter_);
   }
 
-  /// Two passes of which more readings agree than chance allows, as they stand or but for a shift.
+  /// Two passes of which more readings agree than chance allows, unchanged or after a common shift.
   void in_part(double of_pairs, Quantity deviation, std::vector<Finding>& out) const {
     constexpr double chance = 1e-7, most_likely = 0.3;
     if (step_ <= 0.0 || !scatter_known_) return;
@@ -224,7 +224,7 @@ class Copies {
 };
 
 /// Whether so many different readings cannot be the same twice by chance, wherever they were taken.
-bool tells(const std::vector<double>& readings, double step) {
+bool distinguishes(const std::vector<double>& readings, double step) {
   constexpr double chance = 1e-7;
   constexpr std::size_t fewest = 5;
   if (readings.size() < fewest || step <= 0.0) return false;
@@ -249,9 +249,10 @@ Cells cells_by_run(const std::vector<Stroke>& strokes) {
   return cells;
 }
 
-/// Readings that stand in both at the same run, direction and target, if they are more than chance
-/// gives: how likely two readings are the same is counted, so that digits coarser than the machine
-/// say nothing. Zeros do not count: instruments are zeroed at a target.
+/// Readings that both have at the same run, direction and target, if there are more than chance
+/// gives: the probability that two readings are equal is estimated, so that digits coarser than the
+/// machine's scatter give no finding. Zeros are ignored, because instruments are zeroed at a
+/// target.
 std::optional<double> shared_readings(const Cells& one, const Cells& other) {
   constexpr double chance = 1e-7, of_all = 0.15;
   constexpr std::size_t fewest = 8, fewest_values = 6;
@@ -293,7 +294,7 @@ void implausible_copies(const Passes& passes, const Observations& o, std::vector
   std::map<std::vector<double>, const Stroke*> seen;
   for (const Stroke& s : passes.strokes) {
     const auto [at, is_new] = seen.try_emplace(s.as_taken, &s);
-    if (is_new || at->second->line == s.line || !tells(s.as_taken, step)) continue;
+    if (is_new || at->second->line == s.line || !distinguishes(s.as_taken, step)) continue;
     const auto name = [&](const Stroke& one) { return o.lines[one.line].name; };
     out.push_back(
         {.id = "plausibility.passes-identical",
@@ -321,7 +322,7 @@ std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
     std::map<std::size_t, double> shared;
     for (const Stroke& s : strokes) {
       const auto [at, is_new] = seen.try_emplace(s.as_taken, i);
-      if (!is_new && at->second != i && tells(s.as_taken, step)) shared[at->second] += 1.0;
+      if (!is_new && at->second != i && distinguishes(s.as_taken, step)) shared[at->second] += 1.0;
     }
     for (std::size_t other = 0; other < i && shared.empty() && !cells[i].empty(); ++other) {
       const auto readings = shared_readings(cells[i], cells[other]);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double micrometre = 1e-6, arc_second = 1.0 / arcsec_per_rad;
 
-/// What somebody stated, and what is ordinary. 0 is a statement too. Confidence of the bounds:
-/// inferred; see docs/dev/wrong-inputs.md.
+/// A stated value and the ordinary range of such values. 0 is a statement too. Confidence of the
+/// bounds: inferred; see docs/dev/wrong-inputs.md.
 struct Statement {
   std::string key;
   std::optional<double> value;
@@ -65,7 +65,7 @@ void test_statements(const Campaign& c, const Measurement& m, std::vector<Statem
     all.push_back({key + "over_travel_mm", m.over_travel, 0.01 * mm, 500 * mm, Quantity::length});
   }
   if (!m.feed) return;
-  const double feed = *m.feed * minute * (rotary ? deg_per_rad : 1e3);  // as the key says it
+  const double feed = *m.feed * minute * (rotary ? deg_per_rad : 1e3);  // as the key states it
   all.push_back({key + (rotary ? "feed_deg_per_min" : "feed_mm_per_min"), feed, 1.0,
                  rotary ? 720000.0 : 200000.0, Quantity::number});
 }
@@ -106,7 +106,7 @@ std::vector<Statement> statements(const Campaign& c) {
   return all;
 }
 
-/// A place of the axes that stood still, or an end of a diagonal, where the machine cannot be.
+/// A position of axes at rest, or an end of a diagonal, outside of the machine's travel.
 void implausible_places(const Campaign& c, std::vector<Finding>& out) {
   for (const Measurement& m : c.measurements)
     for (const auto* places : {&m.at, &m.from, &m.to})

@@ -11,7 +11,7 @@ namespace nonio::reading {
 namespace {
 
 /// Strokes that go up and are called -, or down and are called +. A file that is sorted by target,
-/// with strokes mixed or all going one way, says nothing of it; nor do targets that all were
+/// with strokes mixed or all going one way, shows nothing of it; nor do targets that all were
 /// approached from one side, whichever came first.
 void against_order(const std::vector<Stroke>& strokes, std::vector<Finding>& out) {
   bool up = false, down = false, plus = false, minus = false;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double mm_per_inch = 25.4, most_in_inch = 2.0;  ///< mm: larger ones are pitches in mm
 
-/// Share of the squares about a line that a wave of this period takes away.
+/// Share of the sum of squares about a line that a wave of this period explains.
 double share_of_wave(const std::vector<double>& at, const std::vector<double>& values,
                      double period) {
   std::vector<double> c, s;
@@ -62,8 +62,8 @@ void implausible_pitch(const Campaign& c, std::vector<Finding>& out) {
   }
 }
 
-/// Readings that repeat 25.4 times slower than the pitch says, where the targets are dense enough
-/// to tell.
+/// Readings with a period 25.4 times the pitch, where the targets are dense enough to show
+/// it.
 void period_against_pitch(const Axis& axis, const Observations& o, std::vector<Finding>& out) {
   constexpr std::size_t fewest_targets = 12, waves = 3;
   constexpr double chance = 1e-7, least_share = 0.3, of_finer = 0.25;

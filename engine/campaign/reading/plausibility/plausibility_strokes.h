@@ -55,13 +55,14 @@ void implausible_passes(const Passes& passes, const Observations& o, bool with_d
 void turned_passes(const Passes& passes, bool rotary, std::vector<Finding>& out);
 
 /// A pass that agrees with the others only if each reading belongs to the target one row further:
-/// copied one row too high or too low. Two passes of its direction besides it, or nothing is said.
+/// copied one row too high or too low. Two passes of its direction besides it, or nothing is
+/// reported.
 void shifted_rows(const Passes& passes, Quantity deviation, std::vector<Finding>& out);
 
 /// Passes of which more agrees than chance allows.
 void implausible_copies(const Passes& passes, const Observations& o, std::vector<Finding>& out);
 
-/// Passes that stand in an earlier measurement of the campaign too. `passes`: of each measurement.
+/// Passes that an earlier measurement of the campaign contains too. `passes`: of each one.
 std::vector<Finding> passes_of_another_measurement(const Campaign& campaign,
                                                    const std::vector<Observations>& all,
                                                    const std::vector<Passes>& passes);

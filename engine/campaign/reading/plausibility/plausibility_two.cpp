@@ -198,7 +198,7 @@ double mean_of(const std::vector<double>& values, std::size_t from, std::size_t 
   return mean;
 }
 
-/// How far the curve jumps between two targets beside the slopes on both sides of it.
+/// Jump of the curve between two targets, in addition to the slopes on both sides of it.
 double jump(const Grid& grid, const std::vector<double>& curve, std::size_t at) {
   const auto slope = [&](std::size_t i) {
     return (curve[i] - curve[i - 1]) / (grid.targets[i] - grid.targets[i - 1]);

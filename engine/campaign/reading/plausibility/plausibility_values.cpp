@@ -183,8 +183,8 @@ void marks(const std::vector<Stroke>& strokes, double step, Quantity deviation,
   }
 }
 
-/// One reading that lies 30 times farther off the others of its target (of all, where it has none)
-/// than all readings range over: a table of means would carry a tenth of it to the motors.
+/// One reading that is 30 times farther from the others of its target (of all, if its target has no
+/// others) than the range of all readings: a table of means would contain a tenth of that error.
 void far_off(const Observations& o, std::vector<Finding>& out) {
   constexpr double ranges = 30.0, length = 300e-6, angle = 600.0 / arcsec_per_rad;
   constexpr std::size_t fewest_readings = 8, fewest_here = 3;

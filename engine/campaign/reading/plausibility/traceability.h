@@ -12,7 +12,7 @@
 /// Source: ISO/IEC 17025:2017, 6.4.4 to 6.4.8 (equipment), 7.4 (items), 7.8.2.1 (dates).
 namespace nonio::reading {
 
-/// Years for which a calibration holds whose last day nobody stated.
+/// Validity in years of a calibration whose last day is not stated.
 inline constexpr int unstated_validity = 2;
 
 /// Instruments that were calibrated after the measurement, or whose calibration held no longer; an

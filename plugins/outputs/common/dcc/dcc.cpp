@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // PTB's schema 3.3.0; the order of elements is the schema's. Words of the templates carry their
-// language; names, symbols and what the manifest says carry none.
+// language; names, symbols and what the manifest states carry none.
 #include "dcc.h"
 
 #include <algorithm>
@@ -57,10 +57,10 @@ class Writer {
   }
 
  private:
-  bool is_told(const Value& v) const { return !about_.only_with_U || v.U.has_value(); }
+  bool is_stated(const Value& v) const { return !about_.only_with_U || v.U.has_value(); }
   bool has_values(const Results::Analysed& a) const {
     const auto& values = a.evaluation.values;
-    return std::any_of(values.begin(), values.end(), [&](const Value& v) { return is_told(v); });
+    return std::any_of(values.begin(), values.end(), [&](const Value& v) { return is_stated(v); });
   }
 
   void contents(const Text& text) {
@@ -250,7 +250,7 @@ class Writer {
     text("dcc:name", title);
     xml_.open("dcc:data");
     for (const Value& v : a.evaluation.values)
-      if (is_told(v)) value(v);
+      if (is_stated(v)) value(v);
     table(a.evaluation.points);
     for (const Series& s : a.evaluation.series) series(s);
     xml_.close();

@@ -33,7 +33,7 @@ struct Decided {
   std::string is;  ///< pass, fail; empty where the rule leaves it open
 };
 
-/// What of one evaluation is said in words.
+/// What of one evaluation is stated in words.
 struct Words {
   Text title, method;
   std::vector<Text> departures;  ///< from the method
@@ -45,13 +45,13 @@ struct Words {
 struct About {
   std::string number;                  ///< of the certificate
   std::vector<std::string> languages;  ///< ISO 639-1
-  std::string location;                ///< where it was calibrated: "customer", as the schema says
-  std::string software, release;       ///< who writes
+  std::string location;           ///< where it was calibrated: "customer", as the schema states
+  std::string software, release;  ///< who writes
   /// Values without U are left out, as they are on paper.
   bool only_with_U = false;
   std::map<std::string, Words> words{};           ///< by "plugin of measurement"
   std::map<std::string, Text> meaning{};          ///< of values and curves, by their names
-  Text lowest{}, highest{}, equipment{}, item{};  ///< what else is said of instrument and item
+  Text lowest{}, highest{}, equipment{}, item{};  ///< what else is stated about instrument and item
   Text uncertainty{};                             ///< how it was determined
   Text register_name{};                           ///< what the register's identity is called
   Text released{};                                ///< how it was released, where no person did
@@ -61,10 +61,11 @@ struct About {
   std::vector<Decided> decided{};
 };
 
-/// How an evaluation is called in a DCC, and where `nonio certificate verify` looks for it: "iso230-2 of X".
+/// How an evaluation is called in a DCC, and where `nonio certificate verify` searches for it:
+/// "iso230-2 of X".
 std::string name_of(const Results::Analysed&);
 
-/// What the schema wants must be there: laboratory, customer, item, dates, at least one result.
+/// What the schema requires must be there: laboratory, customer, item, dates, at least one result.
 std::string write(const OutputInput&, const About&);
 
 /// ISO 3166-1: "IT".

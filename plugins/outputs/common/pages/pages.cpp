@@ -67,7 +67,7 @@ std::string without_gaps(std::string line) {
 
 namespace {
 
-/// What two analyses find is said once, what one finds of two axes is two. Attention comes first.
+/// What two analyses find is stated once, what one finds of two axes is two. Attention comes first.
 std::vector<const Finding*> findings_of(const std::vector<const Results::Analysed*>& analyses) {
   std::vector<const Finding*> out;
   for (const auto* analysed : analyses) {

@@ -67,15 +67,15 @@ std::string test_of(const Source&, const Measured&);
 std::vector<double> along_line(const Measured&);
 /// Without the name of a standard whose plan of the test was not followed.
 std::string analysis_title(const Source&, const Results::Analysed&);
-/// Whether the test was made as the standard plans it, as the findings say. Of an axis that the
-/// standard wants measured in two tests (the whole travel, and a part of it more often) the other
-/// one may belong to another measurement.
+/// Whether the test was made as the standard plans it, as the findings state. Of an axis that the
+/// standard requires measured in two tests (the whole travel, and a part of it more often) the
+/// other one may belong to another measurement.
 bool follows_plan(const OutputInput&, const Results::Analysed&);
 const Conformity* conformity_of(const OutputInput&, const Results::Analysed&,
                                 const std::string& name);
 std::string decision_text(const Source&, Decision);
-/// Limits of the manifest that nothing is held against: axes that were not measured, results that
-/// a test does not give. A sentence each.
+/// Limits of the manifest without a result to compare: axes that were not measured, results that a
+/// test does not give. A sentence each.
 std::vector<std::string> undecided(const Source&);
 /// The rule by which is decided, in words, with its risk.
 std::string rule_text(const Source&);
@@ -83,18 +83,18 @@ std::string rule_text(const Source&);
 void add_results(const Source&, const Measured&, Blocks&);
 void add_targets(const Source&, const Measured&, Blocks&);
 void add_plots(const Source&, const Measured&, Blocks&);
-/// The one picture that says most of a measurement: its readings by run, circle or volume.
+/// The one picture that states most of a measurement: its readings by run, circle or volume.
 std::optional<reports::Plot> readings_plot(const Source&, const Measured&);
 /// "U (k = 2)": the heading of expanded uncertainties that have one coverage factor.
 std::string U_heading(const Source&, double k);
-/// Of which results the laboratory's smallest uncertainty (CMC) stands in place of what the budget
-/// gives; empty if of none.
+/// The results for which the laboratory's smallest uncertainty (CMC) replaces that of the budget;
+/// empty if there are none.
 std::string cmc_text(const Source&, const Results::Analysed&);
 /// What its uncertainties are made of, from the budget that results.json has too.
 void add_budget(const Source&, const Measured&, Blocks&);
 
-/// What manifest and site bring, before it is lost in sentences: an error names the key, so that
-/// the host can say where it stands.
+/// Checks the texts of manifest and site before they become parts of sentences: an error names the
+/// key, so that the host can report its line.
 Expected<void> check_texts(const Campaign&, const reports::Fonts&);
 
 /// What is wrong with templates/<name>*.toml, and with the words of every language that has

@@ -181,7 +181,7 @@ std::optional<BarChart> causes(const Source& source, const Results::Analysed& a)
     if (!f.id.starts_with(prefix) || alone == nullptr) continue;
     const double um = alone->value * per_um;
     std::string text = localised(fixed_text(um, um < 10.0 ? 1 : 0), source.language());
-    // The sum of all causes is without spikes, as the sentence below says.
+    // The sum of all causes is without spikes, as the sentence below states.
     if (share != nullptr && f.id != "circle.spikes")
       text += "  (" + fixed_text(100.0 * share->value, 0) + " %)";
     rows.emplace_back(um, BarChart::Row{label_of(source, f, f.id.substr(prefix.size())),

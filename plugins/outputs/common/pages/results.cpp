@@ -120,7 +120,7 @@ bool found(const Measured& m, std::string_view kind) {
 }
 
 /// ISO 230-2 and VDI/DGQ 3441 side by side: the same readings, different numbers. Only where a test
-/// says that the directions differ.
+/// shows that the directions differ.
 void add_what_is_hidden(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
   std::vector<std::string> lines;
@@ -254,8 +254,8 @@ void add_by_rules(const Source& source, const Results::Analysed& a, Blocks& bloc
 
 }  // namespace
 
-/// Two tables stand side by side; with tolerances and decisions they need the whole width, and what
-/// is said of the second one stands beside it.
+/// Two tables side by side; with tolerances and decisions they need the whole width, and the text
+/// about the second one is next to it.
 void add_results(const Source& source, const Measured& m, Blocks& blocks) {
   std::vector<Blocks> parts;
   Blocks rules;
@@ -352,7 +352,7 @@ std::optional<double> common_count(const Joined& joined) {
 
 namespace {
 
-/// The column as its cells, then its U where a certificate wants it.
+/// The column as its cells, then its U where a certificate requires it.
 std::vector<std::string> cells_of(const Source& source, const PointTable::Column& c, bool target,
                                   std::size_t rows) {
   const int decimals = target                          ? decimals_for(c.values, c.quantity, 4)
@@ -382,11 +382,11 @@ std::string U_heading(const Source& source, double k) {
 namespace {
 
 /// Curves over the same places.
-using Beside = std::vector<const Series*>;
+using SideBySide = std::vector<const Series*>;
 
-std::vector<Beside> curves_of(const Source& source, const Measured& m) {
+std::vector<SideBySide> curves_of(const Source& source, const Measured& m) {
   constexpr std::size_t per_table = 3;
-  std::vector<Beside> all;
+  std::vector<SideBySide> all;
   for (const Results::Analysed* a : m.analyses) {
     if (a->plugin == model_analysis || without_values(source, *a)) continue;
     for (const Series& s : a->evaluation.series) {
@@ -436,7 +436,7 @@ void add_curve_table(Table table, const std::string& field, Blocks& blocks) {
 void add_curves(const Source& source, const Measured& m, Blocks& blocks) {
   const Wording& w = source.words;
   bool by_definition = false;
-  for (const Beside& curves : curves_of(source, m)) {
+  for (const SideBySide& curves : curves_of(source, m)) {
     const Series& first = *curves.front();
     Table table;
     table.columns = {

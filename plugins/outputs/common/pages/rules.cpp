@@ -58,7 +58,7 @@ std::vector<std::string> symbols_of(const RuleColumn& c) {
   return out;
 }
 
-/// In the order in which they were asked for.
+/// In the order in which they were requested.
 std::vector<RuleColumn> columns_of(const Source& source, const Results::Analysed& a) {
   std::vector<RuleColumn> out;
   for (const auto& [name, title] : rules_of(a)->texts) {
@@ -209,7 +209,7 @@ void add_rule_notes(const Source& source, const Results::Analysed& a, Blocks& bl
   bool differ = false;  // the reasons why they differ are printed together
   for (const Remark& note : a.evaluation.notes) {
     if (note.id == "rules.evaluated" || (source.certificate && is_sureness(note)))
-      continue;  // the table says it, or the method
+      continue;  // the table states it, or the method
     const std::string text = rule_note(source, note);
     const bool reason = note.id.starts_with("rules.differ");
     if (reason && std::exchange(differ, true))

@@ -31,7 +31,7 @@ std::optional<std::vector<std::string_view>> by_separator(std::string_view line,
 class Numbers {
  public:
   explicit Numbers(bool comma_allowed) : comma_allowed_(comma_allowed) {}
-  /// A number, NaN where none was taken; an error that says `what` was wanted.
+  /// A number, NaN where none was taken; an error that states `what` was wanted.
   Expected<double> reading(std::string_view text, std::uint64_t line, std::string_view what);
   /// The same, but it must be there.
   Expected<double> number(std::string_view text, std::uint64_t line, std::string_view what);
@@ -50,7 +50,7 @@ Expected<const Axis*> axis_of(const ReadInput& input);
 Expected<Observations> read_of_axis(const ReadInput& input,
                                     Expected<Observations> (*read)(const ReadInput&, const Axis&));
 
-/// Whether a name that a file says is that of an axis of the machine, or of the control on the
+/// Whether a name that a file states is that of an axis of the machine, or of the control on the
 /// other side of a gantry, and of another one than the measurement's.
 bool is_other_axis(const Machine& machine, const Measurement& m, std::string_view name);
 

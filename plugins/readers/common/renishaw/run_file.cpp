@@ -49,7 +49,8 @@ std::string_view block_name(std::string_view line) {
   return std::all_of(line.begin(), line.end(), allowed) ? line : std::string_view{};
 }
 
-/// What the file says of itself, before anything behind it is looked at: some types hold raw bytes.
+/// What the file states about itself, before anything behind it is looked at: some types hold raw
+/// bytes.
 std::string_view type_of(std::string_view head) {
   Lines lines(head);
   std::string_view line;

@@ -26,7 +26,7 @@ struct Environment {
   std::vector<Pair> material;    ///< degC, of the sensors that are connected
   std::size_t unconnected = 0;   ///< sensors that read -10 twice
   Pair factor, expansion;        ///< um (effective half wavelength); ppm/K
-  std::string_view times;        ///< bytes as they stand there
+  std::string_view times;        ///< bytes as in the file
 };
 
 /// A file with runs over targets, in its own units.
@@ -45,7 +45,7 @@ struct RunFile {
   std::optional<Environment> environment;
 };
 
-/// Whether a file begins with HEADER:: and says that it is of this type ("rtl"); any case.
+/// Whether a file begins with HEADER:: and states that it is of this type ("rtl"); any case.
 bool is_type(std::string_view head, std::string_view type);
 
 /// A whole file, or what is wrong with it and where.

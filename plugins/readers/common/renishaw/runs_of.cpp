@@ -42,7 +42,7 @@ Expected<std::vector<Pass>> passes_of(const RunFile& file) {
   return passes;
 }
 
-/// Runs go to and fro, or all one way; anything else is not a test that anybody would know.
+/// Runs go to and fro, or all one way; anything else is not a known test.
 Expected<bool> bidirectional(const std::vector<Pass>& passes) {
   bool same = true, alternate = true;
   for (std::size_t i = 1; i < passes.size(); ++i) {
@@ -83,7 +83,7 @@ std::string bare(std::string_view text) {
   return out;
 }
 
-/// What the operator typed into the file, each against what the manifest says.
+/// What the operator typed into the file, each against what the manifest states.
 struct Typed {
   const ReadInput& input;
   std::vector<Finding>& doubts;

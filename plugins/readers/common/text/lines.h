@@ -18,7 +18,7 @@ class Lines {
   bool next(std::string_view& line);
   std::uint64_t number() const { return number_; }  ///< of the line last given, from 1
   std::size_t offset() const;
-  /// What a first line "sep=;" says, if there is one.
+  /// What a first line "sep=;" states, if there is one.
   std::optional<char> separator() const;
 
  private:
@@ -30,8 +30,8 @@ class Lines {
 enum class Content { nothing, comment, fields };
 Content content_of(std::string_view line);
 
-/// What no line of a text file may hold. Rows of numbers need no such look: their fields would not
-/// be numbers. Nobody reads a comment: it may be in any code page.
+/// Characters that no line of a text file may contain. Rows of numbers need no such check, because
+/// their fields would not be numbers. Comments are not interpreted and may be in any code page.
 std::optional<Error> not_text(std::string_view line, bool comment = false);
 
 /// The separator of the fields as Excel states it in a first line "sep=;"; nothing of any other

@@ -12,7 +12,7 @@
 #include "nonio/sdk/error.h"
 
 /// A document as a value: blocks from top to bottom, and how they look. Texts are UTF-8 in NFC;
-/// `field` says where a text came from, for the message when it cannot be printed. Lengths in pt.
+/// `field` states where a text came from, for the message when it cannot be printed. Lengths in pt.
 namespace nonio::reports {
 
 struct Colour {
@@ -91,8 +91,8 @@ struct Plot {
     Marker marker = Marker::none;
     double marker_size = 2.2;
     std::string legend{};  ///< empty: not in the legend
-    /// Of points, where a page is drawn: what is said of each when it is pointed at, and where it
-    /// leads; one title alone is of the whole curve.
+    /// Of points, where a page is drawn: what is stated about each when it is pointed at, and where
+    /// it leads; one title alone is of the whole curve.
     std::vector<std::string> titles{}, links{};
   };
   /// A band across the whole width, behind everything.
@@ -143,14 +143,14 @@ struct Plot {
   double height = 0;         ///< with title and legend; 0: the style's
   double top = 0;            ///< least height of title and legend: plots side by side are in line
   double number_room = 0;    ///< least width of the numbers at the left: plots one below the other
-  std::string empty_text{};  ///< what is said where there is nothing to draw
+  std::string empty_text{};  ///< what is stated where there is nothing to draw
 };
 
 /// Horizontal bars over one scale that begins at 0, in rows of one bar or more, and a line to hold
 /// them against.
 struct BarChart {
   struct Series {
-    std::string legend;  ///< empty: of one series the title of the axis says it
+    std::string legend;  ///< empty: of one series the title of the axis states it
     Colour colour{};
   };
   struct Bar {
@@ -172,7 +172,7 @@ struct BarChart {
   std::optional<Line> line{};
 };
 
-/// Something that the reader must know: a mark, a title, what it says, what to do.
+/// Something that the reader must know: a mark, a title, what it states, what to do.
 struct Note {
   Level level = Level::info;
   std::string title, says, advice;
@@ -200,8 +200,8 @@ struct Code {
   double size = 62;     ///< of its side, with the quiet zone
 };
 
-/// A frame in which the file's electronic signature is shown; there is one at most. Where it stands
-/// is noted in the page (`pdf::signature_key`), for the program that signs.
+/// A frame in which the file's electronic signature is shown; there is one at most. Its position is
+/// noted in the page (`pdf::signature_key`), for the program that signs.
 struct SignatureBox {
   std::string title;
   std::vector<std::string> lines;
@@ -235,12 +235,12 @@ struct Document {
   std::string foot;  ///< at the bottom of every page
   std::string page_of = "{page}/{pages}";
   std::string mark{};  ///< across every page, above everything: DRAFT
-  /// An ICC profile of sRGB: the file is to be kept for long, and says its colours, its properties
-  /// also as XMP, and an identifier.
+  /// An ICC profile of sRGB: the file is to be kept for long, and states its colours, its
+  /// properties also as XMP, and an identifier.
   std::string profile{};
   Style style;
   std::vector<Block> blocks;
-  /// At the foot of the first page, whatever stands above: its place is kept free. It takes up to
+  /// At the foot of the first page, whatever is above it: its space is reserved. It takes up to
   /// half of a page.
   std::vector<Block> first_foot{};
 };

@@ -13,8 +13,8 @@
 
 namespace nonio::reports {
 
-/// A TrueType font, already cut to the characters that are wanted, and everything of it that every
-/// document needs: parsed and compressed once, then only copied.
+/// A TrueType font, already cut to the characters that are required, and everything of it that
+/// every document needs: parsed and compressed once, then only copied.
 struct Font {
   std::string name;                    ///< its file, for messages and the PDF
   std::string bytes;                   ///< the font file

@@ -7,7 +7,7 @@
 #include "nonio/reports/wording.h"
 #include "nonio/sdk/results.h"
 
-/// What every document says of a model in words and numbers; its pictures are in residuals.h.
+/// What every document states about a model in words and numbers; its pictures are in residuals.h.
 namespace nonio::reports {
 
 /// The host's analysis whose values are printed with the model, not with the measurement.

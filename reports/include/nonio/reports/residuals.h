@@ -25,7 +25,7 @@ enum class ResidualPlot {
   left_out
 };
 
-/// What one of them says; `none`: why there is nothing to draw, empty if there is something.
+/// What one of them states; `none`: why there is nothing to draw, empty if there is something.
 struct PictureWords {
   std::string title, x, y, says, none;
   std::string time_unit{};  ///< of the third: s, min or h
@@ -55,7 +55,7 @@ struct Trace {
   std::vector<double> x, y;
 };
 
-/// Readings that count: their weight says that they are no suspected misreading.
+/// Readings that count: their weight shows that they are no suspected misreading.
 bool counts(const ModelFit&, std::size_t row);
 
 /// Mean residual of the readings of one direction at each target.

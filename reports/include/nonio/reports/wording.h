@@ -13,7 +13,7 @@
 namespace nonio::reports {
 
 /// The words of templates/words/<language>/<file>.toml, of the first of some files that has them. A
-/// word that is missing, or that has a place nobody fills, is remembered, and the document then
+/// word that is missing, or that has a place without a value, is recorded, and the document then
 /// fails.
 class Wording {
  public:
@@ -33,13 +33,13 @@ class Wording {
  private:
   const std::string* find(std::string_view key) const;
   std::vector<const Settings*> settings_;
-  std::string language_, file_;  ///< of the last file, where a missing word is looked for
-  std::string absent_;           ///< a file that is not there
+  std::string language_, file_;  ///< of the last file, where a missing word is searched
+  std::string absent_;           ///< a file that is missing
   mutable std::string complaint_;
 };
 
-/// Units and signs of a plugin's sentence as they are printed: "-8.1 um" becomes "−8.1 µm"; what
-/// stands between backquotes (commands, keys) comes into quotation marks.
+/// Units and signs of a plugin's sentence as they are printed: "-8.1 um" becomes "−8.1 µm"; text
+/// between backquotes (commands, keys) gets quotation marks.
 std::string typeset(std::string_view sentence);
 
 /// The same as HTML: text between backquotes is code.

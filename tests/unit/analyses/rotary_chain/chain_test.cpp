@@ -96,7 +96,7 @@ TEST(RotaryChainPlugin, NamesWhatIsNotTold) {
   Builder builder(12);
   const Machine m = builder.tables();
   const Evaluation e = said(shop_of(m, grid({0}, turns), builder));
-  const Finding* f = found(e, "rotary-chain.not-told");
+  const Finding* f = found(e, "rotary-chain.not-identifiable");
   ASSERT_NE(f, nullptr) << ids(e);
   EXPECT_TRUE(f->attention);
   EXPECT_EQ(text_of(*f, "which"), "line of B");
@@ -108,11 +108,11 @@ TEST(RotaryChainPlugin, NamesWhatIsNotTold) {
   // Where B stands elsewhere, C at 0 is not told either.
   const Evaluation away = said(shop_of(m, grid({30}, turns), builder));
   EXPECT_EQ(value(away, "direction_i_C"), nullptr);
-  EXPECT_NE(found(away, "rotary-chain.not-told"), nullptr) << ids(away);
+  EXPECT_NE(found(away, "rotary-chain.not-identifiable"), nullptr) << ids(away);
   // Two places half a turn apart are a chord, about which the axis may lean.
   const Evaluation chord = said(shop_of(m, grid(tilts, {0, 180}), builder));
   EXPECT_NE(value(chord, "direction_i_B"), nullptr) << ids(chord);
-  ASSERT_NE(found(chord, "rotary-chain.not-told"), nullptr) << ids(chord);
+  ASSERT_NE(found(chord, "rotary-chain.not-identifiable"), nullptr) << ids(chord);
   for (const char* open : {"direction_i_C", "direction_j_C", "direction_k_C", "angle", "distance"})
     EXPECT_EQ(value(chord, open), nullptr) << open;
   EXPECT_NE(value(chord, "centre_x_C"), nullptr) << "the middle of the chord";
@@ -145,7 +145,7 @@ TEST(RotaryChainPlugin, RefusesWithTheReason) {
   refused(shop, "rotary.repeated-angles");
   refused(shop_of(m, grid({0, 180}, turns), builder), "rotary-chain.ambiguous");
   refused(shop_of(m, grid({0}, {0, 40}), builder), "rotary-chain.too-few");
-  EXPECT_EQ(found(said(good), "rotary-chain.not-told"), nullptr);
+  EXPECT_EQ(found(said(good), "rotary-chain.not-identifiable"), nullptr);
 }
 
 TEST(RotaryChainPlugin, SeveralBallsNeedOneReference) {

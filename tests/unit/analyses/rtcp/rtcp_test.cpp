@@ -76,7 +76,7 @@ TEST(Rtcp, exact_readings_give_centre_and_direction) {
   EXPECT_NEAR(value(e, "direction_error_i")->value, 400 * urad, product / 0.15);
   EXPECT_NEAR(value(e, "direction_error_j")->value, -250 * urad, product / 0.15);
   EXPECT_NEAR(value(e, "s")->value, 0.0, product);
-  EXPECT_EQ(found(e, "rtcp.not-told"), nullptr);
+  EXPECT_EQ(found(e, "rtcp.not-identifiable"), nullptr);
 }
 
 /// Places as a control shows them, to 0.001 mm, about an axis that leans: what drops out stays out.
@@ -122,21 +122,22 @@ TEST(Rtcp, what_a_direction_cannot_tell_is_refused_by_name) {
     std::string names;
     for (const Value& v : e.values)
       if (v.name.find("error") != std::string::npos) names += v.name + " ";
-    for (const char* id : {"rtcp.not-told", "rtcp.not-told-ball"})
+    for (const char* id : {"rtcp.not-identifiable", "rtcp.not-identifiable-ball"})
       if (const Finding* f = found(e, id))
         for (const auto& [key, text] : f->texts)
           if (key == "names") names += std::string("| ") + id + " " + text + " ";
     return names;
   };
   EXPECT_EQ(told({ball, ex}),
-            "centre_error_x centre_error_y | rtcp.not-told direction_error_i, "
+            "centre_error_x centre_error_y | rtcp.not-identifiable direction_error_i, "
             "direction_error_j ");
   EXPECT_EQ(told({ball, ez}),
-            "direction_error_i direction_error_j | rtcp.not-told "
+            "direction_error_i direction_error_j | rtcp.not-identifiable "
             "centre_error_x, centre_error_y ");
-  EXPECT_EQ(told({ball, ex, false}),
-            "| rtcp.not-told direction_error_i, direction_error_j | rtcp.not-told-ball "
-            "centre_error_x, centre_error_y ");
+  EXPECT_EQ(
+      told({ball, ex, false}),
+      "| rtcp.not-identifiable direction_error_i, direction_error_j | rtcp.not-identifiable-ball "
+      "centre_error_x, centre_error_y ");
 }
 
 TEST(Rtcp, a_probe_tells_everything_from_one_ball) {

@@ -22,7 +22,7 @@ expression = "z*max(0, t/duration - f)"
 parameters = [{ name = "z", unit = "um" }, { name = "f", unit = "1", start = 0.5, range = [0.1, 0.9] }]
 is = "It tilts the foundation."
 size = "5 um."
-cure = "Park it elsewhere."
+remedy = "Park it elsewhere."
 prior = "rare"
 )toml";
 
@@ -68,7 +68,19 @@ TEST(Causes, OneOfASiteIsReadWithItsTextsAndItsPrice) {
   ASSERT_EQ(causes->size(), 1U);
   EXPECT_NEAR(causes->front().price(), 2.0 * std::log(10.0), 1e-12);
   add_words(*causes, t);
-  EXPECT_EQ(words(t, "en", "effect.crane.cure"), "Park it elsewhere.");
+  EXPECT_EQ(words(t, "en", "effect.crane.remedy"), "Park it elsewhere.");
+}
+
+TEST(Causes, AFormerKeyIsReadWithAWarning) {
+  Templates t = with("causes/site/shop.toml", changed("remedy =", "cure ="));
+  const auto causes = causes_in(t);
+  ASSERT_TRUE(causes) << message(t);
+  EXPECT_EQ(causes->front().remedy, "Park it elsewhere.");
+  const auto warnings = warnings_of_causes(t);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].message.find("cause.cure is now named cause.remedy"), std::string::npos)
+      << warnings[0].message;
+  EXPECT_TRUE(warnings_of_causes(with("causes/site/shop.toml", one)).empty());
 }
 
 TEST(Causes, ATitleMayHaveLanguages) {

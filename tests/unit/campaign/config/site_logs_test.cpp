@@ -197,11 +197,11 @@ TEST(SiteLogs, WhatIsWithdrawnCountsNoMore) {
 
 TEST(SiteLogs, AnAliasLeadsToAMachineAndNoFurther) {
   const auto site = config::parse_site(
-      "[[alias]]\nname = \"a\"\nasset = \"S\"\nwhy = \"plate\"\n[limits]\nvanished = 3\n",
+      "[[alias]]\nname = \"a\"\nasset = \"S\"\nwhy = \"plate\"\n[limits]\nmissing_campaigns = 3\n",
       "site.toml");
   ASSERT_TRUE(site);
   ASSERT_EQ(site->aliases.size(), 1U);
-  EXPECT_EQ(site->limits.vanished, 3U);
+  EXPECT_EQ(site->limits.missing_campaigns, 3U);
   const auto wrong = config::parse_site(
       "[[alias]]\nname = \"a\"\nasset = \"b\"\nwhy = \"plate\"\n[[alias]]\nname = \"b\"\nasset = "
       "\"c\"\nwhy = \"plate\"\n[[alias]]\nname = \"b\"\nasset = \"d\"\nwhy = \"-\"\n",

@@ -66,6 +66,20 @@ TEST(Upgrade, ListsTheChangedLines) {
   EXPECT_EQ("accept = []", done.lines[0].after);
 }
 
+TEST(Upgrade, RenamesIdsOfFindings) {
+  const std::string site =
+      "[limits]\nvanished = 3\n[[certificate.accept]]\n"
+      "finding = \"rtcp.not-told\"  # rtcp.not-told\n"
+      "[[certificate.accept]]\nfinding = 'rtcp.not-told-ball'\n";
+  const auto done = of(site, config::site_file());
+  EXPECT_EQ(
+      "[limits]\nmissing_campaigns = 3\n[[certificate.accept]]\n"
+      "finding = \"rtcp.not-identifiable\"  # rtcp.not-told\n"
+      "[[certificate.accept]]\nfinding = 'rtcp.not-identifiable-ball'\n",
+      done.text);
+  EXPECT_TRUE(of(done.text, config::site_file()).lines.empty());
+}
+
 TEST(Upgrade, LeavesWhatIsNoFormerKey) {
   for (const char* text : {"# table_on\n[campaign]\nid = \"table_on\"\n", "table_on = 1\n",
                            "[machine.axes.X]\ntable_on = \"a\"\nactive_table = \"b\"\n",

@@ -195,7 +195,7 @@ TEST(WordFiles, EveryEffectHasItsCard) {
       if (key.starts_with("effect.")) {
         const std::string name = key.substr(7, key.find('.', 7) - 7);
         if (!cards.insert(name).second) continue;
-        for (const char* part : {"title", "is", "size", "looks", "alike", "cure"})
+        for (const char* part : {"title", "is", "size", "appearance", "similar", "remedy"})
           EXPECT_TRUE(words.has("effect." + name + "." + part)) << name << " " << part;
       }
   said_by_none = cards;

@@ -25,10 +25,11 @@ std::vector<assessment::AssessedMachine> quiet(std::mt19937_64& random, std::siz
   return out;
 }
 
-std::size_t told(const std::vector<assessment::AssessedMachine>& machines) {
+std::size_t significant(const std::vector<assessment::AssessedMachine>& machines) {
   std::size_t n = 0;
   for (const auto& m : machines)
-    for (const auto& s : m.followed) n += std::count(s.told.begin(), s.told.end(), true);
+    for (const auto& s : m.followed)
+      n += std::count(s.significant.begin(), s.significant.end(), true);
   return n;
 }
 
@@ -45,15 +46,15 @@ TEST(MorningChanges, AStepIsNamedAtItsPlaceAndWhatItDidBeside) {
   const auto& m = machines.back();
   for (std::size_t i : {0U, 1U}) {
     const auto& s = m.followed[i];
-    ASSERT_EQ(std::count(s.told.begin(), s.told.end(), true), 1) << s.quantity;
-    for (std::size_t k = 0; k < s.told.size(); ++k)
-      if (s.told[k]) {
+    ASSERT_EQ(std::count(s.significant.begin(), s.significant.end(), true), 1) << s.quantity;
+    for (std::size_t k = 0; k < s.significant.size(); ++k)
+      if (s.significant[k]) {
         EXPECT_EQ(s.trend.changes[k].after, 3U);
         EXPECT_EQ(s.trend.changes[k].cause, Cause::undeclared);
         EXPECT_NEAR(s.trend.changes[k].size, i == 0 ? -1.0 : 0.3, 0.25);
       }
   }
-  EXPECT_EQ(told({m}), 2U);
+  EXPECT_EQ(significant({m}), 2U);
 }
 
 TEST(MorningChanges, WhatIsKnownIsNotSaidToBeUnknown) {
@@ -67,7 +68,7 @@ TEST(MorningChanges, WhatIsKnownIsNotSaidToBeUnknown) {
   judge_all(machines);
   const auto& s = machines.back().followed[0];
   ASSERT_EQ(s.trend.changes.size(), 1U);
-  EXPECT_TRUE(s.told[0]);
+  EXPECT_TRUE(s.significant[0]);
   EXPECT_EQ(s.trend.changes[0].cause, Cause::event);
 }
 
@@ -84,8 +85,8 @@ TEST(MorningChanges, AnInstrumentIsNotTheMachine) {
     std::vector<assessment::AssessedMachine> machines{m.assessed()};
     judge_all(machines);
     const auto& s = machines[0].followed[0];
-    for (std::size_t i = 0; i < s.told.size(); ++i)
-      blamed += s.told[i] && s.trend.changes[i].after == 4 &&
+    for (std::size_t i = 0; i < s.significant.size(); ++i)
+      blamed += s.significant[i] && s.trend.changes[i].after == 4 &&
                 s.trend.changes[i].cause != Cause::instrument;
   }
   EXPECT_EQ(blamed, 0U);
@@ -95,13 +96,13 @@ TEST(MorningChanges, QuietNightsTellNothing) {
   // The share of nights with any news is 5 %; of 200 nights at most 18 with a chance of 0.995.
   std::mt19937_64 random(14);
   std::cout << "seed 14\n";
-  int nights = 0;
-  for (int night = 0; night < 200; ++night) {
+  int runs = 0;
+  for (int run = 0; run < 200; ++run) {
     auto machines = quiet(random, 4);
     judge_all(machines);
-    nights += told(machines) > 0;
+    runs += significant(machines) > 0;
   }
-  EXPECT_LE(nights, 18);
+  EXPECT_LE(runs, 18);
 }
 
 TEST(MorningChanges, ScatterAndSlopesAreLearnedFromTheLaboratory) {
@@ -176,7 +177,7 @@ TEST(MorningChanges, ANightChargesATestOnce) {
   assessment::find_changes(one, asked, fits, not_asked);
   assessment::find_changes(other, asked, fits, not_asked);
   EXPECT_TRUE(one[0].followed[0].trend.changes.empty()) << "what is not told bends no line";
-  ASSERT_EQ(other[0].followed[0].told, std::vector<bool>{true});
+  ASSERT_EQ(other[0].followed[0].significant, std::vector<bool>{true});
   const double p = other[0].followed[0].trend.changes[0].p;
   EXPECT_DOUBLE_EQ(other[0].followed[0].p_adjusted[0], 2.0 * p);
   EXPECT_GE(1000.0 * p, 0.05);
@@ -199,12 +200,12 @@ TEST(MorningChanges, AMailIsSurerThanAList) {
   const double p = after(1).p_adjusted.at(0);
   ASSERT_LT(p, 1e-4);
   const auto of = [&](double level) { return static_cast<std::uint64_t>(level / p); };
-  for (const auto& [asked, told, mailed] :
+  for (const auto& [asked, significant, mailed] :
        {std::tuple(of(0.0099), true, true), std::tuple(of(0.0101) + 1, true, false),
         std::tuple(of(0.0499), true, false), std::tuple(of(0.0501) + 1, false, false)}) {
     const auto s = after(asked);
-    EXPECT_EQ(s.told, std::vector<bool>(told ? 1 : 0, true)) << asked;
-    EXPECT_EQ(s.mailed, std::vector<bool>(told ? 1 : 0, mailed)) << asked;
+    EXPECT_EQ(s.significant, std::vector<bool>(significant ? 1 : 0, true)) << asked;
+    EXPECT_EQ(s.mailed, std::vector<bool>(significant ? 1 : 0, mailed)) << asked;
   }
 }
 
@@ -212,7 +213,7 @@ TEST(MorningChanges, AMailCountsAllThatItCouldTell) {
   // Holm over both families: of two news alike the list is as sure as of one, the mail is not.
   const assessment::SeriesTests said{1, true, {{1e-3, true, false}}},
       unsaid{1, true, {{2e-3, false, false}}}, quiet{1, true, {}};
-  const auto adjusted = assessment::adjusted_by_night({&said, &unsaid, &quiet}, {{1, 9}});
+  const auto adjusted = assessment::adjusted_by_run({&said, &unsaid, &quiet}, {{1, 9}});
   EXPECT_DOUBLE_EQ(adjusted[0][0].news, 1e-3);
   EXPECT_DOUBLE_EQ(adjusted[1][0].news, 9 * 2e-3);
   EXPECT_DOUBLE_EQ(adjusted[0][0].any, 10 * 1e-3);

@@ -13,7 +13,7 @@ namespace {
 class MorningFits : public ::testing::Test {
  protected:
   /// What a site says of itself, by what is kept.
-  std::size_t night(std::uint64_t seed, std::size_t more = 0) {
+  std::size_t run(std::uint64_t seed, std::size_t more = 0) {
     std::mt19937_64 random(seed);
     std::vector<assessment::AssessedMachine> machines;
     for (int k = 0; k < 6; ++k) {
@@ -36,7 +36,7 @@ class MorningFits : public ::testing::Test {
         for (const auto& g : s.trend.segments)
           said_ << ' ' << g.from << ' ' << g.last << ' ' << g.slope;
         for (const double x : s.trend.covariance) said_ << ' ' << x;
-        for (const bool told : s.told) said_ << (told ? '+' : '-');
+        for (const bool significant : s.significant) said_ << (significant ? '+' : '-');
         said_ << s.trend.smallest_change.value_or(-1.0) << '\n';
       }
     return fits.computed();
@@ -47,35 +47,35 @@ class MorningFits : public ::testing::Test {
 };
 
 TEST_F(MorningFits, AreComputedOnceAndChangeNothing) {
-  const std::size_t first = night(21);
+  const std::size_t first = run(21);
   const std::string said = said_.str();
   EXPECT_GE(first, 12U);
-  EXPECT_EQ(night(21), 0U);
+  EXPECT_EQ(run(21), 0U);
   EXPECT_EQ(said_.str(), said);
   kept_.clear();
-  EXPECT_EQ(night(21), first);
+  EXPECT_EQ(run(21), first);
   EXPECT_EQ(said_.str(), said);
 }
 
 TEST_F(MorningFits, OneNewCampaignIsOneNewTrend) {
-  night(21);
-  EXPECT_EQ(night(21, 1), 2U);  // its trend and its slope
+  run(21);
+  EXPECT_EQ(run(21, 1), 2U);  // its trend and its slope
 }
 
 TEST_F(MorningFits, WhatNobodyAsksForIsNotKept) {
-  night(21);
+  run(21);
   const std::size_t size = kept_.size();
-  night(22);
+  run(22);
   EXPECT_LT(kept_.size(), 2 * size - 1000);
 }
 
 TEST_F(MorningFits, WhatIsCutOffIsNone) {
-  const std::size_t first = night(21);
+  const std::size_t first = run(21);
   const std::string said = said_.str(), whole = kept_;
   for (const std::size_t size :
        {std::size_t{1}, std::size_t{70}, whole.size() / 2, whole.size() - 1}) {
     kept_ = whole.substr(0, size);
-    EXPECT_EQ(night(21), first) << size;
+    EXPECT_EQ(run(21), first) << size;
     EXPECT_EQ(said_.str(), said);
   }
 }

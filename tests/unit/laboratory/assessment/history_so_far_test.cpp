@@ -22,13 +22,13 @@ class HistorySoFarTest : public ::testing::Test {
                const std::string& asset = "S-1", const std::string& readings = "r") {
     Made made;
     made.id = id, made.day = day, made.b_mean = b_mean, made.asset = asset;
-    ASSERT_TRUE(out_.store(made, night_, readings + id)) << out_.why();
-    const auto stored = store::update(out_.root(), false, {id}, told_, nothing);
+    ASSERT_TRUE(out_.store(made, run_, readings + id)) << out_.why();
+    const auto stored = store::update(out_.root(), false, {id}, records_, nothing);
     ASSERT_TRUE(stored) << stored.error().message;
-    ++night_;
+    ++run_;
   }
   void tell() {
-    const auto stored = store::update(out_.root(), false, {}, told_, nothing);
+    const auto stored = store::update(out_.root(), false, {}, records_, nothing);
     ASSERT_TRUE(stored) << stored.error().message;
   }
 
@@ -50,8 +50,8 @@ class HistorySoFarTest : public ::testing::Test {
   }
 
   Output out_;
-  store::Told told_{};
-  std::uint64_t night_ = 1;
+  store::SiteRecords records_{};
+  std::uint64_t run_ = 1;
 };
 
 TEST_F(HistorySoFarTest, OnlyWhatItsDayKnew) {
@@ -84,16 +84,16 @@ TEST_F(HistorySoFarTest, EventsAliasesAndRules) {
     const std::string now = basis("c").sha256;
     return std::exchange(before, now) != now;
   };
-  told_.logs.events.push_back({"2025-08-01", "S-1", "X", "crash", "later", "B", 1});
+  records_.logs.events.push_back({"2025-08-01", "S-1", "X", "crash", "later", "B", 1});
   EXPECT_FALSE(changed());
-  told_.logs.events.push_back({"2025-06-01", "S-2", "X", "crash", "of another machine", "B", 2});
+  records_.logs.events.push_back({"2025-06-01", "S-2", "X", "crash", "of another machine", "B", 2});
   EXPECT_FALSE(changed());
-  told_.logs.events.push_back({"2025-06-01", "S-1", "X", "crash", "of this one", "B", 3});
+  records_.logs.events.push_back({"2025-06-01", "S-1", "X", "crash", "of this one", "B", 3});
   EXPECT_TRUE(changed());
-  told_.aliases.push_back({"S-2", "S-1", "one plate"});
+  records_.aliases.push_back({"S-2", "S-1", "one plate"});
   EXPECT_TRUE(changed());
   EXPECT_EQ(ids(basis("c")), "a ");
-  told_.due.push_back({"", 6});
+  records_.due.push_back({"", 6});
   EXPECT_TRUE(changed());
   const HistorySoFar h = history("c");
   EXPECT_EQ(h.due, "2026-01-01");
@@ -111,7 +111,7 @@ TEST_F(HistorySoFarTest, TheSameWhateverTheNights) {
   out_.lose_store();
   fs::remove_all(out_.root());
   fs::create_directories(out_.root() / ".nonio");
-  night_ = 1;
+  run_ = 1;
   for (auto it = campaigns.rbegin(); it != campaigns.rend(); ++it)
     measure(std::get<0>(*it), std::get<1>(*it), std::get<2>(*it));
   const HistorySoFar backward = history("f");

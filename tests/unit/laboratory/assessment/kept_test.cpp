@@ -4,7 +4,7 @@
 #include <random>
 
 #include "../store/laboratory.h"
-#include "batch/close/morning_update.h"
+#include "batch/close/worklist_update.h"
 #include "campaign/config/template_files.h"
 #include "laboratory/assessment/assess.h"
 #include "platform/storage/disk.h"
@@ -29,13 +29,13 @@ class KeptMachinesTest : public ::testing::Test {
   }
 
   void store(const Made& made, const std::string& readings) {
-    ASSERT_TRUE(out_.store(made, night_, readings)) << out_.why();
+    ASSERT_TRUE(out_.store(made, run_, readings)) << out_.why();
     changed_.push_back(made.id);
   }
 
   /// A night that knows what the last ones have kept, beside one that knows nothing.
-  Said end_night(const std::string& date) {
-    const auto stored = store::update(out_.root(), false, changed_, told_, nothing);
+  Said end_run(const std::string& date) {
+    const auto stored = store::update(out_.root(), false, changed_, records_, nothing);
     EXPECT_TRUE(stored) << stored.error().message;
     changed_.clear();
     const fs::path fresh = out_.root().string() + "-fresh";
@@ -49,16 +49,16 @@ class KeptMachinesTest : public ::testing::Test {
       EXPECT_EQ(said.contains(name) ? said.at(name) : "none", text) << name << " on " << date;
     EXPECT_EQ(said.size(), anew.size());
     fs::remove_all(fresh);
-    ++night_;
+    ++run_;
     return said;
   }
 
   Said make(const fs::path& out, const std::string& date) {
     batch::RunOptions options;
     options.out = out;
-    assessment::Tonight tonight;
-    tonight.night = night_, tonight.date = date, tonight.campaigns = 1;
-    const auto made = batch::make_morning(options, context_, tonight, 0);
+    assessment::LastRun last_run;
+    last_run.run = run_, last_run.date = date, last_run.campaigns = 1;
+    const auto made = batch::make_worklist(options, context_, last_run, 0);
     EXPECT_TRUE(made) << made.error().message;
     if (!made) return {};
     Said said{{"text", made->text}, {"json", made->json}};
@@ -87,10 +87,10 @@ class KeptMachinesTest : public ::testing::Test {
   }
 
   Output out_;
-  store::Told told_{};
+  store::SiteRecords records_{};
   reading::Context context_{};
   std::vector<std::string> changed_{};
-  std::uint64_t night_ = 1;
+  std::uint64_t run_ = 1;
 };
 
 TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
@@ -115,7 +115,7 @@ TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
   };
   for (int month = 0; month < 60; month += 6)
     for (std::size_t m = 0; m < 8; ++m) measure(m, month, m == 3 && month > 30 ? 3.0 : 0.0);
-  end_night("2025-01-01");
+  end_run("2025-01-01");
   std::size_t lines = 0;
   for (int k = 0; k < 24; ++k) {
     const std::string date = "2025-" + std::string(k < 18 ? "0" : "") + std::to_string(1 + k / 2) +
@@ -136,30 +136,30 @@ TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
         break;
       }
       case 4:
-        told_.logs.events.push_back({"2024-0" + std::to_string(1 + any(9)) + "-01",
-                                     machine_name(any(8)), "X", k < 12 ? "crash" : "repair",
-                                     "what happened", "B", 3});
+        records_.logs.events.push_back({"2024-0" + std::to_string(1 + any(9)) + "-01",
+                                        machine_name(any(8)), "X", k < 12 ? "crash" : "repair",
+                                        "what happened", "B", 3});
         break;
       case 5:
-        told_.due = {{"", 6}, {"S-2", 3}};
-        if (k > 12) told_.due.pop_back();
+        records_.due = {{"", 6}, {"S-2", 3}};
+        if (k > 12) records_.due.pop_back();
         break;
       case 6:
-        told_.logs.acknowledged.push_back({"2025-03-01",
-                                           "morning.out",
-                                           "S-3",
-                                           "X",
-                                           "",
-                                           "2025-07-31",
-                                           {},
-                                           {},
-                                           "B",
-                                           "is ordered",
-                                           2});
+        records_.logs.acknowledged.push_back({"2025-03-01",
+                                              "morning.out",
+                                              "S-3",
+                                              "X",
+                                              "",
+                                              "2025-07-31",
+                                              {},
+                                              {},
+                                              "B",
+                                              "is ordered",
+                                              2});
         break;
       case 7:
-        told_.aliases = k < 12 ? std::vector<config::Alias>{{"S-7", "S-1", "one plate"}}
-                               : std::vector<config::Alias>{};
+        records_.aliases = k < 12 ? std::vector<config::Alias>{{"S-7", "S-1", "one plate"}}
+                                  : std::vector<config::Alias>{};
         break;
       case 8:  // a certificate, and a report beside old results
         campaigns.back().certificate = "2025-" + std::to_string(k);
@@ -171,7 +171,7 @@ TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
         if (k < 12)
           for (const Made& made : campaigns)
             if (made.asset == "S-4")
-              told_.logs.forgotten.push_back({"2025-05-01", made.id, "B", "sold", 4});
+              records_.logs.forgotten.push_back({"2025-05-01", made.id, "B", "sold", 4});
         break;
       case 10:  // somebody has changed a page, and one is not there
         Output::write(out_.root() / "machines" / "S-0.html", "what somebody wrote");
@@ -181,7 +181,7 @@ TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
         damage(k);
         break;
     }
-    lines += end_night(date).at("json").size();
+    lines += end_run(date).at("json").size();
     if (HasFailure()) break;
   }
   EXPECT_GT(lines, 24U * 500U);
@@ -189,12 +189,12 @@ TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
 
 /// A machine was not calibrated by a campaign without results.
 TEST_F(KeptMachinesTest, AFailedCampaignMovesNoDueDate) {
-  told_.due = {{"", 6}};
+  records_.due = {{"", 6}};
   store({.id = "good", .day = "2026-01-05"}, "r1");
-  const std::string before = end_night("2026-02-01").at("due.ics");
+  const std::string before = end_run("2026-02-01").at("due.ics");
   EXPECT_NE(before.find("20260705"), std::string::npos) << before;
   store({.id = "bad", .day = "2026-05-05", .status = "failed", .manifest_read = true}, "r2");
-  Said after = end_night("2026-06-01");
+  Said after = end_run("2026-06-01");
   EXPECT_NE(after["due.ics"].find("20260705"), std::string::npos) << after["due.ics"];
   EXPECT_EQ(after["due.ics"].find("20261105"), std::string::npos) << after["due.ics"];
 }
@@ -209,8 +209,8 @@ TEST_F(KeptMachinesTest, DamagedTheyChangeNoByte) {
            .day = "202" + std::to_string(k / 2) + "-0" + std::to_string(1 + k % 2) + "-15",
            .asset = k % 2 == 0 ? "S-0" : "S-1"},
           "r" + std::to_string(k));
-  end_night("2026-01-01");
-  const Said whole = end_night("2026-01-02");
+  end_run("2026-01-01");
+  const Said whole = end_run("2026-01-02");
   const fs::path path = out_.root() / ".nonio" / "machines.sqlite";
   const std::string bytes = read(path);
   for (int k = 0; k < 20; ++k) {
@@ -230,8 +230,8 @@ TEST_F(KeptMachinesTest, AreUsed) {
            .day = "202" + std::to_string(k / 2) + "-0" + std::to_string(1 + k % 2) + "-15",
            .asset = k % 2 == 0 ? "S-0" : "S-1"},
           "r" + std::to_string(k));
-  end_night("2026-01-01");
-  end_night("2026-01-02");  // what came last night is not told as new any more
+  end_run("2026-01-01");
+  end_run("2026-01-02");  // what came last night is not told as new any more
   const fs::path page = out_.root() / "machines" / "S-0.html";
   const auto written = fs::last_write_time(page);
   // A machine of which nothing is new is not read: the store may have lost its numbers.

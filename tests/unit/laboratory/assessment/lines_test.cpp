@@ -23,12 +23,12 @@
 namespace nonio::test::lines_test {
 namespace {
 
-using reports::MorningLine;
-using Kind = MorningLine::Kind;
-using State = MorningLine::State;
+using reports::WorkItem;
+using Kind = WorkItem::Kind;
+using State = WorkItem::State;
 
 struct Laboratory {
-  assessment::Tonight tonight{.night = 5, .date = "2024-06-01"};
+  assessment::LastRun last_run{.run = 5, .date = "2024-06-01"};
   store::StoredLogs logs{};
   std::vector<MadeMachine> machines{};
   std::map<std::string, std::string> machine_of_campaign{};
@@ -37,7 +37,7 @@ struct Laboratory {
   std::string due{};
   std::map<std::uint64_t, std::uint64_t> asked{};
 
-  std::vector<MorningLine> lines() const {
+  std::vector<WorkItem> lines() const {
     std::vector<assessment::AssessedMachine> assessed;
     for (const MadeMachine& m : machines) assessed.push_back(m.assessed());
     assessment::Fits fits;
@@ -46,10 +46,11 @@ struct Laboratory {
     std::vector<assessment::Standing> standings;
     for (const auto& m : assessed)
       standings.push_back(assessment::standing_of(
-          m, assessment::describe(m, "out", due, "12 months", tonight.date), logs, tonight, "out"));
+          m, assessment::describe(m, "out", due, "12 months", last_run.date), logs, last_run,
+          "out"));
     std::vector<const assessment::Standing*> all;
     for (const auto& s : standings) all.push_back(&s);
-    return assessment::lines_of({tonight, all, machine_of_campaign, spellings, learned, unknown});
+    return assessment::lines_of({last_run, all, machine_of_campaign, spellings, learned, unknown});
   }
 };
 
@@ -70,7 +71,7 @@ MadeMachine hit(double B = 10.0, double mean = -9.0) {
   return m;
 }
 
-std::string text_of(const MorningLine& l, const std::string& name) {
+std::string text_of(const WorkItem& l, const std::string& name) {
   for (const auto& [key, text] : l.finding.texts)
     if (key == name) return text;
   return "";
@@ -85,7 +86,7 @@ TEST(MorningLines, OneCauseIsToldOnce) {
   lab.machines.push_back(hit());
   const auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);  // B and R out, reversal and curve changed: one crash
-  const MorningLine& l = lines[0];
+  const WorkItem& l = lines[0];
   EXPECT_EQ(l.kind, Kind::out);
   EXPECT_EQ(l.state, State::fresh);
   EXPECT_EQ(l.id, "morning.out:S-42:X");
@@ -146,7 +147,7 @@ TEST(MorningLines, AChangeThatIsNotSureIsNotMailed) {
       EXPECT_FALSE(batch::is_reason_for_mail(lines[0], on));
     EXPECT_EQ(batch::is_reason_for_mail(lines[0], config::Mail::On::decision), level < 0.01);
   }
-  MorningLine lost = assessment::line_of(Kind::lost, "morning.lost", "c");
+  WorkItem lost = assessment::line_of(Kind::lost, "morning.lost", "c");
   EXPECT_TRUE(batch::is_reason_for_mail(lost, config::Mail::On::lost));
 }
 
@@ -214,12 +215,12 @@ TEST(MorningLines, WhatConformsAgainTonightIsFixed) {
   Laboratory lab;
   MadeMachine m("S-42");
   m.judge("X", "B", {9, 9, 9, 9, 9, 9, 9, 5});
-  m.stored().campaigns[7].night = 5;
+  m.stored().campaigns[7].run = 5;
   lab.machines.push_back(std::move(m));
   auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].state, State::fixed);
-  lab.tonight.night = 6;  // told once
+  lab.last_run.run = 6;  // told once
   EXPECT_TRUE(lab.lines().empty());
 }
 
@@ -229,7 +230,7 @@ TEST(MorningLines, ARepairThatIsPlannedHasMendedNothing) {
   lab.machines[0].events() = {{"2024-06-02", "S-42", "X", "repair", "nut is ordered", "", 1}};
   ASSERT_EQ(lab.lines().size(), 1U);
   EXPECT_EQ(lab.lines()[0].kind, Kind::changed);
-  lab.tonight.date = "2024-06-02";
+  lab.last_run.date = "2024-06-02";
   EXPECT_TRUE(lab.lines().empty());
 }
 
@@ -251,20 +252,20 @@ TEST(MorningLines, ACampaignDatedAfterTheNightIsNamed) {
 }
 
 TEST(MorningLines, AnotherDefinitionOrAWiderLimitMendsNothing) {
-  const auto told = [](auto change) {
+  const auto significant = [](auto change) {
     Laboratory lab;
     MadeMachine m("S-42");
     m.judge("X", "A", {9, 9, 9, 9, 9, 9, 9, 5});
-    m.stored().campaigns[7].night = 5;
+    m.stored().campaigns[7].run = 5;
     change(m.stored().results);
     lab.machines.push_back(std::move(m));
     const auto lines = lab.lines();
     return lines.size() == 1 ? lines[0].finding.id : std::to_string(lines.size()) + " lines";
   };
-  EXPECT_EQ(told([](auto&) {}), "morning.fixed");
-  EXPECT_EQ(told([](auto& r) { r[7].tolerance = 7.0; }), "morning.fixed");
-  EXPECT_EQ(told([](auto& r) { r[7].tolerance = 12.0; }), "morning.judged-anew");
-  EXPECT_EQ(told([](auto& r) {
+  EXPECT_EQ(significant([](auto&) {}), "morning.fixed");
+  EXPECT_EQ(significant([](auto& r) { r[7].tolerance = 7.0; }), "morning.fixed");
+  EXPECT_EQ(significant([](auto& r) { r[7].tolerance = 12.0; }), "morning.judged-anew");
+  EXPECT_EQ(significant([](auto& r) {
               for (std::size_t i = 0; i < 7; ++i) r[i].conditions = R"({"edition":1988})";
             }),
             "morning.judged-anew");
@@ -338,7 +339,7 @@ TEST(MorningLines, ATableThatDidNotDoWhatItPromisedIsADecision) {
     Laboratory lab;
     lab.machines.push_back(m);
     auto lines = lab.lines();
-    std::erase_if(lines, [](const MorningLine& l) { return l.finding.id != "morning.table"; });
+    std::erase_if(lines, [](const WorkItem& l) { return l.finding.id != "morning.table"; });
     return lines;
   };
   EXPECT_TRUE(table_lines(with_table(1.4)).empty()) << "within what its readings scatter";
@@ -411,8 +412,8 @@ TEST(MorningLines, LostMotionThatConformsIsInformation) {
 
 TEST(MorningLines, StandInTheirOrder) {
   Laboratory lab;
-  lab.tonight.vanished = {{"gone", "gone", 4, "not there"}};
-  lab.tonight.failed = {{"bad", "bad", "x.csv:17: \"1O8.9\" is no number", ""}};
+  lab.last_run.vanished = {{"gone", "gone", 4, "not there"}};
+  lab.last_run.failed = {{"bad", "bad", "x.csv:17: \"1O8.9\" is no number", ""}};
   lab.machines = {hit(), MadeMachine("S-43"), MadeMachine("S-44"), MadeMachine("S-45")};
   lab.machines[1].follow("X", "B_mean", flat(-1.0, -3.0), 0.1);
   lab.machines[2].judge("X", "B", {7, 7, 7, 7, 7, 7, 7, 7.9});
@@ -420,7 +421,7 @@ TEST(MorningLines, StandInTheirOrder) {
   lab.machines[3].judge("X", "B", {1, 2, 3, 4, 5, 6, 7, 7.4});
   lab.due = "2024-03-01";
   std::vector<Kind> kinds;
-  for (const MorningLine& l : lab.lines())
+  for (const WorkItem& l : lab.lines())
     if (kinds.empty() || kinds.back() != l.kind) kinds.push_back(l.kind);
   EXPECT_EQ(kinds,
             (std::vector<Kind>{Kind::lost, Kind::failed, Kind::out, Kind::changed, Kind::soon,
@@ -499,16 +500,16 @@ MadeMachine worn() {
 TEST(MorningLines, SoonIsTheLastValueWithItsForecast) {
   Laboratory lab;
   lab.machines.push_back(worn());
-  lab.tonight.date = "2023-07-20", lab.due = "2024-03-01";
+  lab.last_run.date = "2023-07-20", lab.due = "2024-03-01";
   auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].finding.id, "morning.soon");
   EXPECT_NEAR(*lines[0].value, 7.3e-6, 1e-12);
   EXPECT_NEAR(*lines[0].u, 0.25e-6, 1e-12);
   EXPECT_EQ(text_of(lines[0], "date"), "2024-03-01");
-  EXPECT_GT(text_of(lines[0], "leaves"), lab.tonight.date);
+  EXPECT_GT(text_of(lines[0], "leaves"), lab.last_run.date);
   // Its day has passed.
-  lab.tonight.date = "2024-06-01";
+  lab.last_run.date = "2024-06-01";
   lines = lab.lines();
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0].finding.id, "morning.soon-now");
@@ -518,18 +519,18 @@ TEST(MorningLines, SoonIsTheLastValueWithItsForecast) {
   // The value is indeterminate: that line asks for more.
   auto& last = lab.machines[0].stored().results.back();
   last.value = 7.6, last.decision = "cannot be decided";
-  for (const MorningLine& l : lab.lines()) EXPECT_NE(l.kind, Kind::soon);
+  for (const WorkItem& l : lab.lines()) EXPECT_NE(l.kind, Kind::soon);
 }
 
 TEST(MorningLines, ManyOfOneKindAreOneLine) {
   Laboratory lab;
   for (int i = 0; i < 212; ++i) {
     const std::string id = "c" + std::to_string(i);
-    lab.tonight.vanished.push_back({id, "site-b/" + id, 4, "not there"});
+    lab.last_run.vanished.push_back({id, "site-b/" + id, 4, "not there"});
     lab.machine_of_campaign[id] = "S-" + std::to_string(i % 20);
   }
   for (int i = 0; i < 9; ++i)
-    lab.tonight.failed.push_back({"f" + std::to_string(i), "f", "site.toml:3: wrong", ""});
+    lab.last_run.failed.push_back({"f" + std::to_string(i), "f", "site.toml:3: wrong", ""});
   for (int i = 0; i < 6; ++i) {
     lab.machines.emplace_back("S-1" + std::to_string(i));
     lab.machines.back().judge("X", "B", {8, 8, 8, 8, 8, 8, 8, 8});
@@ -545,7 +546,7 @@ TEST(MorningLines, ManyOfOneKindAreOneLine) {
     EXPECT_EQ(lines[i].finding.id, "morning.undecided");
 }
 
-std::vector<std::string> open_of(const MorningLine& l) {
+std::vector<std::string> open_of(const WorkItem& l) {
   std::vector<std::string> out{l.quantity};
   for (const reports::OpenValue& v : l.also)
     out.push_back(v.quantity + (v.value ? v.undecided ? "?" : "" : " without value"));
@@ -684,7 +685,7 @@ TEST(MorningLines, WhatWasWithheldIsALine) {
         {"D1", "diagonal-straightness", "diagonals.refused-carrier", "attention"});
   lab.machines.push_back(m);
   std::vector<std::string> ids;
-  for (const MorningLine& l : lab.lines())
+  for (const WorkItem& l : lab.lines())
     if (l.kind == Kind::withheld) ids.push_back(l.id);
   EXPECT_EQ(ids, (std::vector<std::string>{
                      "morning.calibration:S-42:S-42-2", "morning.certificate:S-42:S-42-1",
@@ -710,7 +711,7 @@ TEST(MorningLines, AnAcknowledgementCoversWhatWasOpenOnItsDay) {
 TEST(MorningLines, TheCampaignsOfAMachineThatVanishedAreOneLine) {
   Laboratory lab;
   for (const char* id : {"a", "b"}) {
-    lab.tonight.vanished.push_back({id, id, 4, "not there"});
+    lab.last_run.vanished.push_back({id, id, 4, "not there"});
     lab.machine_of_campaign[id] = "S-1";
   }
   const auto lines = lab.lines();
@@ -730,10 +731,10 @@ Templates words_of(const std::string& language) {
 
 TEST(MorningLines, EachHasWordsInEachLanguage) {
   Laboratory lab;
-  lab.tonight.vanished = {{"gone", "gone", 4, "not there"}, {"a", "a", 4, ""}, {"b", "b", 4, ""}};
+  lab.last_run.vanished = {{"gone", "gone", 4, "not there"}, {"a", "a", 4, ""}, {"b", "b", 4, ""}};
   lab.machine_of_campaign = {{"a", "S-1"}, {"b", "S-1"}};
-  lab.tonight.failed = {{"bad", "bad", "wrong", ""}};
-  lab.tonight.history_error = "disk full";
+  lab.last_run.failed = {{"bad", "bad", "wrong", ""}};
+  lab.last_run.history_error = "disk full";
   lab.spellings = {{"S-42", "S-4Z", "spelled alike"}};
   lab.unknown = {"S-4Z (events.toml:7)"};
   lab.machines = {hit(), MadeMachine("S-43"), MadeMachine("S-44"), MadeMachine("S-45"),
@@ -746,7 +747,7 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
   lab.machines[3].judge("X", "B", {1, 2, 3, 4, 5, 6, 7, 7.4});
   lab.machines[4].judge("X", "B", {5, 5, 5, 5, 5, 5, 5, 5});
   lab.machines[4].judge("Y", "B", {5, 5, 5, 5, 5, 5, 9, 5});
-  lab.machines[4].stored().campaigns[7].night = 5;
+  lab.machines[4].stored().campaigns[7].run = 5;
   lab.machines[4].stored().findings.back() = {{"reversal.lost-motion", "attention"}};
   lab.machines.emplace_back("S-47", 1);
   lab.machines[5].judge("X", "B", {5});
@@ -764,16 +765,16 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
   lab.machines.emplace_back("S-48", 1);
   lab.machines[8].judge("X", "B", {8});
   lab.machines[8].stored().results.back().expanded.reset();
-  lab.tonight.waiting = {"S-48-1"};
+  lab.last_run.waiting = {"S-48-1"};
   for (int i = 0; i < 4; ++i)
-    lab.tonight.failed.push_back({"f" + std::to_string(i), "f", "same", ""});
+    lab.last_run.failed.push_back({"f" + std::to_string(i), "f", "same", ""});
   lab.due = "2024-03-01";
   const auto lines = lab.lines();
   std::set<std::string> ids;
   for (const char* language : {"en", "de", "it"}) {
     const Templates words = words_of(language);
     ASSERT_FALSE(words.tables.empty()) << language;
-    for (const MorningLine& l : lines) {
+    for (const WorkItem& l : lines) {
       ids.insert(l.finding.id);
       const std::string says = reports::line_text(words, language, l, "says");
       EXPECT_FALSE(says.empty()) << l.finding.id;

@@ -20,16 +20,16 @@ namespace config = config;
 /// A machine whose campaigns come every half year from 2020-01-15 on.
 class MadeMachine {
  public:
-  explicit MadeMachine(std::string name, std::size_t campaigns = 8, std::uint64_t night = 1)
+  explicit MadeMachine(std::string name, std::size_t campaigns = 8, std::uint64_t run = 1)
       : name_(std::move(name)) {
-    for (std::size_t i = 0; i < campaigns; ++i) add_campaign(day(i), night);
+    for (std::size_t i = 0; i < campaigns; ++i) add_campaign(day(i), run);
   }
 
   static std::string day(std::size_t i) {
     return assessment::months_later("2020-01-15", 6 * static_cast<int>(i));
   }
 
-  void add_campaign(const std::string& of_day, std::uint64_t night) {
+  void add_campaign(const std::string& of_day, std::uint64_t run) {
     const std::string number = std::to_string(stored_.campaigns.size() + 1);
     stored_.campaigns.push_back({.id = name_ + "-" + number,
                                  .day = of_day,
@@ -38,7 +38,7 @@ class MadeMachine {
                                  .status = "ok",
                                  .instrument = {"O", "L", "1", "", "", ""},
                                  .evaluation = static_cast<std::int64_t>(stored_.campaigns.size()),
-                                 .night = night});
+                                 .run = run});
     stored_.findings.emplace_back();
   }
 

@@ -141,7 +141,7 @@ TEST(Proposals, WhatNoTestConfirmedIsNoReasonToRefuse) {
   for (const MadeMachine& m : machines) assessed.push_back(m.assessed());
   judge_all(assessed);
   const auto& s = assessed[0].followed[0];
-  EXPECT_TRUE(s.told.empty());
+  EXPECT_TRUE(s.significant.empty());
   nonio::statistics::Series alone = s.series;
   alone.steps.reset();
   const auto trend = nonio::statistics::trend_of(alone);

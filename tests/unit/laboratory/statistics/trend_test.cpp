@@ -319,7 +319,7 @@ TEST(SpreadOfSlopes, IsThatOfTheLaboratory) {
       const auto s = made_series(8, 0.3, random, [&](std::size_t k, double time) {
         return slope * time + (steps && i < 10 && k > 3 ? 9.0 : 0.0);
       });
-      if (const auto found = slope_beside_steps(s)) out.push_back(*found);
+      if (const auto found = slope_with_steps(s)) out.push_back(*found);
     }
     return out;
   };

@@ -130,13 +130,13 @@ class Output {
   }
 
   /// As a worker of night `night` stores it. `readings`: digest of the file. False: refused.
-  bool store(const Made& made, std::uint64_t night, const std::string& readings,
+  bool store(const Made& made, std::uint64_t run, const std::string& readings,
              const std::string& version = "1.0", bool retry = false) {
     const fs::path folder = root_ / made.id;
     evaluation::Record record;
     record.folder = made.id;
-    record.night = night;
-    record.date = "2026-03-0" + std::to_string(night % 10);
+    record.run = run;
+    record.date = "2026-03-0" + std::to_string(run % 10);
     record.status = evaluation::status_named(made.status).value();
     record.retry = retry;
     record.certificate = made.certificate;

@@ -17,9 +17,9 @@ using storage::Server;
 
 std::string test_url() { return std::getenv("NONIO_TEST_DATABASE"); }
 
-void two_campaigns(Output& out, std::uint64_t night, double scale) {
-  ASSERT_TRUE(out.store({.id = "a", .scale = scale}, night, "r" + std::to_string(night)));
-  ASSERT_TRUE(out.store({.id = "b", .scale = scale}, night, "r" + std::to_string(night)));
+void two_campaigns(Output& out, std::uint64_t run, double scale) {
+  ASSERT_TRUE(out.store({.id = "a", .scale = scale}, run, "r" + std::to_string(run)));
+  ASSERT_TRUE(out.store({.id = "b", .scale = scale}, run, "r" + std::to_string(run)));
 }
 
 }  // namespace

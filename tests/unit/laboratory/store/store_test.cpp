@@ -21,8 +21,8 @@ config::Event crash() {
   return {"2026-02-03", "S-1", "X", "crash", "tool \"T1\" hit the vice; O'Brien", "B. Sample", 3};
 }
 
-store::Told told() {
-  store::Told t;
+store::SiteRecords records() {
+  store::SiteRecords t;
   t.logs.events = {crash()};
   t.logs.acknowledged = {{"2026-02-04", "reversal.constant", "S-1", "X", "B_mean", "2026-06-30",
                           -5.25, 0.5, "B. Sample", "nut is ordered", 2}};
@@ -35,8 +35,8 @@ store::Told told() {
 /// Five nights in which everything changes that may; after each the store is brought up to date.
 /// `after` sees each night.
 void live(Output& out, const std::function<void(std::uint64_t)>& after = {}) {
-  const auto night = [&](std::uint64_t n, const std::vector<std::string>& campaigns) {
-    const auto done = store::update(out.root(), false, campaigns, told(), nothing);
+  const auto run = [&](std::uint64_t n, const std::vector<std::string>& campaigns) {
+    const auto done = store::update(out.root(), false, campaigns, records(), nothing);
     ASSERT_TRUE(done) << done.error().message;
     EXPECT_EQ(done->rebuilt, n == 1) << "night " << n;
     EXPECT_TRUE(done->left_out.empty()) << done->left_out.front();
@@ -45,23 +45,23 @@ void live(Output& out, const std::function<void(std::uint64_t)>& after = {}) {
   ASSERT_TRUE(out.store({.id = "b"}, 1, "r1"));
   ASSERT_TRUE(out.store({.id = "a", .day = "2026-01-09"}, 1, "r2"));
   ASSERT_TRUE(out.store({.id = "gone"}, 1, "r3"));
-  night(1, {"b", "a", "gone"});
+  run(1, {"b", "a", "gone"});
   // Other readings; other options; a certificate is issued; an older campaign comes in late.
   ASSERT_TRUE(out.store({.id = "b", .scale = 1.5}, 2, "r1b"));
   ASSERT_TRUE(out.store({.id = "a", .day = "2026-01-09", .b_mean = -6.0}, 2, "r2"));
   ASSERT_TRUE(out.store({.id = "late", .day = "2021-01-09", .asset = ""}, 2, "r4"));
-  night(2, {"late", "b", "a"});
+  run(2, {"late", "b", "a"});
   // Back to the first options; evaluated again with nothing new; a failure that may pass.
   ASSERT_TRUE(out.store({.id = "a", .day = "2026-01-09", .certificate = "N-1"}, 3, "r2"));
   ASSERT_TRUE(out.store({.id = "late", .day = "2021-01-09", .asset = ""}, 3, "r4", "1.1"));
   ASSERT_TRUE(out.store({.id = "b", .status = "failed"}, 3, "r1b", "1.1", true));
-  night(3, {"a", "b", "late"});
+  run(3, {"a", "b", "late"});
   // It passes, and another version comes to another value; a failure that stays.
   ASSERT_TRUE(out.store({.id = "b", .scale = 1.75}, 4, "r1b", "1.1"));
   ASSERT_TRUE(out.store({.id = "late", .status = "failed"}, 4, "r4x", "1.1"));
   ASSERT_TRUE(out.store({.id = "a", .day = "2026-01-09", .certificate = "N-2"}, 4, "r2z"));
-  night(4, {"a", "b", "late"});
-  night(5, {});
+  run(4, {"a", "b", "late"});
+  run(5, {});
 }
 
 }  // namespace
@@ -71,11 +71,11 @@ TEST(HistoryStore, MadeAgainHasTheSameRows) {
   live(out);
   const std::string grown = rows_of(out.root());
   out.lose_store();
-  const auto done = store::rebuild(out.root(), told(), nothing);
+  const auto done = store::rebuild(out.root(), records(), nothing);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(done->evaluations, 10U);
   EXPECT_EQ(rows_of(out.root()), grown);
-  ASSERT_TRUE(store::rebuild(out.root(), told(), nothing)) << "in place of itself";
+  ASSERT_TRUE(store::rebuild(out.root(), records(), nothing)) << "in place of itself";
   EXPECT_EQ(rows_of(out.root()), grown);
   EXPECT_EQ(grown.find("ERROR"), std::string::npos);
 }
@@ -162,13 +162,13 @@ TEST(HistoryStore, OfAnotherVersionIsMadeAgainOrRefused) {
   ask(out.root(), "UPDATE store SET value = 0 WHERE name = 'schema'");
   ask(out.root(), "DROP VIEW point");
   ask(out.root(), "DROP TABLE finding");
-  auto done = store::update(out.root(), false, {}, told(), nothing);
+  auto done = store::update(out.root(), false, {}, records(), nothing);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_TRUE(done->rebuilt);
   EXPECT_EQ(rows_of(out.root()), before);
   ask(out.root(), "UPDATE store SET value = 99 WHERE name = 'schema'");
   const std::string newer = rows_of(out.root());
-  done = store::update(out.root(), false, {}, told(), nothing);
+  done = store::update(out.root(), false, {}, records(), nothing);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("is of version 99, this program writes 7"),
             std::string::npos);
@@ -184,17 +184,17 @@ TEST(HistoryStore, DamagedOrBehindIsMadeAgain) {
     ask(out.root(), "DROP TABLE store CASCADE");
   else
     Output::write(out.root() / store::store_name, "this is no database, though it is long enough");
-  auto done = store::update(out.root(), false, {}, told(), nothing);
+  auto done = store::update(out.root(), false, {}, records(), nothing);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_TRUE(done->rebuilt);
   EXPECT_EQ(rows_of(out.root()), before);
-  done = store::update(out.root(), true, {}, told(), nothing);
+  done = store::update(out.root(), true, {}, records(), nothing);
   ASSERT_TRUE(done);
   EXPECT_TRUE(done->rebuilt);
   EXPECT_EQ(rows_of(out.root()), before);
   // A campaign that came in before others that the store has: it would get another number.
   ASSERT_TRUE(out.store({.id = "aa"}, 2, "r7"));
-  done = store::update(out.root(), false, {"aa"}, told(), nothing);
+  done = store::update(out.root(), false, {"aa"}, records(), nothing);
   ASSERT_TRUE(done);
   EXPECT_TRUE(done->rebuilt);
   EXPECT_EQ(ask(out.root(), "SELECT evaluation FROM evaluation WHERE campaign = 'aa'"), "5;");
@@ -202,15 +202,15 @@ TEST(HistoryStore, DamagedOrBehindIsMadeAgain) {
 
 TEST(HistoryStore, WhichNightItKnowsIsKeptBesideIt) {
   Output out("known");
-  EXPECT_EQ(store::known_night(out.root()).value(), std::nullopt);
-  ASSERT_TRUE(store::note_known_night(out.root(), 41));
-  EXPECT_EQ(store::known_night(out.root()).value(), 41U);
-  ASSERT_TRUE(store::forget_known_night(out.root()));
-  EXPECT_EQ(store::known_night(out.root()).value(), std::nullopt);
-  ASSERT_TRUE(store::forget_known_night(out.root()));
+  EXPECT_EQ(store::known_run(out.root()).value(), std::nullopt);
+  ASSERT_TRUE(store::note_known_run(out.root(), 41));
+  EXPECT_EQ(store::known_run(out.root()).value(), 41U);
+  ASSERT_TRUE(store::forget_known_run(out.root()));
+  EXPECT_EQ(store::known_run(out.root()).value(), std::nullopt);
+  ASSERT_TRUE(store::forget_known_run(out.root()));
   for (const char* damaged : {"", "x\n", "41", "41 \n", "99999999999999999999\n"}) {
     Output::write(out.root() / ".nonio" / "history", damaged);
-    EXPECT_EQ(store::known_night(out.root()).value(), std::nullopt) << damaged;
+    EXPECT_EQ(store::known_run(out.root()).value(), std::nullopt) << damaged;
   }
 }
 
@@ -227,7 +227,7 @@ TEST(HistoryStore, KilledAtAnyMomentItIsTheOldOneOrTheNewOne) {
     ASSERT_GE(child, 0);
     if (child == 0) {
       int calls = moment / 2;
-      const auto done = store::update(out.root(), again, {"b", "c"}, told(), [&] {
+      const auto done = store::update(out.root(), again, {"b", "c"}, records(), [&] {
         if (calls-- == 0) ::raise(SIGKILL);
       });
       ::_exit(done ? 0 : 1);
@@ -239,16 +239,16 @@ TEST(HistoryStore, KilledAtAnyMomentItIsTheOldOneOrTheNewOne) {
       ++kept;
     } else {
       ASSERT_EQ(WEXITSTATUS(status), 0);
-      ASSERT_TRUE(store::rebuild(out.root(), told(), nothing));
+      ASSERT_TRUE(store::rebuild(out.root(), records(), nothing));
       // Back to what it was: only the store forgets what the results say already.
       out.lose_store();
       break;
     }
   }
   EXPECT_GE(kept, 6) << "it was killed while it was at work";
-  ASSERT_TRUE(store::update(out.root(), false, {"b", "c"}, told(), nothing));
+  ASSERT_TRUE(store::update(out.root(), false, {"b", "c"}, records(), nothing));
   const std::string grown = rows_of(out.root());
-  ASSERT_TRUE(store::rebuild(out.root(), told(), nothing));
+  ASSERT_TRUE(store::rebuild(out.root(), records(), nothing));
   EXPECT_EQ(rows_of(out.root()), grown);
 }
 
@@ -261,7 +261,7 @@ TEST(HistoryStore, AnErrorLeavesTheOldOne) {
       on_server ? "ALTER TABLE finding ADD CONSTRAINT \"disk is full\" CHECK (item < 0) NOT VALID"
                 : "CREATE TRIGGER full BEFORE INSERT ON finding BEGIN SELECT RAISE(ABORT, "
                   "'database or disk is full'); END");
-  const auto done = store::update(out.root(), false, {"b"}, told(), nothing);
+  const auto done = store::update(out.root(), false, {"b"}, records(), nothing);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("disk is full"), std::string::npos);
   EXPECT_EQ(rows_of(out.root()), before);
@@ -289,12 +289,12 @@ TEST(HistoryStore, LeavesOutWhatCannotBeReadAndSaysIt) {
   Output::write(out.root() / "list" / "results.json", "[]");
   for (std::size_t size = 0; size + 2 < whole.size(); size += 41) {
     Output::write(out.root() / "cut" / "results.json", whole.substr(0, size));
-    const auto done = store::rebuild(out.root(), told(), nothing);
+    const auto done = store::rebuild(out.root(), records(), nothing);
     ASSERT_TRUE(done) << done.error().message;
     EXPECT_EQ(done->left_out.size(), 8U) << size;
     EXPECT_EQ(ask(out.root(), "SELECT campaign FROM campaign"), "good;");
   }
-  const auto done = store::update(out.root(), false, {"copy"}, told(), nothing);
+  const auto done = store::update(out.root(), false, {"copy"}, records(), nothing);
   ASSERT_TRUE(done);
   ASSERT_EQ(done->left_out.size(), 1U);
   EXPECT_NE(done->left_out[0].find("expected campaign copy, found \"good\""), std::string::npos)
@@ -354,8 +354,8 @@ TEST(HistoryStore, AFailureThatStaysIsKeptBehindOneThatMayPass) {
   ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, 2, "r2"));
   ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
   const std::string before = rows_of(out.root());
-  for (const std::uint64_t night : {3, 4}) {
-    ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, night, "r2", "1.0", true));
+  for (const std::uint64_t run : {3, 4}) {
+    ASSERT_TRUE(out.store({.id = "a", .status = "failed"}, run, "r2", "1.0", true));
     const auto done = store::update(out.root(), false, {"a"}, {}, nothing);
     ASSERT_TRUE(done);
     EXPECT_FALSE(done->rebuilt);
@@ -457,7 +457,7 @@ TEST(HistoryIdentity, SpellingsAreProposedAndNeverJoined) {
   const auto found = store::spellings_in(out.root());
   ASSERT_TRUE(found);
   EXPECT_EQ(found->size(), 1U);
-  store::Told alias;
+  store::SiteRecords alias;
   alias.aliases = {{"s1", "S-1", "same plate"}};
   ASSERT_TRUE(store::update(out.root(), false, {}, alias, nothing));
   EXPECT_EQ(store::machines_in(out.root())->size(), 1U);

@@ -65,7 +65,7 @@ struct Place {
   std::optional<double> at{};
   Quantity at_quantity = Quantity::number;
   std::string line{};     ///< in space: "position" along this one
-  bool together = false;  ///< of two factors: with what each of them says alone
+  bool together = false;  ///< of two factors: including the effect of each alone
 };
 
 /// A reading that contradicts its neighbours; kept, with weight 0, until the user excludes it.
@@ -88,17 +88,17 @@ struct Comparison {
   /// Where something fails: the fewest places that hold what is left, each in addition to those before it,
   /// so that nothing is counted twice; no share below 2 %.
   std::vector<Place> seats{};
-  std::size_t means = 0;  ///< long tables: of how many means the places tell; else 0
+  std::size_t means = 0;  ///< long tables: number of means that the places are from; else 0
   std::vector<Suspect> suspects{};
   bool fails() const;  ///< something is left in some place
 };
 
-/// A place is said to fail below this p.
-// docs/dev/constants.md, M1.
+/// A place is regarded as failing below this p.
+/// docs/dev/constants.md, M1.
 inline constexpr double place_p = 0.01;
 
-/// What is found out of the readings before any model of them: how they repeat each other, which
-/// are misread, how their noise is correlated. Kept where many models are held against the same
+/// Properties of the readings without any model: how they repeat each other, which are
+/// misread, how their noise is correlated. Kept where many models are compared with the same
 /// readings.
 class Groundwork {
  public:
@@ -116,8 +116,8 @@ class Groundwork {
 /// Called once the fit of a long table is there, with all but its places.
 using Fitted = std::function<void(const Comparison&)>;
 
-/// Errors are those of `fit`: parameters that the readings cannot tell apart. `known`: of this
-/// part, if it is there already.
+/// Errors are those of `fit`: parameters that the readings do not separate. `known`: of this part,
+/// if it exists already.
 Expected<Comparison> compare(const Part& part, const std::vector<Term>& model,
                              const Groundwork* known = nullptr, const Fitted& fitted = {});
 

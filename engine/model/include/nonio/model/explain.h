@@ -33,16 +33,15 @@ struct Candidate {
   double alone = 0.0;   ///< the same of it as the only addition to the model
   double within = 0.0;  ///< of one of the best set what is lost without it, else what it adds
   std::vector<Parameter> parameters;
-  std::vector<std::string> aliases;  ///< these readings cannot tell them from this one
+  std::vector<std::string> aliases;  ///< these readings do not separate them from this one
   /// RMS of the smallest one that would be found nine times in ten, m or rad.
   double minimal_detectable = 0.0;
   /// Found near that size: an effect this large is found only where the noise makes it look so many
   /// times larger in the mean. 1 where that is nothing.
   double bias = 1.0;
-  std::vector<std::uint32_t>
-      rows{};  ///< not visible: rows of the part's table that stand in the way
-  /// Descriptions of place beside which its evidence was found; else it is that beside the model.
-  std::vector<std::string> beside{};
+  std::vector<std::uint32_t> rows{};  ///< not visible: rows of the part's table that prevent it
+  /// Descriptions of position with which its evidence was found; empty: with the model alone.
+  std::vector<std::string> with_descriptions{};
 };
 
 /// Effects that concern a part and do not apply to its readings, with the reason: not visible.
@@ -51,7 +50,7 @@ std::vector<Candidate> not_applying(const Part& part, const std::vector<Effect>&
 /// Rows of the table that have no temperature of their own, where it is interpolated in time.
 std::vector<std::uint32_t> interpolated_temperatures(const Part& part);
 
-/// A further measurement that would tell the effects of an alias group apart.
+/// A further measurement that would separate the effects of an alias group.
 struct Plan {
   std::string id;            ///< "another-run", "run-after-a-pause", "other-targets", ...
   std::size_t readings = 0;  ///< to be taken
@@ -95,7 +94,7 @@ struct Description {
   Term term;         ///< with the shapes found
   double rms = 0.0;  ///< what is left with it, m or rad
   What what = What::course;
-  /// What it says, m or rad: of each target (values less their mean), else of each reading.
+  /// Its values, m or rad: of each target (values less their mean), else of each reading.
   double low = 0.0, high = 0.0, mean = 0.0;
 };
 
@@ -148,7 +147,7 @@ struct Explanation {
   /// m.
   std::optional<double> one_growth{};
   double significant_rms = 0.0;           ///< unknown: with them in the model, m or rad
-  std::vector<Description> descriptions;  ///< unknown: of what is left beside the certain
+  std::vector<Description> descriptions;  ///< unknown: of what the significant effects leave
   std::vector<Statement> statements;      ///< unknown, of an axis
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
@@ -162,7 +161,7 @@ Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const Groundwork* known = nullptr);
 
 /// One more run of an axis, in each direction order. Empty for other parts, and where nothing can
-/// be said: no uncertainty, effects whose columns depend on all readings, too many readings.
+/// be stated: no uncertainty, effects whose columns depend on all readings, too many readings.
 std::vector<Foresight> foresee(const Part& part, const Explanation& e);
 
 }  // namespace nonio::model

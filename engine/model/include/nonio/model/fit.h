@@ -26,7 +26,7 @@ struct Term {
   Axis axis;
   std::vector<double> shape{};  ///< empty: searched, if the effect has shapes
   /// A shape that another measurement states, of standard uncertainty u: taken where these readings
-  /// say nothing against it, and then no unknown of the fit; no evidence is asked for it.
+  /// show nothing against it, and then no unknown of the fit; it needs no evidence.
   struct Stated {
     std::size_t shape = 0;
     double value = 0.0, u = 0.0;
@@ -38,7 +38,7 @@ struct Term {
   bool differences = false;
   /// 2 ln of the odds against it before there are readings: rare causes need more evidence.
   double price = 0.0;
-  /// Its value is known: it has no unknowns, and what it says is not in the readings any more.
+  /// Its value is known: no unknowns, and its prediction is subtracted from the readings.
   bool held = false;
   bool library = false;  ///< one of very many: a candidate only where there is evidence for it
 
@@ -59,9 +59,9 @@ struct Parameter {
   bool held = false;    ///< stated, not fitted; u = 0
 };
 
-/// How the noise of the readings hangs together, as far as their repeats and their order show it.
+/// Correlation of the noise of the readings, as far as their repeats and their order show it.
 struct Noise {
-  /// The zero of a line beside what the model says of it.
+  /// The zero of a line, and what the model predicts for it.
   enum class Zero {
     steady,
     walks,    ///< from reading to reading
@@ -97,9 +97,9 @@ struct Fit {
   std::vector<double> zero;                      ///< of each line, m or rad
   std::vector<double> residual;                  ///< of each reading, m or rad
   std::vector<double> weight;  ///< of each reading, 0..1: small where it is a suspected misreading
-  std::vector<std::vector<double>> part;  ///< what each term says of each reading, m or rad
-  /// Of each term: columns of a curve that these readings cannot tell from the terms before it
-  /// (the odd part of a second straightness on two diagonals). They are counted to those.
+  std::vector<std::vector<double>> part;  ///< prediction of each term for each reading, m or rad
+  /// Of each term: columns of a curve that these readings do not separate from the terms before it
+  /// (the odd part of a second straightness on two diagonals). They are assigned to those terms.
   std::vector<std::size_t> lost{};
   double rms = 0.0;            ///< of the weighted residuals, m or rad
   double s = 0.0;              ///< standard deviation of a reading, from residuals and redundancy
@@ -111,15 +111,15 @@ struct Fit {
 /// with pivoting on columns of unit length. Shapes that are not given are searched on their grids,
 /// one after the other until nothing improves, then between the grid's values; their uncertainty is
 /// that of the linearised problem. `weight` (0..1 a reading, or empty) is for suspected
-/// misreadings. Parameters that the readings cannot tell apart are an error that names them; there
-/// is no minimum-norm guess. Source: GUM-6:2020 9 for the covariance. Where repeats show noise that
-/// is not independent, generalised least squares: all rows whitened first; what else is known of it
-/// is in u only. `thin`: means of neighbours of a long table, if they are there already.
+/// misreadings. Parameters that the readings do not separate are an error that names them; there is
+/// no minimum-norm guess. Source: GUM-6:2020 9 for the covariance. Where repeats show noise that is
+/// not independent, generalised least squares: all rows whitened first; what else is known of it is
+/// in u only. `thin`: means of neighbours of a long table, if they exist already.
 Expected<Fit> fit(const Observations& observations, std::vector<Term> terms,
                   std::vector<double> weight = {}, const Noise& noise = {},
                   const Observations* thin = nullptr);
 
-/// What a term with one parameter says of each reading, m or rad.
+/// What a term with one parameter predicts for each reading, m or rad.
 Expected<std::vector<double>> said_by(const Observations& observations, const Term& term,
                                       double value);
 

@@ -71,7 +71,7 @@ std::optional<std::size_t> time_constant_shape(const Effect& effect);
 /// Whether a term has the value that another measurement states.
 bool has_stated(const Term& term);
 
-/// A reading that was taken where the manifest does not say where the other axes stood.
+/// A reading for which the manifest does not state the position of the other axes.
 inline bool has_unstated_position(const Part& part) {
   for (const auto& axis : part.table.axes)
     for (const double x : axis.position)

@@ -19,9 +19,10 @@ struct Prediction {
   bool outside = false;  ///< a channel or an axis leaves the range that the model has seen
 };
 
-/// `zero_kept`: the zero is that of the fit, not a new unknown. `seen`: the part that the terms were fitted to; `unseen`: the same displacement at another time.
-/// Uncertainty: from blocks of `seen` that the fit has not seen, as far as the channels of `unseen`
-/// ask more of the parameters (docs/model.md, "Heat and time").
+/// `zero_kept`: the zero is that of the fit, not a new unknown. `seen`: the part that the terms
+/// were fitted to; `unseen`: the same displacement at another time. Uncertainty: from blocks of
+/// `seen` that the fit has not seen, as far as `unseen` depends more on the parameters
+/// (docs/model.md, "Heat and time").
 Expected<Prediction> predict(const Part& seen, const std::vector<Term>& model, const Part& unseen,
                              bool zero_kept);
 

@@ -29,6 +29,6 @@ std::string sha256(std::string_view bytes);
 void append_int(std::string& out, long long value);
 
 /// With at most two decimals, as PDF operands; the size is limited to 30000, as PDF readers do.
-void append_real(std::string& out, double value, char behind);
+void append_real(std::string& out, double value, char after);
 
 }  // namespace nonio::pdf

@@ -10,11 +10,11 @@
 
 #include "nonio/sdk/error.h"
 
-/// A security boundary. Bytes of strangers come in here in two places: what somebody hands to
-/// `verify`, and what the process with the plugins hands over to be signed (`reserve`). A library
-/// that repairs what it reads takes a file that two readers read differently: with an update that
-/// hides an object, or a second table. So this reader is our own, repairs nothing, and costs no
-/// more than the size of the file allows. Nothing else of Nonio reads a PDF.
+/// A security boundary. Untrusted bytes enter here in two places: the file that a user gives to
+/// `verify`, and the file that the process with the plugins sends to be signed (`reserve`). A
+/// library that repairs what it reads takes a file that two readers read differently: with an
+/// update that hides an object, or a second table. So this reader is our own, repairs nothing, and
+/// costs no more than the size of the file allows. Nothing else of Nonio reads a PDF.
 ///
 /// PDF as narrowly as a certificate needs it: one revision, one plain cross-reference table, whole
 /// objects one after the other with nothing between them. Whatever is more is refused, because what
@@ -43,7 +43,7 @@ struct Value {
 
   bool is(Kind k) const { return kind == k; }
   bool is_name(std::string_view name) const { return kind == Kind::name && text == name; }
-  const Value* find(std::string_view key) const;  ///< of a dictionary; null if it is not there
+  const Value* find(std::string_view key) const;  ///< of a dictionary; null if it is missing
 };
 
 struct Object {

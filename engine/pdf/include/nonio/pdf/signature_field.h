@@ -18,7 +18,7 @@ inline constexpr std::size_t max_room = 32000;  ///< a PDF string may have 65535
 /// looked at.
 inline constexpr std::size_t max_file = 100'000'000;
 
-/// Bytes for the CMS object if nothing else is said: enough for a time stamp with a long chain.
+/// Bytes for the CMS object if nothing else is stated: enough for a time stamp with a long chain.
 inline constexpr std::size_t usual_room = 16384;
 
 /// `pdf` with attachments, a signature field in the frame that a page has for it (`signature_key`),
@@ -30,10 +30,10 @@ Expected<std::string> reserve(std::string_view pdf, const std::vector<Attachment
 /// The one signature of a file.
 struct PdfSignature {
   const Value* dictionary = nullptr;
-  std::string_view before, behind;  ///< what is signed
-  std::size_t gap = 0;              ///< position of the signature's "<"
-  std::string_view contents;        ///< its hexadecimal digits
-  Time time = 0;                    ///< as the signer states; not confirmed by others
+  std::string_view before, after;  ///< what is signed
+  std::size_t gap = 0;             ///< position of the signature's "<"
+  std::string_view contents;       ///< its hexadecimal digits
+  Time time = 0;                   ///< as the signer states; not confirmed by others
 
   std::size_t room() const { return contents.size() / 2; }
 };
@@ -41,7 +41,7 @@ struct PdfSignature {
 /// By its place near the end of a file and the form that `reserve` gives it. Nothing else of the
 /// file is read: that comes when the signature holds.
 Expected<PdfSignature> signature_at_end(std::string_view bytes);
-/// When a signed PDF says that it was signed (/M); an error if it says it in another way than
+/// When a signed PDF states that it was signed (/M); an error if it states it in another way than
 /// `reserve` does.
 Expected<Time> stated_time(std::string_view pdf);
 

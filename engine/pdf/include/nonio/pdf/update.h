@@ -8,9 +8,9 @@
 #include "nonio/pdf/reader.h"
 #include "nonio/sdk/error.h"
 
-/// What may be added to a signed file: revocation data and time stamps over all that stands before
+/// What may be added to a signed file: revocation data and time stamps over all bytes before them
 /// (EN 319 142-1, B-LT and B-LTA), each time as an incremental update of one form. What is read is
-/// written again and compared byte by byte, so that an update holds nothing else.
+/// written again and compared byte by byte, so that an update contains nothing else.
 namespace nonio::pdf {
 
 /// DER, as the document security store holds them.
@@ -25,7 +25,7 @@ struct Update {
   bool has_stamp = false;
   std::string bytes;  ///< of a time stamp, zeros
   std::size_t gap = 0,
-              behind = 0;  ///< in the file: where the stamp's "<" stands, what follows its ">"
+              after = 0;  ///< in the file: position of the stamp's "<", and of what follows its ">"
 };
 
 inline constexpr std::size_t most_updates = 20, most_stored = 100;

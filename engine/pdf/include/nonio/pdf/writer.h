@@ -37,7 +37,7 @@ struct Picture {
   std::string opacity;  ///< deflated rows of 8 bits; empty where nothing shines through
 };
 
-/// Where a signature is shown, pt. The page's dictionary says it (`signature_key`), for `reserve`.
+/// Where a signature is shown, pt. It is in the page's dictionary (`signature_key`), for `reserve`.
 struct SignaturePlace {
   std::size_t page = 0;
   double left = 0.0, low = 0.0, right = 0.0, high = 0.0;
@@ -55,8 +55,8 @@ struct NewFile {
   std::array<Font, 3> fonts{};
   std::vector<std::shared_ptr<const Picture>> pictures;
   std::vector<std::string> pages;
-  /// An ICC profile of sRGB: the file is to be kept for long, and says its colours, its properties
-  /// also as XMP, and an identifier.
+  /// An ICC profile of sRGB: the file is to be kept for long, and states its colours, its
+  /// properties also as XMP, and an identifier.
   std::string profile{};
   std::optional<SignaturePlace> signature{};
 };

@@ -32,7 +32,7 @@ namespace nonio {
 
 /// Each column has observations.size() entries, 0 in rows in which the axis did not move.
 struct AxisReadings {
-  std::vector<char> moved;    ///< 1 where it did
+  std::vector<char> moved;    ///< 1 where the axis moved
   std::vector<double> p;      ///< position from the middle of the measured stretch, m or rad
   std::vector<double> theta;  ///< position as commanded, m or rad
   std::vector<double> d;      ///< direction of approach: +1, -1
@@ -44,8 +44,8 @@ struct AxisReadings {
   /// either, `t` is 0 everywhere.
   bool timed = false;
   double middle = 0.0;  ///< of the measured stretch, as commanded, m or rad
-  /// Every reading has a material temperature; of those in `interpolated` it lies, in time, on the
-  /// straight line between their neighbours'.
+  /// Every reading has a material temperature; of those in `interpolated` it is interpolated
+  /// linearly in time between their neighbours.
   bool temperature = false;
   std::vector<std::uint32_t> interpolated;  ///< rows
 };
@@ -74,14 +74,14 @@ std::vector<double> fixed_points(const Observations& o, const Axis& axis);
 
 Effect::Shape fixed_point_shape();
 
-/// Why an effect that asks for the course of time does not apply.
+/// Why an effect that requests the course of time does not apply.
 WhyNot no_order(const Observations& o, const Axis& axis);
 
-/// Why an effect that asks for both directions of approach does not apply.
+/// Why an effect that requests both directions of approach does not apply.
 WhyNot one_direction(const Observations& o, const Axis& axis);
 
-/// The positions that were measured, each once, ascending, from the middle of the stretch. What
-/// lies nearer than 1e-9 of the length is one target.
+/// The positions that were measured, each once, ascending, from the middle of the stretch.
+/// Positions nearer than 1e-9 of the length are one target.
 std::vector<double> targets_of(const AxisReadings& r);
 
 /// A column for each of `values`, which are called as value(readings, row) for the rows in which

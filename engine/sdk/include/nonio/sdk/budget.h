@@ -11,7 +11,7 @@
 
 namespace nonio {
 
-/// How the errors that one input quantity makes in the readings hang together.
+/// How the errors of one input quantity in the readings are correlated.
 enum class Correlation {
   readings,  ///< each reading (mean) has its own
   walk,      ///< grows from reading to reading along each line, by steps of its own
@@ -34,9 +34,9 @@ struct Contribution {
   std::string source;           ///< keys of the manifest, or "readings"
 };
 
-/// How an uncertainty came about: what an analysis was told, and what of it is in each result.
-/// U = k sqrt(sum u^2), but where the laboratory's floor (its CMC) is larger; u and k of each
-/// result below. Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (degrees of freedom);
+/// How an uncertainty came about: the inputs of an analysis, and their share in each result. U = k
+/// sqrt(sum u^2), but where the laboratory's floor (its CMC) is larger; u and k of each result
+/// below. Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (degrees of freedom);
 /// docs/uncertainty.md. Range: u >= 0, k > 0, dof > 0 or infinite; `check` (sdk/check.h) refuses
 /// what is not finite.
 struct UncertaintyBudget {
@@ -50,7 +50,7 @@ struct UncertaintyBudget {
   double length = 0.0;  ///< of the longest reading, m; 0 of angles
   std::vector<Contribution> contributions;
   std::vector<Result> results;
-  /// Keys of contributions that nobody stated. Then no result has an uncertainty, only the
+  /// Keys of contributions that are not stated. Then no result has an uncertainty, only the
   /// repeatability of its fit.
   std::vector<std::string> missing;
 };

@@ -26,7 +26,7 @@ struct Axis {
   std::optional<double> fixed_point{};
   std::map<std::string, double> tolerance{};  ///< upper limit of a result, by its name: m or rad
   std::string slave{};  ///< of a gantry: name of the control's axis that drives the second side
-  /// What was on in the control while the axis was measured; none: nobody says it.
+  /// The compensation that was active in the control while the axis was measured; none: not stated.
   std::optional<std::string> active_table{};  ///< files of the table; empty: there was none
   std::optional<double> active_backlash{};    ///< m or rad; 0: there was none
 };
@@ -34,10 +34,10 @@ struct Axis {
 struct Machine {
   std::string maker, model, serial;
   std::string description, condition;  ///< "gantry milling machine"; its state at the calibration
-  std::string structure;               ///< gantry, single-column, bridge, other; empty if not said
-  std::string control;  ///< name of the output plugin that writes its tables; empty: any
+  std::string structure;  ///< gantry, single-column, bridge, other; empty if not stated
+  std::string control;    ///< name of the output plugin that writes its tables; empty: any
   std::vector<Axis> axes;
-  std::string asset{};  ///< the machine's own number in the house; empty if not said
+  std::string asset{};  ///< the machine's own number in the house; empty if not stated
 
   const Axis* axis(std::string_view name) const {
     for (const Axis& a : axes)
@@ -73,8 +73,8 @@ struct Square {
   std::optional<double> U{};      ///< rad, of `error`, k = 2
 };
 
-/// What the uncertainty budget needs beside the instrument (ISO/TR 230-9:2005 Annex C); each is
-/// the full range in which the quantity is known to lie.
+/// What the uncertainty budget needs in addition to the instrument (ISO/TR 230-9:2005 Annex C);
+/// each is the full range of the quantity.
 struct Environment {
   std::optional<double> misalignment;            ///< m, beam against axis over the travel
   std::optional<double> temperature_range;       ///< K, of the material temperature's reading
@@ -101,16 +101,16 @@ struct Laboratory {
   Cmc cmc{};
 };
 
-/// What a certificate says beside the results (ISO/IEC 17025:2017, 7.8): of site.toml, and of the
-/// campaign where it says otherwise.
+/// What a certificate states in addition to the results (ISO/IEC 17025:2017, 7.8): from site.toml,
+/// unless the campaign states it.
 struct CertificateTexts {
   std::vector<std::string> languages;        ///< one or two, of templates/words
   std::map<std::string, std::string> title;  ///< by language; none: the words' own
   std::string form;                          ///< name of a file in templates/, without .toml
   std::string location;                      ///< as a DCC names it: customer, laboratory, ...
-  std::string procedure;                     ///< the laboratory's own, beside the standards
+  std::string procedure;                     ///< the laboratory's own, in addition to the standards
   std::string deviations;                    ///< additions to the method, deviations, exclusions
-  std::string conditions;                    ///< what influences the results and no reading says
+  std::string conditions;                    ///< influences on the results that no reading contains
   std::string opinions;                      ///< opinions and interpretations, marked as such
   std::string amendment;                     ///< why an earlier certificate is replaced
   std::vector<std::string> customer_data;    ///< keys of the manifest that the customer stated
@@ -142,25 +142,27 @@ struct Measurement {
   std::map<std::string, double> from, to;  ///< ends of a diagonal, m
   std::vector<std::uint32_t> exclude{};    ///< lines of the file whose readings do not count
   std::string exclude_reason{};            ///< why they do not; a certificate needs it
-  /// What the manifest says of a recorded channel; role: "air", "structure", "source", "coolant".
+  /// What the manifest states about a recorded channel; role: "air", "structure", "source",
+  /// "coolant".
   struct Channel {
     std::string name, place, role;
   };
   std::vector<Channel> channels{};
-  std::map<std::string, double> at{};  ///< where the axes that stood still were, m
-  std::string adjustment{};            ///< "before" or "after" one; empty: not said
-  /// Of the rows, where they have no times: "pendulum", "as-listed", "unknown"; empty: not said.
+  std::map<std::string, double> at{};  ///< positions of the axes that did not move, m
+  std::string adjustment{};            ///< "before" or "after" one; empty: not stated
+  /// Of the rows, where they have no times: "pendulum", "as-listed", "unknown"; empty: not stated.
   std::string order{};
 
-  /// How the test was made, as ISO 230-2 wants it reported; what is empty was not said.
+  /// How the test was made, as ISO 230-2 requires it reported; what is empty was not stated.
   std::optional<double> feed{};                      ///< m/s, rad/s
   std::optional<double> dwell{};                     ///< s, at a target before it is read
   std::optional<double> over_travel{};               ///< m or rad, beyond the last target
   std::map<std::string, double> tool_offset{};       ///< m, from the spindle nose to the probe
   std::map<std::string, double> workpiece_offset{};  ///< m, from the table to the place measured
   std::string compensation{};                        ///< "on" or "off": the control's tables
-  std::string side{};                  ///< of a gantry axis: "master" or "slave"; empty: not said
-  std::optional<std::string> state{};  ///< of the machine, as the manifest says it; see `state_of`
+  std::string side{};  ///< of a gantry axis: "master" or "slave"; empty: not stated
+  std::optional<std::string>
+      state{};  ///< of the machine, as the manifest states it; see `state_of`
   /// Of a straightness: id of the same line's measurement before the straightedge was turned over.
   std::string reversal_of{};
   std::optional<double> foot{};  ///< m, of a level or mirror that was moved by its own length
@@ -178,7 +180,7 @@ inline const std::string& method_name(const Measurement& m) {
 }
 
 /// State of the machine in which something was measured: "final". Empty: it holds for every state.
-/// A manifest without key `state` says it behind the first space of the id ("D1 final").
+/// A manifest without key `state` has it after the first space of the id ("D1 final").
 inline std::string state_of(const Measurement& m) {
   if (m.state) return *m.state;
   const std::size_t space = m.id.find(' ');
@@ -202,7 +204,7 @@ struct Formula {
   };
   std::string name, axis, expression;
   std::vector<Parameter> parameters;
-  std::uint64_t line = 0;  ///< of the manifest, where the expression stands
+  std::uint64_t line = 0;  ///< of the manifest, with the expression
 };
 
 struct Campaign {
@@ -218,7 +220,7 @@ struct Campaign {
   CertificateTexts certificate;
   std::vector<Measurement> measurements;
   std::vector<std::string> model;  ///< effects, `kind:axis`
-  bool compensate_model = false;   ///< tables take what the model says, not the readings' means
+  bool compensate_model = false;   ///< tables take what the model predicts, not the readings' means
   std::vector<Formula> formulas;
 };
 

@@ -7,8 +7,8 @@
 #include "nonio/sdk/observations.h"
 #include "nonio/sdk/results.h"
 
-/// What every later stage relies on, whatever a plugin did. The nightly run, `nonio import`, the
-/// model and `nonio plugin check` all ask here. The error says what was found: "columns of
+/// What every later stage relies on, whatever a plugin did. Called by the nightly run, `nonio
+/// import`, the model and `nonio plugin check`. The error states what was found: "columns of
 /// different lengths".
 namespace nonio {
 
@@ -19,7 +19,7 @@ Expected<void> check(const Observations& o);
 
 /// Of results: values, uncertainties and evidence finite, coverage factors finite, columns of a
 /// table or series as long as the others, a budget with one entry for each contribution. NaN stays
-/// allowed in a table, where it says that there is no value.
+/// allowed in a table, where it states that there is no value.
 Expected<void> check(const Evaluation& e);
 
 /// Of what an output or controller made: predictions and evidence finite.

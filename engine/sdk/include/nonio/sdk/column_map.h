@@ -11,8 +11,8 @@
 
 #include "nonio/sdk/plugin.h"
 
-/// What a user says of a table that says nothing of itself: units, sign, separator, and where its
-/// rows are. Nothing of it is guessed.
+/// Description of a table that does not describe itself: units, sign, separator, and where its rows
+/// are. Nothing of it is guessed.
 namespace nonio {
 
 /// An error of an option: "option unit: expected ..., found ...".
@@ -94,7 +94,7 @@ inline std::optional<RowRange> row_range_of(std::string_view text) {
   return range;
 }
 
-/// What the options of `table_map_options` say.
+/// The values of the options of `table_map_options`.
 struct TableMap {
   char separator = ' ';
   double target_unit = 0.0, value_unit = 0.0;  ///< SI value of 1
@@ -135,7 +135,7 @@ inline std::vector<Option> table_map_options() {
        "all of it: \"12-36 forward\", \"41-65 reverse\" (or +, -)."}};
 }
 
-/// The lines of each table; an error where they overlap or do not stand in their order.
+/// The lines of each table; an error where they overlap or are not in order.
 inline Expected<std::vector<RowRange>> tables_of(const Settings& options) {
   std::vector<RowRange> tables;
   const RowRange all{static_cast<std::uint64_t>(options.integer("first_line", 1)),
@@ -162,7 +162,7 @@ inline Expected<std::vector<RowRange>> tables_of(const Settings& options) {
   return tables;
 }
 
-/// An error that names the option which says nothing, or nothing that can be.
+/// An error names an option that is empty or invalid.
 inline Expected<TableMap> table_map_of(const Settings& options, bool rotary) {
   TableMap map;
   for (const auto& [name, unit] :

@@ -14,8 +14,8 @@
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
 
-/// What a controller plugin says of its tables, and what a control makes of them. With
-/// e = actual - nominal, and c = what the control adds to a position, a table is right if c = -e.
+/// What a controller plugin reports of its tables, and what a control makes of them. With e =
+/// actual - nominal, and c = what the control adds to a position, a table is right if c = -e.
 namespace nonio {
 
 /// The tables of one control. A unit is the m (rad) that 1 in the file stands for; a step is the
@@ -24,9 +24,9 @@ struct ControlTable {
   enum class Sign { error, correction };               ///< entries are +e, or -e
   enum class Entry { absolute, increment, position };  ///< position: nominal plus the entry
   enum class Grid { even, listed };
-  /// Where an entry has to be 0: nowhere (it is made so at the reference point all the same); at
-  /// the reference point, wherever that lies; at the first point, the zero of the axis, from which
-  /// the control counts its points.
+  /// Where an entry has to be 0: nowhere (it is 0 at the reference point nevertheless); at the
+  /// reference point, at any position; at the first point, the zero of the axis, from which the
+  /// control counts its points.
   enum class Zero { free, reference, first };
   struct Scale {
     double linear = 1e-3, rotary = std::numbers::pi / 180.0;
@@ -57,7 +57,7 @@ struct ControlTable {
   bool squareness = false;
   bool volumetric = false;  ///< by the positions of several axes at once, or all errors in one file
   bool runs_gcode = true;   ///< takes part programs in G-code
-  std::string backlash;     ///< the parameter of lost motion; empty: none beside these tables
+  std::string backlash;     ///< the parameter of lost motion; empty: none with these tables
   std::vector<Fact> facts{};
 };
 
@@ -65,7 +65,7 @@ struct ControlTable {
 /// `validate_table` (math/loaded_table.h) accepts.
 struct LoadedTable {
   enum class Outside { holds, zero, repeats, continues };
-  std::string output;                         ///< axis; as the file names it if nobody knows it
+  std::string output;                         ///< axis; as the file names it if it is not known
   std::vector<std::string> input;             ///< by the positions of these; one, or two
   std::vector<std::vector<double>> position;  ///< of each input, ascending
   std::vector<double> plus;                   ///< c; of two inputs the last one runs fastest
@@ -76,7 +76,7 @@ struct LoadedTable {
 };
 
 /// The files of one table, and what is known of the machine: its axes, with their numbers in the
-/// options, say what the files' names mean.
+/// options, state what the files' names mean.
 struct TableInput {
   const std::vector<Artifact>& files;
   const Campaign& campaign;

@@ -117,7 +117,7 @@ inline double slow_value(std::string_view text, const Decimal& d) {
   const auto [ptr, error] =
       std::from_chars(plain.data(), plain.data() + plain.size(), value, std::chars_format::general);
   if (error == std::errc{}) return value;
-  // Too large or too small for a double: the place of the first significant digit tells which.
+  // Too large or too small for a double: the place of the first significant digit decides.
   long zeros = 0;
   for (const char c : plain) {
     if (c >= '1' && c <= '9') break;
@@ -129,14 +129,14 @@ inline double slow_value(std::string_view text, const Decimal& d) {
 
 }  // namespace detail
 
-/// What a spreadsheet writes for a value that is not there: #N/A, in other languages #N/D, #NV.
+/// What a spreadsheet writes for a value that is missing: #N/A, in other languages #N/D, #NV.
 inline bool missing_in_spreadsheet(std::string_view text) {
   return detail::same_word(text, "#n/a") || detail::same_word(text, "#n/d") ||
          detail::same_word(text, "#nv");
 }
 
-/// A decimal number as it stands in a file: sign, digits, one decimal mark, exponent; no thousands
-/// separator, no hexadecimal, nothing behind it. The value is the double nearest to the text.
+/// A decimal number as written in a file: sign, digits, one decimal mark, exponent; no thousands
+/// separator, no hexadecimal, nothing after it. The value is the double nearest to the text.
 inline Field parse_number(std::string_view text, bool comma_allowed) {
   detail::Decimal d;
   if (!detail::parse_decimal(text, comma_allowed, d)) {
@@ -189,8 +189,8 @@ inline std::size_t quoted_end(std::string_view line, std::size_t open, char sepa
 
 }  // namespace detail
 
-/// Splits a line; fields come trimmed and without the quotes around them. False if a quote is not
-/// closed on this line or something stands behind a closing one.
+/// Splits a line; fields come trimmed and without the quotes around them. False if a quoted field
+/// is not terminated on this line, or if text follows a closing quote.
 inline bool split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
   const char* const end = line.data() + line.size();
@@ -279,7 +279,7 @@ inline std::string_view nearest(std::string_view name, const std::vector<std::st
 
 namespace nonio {
 
-/// Text as a field of a CSV file: quoted where RFC 4180 asks for it. A spreadsheet takes text that
+/// Text as a field of a CSV file: quoted where RFC 4180 requests it. A spreadsheet takes text that
 /// starts with one of = + - @ (or with a tab or CR before it) for a formula; an apostrophe stops
 /// that.
 inline std::string csv_text(std::string_view words) {

@@ -47,7 +47,7 @@ int place_of_second_digit(double size);
 /// To a multiple of 10^place.
 std::string rounded_text(double value, int place);
 
-/// A result as it is said, in the printed unit, with a decimal point.
+/// A result in the printed unit, with a decimal point.
 struct RoundedResult {
   std::string value, U;
 };
@@ -83,7 +83,7 @@ std::string localised(std::string number, std::string_view language);
 std::string words(const Templates& templates, std::string_view language, std::string_view name);
 
 /// The number of a finding in a sentence: counts are whole, positions keep their digits, and a
-/// probability is "p = 0.0021" down to what nobody can picture.
+/// probability is "p = 0.0021", or "p < ..." below a smallest printed value.
 std::string evidence_text(const Number& n);
 
 /// `text` with each `{name}` replaced by the finding's evidence of that name (numbers carry their

@@ -5,9 +5,9 @@
 
 namespace nonio {
 
-/// Puts what `words` (format.h) is asked for thousands of times a night - findings, notes, terms - of all files of a
-/// language into one table, the first file first: `words` then looks into one table instead of twenty. For who has read
-/// templates; they say the same with and without it.
+/// Collects the texts that `words` (format.h) looks up most - findings, notes, terms - from all
+/// files of a language into one table, the first file first, so that it searches one table instead
+/// of twenty. To be called after templates are read; the texts stay the same.
 void gather_words(Templates& templates);
 
 }  // namespace nonio

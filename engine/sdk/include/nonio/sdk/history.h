@@ -22,7 +22,7 @@ struct HistoryPoint {
   double u_common = 0.0;  ///< of what it shares with other campaigns: the instrument, the expansion
 };
 
-/// What the model of a series says between two days.
+/// The model of a series between two days.
 struct HistorySegment {
   std::string from, to;
   double first = 0.0, last = 0.0;      ///< at `from`, at `to`
@@ -33,12 +33,12 @@ struct HistorySegment {
 
 struct HistoryChange {
   std::string after, before;            ///< days of the last campaign before it, the first after it
-  double size = 0.0, u = 0.0, p = 1.0;  ///< p: adjusted for all that was asked
+  double size = 0.0, u = 0.0, p = 1.0;  ///< p: adjusted for all tests of the run
   std::string cause;                    ///< undeclared, event, instrument, table
   std::string event{};
   std::string after_campaign{}, before_campaign{};
   double p_alone = 1.0;  ///< of this test alone
-  bool mailed = true;    ///< sure enough for a mail
+  bool mailed = true;    ///< significant enough for a mail
 };
 
 struct HistoryForecast {
@@ -82,8 +82,8 @@ struct HistoryStep {
   double size = 0.0, u = 0.0;
 };
 
-/// What a campaign's document may say of the campaigns of its machine up to its day. It depends on
-/// nothing that came later, on no other machine and on no night.
+/// The history of a machine up to the day of a campaign, for its documents. It depends on nothing
+/// later, on no other machine and on no run.
 struct HistorySoFar {
   std::string machine;               ///< its name; empty: the campaign names none
   std::string day;                   ///< of the campaign; empty: it has none

@@ -12,7 +12,7 @@
 namespace nonio {
 
 /// Component of vectors in space along which a linear axis moves: 0, 1, 2 for X, Y, Z (and X1, Y2,
-/// ...); 3 if the name does not say.
+/// ...); 3 if the name does not state it.
 inline std::size_t coordinate_of(std::string_view axis) {
   const std::size_t at =
       axis.empty() ? std::string_view::npos : std::string_view("XYZ").find(axis[0]);
@@ -22,17 +22,17 @@ inline std::size_t coordinate_of(std::string_view axis) {
 /// Commanded positions that lie nearer together are one target: 0.0001 mm, 0.02 arcsec. m or rad.
 inline constexpr double grid_tolerance = 1e-7;
 
-/// The one table that all measurements reduce to: a row is one reading that was taken. Columns
-/// have `size()` entries, or none where the file did not have them. SI: m, rad, s, degC. Signs:
-/// deviation = actual - target (ISO 230-2), drawn in docs/conventions.md. What must hold of it is
-/// what `check` (sdk/check.h) asks.
+/// The one table that all measurements reduce to: a row is one reading that was taken. Columns have
+/// `size()` entries, or none where the file did not have them. SI: m, rad, s, degC. Signs:
+/// deviation = actual - target (ISO 230-2), drawn in docs/conventions.md. The conditions for its
+/// values are those of `check` (sdk/check.h).
 struct Observations {
   /// Commanded position of one axis, and the direction from which it was reached.
   struct AxisColumn {
     std::string axis;
     bool rotary = false;
     std::vector<double> position;       ///< m, or rad
-    std::vector<std::int8_t> approach;  ///< +1, -1; empty if the axis stood still
+    std::vector<std::int8_t> approach;  ///< +1, -1; empty if the axis did not move
   };
   /// Readings of one line share one unknown zero and one direction of sensing.
   struct Line {
@@ -77,13 +77,13 @@ struct Observations {
   /// Of the machine (manifest), for effects that depend on it.
   std::string structure{};
 
-  /// False: nobody knows in which order the rows were taken (manifest, `order = "unknown"`).
+  /// False: the order in which the rows were taken is not known (manifest, `order = "unknown"`).
   bool order_known = true;
 
   std::uint64_t missing = 0;  ///< readings that were not taken
   std::vector<Remark> notes;  ///< what the reader did that a user would want to know
-  /// What the file says against the manifest: findings `plausibility.*`, for which no table is
-  /// written before a person says why.
+  /// Contradictions between file and manifest: findings `plausibility.*`, for which no table is
+  /// written before a person states why.
   std::vector<Finding> doubts{};
 
   std::size_t size() const { return deviation.size(); }
@@ -97,7 +97,7 @@ struct Observations {
       if (a.axis == name) return &a;
     return nullptr;
   }
-  /// Of a reading, also where the file did not say it.
+  /// Of a reading, also if the file does not contain it.
   std::uint32_t line_of(std::size_t i) const { return line.empty() ? 0 : line[i]; }
   std::uint32_t run_of(std::size_t i) const { return run.empty() ? 1 : run[i]; }
   std::uint32_t source_line_of(std::size_t i) const {
@@ -108,8 +108,8 @@ struct Observations {
   }
 };
 
-/// Calls f(column...) for each column of what was measured beside the deviation itself, with that
-/// of each table: u, run, source_line, time, material, air, pressure, humidity.
+/// Calls f(column...) for each column that was measured in addition to the deviation, with that of
+/// each table: u, run, source_line, time, material, air, pressure, humidity.
 template <class F, class... Tables>
 void for_each_measured_column(F f, Tables&... tables) {
   f(tables.u...);
@@ -139,7 +139,7 @@ void for_each_column(Table& o, F f) {
   for_each_measured_column(f, o);
 }
 
-/// Adds the readings of `more` behind those of `to`: the deviations, and what was measured beside
+/// Appends the readings of `more` to those of `to`: the deviations, and what was measured with
 /// them. In a column that only one of the two has, the rows of the other are NaN; run 1, source
 /// line 0. Axes, lines and channels are the caller's.
 void append_measured(Observations& to, const Observations& more);

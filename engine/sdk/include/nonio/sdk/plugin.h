@@ -61,8 +61,8 @@ struct ReadInput {
   const Campaign& campaign;
   const Measurement& measurement;
   const Settings& options;
-  /// To be called now and then with the offset up to which the bytes are not needed any more, so
-  /// that a file of a gigabyte does not stay in memory beside its readings. May be empty.
+  /// To be called repeatedly with the offset up to which the bytes are not needed any more, so that
+  /// a file of a gigabyte does not stay in memory together with its readings. May be empty.
   std::function<void(std::size_t)> done_with{};
   /// The method of the measurement; null where none is loaded.
   const Method* method = nullptr;
@@ -145,7 +145,7 @@ struct Method {
 };
 
 /// Why an effect is no candidate for these readings: a name of words ("unseen.<id>"), empty if it
-/// does not concern this axis at all; and the rows of the table that stand in the way.
+/// does not concern this axis at all; and the rows of the table that prevent it.
 struct WhyNot {
   std::string id;
   std::vector<std::uint32_t> rows{};
@@ -168,15 +168,15 @@ struct Effect {
     /// Where to look, ascending, in SI; one value if it is known (a period in the manifest). Empty
     /// if these readings cannot show the effect.
     std::function<std::vector<double>(const Observations&, const Axis&)> grid;
-    bool continuous = true;  ///< the best value lies between those of the grid
-    /// Taken where the readings say nothing against it (a fixed point in the middle): no evidence
-    /// is asked for it, as it is for every other value of the grid.
+    bool continuous = true;  ///< the best value may be between those of the grid
+    /// The default where the readings do not contradict it (a fixed point in the middle): it needs
+    /// no evidence, unlike every other value of the grid.
     std::optional<double> usual{};
   };
   Info info;                      ///< name: the kind without the axis, "backlash"
   std::vector<Parameter> linear;  ///< of a curve: one, which stands for all of its columns
   std::vector<Shape> shapes;
-  bool curve = false;        ///< smooth: as many columns as its first shape asks for
+  bool curve = false;        ///< smooth: as many columns as its first shape requests
   bool compensable = false;  ///< a table in the controller can take it away
   std::function<bool(const Observations&, const Axis&)> applies;
   /// Columns of length observations.size(), of unit 1/unit of the parameter times the deviation's.
@@ -189,11 +189,11 @@ struct Effect {
   /// columns are the error along the axis, and the engine takes its component where readings are
   /// sensed in another direction.
   std::function<std::vector<std::string>(const Observations&)> instances{};
-  /// An unknown of the set-up (how a mirror stood): in every model that it applies to, never a
-  /// candidate.
+  /// An unknown of the set-up (the orientation of a mirror): in every model that it applies to,
+  /// never a candidate.
   bool is_nuisance = false;
-  /// A curve that says what is left and not why ("a reversal for each target"): never a candidate,
-  /// offered where no effect explains. Beside other effects it is what they leave of it.
+  /// A curve that describes the remainder without a cause ("a reversal for each target"): never a
+  /// candidate, offered where no effect explains. With other effects: what they leave of it.
   bool description = false;
   /// Its instances are channels of a measurement over time (`Observations::channels`): it explains
   /// displacements over time and nothing else. Other effects do not.
@@ -208,7 +208,7 @@ struct AnalysisInput {
   const Observations& observations;
   const Settings& options;
   /// One entry for each measurement of the campaign, in its order; empty where nothing could read
-  /// it. For methods that need more than one: its ids stand in Evaluation::uses.
+  /// it. For methods that need more than one: their ids are in Evaluation::uses.
   const std::vector<Observations>* all = nullptr;
   /// What the machine's control takes, as its plugin declares it; null where none of that name is
   /// loaded.
@@ -243,9 +243,9 @@ struct OutputInput {
   const Results& results;
   const Settings& options;
   const Templates& templates;
-  const Issue* issue = nullptr;  ///< of a certificate; null while it is asked what is missing
-  /// The machine over its campaigns (sdk/history.h), where `Output::wants_history` asks for it; null
-  /// where nobody knows it yet.
+  const Issue* issue = nullptr;  ///< of a certificate; null in the check for missing data
+  /// The machine over its campaigns (sdk/history.h), if `Output::wants_history` is set; null while
+  /// it is not known yet.
   const HistorySoFar* history = nullptr;
 };
 
@@ -255,9 +255,9 @@ struct Output {
   /// Of what is issued under a number, once and for good.
   struct Certificate {
     /// Everything that is missing for it, as keys to fill. When nothing is, `write` is called for a
-    /// draft (Issue::is_draft): every page of its PDF has to say that it is one. When a person has
-    /// released it, the host draws a number and calls `write` again; the same data are never issued
-    /// anew.
+    /// draft (Issue::is_draft): every page of its PDF has to state that it is one. When a person
+    /// has released it, the host draws a number and calls `write` again; the same data are never
+    /// issued anew.
     std::vector<std::string> (*missing_requirements)(const OutputInput&) = nullptr;
   };
   /// What the program writes with it where it has a document of this kind to show or to print.
@@ -284,7 +284,7 @@ struct ControllerInput {
   const std::vector<Observations>& observations;
   const Results& results;
   const Settings& options;
-  /// The readings themselves, where `observations` is what the campaign's model says of them
+  /// The readings themselves, where `observations` is what the campaign's model predicts of them
   /// (manifest, compensate = "model"); else null.
   const std::vector<Observations>* measured = nullptr;
 };
@@ -293,7 +293,7 @@ struct ControllerInput {
 /// outputs: no output has the same name.
 struct Controller {
   /// Where it has an option `axes` of tables, the host puts into it what the record of the machine
-  /// says of each axis: number, reference_mm, from_mm, to_mm, resolution_um, largest_um,
+  /// states about each axis: number, reference_mm, from_mm, to_mm, resolution_um, largest_um,
   /// slope_um_per_m, and the same of rotary axes (_deg, _arcsec, slope_arcsec_per_deg). What of it
   /// the control does not need is passed over.
   Info info;
@@ -322,7 +322,7 @@ class Registry {
   ~Registry() = default;
 };
 
-/// The version of this interface: the one place that it stands in.
+/// The version of this interface: its only definition.
 #define NONIO_SDK_VERSION 17
 
 #define NONIO_STRING_(x) #x

@@ -20,9 +20,9 @@ struct Number {
   Quantity quantity = Quantity::number;
 };
 
-/// A result. What cannot be given is absent from the list, and a finding says why.
-/// What of a value is followed over the campaigns of its machine. Only values that are linear in
-/// the readings can be: a largest deviation grows with the number of runs.
+/// A result. What cannot be given is absent from the list, and a finding states why. What of a
+/// value is followed over the campaigns of its machine. Only values that are linear in the readings
+/// can be: a largest deviation grows with the number of runs.
 struct Followed {
   std::string quantity;  ///< its name in the history: "squareness:XY"
   std::string axis;      ///< of the control; of a plane or pair both, "XY"
@@ -54,7 +54,7 @@ struct Finding {
   std::string advice{};
 };
 
-/// Something worth knowing that asks for nothing. Its words are the text `note.<id>` of
+/// Information that requires no action. Its words are the text `note.<id>` of
 /// templates/words, with places as a finding has them; `english` is for plugins without words
 /// there.
 struct Remark {
@@ -93,7 +93,7 @@ struct Series {
   std::vector<double> repeatability{};  ///< in place of U, as in Value
 };
 
-/// What an analysis says of one measurement, or of the campaign.
+/// The results of an analysis for one measurement, or for the campaign.
 struct Evaluation {
   std::vector<Value> values;
   PointTable points;  ///< a row a target: the first column is `target`
@@ -116,7 +116,7 @@ struct Prediction {
 struct Artifact {
   std::string name;  ///< a plain file name
   std::string bytes;
-  bool sign = false;  ///< a PDF or an XML file that the host signs before anybody sees it
+  bool sign = false;  ///< a PDF or an XML file that the host signs before it is published
 };
 
 /// What an output makes of a campaign. A refusal is a finding, not an error.
@@ -128,10 +128,10 @@ struct OutputResult {
 };
 
 /// One place of a file that is other than it was: a key of a TOML file or a line of readings. What
-/// was not there before, or is not there any more, is absent.
+/// was missing before, or is not there any more, is absent.
 struct Change {
   std::string key;         ///< "machine.axes.X.tolerance_um.B"; empty: a line
-  std::uint64_t line = 0;  ///< 1-based, in the file as it is now; of what is gone: as it was
+  std::uint64_t line = 0;  ///< 1-based, in the present file; of a removed entry: in the former file
   std::optional<std::string> before{}, after{};
 };
 
@@ -139,11 +139,11 @@ struct Change {
 struct FileChange {
   std::string file;
   std::vector<Change> changes{};
-  std::uint64_t more = 0;  ///< so many places beside these
+  std::uint64_t more = 0;  ///< number of further places
 };
 
 /// The number under which something is issued, drawn by the host; dates as YYYY-MM-DD. Before a
-/// person has released it there is no number: a draft, and every page of it must say so.
+/// person has released it there is no number: a draft, and every page of it must state that.
 struct Issue {
   std::string number, date;
   std::string replaces, replaces_date;  ///< the one that this amends; empty: none
@@ -172,21 +172,21 @@ inline std::string identifier_of(std::string_view number, std::string_view readi
 }
 
 /// Of a result y with expanded uncertainty U against an upper limit T, by the rule of the
-/// certificate. ISO 14253-1: conforms y <= T - U, does not conform y > T + U, between them it
-/// cannot be decided (docs/howto-certificate.md has the other rules).
+/// certificate. ISO 14253-1: conforms y <= T - U, does not conform y > T + U, between them it is
+/// indeterminate (docs/howto-certificate.md has the other rules).
 enum class Decision { conforms, does_not_conform, cannot_be_decided };
 
-/// One tolerance of the manifest held against one result.
+/// One tolerance of the manifest compared with one result.
 struct Conformity {
   std::string measurement, axis, plugin, name;  ///< axis: empty where none was measured
   double tolerance = 0.0;
   Quantity quantity = Quantity::deviation;
   Decision decision = Decision::cannot_be_decided;
-  std::string reason;  ///< why it cannot be decided: "no-uncertainty", "no-value", "near-limit"
+  std::string reason;  ///< why it is indeterminate: "no-uncertainty", "no-value", "near-limit"
 };
 
-/// A model held against the readings of one part of the machine (an axis, say): what the pictures
-/// and tables of documents are made from. SI. Columns have an entry for each reading, or none where
+/// A model compared with the readings of one part of the machine, such as an axis: the source of
+/// the pictures and tables of documents. SI. Columns have an entry for each reading, or none where
 /// the files did not have them; the prediction is deviation - residual.
 struct ModelFit {
   /// A curve as people read it: m or rad, at places of the readings (m or rad along their line).
@@ -204,7 +204,7 @@ struct ModelFit {
   struct Effect {
     std::string name;                  ///< "backlash:X"
     bool compensable = false;          ///< a table in the controller can take it away
-    std::vector<double> contribution;  ///< what it says of each reading; m or rad
+    std::vector<double> contribution;  ///< what it predicts for each reading; m or rad
     std::optional<Curve> curve{};      ///< of a curve: what its parameters come to
   };
   /// The model fitted again without one of its effects.
@@ -222,7 +222,7 @@ struct ModelFit {
     std::optional<double> cv_rms{};
     double p = 1.0;
     double smallest = 0.0;             ///< rms of one that would be found nine times in ten
-    std::vector<std::string> aliases;  ///< these readings cannot tell them from it
+    std::vector<std::string> aliases;  ///< these readings do not separate them from it
     bool certain = false;              ///< whatever the rest is
   };
   /// The error as the model grows: first without any effect, then with one more at a time, that
@@ -267,7 +267,7 @@ struct ModelFit {
   std::vector<Step> steps;                       ///< the last one is the model
   std::optional<double> floor{}, floor_u{};      ///< scatter of repeats, its standard uncertainty
   std::vector<Suspect> suspects;
-  std::vector<Finding> diagnosis;       ///< the verdict, then what else the model says
+  std::vector<Finding> diagnosis;       ///< the verdict, then what else the model predicts
   std::vector<Without> without{};       ///< for each effect that can be left out
   std::vector<Candidate> candidates{};  ///< most evidence first
   /// Of the others, "No sign of A (would be seen from 1 um)", "B (2 um)", ...: one sentence.
@@ -283,7 +283,7 @@ struct Results {
   struct Analysed {
     std::string plugin, version, measurement;  ///< measurement: empty if of the campaign
     Evaluation evaluation;
-    std::string part{};  ///< of the model: "warm/z"; empty where the measurement says it
+    std::string part{};  ///< of the model: "warm/z"; empty where the measurement states it
   };
   struct Written {
     std::string plugin, version;

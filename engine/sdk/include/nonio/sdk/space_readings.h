@@ -30,19 +30,19 @@ namespace nonio {
 
 /// Where the tool point was. The corner is the lowest measured position of each axis.
 struct SpaceReadings {
-  /// x, y, z of each reading from the corner of the measured volume, m; NaN where nobody said where
-  /// the axis stood. A coordinate that no axis has is empty. k is 0, 1, 2 for x, y, z.
+  /// x, y, z of each reading from the corner of the measured volume, m; NaN where the position of
+  /// the axis is not stated. A coordinate that no axis has is empty. k is 0, 1, 2 for x, y, z.
   std::array<std::vector<double>, 3> r;
   std::array<double, 3> length{};  ///< of the measured volume, m
 
   bool moves(std::size_t k) const { return length[k] > 0.0; }
-  /// How far a point is from the corner: 0 where nobody said.
+  /// Distance of a point from the corner: 0 where it is not stated.
   double lever(std::size_t k, std::size_t i) const {
     return r[k].empty() || !std::isfinite(r[k][i]) ? 0.0 : r[k][i];
   }
 };
 
-/// Of what the readings' axes were commanded to. No errors: coordinates that nobody said are NaN.
+/// From commanded positions of the readings. No errors: coordinates that are not stated are NaN.
 SpaceReadings space_of(const Observations& o);
 
 /// Centres of a ball that turns with a rotary axis: lengths over an angle.
@@ -54,8 +54,8 @@ bool of_ball_centres(const Observations& o);
 bool varies_where_sensed(const Observations& o, const SpaceReadings& s, std::size_t k,
                          std::size_t error, std::optional<std::size_t> away = std::nullopt);
 
-/// The places of coordinate k that were measured, each once, ascending, m from the corner. What
-/// lies nearer than 1e-9 of the length is one.
+/// The measured positions of coordinate k, each once, ascending, m from the corner. Positions
+/// nearer than 1e-9 of the length are one.
 std::vector<double> places_of(const SpaceReadings& s, std::size_t k);
 
 /// Numbers of knots for a smooth curve: at most 10, and at least two places for each free value, so

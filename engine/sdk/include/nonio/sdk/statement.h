@@ -7,7 +7,7 @@
 namespace nonio {
 
 /// Whether a name, number or reason has a letter or digit of some script: "", "  ", "-", "—" and
-/// "?" say nothing. `text` is UTF-8.
+/// "?" state nothing. `text` is UTF-8.
 inline bool has_content(std::string_view text) {
   // Latin-1 A0 to BF, general punctuation, minus, CJK punctuation, full-width hyphen.
   const auto is_mark = [](std::string_view c) {

@@ -61,7 +61,7 @@ inline void append_utf8(std::string& out, std::uint32_t c) {
   add(0x80U | (c & 0x3FU));
 }
 
-/// Where a text stands in XML or HTML: between tags, or between the quotes of an attribute.
+/// The place of a text in XML or HTML: between tags, or between the quotes of an attribute.
 enum class Markup { element, attribute };
 
 /// Text as XML and HTML write it; control characters that XML does not know are left out.

@@ -30,7 +30,7 @@ enum class Quantity {
   growth,                  ///< 1/s, printed in um/(m h)
   angular_growth,          ///< 1/s, printed in arcsec/(deg h)
   angular_expansion,       ///< 1/K, printed in arcsec/(deg K)
-  // Where nobody measured times, one reading after the other takes their place.
+  // If times were not measured, the number of the reading replaces the time.
   readings,                    ///< how many readings later
   deviation_per_reading,       ///< m, printed in um/reading
   angle_per_reading,           ///< rad, printed in arcsec/reading

@@ -8,15 +8,15 @@
 #include "nonio/sign/verify.h"
 
 /// A signed PDF stays provable when keys and time servers have run out: what was revoked is put
-/// into it while authorities still say so (PAdES B-LT), and a time stamp over all of it (B-LTA).
-/// Needs no key.
+/// into it while authorities still confirm it (PAdES B-LT), and a time stamp over all of it
+/// (B-LTA). Needs no key.
 namespace nonio::sign {
 
 struct Prolonging {
   Verifier verifier{};  ///< whom to trust and expect; revocation lists that are at hand
   std::vector<std::string> answers{};  ///< by OCSP, DER, that are at hand
   TimeStamping stamping{};             ///< no time stamp if the address is empty
-  bool fetch = true;  ///< ask the addresses in the certificates for what is not at hand
+  bool fetch = true;  ///< request missing data from the addresses in the certificates
   int seconds = 10;   ///< to wait for an answer
 };
 

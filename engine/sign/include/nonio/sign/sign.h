@@ -11,8 +11,8 @@
 #include "nonio/pdf/signature_field.h"
 #include "nonio/sdk/error.h"
 
-/// Between the content of a certificate and its signature lies this and no more: a finished PDF and
-/// its attachments go in, a signed PDF comes out.
+/// The steps between the content of a certificate and its signature: a finished PDF and its
+/// attachments go in, a signed PDF comes out.
 ///
 ///   pdf::reserve(pdf, attachments, time)  puts the attachments and an empty signature into the
 ///   PDF,
@@ -52,7 +52,7 @@ struct TimeStamping {
   bool required = true;  ///< no answer: no signature; else one without time stamp
   int seconds = 10;      ///< to wait for an answer
   std::string trust{};   ///< PEM of the roots that its certificate must lead to
-  /// Where it is remembered that the server did not answer: then it is not asked again. May be null.
+  /// Records that the server did not answer, so that it is not contacted again. May be null.
   std::shared_ptr<std::string> away{};
 };
 
@@ -65,8 +65,8 @@ struct Signed {
 /// A private key and its certificate, opened once. It never leaves the process that opened it.
 class Key {
  public:
-  /// An error says what is wrong with key, certificate or password, never the password. `now`: the
-  /// certificate must be valid.
+  /// An error states what is wrong with key, certificate or password, never the password. `now`:
+  /// the certificate must be valid.
   static Expected<Key> open(const KeyPlace& place, const std::string& password, Time now);
   Key(Key&&) noexcept;
   Key& operator=(Key&&) noexcept;
@@ -75,7 +75,7 @@ class Key {
   const Identity& identity() const;
   /// A PDF from `pdf::reserve`: PAdES B-B, or B-T with a time stamp. An XML document: put into its
   /// canonical form, with an enveloped signature, XAdES B-B or B-T; `now` is what that signature
-  /// says of its time. Anything else is an error.
+  /// states about its time. Anything else is an error.
   Expected<Signed> sign(std::string bytes, Time now, const TimeStamping& stamping = {}) const;
 
   struct Impl;

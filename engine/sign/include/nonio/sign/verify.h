@@ -53,7 +53,7 @@ struct Verified {
   Time at = 0;
   /// When a time stamp over the whole file proves it to have existed; 0 without one.
   Time existed = 0;
-  /// Bytes of a PDF as it was signed; behind them stands what was added for long-term validation.
+  /// Bytes of a PDF as it was signed; they are followed by what was added for long-term validation.
   std::size_t issued = 0;
   std::vector<pdf::Attachment> attachments;  ///< of a PDF, if it could be read
 

@@ -12,13 +12,13 @@
 #include "nonio/sdk/results.h"
 #include "nonio/sdk/settings.h"
 
-/// The pages of a laboratory: the morning and the history of its machines. What they show was
-/// computed elsewhere; here nothing is. Numbers are SI, days "YYYY-MM-DD", uncertainties standard
-/// (k = 1), links relative to index.html.
+/// The pages of a laboratory: the worklist and the history of its machines. All values are inputs;
+/// nothing is computed here. Numbers are SI, days "YYYY-MM-DD", uncertainties standard (k = 1),
+/// links relative to index.html.
 namespace nonio::reports {
 
-/// A value that does not conform or cannot be decided; without `value` nothing was determined that
-/// could be compared with the limit.
+/// A value that does not conform or is indeterminate; without `value` no result could be compared
+/// with the limit.
 struct OpenValue {
   std::string axis, quantity, campaign, measurement;
   std::optional<double> value{}, u{};
@@ -27,8 +27,8 @@ struct OpenValue {
   bool undecided = false;
 };
 
-/// One line asks for one decision, in the order of what ignoring it costs.
-struct MorningLine {
+/// One line requests one decision, in the order of what ignoring it costs.
+struct WorkItem {
   enum class Kind { lost, failed, out, changed, soon, overdue, withheld, undecided, information };
   enum class State { fresh, known, fixed };
   Kind kind = Kind::information;
@@ -65,7 +65,7 @@ struct ErrorCurve {
 
 /// When to measure next. Nothing is changed by it.
 struct IntervalProposal {
-  std::optional<int> months{};     ///< none: refused, and `why` says why
+  std::optional<int> months{};     ///< none: refused, and `why` states why
   std::string method{};            ///< staircase, control-chart, fleet; empty: not required
   std::string axis{}, quantity{};  ///< what decides it, where it is one quantity
   Finding why{};                   ///< its words: says
@@ -102,8 +102,8 @@ struct MachineHistory {
   /// Between which campaigns a table may have been loaded, because one of them (`before_campaign`)
   /// does not state what was active; kind "unknown". `rms` 0: no table explains more than half of it.
   std::vector<TableLoaded> tables_unstated{};
-  std::vector<TableKept> tables{};  ///< the last one of each axis, where it can be told
-  std::string due{}, why_due{};     ///< next calibration; which rule says so
+  std::vector<TableKept> tables{};  ///< the last one of each axis, where it can be determined
+  std::string due{}, why_due{};     ///< next calibration; which rule states that
   IntervalProposal proposal{};      ///< of an interval
   std::string file{};               ///< name of its page, without the folder
 };
@@ -111,7 +111,7 @@ struct MachineHistory {
 /// Of one month: the gravest line, and whether something happened.
 struct MonthOfMachine {
   std::string machine, month;  ///< YYYY-MM
-  std::optional<MorningLine::Kind> gravest{};
+  std::optional<WorkItem::Kind> gravest{};
   bool measured = false, event = false;
 };
 
@@ -143,10 +143,10 @@ struct ModelComparison {
 };
 
 struct SiteHistory {
-  std::uint64_t night = 0, campaigns = 0, done = 0, unchanged = 0;
+  std::uint64_t run = 0, campaigns = 0, done = 0, unchanged = 0;
   std::string date;
-  std::uint64_t certificates = 0, waiting = 0;  ///< issued tonight; waiting for release
-  std::vector<MorningLine> lines;               ///< in their order
+  std::uint64_t certificates = 0, waiting = 0;  ///< issued in this run; waiting for release
+  std::vector<WorkItem> lines;                  ///< in their order
   std::vector<MachineHistory> machines;         ///< by id
   std::vector<MonthOfMachine> months;
   std::vector<InstrumentUse> instruments;
@@ -157,18 +157,18 @@ struct SiteHistory {
 
 /// A part (says, advice) of a line's words, in a language: with the titles of the findings that it
 /// names, and the campaigns that it stands for.
-std::string line_text(const Templates&, std::string_view language, const MorningLine&,
+std::string line_text(const Templates&, std::string_view language, const WorkItem&,
                       std::string_view part);
 
 /// Whether it requires action: it is new, and more than a note.
-bool asks(const MorningLine& line);
+bool asks(const WorkItem& line);
 /// The same, and significant enough for a mail.
-bool asks_by_mail(const MorningLine& line);
+bool asks_by_mail(const WorkItem& line);
 
-/// summary.txt and `nonio status --actions`: one line per action, at most `most`, then how many more there
-/// are of each kind. Where there is none, the one sentence that says so.
-Expected<std::string> morning_text(const SiteHistory&, const Templates&,
-                                   const std::string& language, std::size_t most);
+/// summary.txt and `nonio status --actions`: one line per action, at most `most`, then how many
+/// more there are of each kind. Where there is none, the one sentence that states that.
+Expected<std::string> worklist_text(const SiteHistory&, const Templates&,
+                                    const std::string& language, std::size_t most);
 
 inline constexpr const char* machines_folder = "machines";
 

@@ -14,7 +14,7 @@
 /// What the pictures of a browser's page are drawn from (page/draw.js), as JSON.
 namespace nonio::workbench {
 
-/// A part's model, and what is said of it. The words are those of
+/// A part's model, and what is stated about it. The words are those of
 /// templates/words/<language>/pictures.toml.
 struct Drawn {
   const Campaign& campaign;

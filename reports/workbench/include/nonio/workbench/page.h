@@ -15,7 +15,7 @@ namespace nonio::workbench {
 enum class Shell { campaign, site };
 
 /// The shell without data: language, words and the addresses of the rest. The words are those of
-/// templates/words/<language>/workbench.toml and workbench-site.toml; an error says which of the
+/// templates/words/<language>/workbench.toml and workbench-site.toml; an error states which of the
 /// shell are missing.
 Expected<std::string> shell_html(const Templates& templates, const std::string& language, Shell of);
 /// The same words, "refused.token" and so on.

@@ -25,9 +25,9 @@ struct Pass {
 ///
 /// By least squares of all passes at once, so that a line does not take its part of a wave. Noise
 /// of c_k: white with a slow part, from what the fit leaves, higher harmonics included; of the
-/// folded means: the scatter about them.
-/// Source: ASME B5.54 and the annex of ISO 230-2 on dense runs, after our reading
-/// (docs/formulas.md). Range: every pass over two periods with steps of p/20 at most.
+/// folded means: the scatter about them. Source: ASME B5.54 and the annex of ISO 230-2 on dense
+/// runs, as interpreted in docs/formulas.md. Range: every pass over two periods with steps of p/20
+/// at most.
 struct PeriodicError {
   enum class Answer { given, no_pass, too_short, too_coarse };
   struct Harmonic {
@@ -55,7 +55,7 @@ PeriodicError periodic_error(std::span<const Pass>, double period);
 ///              direction to the next one of the other, where only one of them has that last target
 ///
 /// Not followed: the way of the step is less than half of the commanded one. The order of the
-/// readings says nothing: passes go in their direction. Source: ours; the tests of the rules for
+/// readings has no meaning: passes go in their direction. Source: ours; the tests of the rules for
 /// small steps were not available (docs/formulas.md).
 struct SmallSteps {
   enum class Answer { given, too_few, several_sizes };

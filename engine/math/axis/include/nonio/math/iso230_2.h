@@ -25,9 +25,9 @@ struct Iso230Point {
 ///     R    max R_i                                      R+   max R_i+
 ///     A+, E+, R+ (and -): the same of the readings of one direction
 ///
-/// A value is NaN unless every target gives its part of it, so that no
-/// printed range covers less than the whole axis; A+, E+ and R+ ask only the targets that were
-/// reached in direction +, and likewise for -.
+/// A value is NaN unless every target gives its part of it, so that no printed range covers less
+/// than the whole axis; A+, E+ and R+ need only the targets that were reached in direction +, and
+/// likewise for -.
 struct Iso230Result {
   double k;  ///< coverage factor of R and A
   std::vector<Iso230Point> points;

@@ -12,7 +12,7 @@
 /// docs/formulas.md gives every formula with its confidence; no text of a standard was available.
 namespace nonio::math {
 
-/// What a rule makes of the statistics; the formulas stand with the code (positioning.cpp).
+/// The values of a rule from the statistics; the formulas are at the code (positioning.cpp).
 enum class RuleForm {
   iso,    ///< ranges of mean +- k s: A, E, M, R, B
   upr,    ///< the smaller of R+ and R-
@@ -26,7 +26,7 @@ enum class RuleForm {
 enum class Confidence {
   proved,    ///< it reproduces the numbers of public reports, or a public text states it
   known,     ///< common knowledge of the field, consistent between sources
-  inferred,  ///< our reading
+  inferred,  ///< our interpretation
 };
 
 struct PositioningRule {
@@ -36,7 +36,7 @@ struct PositioningRule {
   double k = 0.0;               ///< standard deviations on each side of a mean; 0: none are used
   bool systematic = true;       ///< iso: whether the edition has E and M
   bool without_offset = false;  ///< nmtba: a constant is taken off first
-  std::size_t approaches = 0;   ///< asked at each target from each direction; 0: not known
+  std::size_t approaches = 0;   ///< required at each target from each direction; 0: not known
   Confidence confidence = Confidence::inferred;
 };
 
@@ -66,7 +66,7 @@ struct RuleValue {
       name;      ///< in the symbols of the rule: A+, P; "+-" before what is half of a range
   double value;  ///< m or rad; NaN where the readings do not give it
   RuleShare share;
-  bool inferred = false;  ///< our reading, whatever the rule is
+  bool inferred = false;  ///< our interpretation, whatever the rule is
 };
 
 /// Every value of the rule, absent ones as NaN. Range: any statistics; no errors.

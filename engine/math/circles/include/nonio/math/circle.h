@@ -94,7 +94,7 @@ struct CircleModel {
   /// Whether a reading at this angle is too near to a reversal for the fit.
   bool leaves_out(double angle) const;
 };
-/// What readings of these directions and pitches can be asked for.
+/// Limits for readings of these directions and pitches.
 void all_causes(CircleModel&, bool both_directions);
 
 /// What a cause of size 1 makes of the radius: m/m, or m/rad.
@@ -171,8 +171,8 @@ struct Spike {
 std::vector<Spike> reversal_spikes(std::span<const CircleReading>, const CircleModel&,
                                    const CauseFit&);
 
-/// The fit, with a zone beside the reversals that becomes wider, from `model.leave_out` to `most` at
-/// most, until spikes above 6 u leave nothing behind it. The zone is left in the model.
+/// The fit, with a zone next to the reversals that is widened, from `model.leave_out` to `most` at
+/// most, until no spike above 6 u is left outside of it. The zone is stored in the model.
 Expected<CauseFit> fit_causes_without_spikes(std::span<const CircleReading>, CircleModel& model,
                                              double most);
 

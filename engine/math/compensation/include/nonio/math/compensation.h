@@ -15,8 +15,8 @@
 /// without drift, and what is left when the control has applied the table.
 namespace nonio::math {
 
-/// The deviation that a table should take away; m or rad over m or rad. At target i, of means xm_i+
-/// and xm_i- (ISO 230-2): plus xm_i+, minus xm_i-, mean (xm_i+ + xm_i-)/2.
+/// The deviation that a table should compensate; m or rad over m or rad. At target i, of means
+/// xm_i+ and xm_i- (ISO 230-2): plus xm_i+, minus xm_i-, mean (xm_i+ + xm_i-)/2.
 struct ErrorCurve {
   std::vector<double> position;     ///< strictly ascending
   std::vector<double> mean;         ///< of both directions
@@ -47,7 +47,7 @@ struct Grid {
   double last() const { return points == 0 ? first : position(points - 1); }
 };
 
-/// What a control asks of equidistant points.
+/// The requirements of a control for equidistant points.
 struct GridRule {
   double unit = 1e-7;            ///< m or rad; first and step are whole multiples of it
   std::size_t most = 200;        ///< points that the control takes

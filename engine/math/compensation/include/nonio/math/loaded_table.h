@@ -19,9 +19,9 @@ namespace nonio::math {
 ///
 ///     c(x) = c_k + (c_(k+1) - c_k) (x - x_k)/(x_(k+1) - x_k)
 ///
-/// of two inputs the same in each of them; beyond the points as the table says (`outside`). Source:
-/// the control's manual or code, with its confidence in plugins/controllers/*/README.md. Range:
-/// what `validate_table` accepts.
+/// of two inputs the same in each of them; beyond the points as the table states (`outside`).
+/// Source: the control's manual or code, with its confidence in plugins/controllers/*/README.md.
+/// Range: what `validate_table` accepts.
 double added(const LoadedTable& table, std::span<const double> at, int direction);
 
 /// What all of these add to `output` where the axes are at `at`; a table of which an input is not

@@ -11,14 +11,14 @@
 #include "nonio/sdk/plugin.h"
 #include "nonio/sdk/results.h"
 
-/// What the readings of an axis say beside the numbers of a standard. docs/formulas.md has the
-/// tests with their formulas, levels (1 %) and least numbers of readings; the words are in
+/// What the readings of an axis show in addition to the values of a standard. docs/formulas.md has
+/// the tests with their formulas, levels (1 %) and least numbers of readings; the words are in
 /// templates/words. No errors: what these readings cannot show gives no finding. Evidence is SI.
 namespace nonio::math {
 
 /// Everything that does not depend on the standard: drift, reversal, scatter, suspected readings,
-/// what was not measured, and what the test plan of ISO 230-2 asked.
-/// U_mean: of the mean reversal by the budget, m or rad; 0: not known.
+/// what was not measured, and deviations from the test plan of ISO 230-2. U_mean: of the mean
+/// reversal by the budget, m or rad; 0: not known.
 std::vector<Finding> axis_findings(const AxisTest&, const Observations&, const Axis* axis,
                                    double U_mean = 0.0);
 
@@ -51,7 +51,7 @@ struct Incomplete {
 };
 Incomplete incomplete_targets(const AxisTest&);
 
-/// What an analysis evaluates: all targets, or (`leave_out`) the complete ones; the finding says
+/// What an analysis evaluates: all targets, or (`leave_out`) the complete ones; the finding states
 /// which targets were concerned and what was done.
 AxisTest choose_targets(const AxisTest&, bool leave_out, std::vector<Finding>&);
 

@@ -16,9 +16,9 @@
 /// less that from the - direction, and z = 2 (x - middle)/length:
 ///
 ///     scale        slope of the line through (x_i, m_i)
-///     curve_2, _3  coefficients of the Legendre polynomials P2(z), P3(z) beside 1 and z: the part
+///     curve_2, _3  coefficients of the Legendre polynomials P2(z), P3(z) next to 1 and z: the part
 ///                  of the deviation at the axis' ends
-///     cyclic_cos,  coefficients of cos and sin of 2 pi x/period beside those four (two numbers,
+///     cyclic_cos,  coefficients of cos and sin of 2 pi x/period with those four (two numbers,
 ///     cyclic_sin   not an amplitude, which scatter makes larger)
 ///     turn_cos,    the same of one turn of a rotary axis
 ///     turn_sin
@@ -35,9 +35,9 @@
 /// Where readings of neighbouring targets are alike (their correlation r is estimated), r^|k - l|
 /// joins the readings of a pass in the first sum. G: sum of J_k over a pass, of J_k (x_k - middle)
 /// for slopes. v_s, v_d: variance of the offsets over the runs less what single readings make of
-/// it; not below 0. Beside it in the scale, from the manifest: misalignment, temperature reading,
-/// and expansion where the temperature is not in the file (docs/formulas.md). What campaigns share
-/// is apart: an error of the instrument's length, and of the expansion coefficient. Sources: JCGM
+/// it; not below 0. For the scale also, from the manifest: misalignment, temperature reading, and
+/// expansion where the temperature is not in the file (docs/formulas.md). What campaigns share is
+/// apart: an error of the instrument's length, and of the expansion coefficient. Sources: JCGM
 /// 100:2008, 5.2; variance components by the analysis of variance (derived), checked by simulation
 /// (tests/unit/math/followed_test.cpp).
 namespace nonio::math {
@@ -76,8 +76,8 @@ struct TargetFit {
 /// values at the targets, so another choice of targets makes other values of the same machine, with
 /// the variance `share` times `beyond` of the fit.
 struct OtherTargets {
-  /// Of each quantity but ln_s: variance that the readings alone make, and sum of t_i^2 over the
-  /// targets (of B_mean with `reversal`, of the others with `mean`).
+  /// Of each quantity but ln_s: variance of the readings alone, and sum of t_i^2 over the targets
+  /// (of B_mean with `reversal`, of the others with `mean`).
   std::vector<double> of_readings{}, share{};
   TargetFit mean{}, reversal{};
 };
@@ -86,7 +86,7 @@ struct FollowedAxis {
   std::vector<Followed> quantities;
   /// Of `u`, between quantities i and j at i * n + j; SI.
   std::vector<double> covariance;
-  /// Keys of the manifest that nobody stated: `u` of scale lacks what they would give.
+  /// Keys of the manifest that are not stated: `u` of scale lacks their contributions.
   std::vector<std::string> not_stated;
   OtherTargets other_targets{};
 };

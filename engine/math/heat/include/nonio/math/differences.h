@@ -30,8 +30,8 @@ struct Difference {
   bool with_ball = false;  ///< it holds the form of the ball
 };
 
-/// Values with U, the budget, and the finding of what was not stated. What holds the form of a ball
-/// that nobody stated (instrument.sphere_um) has its repeatability alone.
+/// Values with U, the budget, and the finding of what was not stated. A value that includes the
+/// form of a ball that is not stated (instrument.sphere_um) has its repeatability only.
 void put_differences(const Campaign&, const std::vector<Difference>&, Evaluation& out);
 
 }  // namespace nonio::math

@@ -20,11 +20,11 @@
 ///
 /// Decision (decision.h) for each error with its U(L), guard band g of the rule (ISO 14253-1:2017:
 /// 1.65 u): conforms where abs(E) <= MPE - g for all; does not where abs(E) > MPE + g for one; else
-/// it cannot be decided. The repeats are errors of their
-/// own: their scatter is in E, not in U (ISO/TS 23165, after common knowledge).
+/// indeterminate. Each repeat is an error of its own: their scatter is in E, not in U (ISO/TS
+/// 23165, from general knowledge).
 ///
-/// Edition 2001: of at most five lengths one of the three repeats may lie outside; each of these
-/// lengths is then measured ten times more (repeats 4 to 13), all of which count and must be inside.
+/// Edition 2001: of at most five lengths one of the three repeats may be outside; each of these
+/// lengths is then measured ten more times (repeats 4 to 13), all of which must be inside.
 ///
 /// Symbols: E, L, MPE, U in m. Sources: ISO 10360-2:2001 and 2009 (names and procedure after public
 /// guides; the text was not available). Range: L > 0, all finite.

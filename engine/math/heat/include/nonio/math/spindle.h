@@ -56,7 +56,7 @@ struct ErrorMotion {
   std::vector<double> motion;     ///< mean over the turns at each angle, without m, a, b
   std::size_t low = 0, high = 0;  ///< of the synchronous motion
   double s = 0.0;                 ///< of the asynchronous motion at one angle
-  double u_mean = 0.0;            ///< of the mean at one angle: turns that hang together count less
+  double u_mean = 0.0;            ///< of the mean at one angle: correlated turns count less
   double dof = 0.0;               ///< of u_mean: effective number of turns less 1
   std::vector<double> with_once;  ///< synchronous motion with the once-per-turn part
   double synchronous_with_once = 0.0, total_with_once = 0.0;

@@ -12,14 +12,14 @@
 /// Thermal tests: displacement d against time t, d = 0 at the start.
 ///
 ///     range in a window     max d - min d over the readings with t in [a, a + w], ends included; the
-///                           largest over all a for which the window lies inside the test
+///                           largest over all a for which the window is within the test
 ///     time constants        d(t) = d0 + sum_k c_k (1 - exp(-t/tau_k)), one or two
 ///     warm-up time          smallest t after which abs(sum_k c_k exp(-t/tau_k)) <= rest
 ///
-/// Symbols: d, c_k, rest in m; t, w, tau_k in s. Sources: ISO 230-3 (ranges over the test and in its
-/// first 60 min; after common knowledge, the text was not available); the largest range in any
-/// window: after ASME B5.54, environmental tests (inferred); time constants: a body that is heated
-/// evenly and cools by its surface (Newton's law of cooling). Range: times ascending, all finite.
+/// Symbols: d, c_k, rest in m; t, w, tau_k in s. Sources: ISO 230-3 (ranges over the test and in
+/// its first 60 min; text not available); the largest range in any window: according to ASME B5.54,
+/// environmental tests (inferred); time constants: a body that is heated evenly and cools by its
+/// surface (Newton's law of cooling). Range: times ascending, all finite.
 namespace nonio::math {
 
 /// Readings of one sensor: the times ascend.
@@ -71,7 +71,7 @@ struct TimeConstants {
       parts;  ///< one or two, the longest first; also of an answer too_short, unresolved
   double d0 = 0.0;
   double s = 0.0;        ///< of a mean over an interval, about the curve
-  double dof = 0.0;      ///< effective: neighbours hang together
+  double dof = 0.0;      ///< effective: neighbours are correlated
   double largest = 0.0;  ///< time constant that this test could have resolved, s
   /// Covariance of d0, then c and ln tau of each part.
   std::vector<std::vector<double>> covariance;
@@ -104,8 +104,8 @@ struct InTime {
 };
 InTime in_time(const Observations&, std::vector<std::size_t> rows);
 
-/// What the readings of an exercised axis say of each target from each side, ascending; times from
-/// the first reading on. Places that were read once only are left out.
+/// What the readings of an exercised axis state about each target from each side, ascending; times
+/// from the first reading on. Places that were read once only are left out.
 std::vector<Visits> visits_of(const Observations&);
 
 /// Slope of the change since the first cycle over the targets, against time: each cycle a reading, at

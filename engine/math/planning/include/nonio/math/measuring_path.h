@@ -7,8 +7,8 @@
 
 #include "nonio/sdk/error.h"
 
-/// Where a machine stands still while it is measured, in which order, and where it turns round:
-/// what a part program of a measurement says, whatever the control. Lengths in m, angles in rad.
+/// Where a machine stops to be measured, in which order, and where it reverses: the content of a
+/// part program of a measurement, for any control. Lengths in m, angles in rad.
 namespace nonio::math {
 
 struct MeasuringMove {
@@ -51,15 +51,15 @@ struct AxisTargets {
 };
 Expected<std::vector<double>> axis_targets(const AxisTargets& wish);
 
-/// How many targets ISO 230-2 asks of a linear axis: five a metre up to 2 m and five at least, then
-/// one every 250 mm. length: m, above 0. Source: its test plan (docs/formulas.md, M).
+/// How many targets ISO 230-2 requires for a linear axis: five a metre up to 2 m and five at least,
+/// then one every 250 mm. length: m, above 0. Source: its test plan (docs/formulas.md, M).
 int axis_points(double length);
 /// The same of a rotary axis: 3, 5, 8 for up to 90, 180, 360 deg; 8 a turn beyond. angle: rad.
 int rotary_points(double angle);
-/// Which angles it wants among the targets: 0, 90, 180, 270 deg, in every turn of the range, rad.
+/// Angles that it requires among the targets: 0, 90, 180, 270 deg in every turn of the range, rad.
 std::vector<double> cardinal_angles(double first, double last);
 
-/// Each run: all targets upwards, and downwards if both directions are asked for.
+/// Each run: all targets upwards, and downwards if both directions are requested.
 MeasuringPath axis_path(const std::string& axis, bool rotary, const std::vector<double>& targets,
                         const MeasuringRequest& wish);
 

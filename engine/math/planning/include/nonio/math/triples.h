@@ -43,7 +43,7 @@ std::vector<Triple> primitive_triples(std::int64_t hypotenuse);
 /// the third diagonal, to half of Y, which separates what two diagonals leave together.
 enum class EvenSteps : std::uint8_t {
   any,
-  prefer,  ///< an odd plan must cover 0.01 more of the worse axis to stand before an even one
+  prefer,  ///< an odd plan must cover 0.01 more of the worse axis to precede an even one
   require,
 };
 
@@ -137,6 +137,6 @@ Expected<std::vector<TriplePlan>> cheapest_plans(const TripleRequest& wish, doub
 PointTable triple_table(const std::vector<TriplePlan>& plans);
 
 /// The order of preference.
-bool stands_before(const TriplePlan& one, const TriplePlan& other, EvenSteps even);
+bool comes_before(const TriplePlan& one, const TriplePlan& other, EvenSteps even);
 
 }  // namespace nonio::math

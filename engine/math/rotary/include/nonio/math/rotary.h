@@ -79,7 +79,7 @@ struct DoubleWave {
 DoubleWave double_wave(const RotaryFit& fit, std::span<const BallCentre> centres,
                        const std::vector<double>& residual);
 
-/// Of ball centres: a rotary axis beside the first one that did not stand still; empty if none.
+/// Of ball centres: a second rotary axis that moved; empty if none.
 std::string other_turning_axis(const Observations&);
 
 /// Position of a rotary axis within a turn as a whole number of microradians: positions that differ

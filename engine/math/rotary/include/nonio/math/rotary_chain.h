@@ -109,8 +109,8 @@ Vector3 chain_reading(const ChainState&, const ChainOrder&, const ChainReading&)
 
 /// The point of a line nearest to another point.
 Vector3 nearest_on(const ChainLine&, const Vector3& to);
-/// Distance of two lines, positive if the second lies on the side of the first's direction x its
-/// own; of parallel ones never negative. And the angle between their directions, rad.
+/// Distance of two lines, positive if the second is on the side of the first's direction x its own;
+/// of parallel ones never negative. And the angle between their directions, rad.
 double signed_distance(const ChainLine&, const ChainLine&);
 double angle_between(const ChainLine&, const ChainLine&);
 

@@ -7,16 +7,16 @@
 
 #include "nonio/sdk/error.h"
 
-/// What the balls of a plan will tell of a rotary axis, before anybody measures.
+/// Uncertainties that the balls of a plan will give for a rotary axis, before the measurement.
 ///
-/// N equal places over an arc of a circle of radius R; every coordinate of a centre has the standard
-/// uncertainty sigma, independent of all others. On a full turn, from the covariance of the fit:
+/// N equal steps over an arc of radius R; every coordinate of a centre has the independent standard
+/// uncertainty sigma. On a full turn, from the covariance of the fit:
 ///
 ///     across the axis, each   sigma sqrt(2/N)        along it   sigma/sqrt N     (no R in either)
 ///     tilt, each              sigma sqrt(2/N)/R
 ///
-/// Two places half a turn apart (the classic method) give a centre with sigma/sqrt 2 each way and no
-/// direction. Derived, docs/formulas.md; the figures for R = 500, 50 and N = 3, 4, 5, 10 are golden.
+/// Two positions half a turn apart give a centre with sigma/sqrt 2 each way and no direction.
+/// Derived, docs/formulas.md; the figures for R = 500, 50 and N = 3, 4, 5, 10 are golden.
 namespace nonio::math {
 
 struct RotaryPlan {

@@ -8,22 +8,22 @@
 #include "nonio/math/rotary.h"
 #include "nonio/sdk/error.h"
 
-/// What is wrong in the axis that a control has, from readings while it turns with its tool centre
-/// point control on (RTCP, TRAORI, M128): the tool against the workpiece, less what was commanded.
+/// Errors of a control's rotary axis, from readings while it turns with tool centre point control
+/// on (RTCP, TRAORI, M128): the tool against the workpiece, less what was commanded.
 ///
 ///     control   point c0, direction n0: from the circle of the commanded places of the linear axes
 ///     machine   point c = c0 + a e1 + b e2, direction n = n0 + p e1 + q e2 + r e3, |n| = 1
 ///     moved     M(t) = c + R(n, t)(B + d - c) - c0 - R(n0, t)(B - c0)
 ///     reading   y = -s.M(t) + z (a table carries the workpiece) or +s.M(t) + z (a head, the tool)
 ///
-/// B: place of the ball with the axis at 0 as the control has it; d: how far the ball is from there,
-/// unknown unless stated; s: direction of sensing; z: zero of the gauge, unknown but of a probe; e1,
-/// e2: the two machine axes most nearly across the rotary axis, in the order X, Y, Z. Least squares
-/// on these exact rotations, by Newton steps with the Jacobian of the control's axis. a, b, p, q are
-/// given where the readings tell them: their unit vectors lie in the row space of that Jacobian. The
-/// rest drops out: of a gauge that stands still, a and b only come together with d; a gauge that
-/// turns with the axis does not see d; one gauge across the axis, with one ball, sees no direction.
-/// Derived (docs/formulas.md). Range: errors up to some mm and mrad.
+/// B: place of the ball with the axis at 0 as the control has it; d: how far the ball is from
+/// there, unknown unless stated; s: direction of sensing; z: zero of the gauge, unknown but of a
+/// probe; e1, e2: the two machine axes most nearly across the rotary axis, in the order X, Y, Z.
+/// Least squares on these exact rotations, by Newton steps with the Jacobian of the control's axis.
+/// a, b, p, q are given where they are identifiable: their unit vectors are in the row space of
+/// that Jacobian. The rest cancels: with a fixed gauge, a and b are found only together with d; a
+/// gauge that turns with the axis does not see d; one gauge across the axis, with one ball, sees no
+/// direction. Derived (docs/formulas.md). Range: errors up to some mm and mrad.
 namespace nonio::math {
 
 struct RtcpReading {

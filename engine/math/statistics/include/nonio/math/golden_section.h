@@ -3,7 +3,7 @@
 
 namespace nonio::math {
 
-/// Where the minimum lies, and the function at the two points within.
+/// The interval that contains the minimum, and the function at the two points within.
 struct Bracket {
   double low, high;
   double at_a, at_b;  ///< at high - g (high - low) and low + g (high - low), g = (sqrt(5) - 1)/2

@@ -9,11 +9,11 @@
 
 /// Whether a compensation did what it should: one line before and after, at the same stops.
 ///
-/// b_i, a_i: means before and after, each from its first stop on. A table that takes the errors away
-/// leaves a = f b with f = 0; one that is not active f = 1; one with the wrong sign f = 2. The table
-/// was made from b, so the error of b is in the machine afterwards: a = E + (f - 1) b with b = E +
-/// n_b, and the rest r = a - f b = n_a - n_b has one covariance V for every f, of all readings and
-/// inputs:
+/// b_i, a_i: means before and after, each from its first stop on. A table that compensates the
+/// errors leaves a = f b with f = 0; one that is not active f = 1; one with the wrong sign f = 2.
+/// The table was made from b, so the error of b is in the machine afterwards: a = E + (f - 1) b
+/// with b = E + n_b, and the rest r = a - f b = n_a - n_b has one covariance V for every f, of all
+/// readings and inputs:
 ///
 ///     chi2 = r' V^-1 r, F = chi2/m with m and nu degrees of freedom
 ///     f by generalised least squares: b' V^-1 a/(b' V^-1 b), u^2 = 1/(b' V^-1 b)
@@ -35,7 +35,7 @@
 /// Where the table was made from other readings b0 = E + n_0, f = 2 leaves r = n_a + n_0 - 2 n_b:
 /// the larger one of both p counts. For f = 0 it is n_a - n_0, which has the covariance V too.
 ///
-/// Derived; tests hold it against simulated campaigns.
+/// Derived; tests compare it with simulated campaigns.
 namespace nonio::math {
 
 struct BeforeAfter {
@@ -48,7 +48,8 @@ struct BeforeAfter {
 };
 
 /// The model has the line before and then the one after, a reading for each mean. dof: of the
-/// repetition. entry_step: q, 0 where the control is not known. `cannot_tell` where before is too small to tell the answers apart.
+/// repetition. entry_step: q, 0 where the control is not known. `cannot_tell`: the errors before
+/// are too small to decide.
 BeforeAfter before_after(std::span<const double> before, std::span<const double> after,
                          const ReadingModel& model, double dof, double entry_step = 0.0);
 

@@ -26,9 +26,9 @@
 /// d_i: distance of reading i from the zero of its line, where the error grows with the length; m:
 /// readings of a line (a mean of several visits: the walk goes through the visits). This is J V J'
 /// with the covariance V of the readings; what one instrument has in common for all of them (its
-/// scale) drops out of what does not depend on the scale. Where nobody knows whether lines share an
-/// error (a sensor that stays, a shop that is as warm for all lines) the larger one counts: one for
-/// each line, or one for all.
+/// scale) drops out of what does not depend on the scale. Where it is not known whether lines share
+/// an error (a sensor that stays, a shop that is as warm for all lines) the larger one applies: one
+/// for each line, or one for all.
 ///
 /// Expanded: U = k u. k: the factor of 95.45 % of a normal and one rectangular part that have the
 /// excess -1.2 sum c^4/u^4 of all rectangular parts c (2 without them, 1.65 of one alone), times
@@ -36,9 +36,9 @@
 /// nu = u^4/sum(u_k^4/nu_k); only the repetition has finite ones.
 ///
 /// Sources: JCGM 100:2008, 5.2 (correlated inputs), G.4 (Welch-Satterthwaite); the excess: the
-/// fourth cumulants of independent parts add (derived); the inputs are
-/// those of uncertainty.h; their correlations are ours (docs/uncertainty.md), checked by Monte
-/// Carlo after JCGM 101 (bench/coverage.cpp).
+/// fourth cumulants of independent parts add (derived); the inputs are those of uncertainty.h;
+/// their correlations are ours (docs/uncertainty.md), checked by Monte Carlo according to JCGM 101
+/// (bench/coverage.cpp).
 namespace nonio::math {
 
 /// Readings that share a zero, in the order of the walk.
@@ -59,7 +59,7 @@ struct BudgetLine {
   bool in_residuals = true;
   /// Repetition of one reading, and its degrees of freedom, where lines differ in them.
   double u = 0.0, dof = INFINITY;
-  /// Where readings are means: when the machine stood there, and what counts of it.
+  /// Where readings are means: when the machine stopped there, and which part of the time counts.
   struct Visit {
     double time = 0.0;        ///< 0 at the first reading of the line, 1 at the last
     std::size_t reading = 0;  ///< of this line
@@ -79,16 +79,16 @@ struct Shares {
   std::vector<double> in_residuals;
   /// Fourth root of the sum of c^4 over its independent rectangular parts; none where normal.
   std::vector<double> rectangular{};
-  double dof = 0.0;  ///< of the repetition, where the lines have one each; 0: as the budget says
+  double dof = 0.0;  ///< of the repetition, where the lines have one each; 0: as the budget states
 };
 
-/// What is known of the errors of readings, beside their repetition.
+/// What is known of the errors of readings, apart from their repeatability.
 struct ReadingModel {
   struct Input {
     Contribution is;
     std::vector<double> of_line;  ///< standard uncertainty by line: m or rad, or for each m
-    /// Of what is one for a line: the share of its variance that all lines have together; absent
-    /// if nobody knows.
+    /// Of what is one for a line: the share of its variance that all lines have together; absent if
+    /// it is not known.
     std::optional<double> together = 0.0;
     /// Standard uncertainty of one reading that shows in the residuals of a fit (see_residuals).
     double seen = 0.0;
@@ -99,7 +99,7 @@ struct ReadingModel {
   };
   std::vector<BudgetLine> lines;
   std::vector<Input> inputs;
-  std::vector<std::string> missing;  ///< keys that nobody stated
+  std::vector<std::string> missing;  ///< keys that are not stated
 
   std::size_t readings() const;
   /// row: derivative of a result by each reading, in the order of the lines.
@@ -113,7 +113,7 @@ struct ReadingModel {
 /// then down. The order of the rows does not matter.
 std::vector<double> reading_times(const Observations&);
 
-/// The inputs as the manifest states them. Nothing is assumed for what it does not say.
+/// The inputs as the manifest states them. Nothing is assumed for what it does not state.
 ReadingModel reading_model(const Campaign&, const Environment&, std::vector<BudgetLine>);
 
 /// Expansion of the machine along a direction: sum of c^2 alpha over the axes.
@@ -161,7 +161,7 @@ class BudgetOf {
   double unexplained_ = 0.0;    ///< of the variance of the repetition: not of such inputs
 };
 
-/// What the readings themselves say of limits that the manifest states: the larger one counts.
+/// What the readings themselves show of limits that the manifest states: the larger one counts.
 struct HeldLimits {
   Environment environment;
   std::vector<Finding> findings;  ///< one for each limit that the readings go beyond
@@ -171,7 +171,7 @@ HeldLimits limits_held(const Campaign&, std::span<const Observations* const>);
 /// `uncertainty.no-data` with these keys.
 Finding missing_finding(const std::vector<std::string>& keys);
 
-/// Whether the instrument is stated to be exact, which none is; the key to say so.
+/// Whether the instrument is stated to be exact, which none is; the key to state that.
 std::optional<std::string> exact_instrument(const Instrument&, bool angular);
 
 }  // namespace nonio::math

@@ -19,18 +19,18 @@
 ///     C0Y = -t    B0Z = +t    A0Z = -t
 ///
 /// Turned over about one of its faces the square shows -g: t is the mean of both positions, g half
-/// their difference. Derived; tests hold it against exact transforms. As the slopes are of least
+/// their difference. Derived; tests compare it with exact transforms. As the slopes are of least
 /// squares, so is the squareness (C0Y_LSQ of diagonals).
 namespace nonio::math {
 
 /// The lines of one square in one plane and one state of the machine.
 struct SquareLines {
   std::string square, state;
-  std::string name;                    ///< C0Y, B0Z, A0Z
-  std::string first, second;           ///< names of the axes
-  std::vector<std::size_t> as_stands;  ///< measurements: of `first`, of `second`
-  std::vector<std::size_t> turned;     ///< the same after it was turned over
-  bool whole() const { return as_stands.size() == 2 && (turned.empty() || turned.size() == 2); }
+  std::string name;                   ///< C0Y, B0Z, A0Z
+  std::string first, second;          ///< names of the axes
+  std::vector<std::size_t> unturned;  ///< measurements: of `first`, of `second`
+  std::vector<std::size_t> turned;    ///< the same after it was turned over
+  bool whole() const { return unturned.size() == 2 && (turned.empty() || turned.size() == 2); }
   /// Every measurement, in the order of the manifest.
   std::vector<std::size_t> all() const;
 };

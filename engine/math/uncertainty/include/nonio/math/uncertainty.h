@@ -45,8 +45,8 @@ struct BudgetOrGap {
   std::vector<std::string> missing;  ///< manifest keys without which there is no budget
 };
 
-/// From the manifest; nothing is assumed for what it does not say. environment: the campaign's, or
-/// what the readings make of it (limits_held).
+/// From the manifest; nothing is assumed for what it does not state. environment: the
+/// campaign's, or what the readings make of it (limits_held).
 BudgetOrGap uncertainty_budget(const Campaign&, const Environment&, const std::string& axis,
                                const AxisTest&);
 
@@ -57,7 +57,7 @@ UncertaintyBudget contributions_of(const Budget&, const std::string& axis, bool 
 std::vector<double> shares_of(const Budget&, double U, bool systematic);
 
 /// Fewest readings behind a mean: the least n over targets and directions that have readings.
-std::size_t approaches_behind_means(const AxisTest&);
+std::size_t approaches_per_mean(const AxisTest&);
 
 /// Expanded uncertainties (k = 2) of the results of ISO 230-2; m or rad. n: approaches behind each
 /// mean, 1 or more; k: coverage factor of R and A in the edition.
@@ -94,8 +94,8 @@ double rule_uncertainty(const Budget&, std::size_t n, const RuleShare&);
 
 /// Of a slope of means over the length: U(M)/L of `slope_budget`, an upper bound for least squares.
 double slope_uncertainty(const Budget& of_slope, std::size_t n);
-/// A beam beside the axis makes every distance short: in a slope its limit counts from one side, 2/sqrt 3
-/// of it in place of 0.6. A range does not follow a slope so far.
+/// A misaligned beam makes every distance too short: in a slope its limit applies from one side,
+/// 2/sqrt 3 of it in place of 0.6. A range is affected less than a slope.
 Budget slope_budget(const Budget&);
 
 }  // namespace nonio::math

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// What straight lines through a volume cannot tell of the 21 errors of three linear axes.
+/// Which of the 21 errors of three linear axes straight lines through a volume do not determine.
 ///
 /// Chain bed - X - Y - Z - tool, no tool offset, small errors (ISO 230-1 names); y, z from the
 /// middle of the volume:

@@ -26,7 +26,7 @@
 /// its axes moved.
 ///
 /// First-order form of the product of the transforms of both carriages (Schwenke et al., CIRP
-/// Annals 57 (2008) 660); tests hold it against the exact product. What two full diagonals leave
+/// Annals 57 (2008) 660); tests compare it with the exact product. What two full diagonals leave
 /// open is EXY = a, EYX = -(Lx/Ly) a for every a that is odd about mid-travel: floor((n - 1)/2)
 /// numbers. Derived here; docs/formulas.md.
 namespace nonio::math {
@@ -57,8 +57,8 @@ struct GridLine : MeanCurve {
 
 /// Straightness by another instrument, against a line that is its own.
 struct DirectStraightness : MeanCurve {
-  /// Its even part counts too, and its line goes through both ends (`zeroed`: through readings that
-  /// are 0 by definition). Else only its odd part counts, and the slope of its line is unknown.
+  /// The even part is used too, with a line through both ends (`zeroed`: readings that are 0 by
+  /// definition). Else only the odd part, and the slope of the line is unknown.
   bool whole = false;
   /// The same line after the straightedge was turned over: the mean of both counts, and what is
   /// the straightedge's own drops out. Deviations in the same sense.
@@ -139,19 +139,19 @@ struct DiagonalResult {
   Closure closure;
   /// Of a direct straightness that is not whole, with a model of the readings.
   std::optional<Agreement> EYX_agrees, EXY_agrees;
-  /// Standard deviation of a mean as the residuals of the fit say, with its degrees of freedom.
+  /// Standard deviation of a mean as the residuals of the fit predict, with its degrees of freedom.
   double residual_u = 0.0;
   std::size_t dof = 0;
   bool noise_known = false;  ///< every u was given: else all are taken as equal, from residual_u
 };
 
-/// Fails if the curves do not have the lengths that the grid asks for. The lines of the model, if
+/// Fails if the curves do not have the lengths that the grid requests. The lines of the model, if
 /// there is one, are Y, X, ECX, D1, D2, the third lines, EYX, EXY, a reading for each mean; after a
 /// straightness the one with the straightedge turned over.
 Expected<DiagonalResult> solve_diagonals(const DiagonalReadings&, const ReadingModel* = nullptr);
 
-/// What a bound abs(EXY_odd) <= G (m) says of EYX_odd = (q_odd - c EXY_odd)/s:
-/// EYX_even + (q_odd -+ c G)/s at each stop, m. Derived, docs/formulas.md.
+/// What a bound abs(EXY_odd) <= G (m) implies for EYX_odd = (q_odd - c EXY_odd)/s: EYX_even +
+/// (q_odd -+ c G)/s at each stop, m. Derived, docs/formulas.md.
 struct Band {
   std::vector<double> low, high;
 };

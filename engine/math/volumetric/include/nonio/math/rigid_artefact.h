@@ -9,24 +9,24 @@
 
 #include "nonio/math/rigid_body.h"
 
-/// Balls of an artefact that stands still while the machine probes their centres, as lines of the
-/// fit of all errors.
+/// Balls of an artefact at rest while the machine probes their centres, as lines of the fit of
+/// all errors.
 ///
-/// Ball b is at q_b + dq_b in the frame of the artefact, which stands turned by R and shifted by t.
+/// Ball b is at q_b + dq_b in the frame of the artefact, which is turned by R and shifted by t.
 /// The axes show M where the tool is at M + e(M), so that
 ///
 ///     M + e(M) = R q_b + t    and, about a first R, t that fits the balls best,
 ///     (R q_b + t - M)_k = e(M)_k - dt_k - (w x R (q_b - mean q))_k - (R dq_b)_k
 ///
-/// dt, w: of each placement; dq_b: of each ball, the same in all placements. q: coordinates of the
-/// certificate, or else as the machine found them in the first placement. What the certificate
-/// states comes beside, each with its u: dq_j = c q_j of a coordinate, or n.(dq_a - dq_b) =
-/// L - |q_a - q_b| + c L of a length L; and c = 0, the scale that all of it has in common.
-/// Nothing stated: the artefact tells how the errors change from place to place, and nothing of
-/// the scales.
+/// dt, w: of each placement; dq_b: of each ball, the same in all placements. q: coordinates of
+/// the certificate, or else as the machine found them in the first placement. What the
+/// certificate states is added, each with its u: dq_j = c q_j of a coordinate, or n.(dq_a - dq_b)
+/// = L - |q_a - q_b| + c L of a length L; and c = 0, the scale that all of it has in common.
+/// Nothing stated: the artefact shows how the errors change from place to place, but not the
+/// scales.
 ///
-/// m. First order in the errors: w is at most the errors over the size of the artefact, and
-/// w^2/2 of that size is left out (0.04 um for 0.2 mm on 0.5 m). Derived; tests compare with exact
+/// m. First order in the errors: w is at most the errors over the size of the artefact, and w^2/2
+/// of that size is left out (0.04 um for 0.2 mm on 0.5 m). Derived; tests compare with exact
 /// transforms. docs/formulas.md.
 namespace nonio::math {
 
@@ -47,7 +47,7 @@ struct ArtefactPlacement {
   std::string name;
   std::vector<std::size_t> ball;
   std::vector<Corner> at;  ///< what the axes showed
-  /// A coordinate that was not measured gives no reading. `at` has there where the axis stood, or NaN.
+  /// A coordinate that was not measured gives no reading; `at`: the axis position, or NaN.
   std::array<bool, 3> measured{true, true, true};
 };
 
@@ -74,8 +74,8 @@ struct ArtefactLines {
 /// Why readings are no readings of this artefact.
 struct ArtefactRefusal {
   enum class Why {
-    not_linked,   ///< a placement or ball that nothing holds against the others
-    does_not_fit  ///< a ball is farther than `artefact_limit` from where the others say
+    not_linked,   ///< a placement or ball that nothing links with the others
+    does_not_fit  ///< a ball is farther than `artefact_limit` from the position that the others give
   };
   Why why = Why::not_linked;
   std::string placement, ball;

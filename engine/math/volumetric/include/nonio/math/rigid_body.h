@@ -27,11 +27,11 @@
 ///     angle         sum of P_k(t), k = 1..degree     (a constant is squareness)
 ///
 /// A reading senses n . e; readings of a line share an unknown zero, and half the reversal of the
-/// line if it was read from both sides. Beside them, of a line read across its travel: its slope; of
-/// a step diagonal: two tilts of its mirror, and (w x n).(P - Q) theta of each angle theta about w,
-/// because the mirror turns with the tool (P: way of the reading from the first, Q: the farthest). A
-/// reading of an angle is the angle. Lines may share unknowns: the place of an artefact and of its
-/// balls (rigid_artefact.h), the set-up and the error of a square.
+/// line if it was read from both sides. Further unknowns: of a line read across its travel its
+/// slope; of a step diagonal: two tilts of its mirror, and (w x n).(P - Q) theta of each angle
+/// theta about w, because the mirror turns with the tool (P: way of the reading from the first, Q:
+/// the farthest). A reading of an angle is the angle. Lines may share unknowns: the place of an
+/// artefact and of its balls (rigid_artefact.h), the set-up and the error of a square.
 ///
 /// What a certificate states of such an unknown is a reading too, of the set-up alone, with the
 /// standard uncertainty that is stated: it counts with its weight, and its uncertainty is in U.
@@ -77,7 +77,7 @@ struct RigidLine {
   bool own_slope = true;  ///< of a line across its travel
 };
 
-/// Degrees of the polynomials that are tried where none is asked for.
+/// Degrees of the polynomials that are tried where none is requested.
 inline constexpr std::size_t least_degree = 2, most_degree = 8;
 inline constexpr double rank_below = 1e-6;
 
@@ -109,11 +109,12 @@ struct RigidSolution {
   std::vector<double> singular;     ///< relative to the largest, falling, all unknowns
   std::vector<std::string> unseen;  ///< errors of which no reading shows anything
   std::vector<Combination> combinations;
-  Combination weakest;                ///< that is still told, by the smallest singular value
-  std::vector<double> scatter, dof;   ///< of each group; 0 where there is none
-  std::vector<RigidCurve> curves;     ///< that the readings tell
+  Combination weakest;               ///< that is still identifiable, by the smallest singular value
+  std::vector<double> scatter, dof;  ///< of each group; 0 where there is none
+  std::vector<RigidCurve> curves;    ///< that the readings determine
   std::vector<std::string> withheld;  ///< curves and squarenesses that they do not
-  std::vector<std::pair<std::string, RigidValue>> squareness;  ///< C0Y, B0Z, A0Z, as far as told
+  std::vector<std::pair<std::string, RigidValue>>
+      squareness;  ///< C0Y, B0Z, A0Z, as far as identifiable
   VolumeMap map;
 };
 

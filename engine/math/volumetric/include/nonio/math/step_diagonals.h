@@ -21,7 +21,7 @@
 ///     nu                                              set-up angle of a pass, rad: nu.u = 0
 ///     R = u.sum_a [E_a(j_a) - E_a(start)] + nu.p      reading minus the nominal one, m
 ///
-/// Least squares: 9n function values, two set-up angles a pass, the zero of each pass, and the
+/// Least squares: 9n function values, two set-up angles per pass, the zero of each pass, and the
 /// zero of each axis series d(x) = E_aa(x) + zero. A rotation of the frame moves no reading: EYX,
 /// EZX and EZY are 0 at the far end while it is solved (three gauge rows, if the set-up is open).
 /// The rank is found numerically; without axis series the set-up leaves two scales unknown, and
@@ -35,7 +35,7 @@
 ///     slope EYX + slope EXY = L (sum of ex ey D) / (4 X Y)            D: totals of the diagonals
 ///
 /// The functions are those on lines through the middle of the volume: angular errors of an axis
-/// that is measured beside it make the axis series disagree.
+/// that is measured on another line make the axis series disagree.
 ///
 /// Given: straightness less its least-squares line (ISO 230-1), and with it
 ///     C0Y = -(slope EYX + slope EXY), B0Z = slope EZX + slope EXZ, A0Z = -(slope EZY + slope EYZ)
@@ -116,7 +116,7 @@ struct StepSolution {
   std::size_t unknowns = 0, rank = 0;   ///< function values and set-up angles; 9n + 8 at most known
   double u_reading = 0.0;               ///< m, as used
   double dof = 0.0;                     ///< of u_reading from the residuals
-  /// Set-up angle of each pass, rad; empty where it cannot be told from the scales.
+  /// Set-up angle of each pass, rad; empty if it is not separable from the scales.
   std::vector<double> set_up;
   std::vector<ShapeContrast> shapes;  ///< of each series
   bool scales_known() const { return curves[0].known && curves[4].known && curves[8].known; }
@@ -131,7 +131,7 @@ Expected<StepSolution> solve_step_diagonals(const StepDiagonals&, const std::vec
 Expected<StepSolution> average_step_diagonals(const StepDiagonals&, const StepChoices&,
                                               const ReadingModel* = nullptr);
 
-/// What the check sums say.
+/// What the check sums show.
 struct StepChecks {
   std::array<double, 3> constant{};  ///< mean check sum of the moves of X, Y, Z, m
   double p_constant = 1.0;           ///< of the most significant one, times 3
@@ -142,8 +142,8 @@ struct StepChecks {
 };
 StepChecks check_step_diagonals(const StepDiagonals&);
 
-/// Mean total of the diagonals less what three axis series (ascending) say of it, m:
-/// mean D - sum of (T_a/L) E_aa(T_a). Nothing if an axis or a total is missing.
+/// Mean total of the diagonals less the prediction of three axis series (ascending), m: mean D -
+/// sum of (T_a/L) E_aa(T_a). Nothing if an axis or a total is missing.
 std::optional<Estimated> close_lengths(const StepDiagonals&, const std::vector<AxisSeries>&,
                                        double u_reading);
 

@@ -16,7 +16,7 @@ using AxisSettings = NumberTable;
 
 struct KnownAxis {
   std::string name;
-  std::size_t number = 0;  ///< setting `number`; 0: nobody says it, and nobody guesses it
+  std::size_t number = 0;  ///< setting `number`; 0: not stated, and not guessed
   bool rotary = false;
   AxisSettings settings;
 
@@ -26,10 +26,10 @@ struct KnownAxis {
   double per_si() const { return rotary ? deg_per_rad : 1e3; }
 };
 
-/// Tables of option `axes`, by axis. `keys`: "reference" stands for
-/// reference_mm and reference_deg, a name with ':' at its end for a plain number; none: any. What
-/// the record of a machine may say is always taken: number, reference, from, to, backlash,
-/// resolution, largest, slope.
+/// Tables of option `axes`, by axis. `keys`: "reference" stands for reference_mm and
+/// reference_deg, a name with ':' at its end for a plain number; none: any. What the record of a
+/// machine may state is always taken: number, reference, from, to, backlash, resolution, largest,
+/// slope.
 Expected<NumberTables> settings_of_axes(const Settings& options,
                                         const std::vector<std::string_view>& keys = {});
 
@@ -38,10 +38,10 @@ tl::unexpected<Error> wrong_axes(std::string message, const std::string& key = {
 
 /// The axes of the manifest with their settings.
 Expected<std::vector<KnownAxis>> known_axes(const TableInput&);
-/// A linear axis of its own name if nobody knows it.
+/// A linear axis with that name if it is not known.
 KnownAxis axis_numbered(const std::vector<KnownAxis>&, std::size_t number);
-/// By the name of its file: "linuxcnc-X-before.comp" behind this prefix; else by what stands there,
-/// and the only axis there is where the file is called otherwise.
+/// By the name of its file, "linuxcnc-X-before.comp" after this prefix: the axis in it, or the only
+/// axis of the machine if the file has another name.
 KnownAxis axis_of_file(const std::vector<KnownAxis>&, std::string_view file,
                        std::string_view prefix);
 KnownAxis axis_named(const std::vector<KnownAxis>&, std::string_view name);

@@ -14,7 +14,7 @@
 #include "nonio/sdk/plugin.h"
 
 /// What every writer of controller tables does alike: find the axes, refuse what no table can
-/// mend, predict what is left. Compiled into each plugin; a plugin has no part of another.
+/// correct, predict what is left. Compiled into each plugin; a plugin uses no part of another.
 namespace nonio::controllers {
 
 /// The columns of a table: one of the mean of both directions, or one for each direction.
@@ -44,7 +44,7 @@ struct HeldReversal {
 struct AxisJob {
   std::string axis, measurement;
   std::string stem;        ///< of file names; with the measurement where an axis has two of them
-  std::size_t number = 0;  ///< in the control; 0: nobody says it
+  std::size_t number = 0;  ///< in the control; 0: not stated
   bool rotary = false;
   math::ErrorCurve curve;                    ///< to be compensated: as measured, or the model's
   std::optional<math::ErrorCurve> measured;  ///< as measured, where `curve` is the model's
@@ -54,7 +54,7 @@ struct AxisJob {
       true;  ///< false: `curve` is less its end line, as step diagonals alone know it
   math::Reversal reversal;
   AxisSettings settings;           ///< of this axis: option `axes`
-  std::vector<std::string> drift;  ///< ids of the findings that ask for attention
+  std::vector<std::string> drift;  ///< ids of the findings with severity warning
   std::optional<Unresolved> unresolved{};
   Uncertainties U;
   std::optional<HeldReversal> held{};  ///< `curve` is the mean in both directions then
@@ -76,7 +76,7 @@ struct AxisJob {
   double mean_reversal() const { return held ? held->mean : curve.mean_reversal(); }
   /// Decided apart from the pitch: the reversal is constant enough that one value takes most of it.
   bool one_value_helps() const;
-  /// The table of an axis that drifted was asked for: setting `drifted`.
+  /// The table of an axis that drifted was requested: setting `drifted`.
   bool takes_drift() const { return setting("drifted").value_or(0.0) != 0.0; }
   /// Printed units per SI: mm per m, or deg per rad.
   double per_si() const { return rotary ? deg_per_rad : 1e3; }
@@ -97,8 +97,8 @@ Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
                                          const std::vector<std::string_view>& keys,
                                          OutputResult& result);
 
-/// True, with a finding that names the key and the file, where nobody says the number of one of
-/// these axes in the control.
+/// True, with a finding that names the key and the file, if the number of one of these axes in the
+/// control is not stated.
 bool lacks_number(const std::vector<std::string>& of, const ControllerInput& input,
                   const std::vector<KnownAxis>& axes, const std::string& measurement,
                   OutputResult& result);
@@ -116,22 +116,22 @@ Remark remark(const AxisJob& job, std::string id);
 Option axes_option(std::string keys);
 /// step_mm and step_deg.
 std::vector<Option> step_options();
-/// The step for this axis from its settings or the options; 0: not said.
+/// The step for this axis from its settings or the options; 0: not stated.
 double wished_step(const AxisJob& job, const Settings& options);
 
 /// True, with a finding, where the reversal changes along the axis by as much as the pitch table
-/// takes away, and no direction tables are asked for.
+/// compensates, and no direction tables are requested.
 bool refused(const AxisJob& job, Columns columns, OutputResult& result);
 
 /// Lines for a table of an axis that was not stable while it was measured, or of readings that
 /// do not belong to the others; empty otherwise.
 std::vector<std::string> warnings(const AxisJob& job, OutputResult& result);
-/// How the reversal was dealt with, for the words beside a table.
+/// How the reversal was treated, for the text that goes with a table.
 std::string reversal_words(const AxisJob& job, Columns columns);
 
-/// For a single backlash value. A finding where the axis goes too far at reversal and nobody said
-/// what the control compensates already: the value written then replaces one that it should have
-/// lowered. Another one where the reversal varies and the value leaves much of it.
+/// For a single backlash value. A finding if the axis moves too far at reversal and the active
+/// compensation of the control is not stated: the value written then replaces one that it should
+/// have lowered. Another one where the reversal varies and the value leaves much of it.
 void doubt_backlash(const AxisJob& job, OutputResult& result);
 
 /// E, B and M before and after, the latter with `correction` as read back from the bytes written;

@@ -21,7 +21,7 @@ struct CrossCurve {
   std::string input, output;
   std::vector<double> position, value;
   double reference = 0.0;  ///< position of `input` where it is 0
-  bool told = false;       ///< somebody says so; else 0 if it has it, else its nearest end
+  bool told = false;       ///< it is stated; else 0 if the axis has it, else its nearest end
   std::string
       side_of{};  ///< where `output` is the second side of a gantry: the axis that it follows
 };
@@ -30,7 +30,7 @@ struct CrossCurve {
 enum class SecondSide {
   own_table,    ///< nothing: compensation is entered for each side, so both get the table
   moves_along,  ///< the same: these tables change the position that is commanded
-  not_known,    ///< the maker does not say it: no table is written
+  not_known,    ///< the maker does not state it: no table is written
 };
 
 /// A line in space as it was read: what tables do to it can be predicted.
@@ -72,11 +72,11 @@ struct CrossJob {
   std::vector<std::string> moving() const;
 };
 
-/// Of the analyses: what is not known has no table. On a gantry each side has its curve, or a finding says why there
-/// is no table.
+/// From the analyses: a curve that is not known gives no table. On a gantry each side has its
+/// curve, or a finding states why there is no table.
 std::vector<CrossJob> cross_jobs(const ControllerInput&, SecondSide, OutputResult& result);
 
-/// A finding: no such table on a gantry, as nobody says what the second side does.
+/// A finding: no such table on a gantry, because the motion of the second side is not known.
 void refuse_second_side(const Axis&, const std::string& measurement, OutputResult& result);
 
 /// Option squareness: where the squareness of a gantry goes.
@@ -89,7 +89,7 @@ bool together(const CrossJob&, const AxisJob&, const Campaign&);
 /// table of its output axis: settings largest_um and slope_um_per_m.
 bool oversized(const CrossJob&, const ControllerInput&, OutputResult&);
 
-/// Of the whole set, for the file: what is in no table, what the squareness is of. Notes say the same.
+/// Of the whole set, for the file: what is in no table, what the squareness is of. Also as notes.
 std::vector<std::string> set_words(const CrossJob&);
 
 /// "Y over X: zero at 0.0 mm of X, largest entry ...", for the file; and the same as notes.

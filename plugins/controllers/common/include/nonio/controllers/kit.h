@@ -14,8 +14,8 @@
 #include "nonio/math/loaded_table.h"
 #include "nonio/sdk/plugin.h"
 
-/// A controller plugin is a declaration (ControlTable), a format and a parser; what lies between
-/// the readings and the numbers of a table, and between a table and what it does, is here.
+/// A controller plugin is a declaration (ControlTable), a format and a parser; the steps from the
+/// readings to the numbers of a table, and from a table to its effect, are here.
 namespace nonio::controllers {
 
 /// "points in this table: 17", among the words: text without an end shows then where it was cut.
@@ -33,8 +33,8 @@ struct Sheet {
   math::Grid grid{};             ///< where evenly spaced
   double reference = 0.0;        ///< where an entry is 0; of two columns, their mean; SI
   std::vector<double> position;  ///< SI
-  /// What an entry says (+e or -e, less what it is at the reference), SI, not yet rounded; `minus`
-  /// is empty unless there are `directions`.
+  /// What an entry states (+e or -e, less what it is at the reference), SI, not yet rounded;
+  /// `minus` is empty unless there are `directions`.
   std::vector<double> plus, minus;
   /// The same in steps of the table: rounded as absolute values, then differences of these where
   /// the entries are increments. So their sum is never off by more than half a step.
@@ -65,9 +65,9 @@ struct Sheet {
 /// How a control takes the two directions of travel.
 enum class Directions {
   by_option,                   ///< a table of the mean; of each direction where option `directions`
-                               ///< says so, and the backlash parameter goes on to count
-  by_option_without_backlash,  ///< the same, but beside direction tables the parameter is dead
-  always_without_backlash,     ///< two columns in any case, no backlash parameter beside them
+                               ///< states that, and the backlash parameter goes on to count
+  by_option_without_backlash,  ///< the same, but with direction tables the parameter has no effect
+  always_without_backlash,     ///< two columns in any case, no backlash parameter with them
 };
 
 /// How a table of a whole turn ends.
@@ -79,7 +79,7 @@ enum class TurnEnd {
 /// Of tables for each direction: which of them is 0 at the reference.
 enum class ZeroOf { mean, plus, minus };
 
-/// What a plugin is beside its Info; made for each run, with what its options change.
+/// The parts of a plugin other than its Info; made for each run, as its options require.
 struct Writer {
   std::string name;  ///< of the plugin: files begin with it, ids of notes too
   ControlTable table;
@@ -91,13 +91,13 @@ struct Writer {
   TurnEnd turn_end = TurnEnd::repeats;
   ZeroOf zero_of = ZeroOf::mean;
   bool power_of_two = false;  ///< the step of linear axes
-  double fixed_step = 0.0;    ///< of a control whose points nobody chooses
-  /// Whether the maker states that the value of an end holds outside of the table; else the file
+  double fixed_step = 0.0;    ///< of a control whose points cannot be chosen
+  /// Whether the maker states that the value of an end applies outside of the table; else the file
   /// calls it an assumption.
   bool holds_documented = false;
   /// The declaration for one axis, where its units are of the axis.
   std::function<Expected<ControlTable>(const AxisJob&, ControlTable)> of_axis{};
-  /// Where the points are wanted; else at the targets.
+  /// Where the points are required; else at the targets.
   std::function<std::vector<double>(const AxisJob&)> wanted{};
   /// An option that makes a step of the table coarser, its present and its largest value.
   struct Coarser {
@@ -107,12 +107,12 @@ struct Writer {
   } coarser{};
 };
 
-/// The options that follow from a declaration: step, directions, max_points, sign where nobody
-/// knows it, `axes` with these keys in its help.
+/// The options that follow from a declaration: step, directions, max_points, sign where it is not
+/// known, `axes` with these keys in its help.
 std::vector<Option> table_options(const ControlTable&, std::string keys_of_axes,
                                   std::vector<Option> more = {});
 
-/// As declared, with what the options say. An error where the sign is not known and not said.
+/// As declared, with what the options state. An error where the sign is not known and not stated.
 Expected<ControlTable> chosen(ControlTable, const Settings&);
 
 /// A sheet of each axis, its files, and what is left when the control has read them back. The jobs
@@ -121,14 +121,14 @@ Expected<std::vector<AxisJob>> write_axes(const ControllerInput&, const Writer&,
 Expected<OutputResult> write_tables(const ControllerInput&, const Writer&);
 
 /// Entries as a file has them, in its units; one for each position. An increment is the change over
-/// the interval that ends at its position, so that of the first position is 0: nothing lies before
-/// it. The sums are 0 at the point `reference` (docs/howto-plugin.md has a drawing).
+/// the interval that ends at its position, so that of the first position is 0: there is no interval
+/// before it. The sums are 0 at the point `reference` (docs/howto-plugin.md has a drawing).
 struct RawTable {
   KnownAxis axis;
   std::vector<double> position;
   std::vector<double> plus, minus{};
   std::size_t reference = 0;  ///< of increments: the point whose sum is 0; Zero::first: the first
-  /// Of increments: the sum of `minus` at that point, where a number of its own says it (Fanuc
+  /// Of increments: the sum of `minus` at that point, where a number of its own states it (Fanuc
   /// 3627).
   double minus_start = 0.0;
   LoadedTable::Outside outside = LoadedTable::Outside::holds;

@@ -18,15 +18,15 @@ Expected<std::vector<LoadedTable>> parse_list(const TableInput&, const ControlTa
                                               Columns columns = Columns::mean);
 
 /// Files that hold a table of one axis each, "NAME-X-...": `take` puts a line into the table, or
-/// says false where it is none of its points. A file without a point is passed over; none with one
-/// is an error. A rotary table from 0 to 360 deg with equal ends repeats itself.
+/// states false where it is none of its points. A file without a point is passed over; none with
+/// one is an error. A rotary table from 0 to 360 deg with equal ends repeats itself.
 using Take = std::function<Expected<bool>(std::string_view line, RawTable&)>;
 Expected<std::vector<LoadedTable>> parse_files(const TableInput&, const ControlTable&,
                                                std::string_view name, const Take& take);
 /// That the line is not a point as it should be.
 tl::unexpected<Error> no_point(std::string_view line);
 
-/// The line "PARAMETER = 0.008 mm" among the words beside a table; SI.
+/// The line "PARAMETER = 0.008 mm" in the text that goes with a table; SI.
 std::optional<double> parameter_in(std::string_view bytes, std::string_view parameter);
 
 }  // namespace nonio::controllers

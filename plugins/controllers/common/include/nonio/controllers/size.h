@@ -32,7 +32,7 @@ bool oversized(const AxisJob&, const TableSize&, double step, OutputResult&);
 /// "largest entry 8.143 um at 400.0 mm, steepest 20.36 um/m from 350.0 mm; E as measured ...".
 std::string size_words(const AxisJob&, const TableSize&);
 
-/// A note that says where the table is zero, and one that says how large it is.
+/// A note that states where the table is zero, and one that states how large it is.
 void note_zero(const AxisJob&, double zero, OutputResult&);
 void note_size(const AxisJob&, const TableSize&, OutputResult&);
 

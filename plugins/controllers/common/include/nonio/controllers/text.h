@@ -19,13 +19,13 @@ std::vector<std::string_view> lines_of(std::string_view text);
 /// An error where the last line has no end: the file was cut, and what is left of a number is
 /// another one.
 Expected<void> ends_whole(std::string_view name, std::string_view text);
-/// What stands between these characters.
+/// The text between these characters.
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::string_view separators = " \t\r");
 std::string_view trimmed(std::string_view text);
 /// The text with these lines in place of its own ones, where the first of them was; where it has
-/// none, in front of byte `otherwise`, or nothing if that is not said. `is_own` sees the lines one
-/// after the other, without their ends; the new ones get the ends that the text has.
+/// none, in front of byte `otherwise`, or nothing if that is not stated. `is_own` sees the lines
+/// one after the other, without their ends; the new ones get the ends that the text has.
 std::optional<std::string> with_lines(const std::string& text,
                                       const std::function<bool(std::string_view)>& is_own,
                                       const std::string& lines,
@@ -42,7 +42,7 @@ std::optional<std::int64_t> whole(std::string_view text);
 /// Numbers and ranges of them, "0", "100-227", as first and last; what is none is left out.
 std::vector<std::pair<std::int64_t, std::int64_t>> ranges_of(const std::vector<std::string>& texts);
 
-/// Printable ASCII on one line, whatever the manifest says.
+/// Printable ASCII on one line, whatever the manifest states.
 std::string plain(std::string_view text);
 /// For file names.
 std::string file_part(std::string_view text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/close/morning_update.h"
+#include "batch/close/worklist_update.h"
 
 #include <algorithm>
 #include <set>
@@ -26,10 +26,9 @@ bool is_as_it_was(const fs::path& path, const std::string& bytes) {
   return found && *found == bytes;
 }
 
-/// What failed or is lost has lists of its own in summary.txt, with more to say.
-bool stands_in_a_list(const reports::MorningLine& line) {
-  return line.kind == reports::MorningLine::Kind::lost ||
-         line.kind == reports::MorningLine::Kind::failed;
+/// What failed or is lost has lists of its own in summary.txt, with more details.
+bool is_in_a_list(const reports::WorkItem& line) {
+  return line.kind == reports::WorkItem::Kind::lost || line.kind == reports::WorkItem::Kind::failed;
 }
 
 /// Pages of machines that are not there any more.
@@ -81,7 +80,7 @@ Expected<void> write_pages(const fs::path& out, std::vector<Artifact> pages) {
   return write_lists(out, std::move(root));
 }
 
-/// What a process that makes a morning gives back: the members of `Morning`.
+/// Result of the process that makes the pages: the members of `MorningPages`.
 using Texts = std::vector<std::string>;
 
 void add_curves(reports::SiteHistory& site, const fs::path& out,
@@ -97,13 +96,13 @@ void add_curves(reports::SiteHistory& site, const fs::path& out,
 Expected<std::string> mail_text(reports::SiteHistory& site, const reading::Context& context,
                                 const std::string& language) {
   if (!context.site.mail) return std::string();
-  std::vector<reports::MorningLine> all = site.lines;
-  std::erase_if(site.lines, [&](const reports::MorningLine& line) {
+  std::vector<reports::WorkItem> all = site.lines;
+  std::erase_if(site.lines, [&](const reports::WorkItem& line) {
     return !is_reason_for_mail(line, context.site.mail->on);
   });
   auto text = site.lines.empty()
                   ? Expected<std::string>()
-                  : reports::morning_text(site, context.templates, language, site.lines.size());
+                  : reports::worklist_text(site, context.templates, language, site.lines.size());
   site.lines = std::move(all);
   return text;
 }
@@ -123,19 +122,19 @@ Expected<Texts> texts_of(reports::SiteHistory site, const reading::Context& cont
   std::copy_if(site.lines.begin(), site.lines.end(), std::back_inserter(action.lines),
                reports::asks);
   const std::string actions = assessment::lines_json(action, context.templates, language);
-  std::erase_if(site.lines, stands_in_a_list);
+  std::erase_if(site.lines, is_in_a_list);
   NONIO_TRY(auto text, site.lines.empty()
                            ? Expected<std::string>()
-                           : reports::morning_text(site, context.templates, language, most_lines));
+                           : reports::worklist_text(site, context.templates, language, most_lines));
   return Texts{std::move(text),        json, std::to_string(asking),
                site.judged ? "1" : "", mail, actions};
 }
 
 /// All machines anew, with the error curves of each campaign's results.json.
 Expected<Texts> small_morning(const fs::path& out, const reading::Context& context,
-                              const assessment::Tonight& tonight,
+                              const assessment::LastRun& last_run,
                               const std::function<void()>& alive) {
-  NONIO_TRY(auto site, assessment::assess(out, tonight, alive, assessment::Keep::trends));
+  NONIO_TRY(auto site, assessment::assess(out, last_run, alive, assessment::Keep::trends));
   add_curves(site, out, alive);
   NONIO_TRY(auto pages, reports::site_pages(site, context.templates, language_of_pages(context)));
   alive();
@@ -195,10 +194,10 @@ class MachinePages {
 
 /// Without error curves, and only of machines of which something is new.
 Expected<Texts> large_morning(const fs::path& out, const reading::Context& context,
-                              const assessment::Tonight& tonight,
+                              const assessment::LastRun& last_run,
                               const std::function<void()>& alive) {
   auto assessment =
-      assessment::Assessment::of(out, tonight, alive, assessment::Assessment::Kept::used);
+      assessment::Assessment::of(out, last_run, alive, assessment::Assessment::Kept::used);
   if (!assessment) return fail(assessment.error());
   MachinePages pages(*assessment, out, context);
   if (auto written = pages.write(alive); !written) return fail(written.error());
@@ -214,44 +213,45 @@ Expected<Texts> large_morning(const fs::path& out, const reading::Context& conte
 
 }  // namespace
 
-assessment::Tonight tonight_of(const Night& night, const fs::path& out,
-                               const Templates& templates) {
+assessment::LastRun last_run_of(const RunResult& run, const fs::path& out,
+                                const Templates& templates) {
   const config::TerminalWords english(templates, "en");
-  assessment::Tonight tonight;
-  tonight.night = night.night.number, tonight.date = night.night.date;
-  tonight.campaigns = night.campaigns.size();
-  for (const CampaignState& c : night.campaigns) {
+  assessment::LastRun last_run;
+  last_run.run = run.run.number, last_run.date = run.run.date;
+  last_run.campaigns = run.campaigns.size();
+  for (const CampaignState& c : run.campaigns) {
     if (c.status == evaluation::Status::failed) {
-      assessment::Tonight::Failed failed{c.id, c.folder, first_error(c, english), {}};
+      assessment::LastRun::Failed failed{c.id, c.folder, first_error(c, english), {}};
       const auto record = evaluation::read_record(storage::results_folder(out, c.id));
-      if (record && record->failed_since && record->failed_since->number < tonight.night)
+      if (record && record->failed_since && record->failed_since->number < last_run.run)
         failed.since = record->failed_since->date;
-      tonight.failed.push_back(std::move(failed));
+      last_run.failed.push_back(std::move(failed));
     } else {
-      ++(c.action == CampaignState::Action::done ? tonight.done : tonight.unchanged);
+      ++(c.action == CampaignState::Action::done ? last_run.done : last_run.unchanged);
     }
   }
-  for (const Vanished& v : night.vanished)
-    tonight.vanished.push_back({v.id, v.folder, v.night, v.why});
-  for (const auto& entry : night.issued) tonight.issued.push_back(entry.number);
-  for (const auto& draft : night.waiting) tonight.waiting.push_back(draft.campaign);
-  tonight.history_error = night.history_error;
-  return tonight;
+  for (const Vanished& v : run.vanished)
+    last_run.vanished.push_back({v.id, v.folder, v.run, v.why});
+  for (const auto& entry : run.issued) last_run.issued.push_back(entry.number);
+  for (const auto& draft : run.waiting) last_run.waiting.push_back(draft.campaign);
+  last_run.history_error = run.history_error;
+  return last_run;
 }
 
-Expected<Morning> make_morning(const RunOptions& options, const reading::Context& context,
-                               const assessment::Tonight& tonight, std::uint64_t most_curves) {
+Expected<MorningPages> make_worklist(const RunOptions& options, const reading::Context& context,
+                                     const assessment::LastRun& last_run,
+                                     std::uint64_t most_curves) {
   const auto made = read_apart<Texts>(
       "the history of the machines", context.site.limits.disk_seconds,
       [&](process::SignsOfLife& signs) -> Expected<Texts> {
         signs.reading(options.out.string());
         const auto alive = [&] { signs.beat(); };
-        const auto make = tonight.campaigns > most_curves ? large_morning : small_morning;
-        return make(options.out, context, tonight, alive);
+        const auto make = last_run.campaigns > most_curves ? large_morning : small_morning;
+        return make(options.out, context, last_run, alive);
       });
   if (!made) return fail(made.error());
-  return Morning{(*made)[0],          (*made)[1], std::stoull((*made)[2]),
-                 !(*made)[3].empty(), (*made)[5], (*made)[4]};
+  return MorningPages{(*made)[0],          (*made)[1], std::stoull((*made)[2]),
+                      !(*made)[3].empty(), (*made)[5], (*made)[4]};
 }
 
 }  // namespace nonio::batch

@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <string>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 #include "campaign/reading/context.h"
-#include "laboratory/assessment/tonight.h"
+#include "laboratory/assessment/last_run.h"
 
 namespace nonio::batch {
 
 /// What a run reports to people.
-struct Morning {
+struct MorningPages {
   std::string text;  ///< of summary.txt: one line per action, without what failed or is lost
   std::string json;  ///< the same lines as a list, of summary.json
   std::uint64_t asking = 0;  ///< lines that are new and no mere notes
@@ -21,16 +21,16 @@ struct Morning {
 };
 
 /// What the run knows and the history does not.
-assessment::Tonight tonight_of(const Night& night, const std::filesystem::path& out,
-                               const Templates& templates);
+assessment::LastRun last_run_of(const RunResult& run, const std::filesystem::path& out,
+                                const Templates& templates);
 
 /// Assesses the histories of the machines, and writes the pages that are not as they were:
 /// OUT/index.html, machines/, due.html, due.ics, instruments.html, compare.html. In a process of
 /// its own, which may take `disk_seconds` without a sign of life. Of sites with more campaigns than
 /// `most_curves` no error curves are drawn, and machines of which nothing is new are not looked at
 /// again.
-Expected<Morning> make_morning(const RunOptions& options, const reading::Context& context,
-                               const assessment::Tonight& tonight,
-                               std::uint64_t most_curves = 5000);
+Expected<MorningPages> make_worklist(const RunOptions& options, const reading::Context& context,
+                                     const assessment::LastRun& last_run,
+                                     std::uint64_t most_curves = 5000);
 
 }  // namespace nonio::batch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/state/night_plan.h"
+#include "batch/state/run_plan.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/night_state.h"
+#include "batch/state/run_state.h"
 #include "campaign/evaluation/record.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
@@ -118,7 +118,7 @@ Error damaged(const fs::path& path, const std::string& why) {
   return Error{path.string() + " is damaged (" + why + "); plan the run again"};
 }
 
-Expected<std::vector<Listed>> read_list(const fs::path& path, const NightPlan::List& list) {
+Expected<std::vector<Listed>> read_list(const fs::path& path, const RunPlan::List& list) {
   NONIO_TRY(const auto text, storage::read_file(path));
   if (storage::sha256(text) != list.sha256) return fail(damaged(path, "another digest"));
   std::vector<Listed> all;
@@ -136,11 +136,11 @@ Expected<std::vector<Listed>> read_list(const fs::path& path, const NightPlan::L
   return all;
 }
 
-/// A list of a plan under its temporary name, line by line, since it may be longer than what memory is for: the
-/// campaigns `of` of `campaigns`. Sets the digest.
+/// A list of a plan under its temporary name, line by line, since it may not fit into memory: the
+/// campaigns with the indices `of`. Sets the digest.
 Expected<void> write_list(const fs::path& folder, const std::string& name,
                           std::span<const std::uint32_t> of,
-                          const std::vector<CampaignState>& campaigns, NightPlan::List& list) {
+                          const std::vector<CampaignState>& campaigns, RunPlan::List& list) {
   const fs::path path = storage::temporary_path(folder, name);
   std::uint64_t size = 0;
   storage::RunningDigest digest;
@@ -166,7 +166,7 @@ constexpr const char* plan_schema = "nonio-plan/1";
 constexpr const char* record_schema = "nonio-shard/1";
 constexpr const char* rest_name = "rest.jsonl";
 
-fs::path folder_of(const fs::path& out, const NightPlan& plan) {
+fs::path folder_of(const fs::path& out, const RunPlan& plan) {
   return out / state_folder / plan_folder / plan.id;
 }
 
@@ -180,18 +180,18 @@ std::string shard_record_name(std::uint64_t shard) {
   return numbered("shard-", shard, ".done.json");
 }
 
-Json json_of(const NightPlan::List& list) {
+Json json_of(const RunPlan::List& list) {
   return {{"campaigns", list.campaigns}, {"sha256", list.sha256}};
 }
-NightPlan::List list_in(const Json& json) {
+RunPlan::List list_in(const Json& json) {
   return {json.at("campaigns").get<std::uint64_t>(), json.at("sha256").get<std::string>()};
 }
 
-Json json_of(const NightPlan& plan) {
-  Json json = {{"schema", plan_schema},      {"plan", plan.id},
-               {"night", plan.night.number}, {"date", plan.night.date},
-               {"site", exact(plan.site)},   {"seen", plan.seen},
-               {"to_do", plan.to_do},        {"register_read", plan.register_read}};
+Json json_of(const RunPlan& plan) {
+  Json json = {{"schema", plan_schema},    {"plan", plan.id},
+               {"night", plan.run.number}, {"date", plan.run.date},
+               {"site", exact(plan.site)}, {"seen", plan.seen},
+               {"to_do", plan.to_do},      {"register_read", plan.register_read}};
   if (plan.history_known) json["history_known"] = *plan.history_known;
   json["made_with"] = Json::array();
   for (const auto& [name, digest] : plan.made_with) json["made_with"].push_back({name, digest});
@@ -199,20 +199,20 @@ Json json_of(const NightPlan& plan) {
   for (const std::string& note : plan.notes) json["notes"].push_back(exact(note));
   json["vanished"] = Json::array();
   for (const Vanished& v : plan.vanished)
-    json["vanished"].push_back({v.id, exact(v.folder), v.night, exact(v.why)});
+    json["vanished"].push_back({v.id, exact(v.folder), v.run, exact(v.why)});
   json["rest"] = json_of(plan.rest);
   json["shards"] = Json::array();
-  for (const NightPlan::List& list : plan.shards) json["shards"].push_back(json_of(list));
+  for (const RunPlan::List& list : plan.shards) json["shards"].push_back(json_of(list));
   return json;
 }
 
-NightPlan plan_in(const Json& json) {
+RunPlan plan_in(const Json& json) {
   if (json.at("schema") != plan_schema) throw std::runtime_error("another schema");
-  NightPlan plan;
+  RunPlan plan;
   plan.id = json.at("plan").get<std::string>();
   if (plan.id.empty() || plan.id.find('/') != plan.id.npos || plan.id.starts_with('.'))
     throw std::runtime_error("no name of a plan");
-  plan.night = {json.at("night").get<std::uint64_t>(), json.at("date").get<std::string>()};
+  plan.run = {json.at("night").get<std::uint64_t>(), json.at("date").get<std::string>()};
   plan.site = exact(json.at("site"));
   plan.seen = json.at("seen").get<std::uint64_t>();
   plan.to_do = json.at("to_do").get<std::uint64_t>();
@@ -237,8 +237,8 @@ std::string word_of_its_own() {
   return text.data();
 }
 
-/// It needs the key and the register, which only the host of the merge has. The last record says
-/// so; of a campaign without one its shard finds out.
+/// It needs the key and the register, which only the host of the merge has. The last record decides
+/// that; of a campaign without one its shard finds out.
 bool needs_register(const fs::path& out, const CampaignState& c) {
   const auto last = evaluation::last_record(storage::results_folder(out, c.id));
   return last && *last && ((*last)->record.draft || !(*last)->record.certificate.empty());
@@ -249,7 +249,7 @@ bool is_for_shard(const CampaignState& c) {
 }
 
 /// Positions of campaigns, those of the first shard first and the rest last. Counts them in the plan.
-std::vector<std::uint32_t> by_list(const fs::path& out, NightPlan& plan,
+std::vector<std::uint32_t> by_list(const fs::path& out, RunPlan& plan,
                                    const std::vector<CampaignState>& campaigns) {
   const auto rest = static_cast<std::uint32_t>(plan.shards.size());
   std::vector<std::uint32_t> list_of(campaigns.size(), rest);
@@ -276,22 +276,22 @@ std::uint64_t shard_of(const std::string& campaign, std::uint64_t shards) {
   return storage::short_digest(storage::sha256(campaign)) % shards;
 }
 
-Expected<void> write_plan(const fs::path& out, NightPlan& plan,
+Expected<void> write_plan(const fs::path& out, RunPlan& plan,
                           const std::vector<CampaignState>& campaigns) {
-  plan.id = std::to_string(plan.night.number) + "-" + word_of_its_own();
+  plan.id = std::to_string(plan.run.number) + "-" + word_of_its_own();
   plan.seen = campaigns.size();
   const std::vector<std::uint32_t> ordered = by_list(out, plan, campaigns);
   const fs::path folder = folder_of(out, plan);
   std::vector<std::string> names;
   for (std::uint64_t i = 0; i < plan.shards.size(); ++i) names.push_back(list_name(i));
   names.emplace_back(rest_name);
-  const auto list_at = [&](std::size_t i) -> NightPlan::List& {
+  const auto list_at = [&](std::size_t i) -> RunPlan::List& {
     return i < plan.shards.size() ? plan.shards[i] : plan.rest;
   };
   auto done = storage::write_temporaries(folder, {});  // the folder
   std::span<const std::uint32_t> left = ordered;
   for (std::size_t i = 0; done && i < names.size(); ++i) {
-    NightPlan::List& list = list_at(i);
+    RunPlan::List& list = list_at(i);
     done = write_list(folder, names[i], left.first(list.campaigns), campaigns, list);
     left = left.subspan(list.campaigns);
   }
@@ -309,7 +309,7 @@ Expected<void> write_plan(const fs::path& out, NightPlan& plan,
                           {{plan_name, storage::dump(json_of(plan))}});
 }
 
-Expected<std::optional<NightPlan>> find_plan(const fs::path& out) {
+Expected<std::optional<RunPlan>> find_plan(const fs::path& out) {
   const fs::path path = out / state_folder / plan_folder / plan_name;
   NONIO_TRY(const auto there, storage::is_there(path));
   if (!there) return std::nullopt;
@@ -321,7 +321,7 @@ Expected<std::optional<NightPlan>> find_plan(const fs::path& out) {
   }
 }
 
-Expected<NightPlan> read_plan(const fs::path& out) {
+Expected<RunPlan> read_plan(const fs::path& out) {
   NONIO_TRY(auto plan, find_plan(out));
   if (plan) return std::move(*plan);
   return fail("no run is planned in " + out.string() +
@@ -337,7 +337,7 @@ Expected<void> remove_plan(const fs::path& out) {
   return {};
 }
 
-Expected<void> check_made_with(const NightPlan& plan, const reading::Context& context) {
+Expected<void> check_made_with(const RunPlan& plan, const reading::Context& context) {
   const reading::Inputs here = reading::shared_inputs(context);
   std::string other;
   const auto add = [&](const std::string& name) { other += (other.empty() ? "" : ", ") + name; };
@@ -346,22 +346,22 @@ Expected<void> check_made_with(const NightPlan& plan, const reading::Context& co
       add(one.first);
   if (other.empty() && here.size() != plan.made_with.size()) add("what all campaigns share");
   if (other.empty()) return {};
-  return fail("not the same as when run " + std::to_string(plan.night.number) +
+  return fail("not the same as when run " + std::to_string(plan.run.number) +
               " was planned: " + other +
               "; expected the same program, plugins and templates on every host; if site.toml or a "
               "template was changed, plan the run again");
 }
 
-Expected<std::vector<Listed>> read_shard_list(const fs::path& out, const NightPlan& plan,
+Expected<std::vector<Listed>> read_shard_list(const fs::path& out, const RunPlan& plan,
                                               std::uint64_t shard) {
   return read_list(folder_of(out, plan) / list_name(shard), plan.shards[shard]);
 }
 
-Expected<std::vector<Listed>> read_rest(const fs::path& out, const NightPlan& plan) {
+Expected<std::vector<Listed>> read_rest(const fs::path& out, const RunPlan& plan) {
   return read_list(folder_of(out, plan) / rest_name, plan.rest);
 }
 
-Expected<void> write_shard_record(const fs::path& out, const NightPlan& plan, std::uint64_t shard,
+Expected<void> write_shard_record(const fs::path& out, const RunPlan& plan, std::uint64_t shard,
                                   const ShardRecord& record) {
   Json json = {{"schema", record_schema},
                {"plan", plan.id},
@@ -382,7 +382,7 @@ Expected<void> write_shard_record(const fs::path& out, const NightPlan& plan, st
   return storage::publish(folder_of(out, plan), {{shard_record_name(shard), storage::dump(json)}});
 }
 
-Expected<std::optional<ShardRecord>> read_shard_record(const fs::path& out, const NightPlan& plan,
+Expected<std::optional<ShardRecord>> read_shard_record(const fs::path& out, const RunPlan& plan,
                                                        std::uint64_t shard) {
   const fs::path path = folder_of(out, plan) / shard_record_name(shard);
   const auto text = storage::read_file(path);
@@ -419,7 +419,7 @@ Expected<std::optional<ShardRecord>> read_shard_record(const fs::path& out, cons
   return record;
 }
 
-std::uint64_t reported(const fs::path& out, const NightPlan& plan) {
+std::uint64_t reported(const fs::path& out, const RunPlan& plan) {
   std::uint64_t count = 0;
   for (std::uint64_t i = 0; i < plan.shards.size(); ++i)
     if (storage::is_there(folder_of(out, plan) / shard_record_name(i)).value_or(false)) ++count;

@@ -25,8 +25,7 @@ struct RunOptions {
   std::filesystem::path own_plugins;  ///< the program's own plugin folder
   std::size_t jobs = 0;               ///< 0: one for each core
   bool force = false;
-  std::string
-      only{};  ///< a campaign's folder below the site, or its id: that alone, between nights
+  std::string only{};  ///< a campaign's folder below the site, or its id: that alone, between runs
   bool dry_run = false;
   bool verify_results = false;  ///< compare the digests of all files given out, touched or not
   std::string date{};           ///< of the run, YYYY-MM-DD; empty: today's
@@ -43,14 +42,14 @@ struct RunOptions {
 };
 
 /// A campaign that has results and is not in the site any more, or another part of the site that is
-/// lost (SiteParts). Results stay; a person says that this was meant (forgotten.toml).
+/// lost (SiteParts). Results stay; a person states that this was meant (forgotten.toml).
 struct Vanished {
-  std::string id, folder;   ///< folder: where it was, as text; id of a part: the same
-  std::uint64_t night = 0;  ///< in which it was done last
-  std::string why;          ///< what is there instead, and what to do
+  std::string id, folder;  ///< folder: where it was, as text; id of a part: the same
+  std::uint64_t run = 0;   ///< in which it was done last
+  std::string why;         ///< what is there instead, and what to do
 };
 
-/// What the run tells while it goes on.
+/// Calls of a run while it is going on.
 struct RunEvents {
   std::function<void(const std::string& message)> note;
   std::function<void(std::size_t campaigns, std::size_t to_do)> planned;
@@ -62,9 +61,9 @@ struct RunEvents {
   std::function<void(const config::TerminalWords&)> words{};
 };
 
-struct Night {
+struct RunResult {
   enum class End { complete, interrupted, refused } end = End::complete;
-  evaluation::NightOf night{};
+  evaluation::RunLabel run{};
   std::optional<std::uint64_t> seen_before{};  ///< campaigns that the previous run saw
   std::string error;                           ///< of a refused run: usage or configuration
   std::vector<CampaignState> campaigns;        ///< ordered by id
@@ -78,12 +77,12 @@ struct Night {
   /// Whether anything failed or vanished, or is not in the history.
   bool any_failed() const {
     return failed() > 0 || lost_parts() > 0 || vanished.size() > may_vanish ||
-           !history_error.empty() || !morning_error.empty();
+           !history_error.empty() || !worklist_error.empty();
   }
   std::size_t may_vanish = 0;  ///< so many campaigns may vanish, by site.toml
   std::string actions{};       ///< JSON: lines that require action, in the language of the site
   std::optional<std::uint64_t> asking{};  ///< lines of the worklist that require action
-  std::string morning_error{};            ///< why the pages were not made, or the mail not sent
+  std::string worklist_error{};           ///< why the pages were not made, or the mail not sent
   std::string history_error{};            ///< why OUT/history.sqlite does not contain this run
   /// How many campaigns each shard has; of a run that was planned only.
   std::vector<std::uint64_t> planned{};

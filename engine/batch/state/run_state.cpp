@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "batch/state/night_state.h"
+#include "batch/state/run_state.h"
 
 #include <sys/stat.h>
 
@@ -8,9 +8,9 @@
 #include <cstring>
 #include <ctime>
 
-#include "batch/state/night_plan.h"
 #include "batch/state/output_lock.h"
 #include "batch/state/read_apart.h"
+#include "batch/state/run_plan.h"
 #include "campaign/evaluation/record.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
@@ -22,9 +22,9 @@ namespace {
 
 constexpr const char* state_name = "night.json";
 
-storage::Json json_of(const NightEnd& end) {
-  return {{"night", end.night.number},
-          {"date", end.night.date},
+storage::Json json_of(const RunEnd& end) {
+  return {{"night", end.run.number},
+          {"date", end.run.date},
           {"seen", end.seen},
           {"failed", end.failed}};
 }
@@ -40,14 +40,13 @@ std::string known_text(const storage::Json& json, const char* key) {
   return it != json.end() && it->is_string() ? it->get<std::string>() : "";
 }
 
-std::optional<NightEnd> end_in(const storage::Json& json, const char* key) {
+std::optional<RunEnd> end_in(const storage::Json& json, const char* key) {
   const auto it = json.find(key);
   if (it == json.end() || !it->is_object()) return std::nullopt;
   const auto number = known_count(*it, "night");
   const auto seen = known_count(*it, "seen");
   if (!number || !seen) return std::nullopt;
-  return NightEnd{
-      {*number, known_text(*it, "date")}, *seen, known_count(*it, "failed").value_or(0)};
+  return RunEnd{{*number, known_text(*it, "date")}, *seen, known_count(*it, "failed").value_or(0)};
 }
 
 /// None if there is no such file; an error if it cannot be read or is something else.
@@ -63,15 +62,15 @@ Expected<std::optional<storage::Json>> read_state(const fs::path& out) {
 }
 
 /// `end`: of a run that is complete; none while it is running.
-Expected<void> write_state(const fs::path& out, const NightState& night,
-                           const std::optional<NightEnd>& end) {
-  storage::Json json = {{"schema", "nonio-night/1"}, {"night", night.number},
-                        {"date", night.date},        {"state", end ? "complete" : "running"},
-                        {"force", night.force},      {"site", night.site}};
+Expected<void> write_state(const fs::path& out, const RunState& run,
+                           const std::optional<RunEnd>& end) {
+  storage::Json json = {{"schema", "nonio-night/1"}, {"night", run.number},
+                        {"date", run.date},          {"state", end ? "complete" : "running"},
+                        {"force", run.force},        {"site", run.site}};
   if (end) json["end"] = json_of(*end);
-  if (night.last) json["last"] = json_of(*night.last);
-  if (night.issued_before) json["issued_before"] = *night.issued_before;
-  if (night.issued_at_begin) json["issued_at_begin"] = *night.issued_at_begin;
+  if (run.last) json["last"] = json_of(*run.last);
+  if (run.issued_before) json["issued_before"] = *run.issued_before;
+  if (run.issued_at_begin) json["issued_at_begin"] = *run.issued_at_begin;
   return storage::publish(out / state_folder, {{state_name, storage::dump(json)}});
 }
 
@@ -132,7 +131,7 @@ Expected<void> check_site(const storage::Json& json, const std::string& site, co
 
 }  // namespace
 
-Expected<NightState> reopen_night(const RunOptions& options, const std::string& site) {
+Expected<RunState> reopen_run(const RunOptions& options, const std::string& site) {
   NONIO_TRY(const auto state, read_state(options.out));
   if (!state || known_text(*state, "state") != "complete")
     return fail(
@@ -140,20 +139,20 @@ Expected<NightState> reopen_night(const RunOptions& options, const std::string& 
         "OUT` before");
   const storage::Json& json = *state;
   if (auto own = check_site(json, site, options.out); !own) return fail(own.error());
-  NightState night;
-  night.reopened = true;
-  night.site = site;
-  night.number = json["night"].get<std::uint64_t>();
-  night.date = known_text(json, "date");
-  night.last = end_in(json, "last");
-  night.issued_before = known_count(json, "issued_at_begin");
-  if (!night.issued_before) night.issued_before = known_count(json, "issued_before");
-  night.issued_at_begin = night.issued_before;
-  return night;
+  RunState run;
+  run.reopened = true;
+  run.site = site;
+  run.number = json["night"].get<std::uint64_t>();
+  run.date = known_text(json, "date");
+  run.last = end_in(json, "last");
+  run.issued_before = known_count(json, "issued_at_begin");
+  if (!run.issued_before) run.issued_before = known_count(json, "issued_before");
+  run.issued_at_begin = run.issued_before;
+  return run;
 }
 
-Expected<NightState> planned_night(const RunOptions& options, const std::string& site,
-                                   std::uint64_t number) {
+Expected<RunState> planned_run(const RunOptions& options, const std::string& site,
+                               std::uint64_t number) {
   NONIO_TRY(const auto state, read_state(options.out));
   if (!state || known_text(*state, "state") != "running" || known_count(*state, "night") != number)
     return fail("run " + std::to_string(number) + " was planned in " + options.out.string() +
@@ -161,71 +160,70 @@ Expected<NightState> planned_night(const RunOptions& options, const std::string&
                 "then a new plan");
   const storage::Json& json = *state;
   if (auto own = check_site(json, site, options.out); !own) return fail(own.error());
-  NightState night;
-  night.number = number;
-  night.date = known_text(json, "date");
-  night.last = end_in(json, "last");
-  night.force = json.value("force", false);
-  night.site = known_text(json, "site");
-  night.issued_before = known_count(json, "issued_before");
-  return night;
+  RunState run;
+  run.number = number;
+  run.date = known_text(json, "date");
+  run.last = end_in(json, "last");
+  run.force = json.value("force", false);
+  run.site = known_text(json, "site");
+  run.issued_before = known_count(json, "issued_before");
+  return run;
 }
 
-Expected<NightState> begin_night(const RunOptions& options, const std::string& site,
-                                 std::optional<std::uint64_t> issued_so_far) {
-  NightState night;
+Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
+                             std::optional<std::uint64_t> issued_so_far) {
+  RunState run;
   const fs::path& out = options.out;
-  night.site = site;
-  night.force = options.force;
-  night.date = options.date.empty() ? today() : options.date;
-  night.issued_before = issued_so_far;
+  run.site = site;
+  run.force = options.force;
+  run.date = options.date.empty() ? today() : options.date;
+  run.issued_before = issued_so_far;
   NONIO_TRY(const auto state, read_state(out));
   if (state) {
     const storage::Json& json = *state;
     if (auto own = check_site(json, site, out); !own) return fail(own.error());
-    night.resumed = known_text(json, "state") == "running";
-    night.number = json["night"].get<std::uint64_t>() + (night.resumed ? 0 : 1);
+    run.resumed = known_text(json, "state") == "running";
+    run.number = json["night"].get<std::uint64_t>() + (run.resumed ? 0 : 1);
     // A forced run that was interrupted is finished as what it was.
-    if (night.resumed) night.force = options.force || json.value("force", false);
-    if (night.resumed && options.date.empty() && json.contains("date"))
-      night.date = known_text(json, "date");
-    if (const auto issued = known_count(json, "issued_before")) night.issued_before = issued;
-    night.last = end_in(json, night.resumed ? "last" : "end");
+    if (run.resumed) run.force = options.force || json.value("force", false);
+    if (run.resumed && options.date.empty() && json.contains("date"))
+      run.date = known_text(json, "date");
+    if (const auto issued = known_count(json, "issued_before")) run.issued_before = issued;
+    run.last = end_in(json, run.resumed ? "last" : "end");
   }
-  if (options.dry_run) return night;
-  if (auto written = write_state(out, night, {}); !written) return fail(written.error());
-  return night;
+  if (options.dry_run) return run;
+  if (auto written = write_state(out, run, {}); !written) return fail(written.error());
+  return run;
 }
 
-Expected<void> end_night(const fs::path& out, const NightState& night, const NightEnd& end) {
-  return write_state(out, night, end);
+Expected<void> end_run(const fs::path& out, const RunState& run, const RunEnd& end) {
+  return write_state(out, run, end);
 }
 
-const char* to_text(NightStatus::State state) {
-  using State = NightStatus::State;
+const char* to_text(RunStatus::State state) {
+  using State = RunStatus::State;
   return state == State::complete  ? "complete"
          : state == State::running ? "running"
          : state == State::planned ? "planned"
                                    : "cut-short";
 }
 
-Expected<NightStatus> night_status(const fs::path& out) {
+Expected<RunStatus> run_status(const fs::path& out) {
   NONIO_TRY(const auto state, read_state(out));
   if (!state)
     return fail("no run was started in " + out.string() +
                 "; expected the output folder of `nonio run`");
   const storage::Json& json = *state;
-  NightStatus status;
-  status.night = {*known_count(json, "night"), known_text(json, "date")};
+  RunStatus status;
+  status.run = {*known_count(json, "night"), known_text(json, "date")};
   if (known_text(json, "state") == "complete") {
     status.last = end_in(json, "end");
-    if (!status.last) status.last = NightEnd{status.night, 0, 0};
+    if (!status.last) status.last = RunEnd{status.run, 0, 0};
   } else {
     status.used_by = user_of(out);
-    status.state =
-        status.used_by.empty() ? NightStatus::State::cut_short : NightStatus::State::running;
+    status.state = status.used_by.empty() ? RunStatus::State::cut_short : RunStatus::State::running;
     if (const auto plan = find_plan(out); plan && *plan) {
-      status.state = NightStatus::State::planned;
+      status.state = RunStatus::State::planned;
       status.shards = (*plan)->shards.size();
       status.reported = reported(out, **plan);
     }

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "batch/state/night.h"
-#include "batch/state/night_status.h"
+#include "batch/state/run_result.h"
+#include "batch/state/run_status.h"
 #include "nonio/sdk/error.h"
 
 namespace nonio::batch {
@@ -18,12 +18,12 @@ inline constexpr const char* state_folder = ".nonio";
 inline constexpr const char* plan_folder = "plan";
 inline constexpr const char* plan_name = "plan.json";
 
-/// Which night it is. A run that was killed or interrupted is the same night when it is resumed, so
-/// that it ends with the same summary as an undisturbed one. Kept in OUT/.nonio.
-struct NightState {
+/// The number and date of the run. A run that was killed or interrupted keeps its number when it is
+/// resumed, so that its summary is that of an undisturbed one. Kept in OUT/.nonio.
+struct RunState {
   std::uint64_t number = 1;
-  std::string date{};              ///< YYYY-MM-DD, as it was given
-  std::optional<NightEnd> last{};  ///< the previous run; none before the first
+  std::string date{};            ///< YYYY-MM-DD, as it was given
+  std::optional<RunEnd> last{};  ///< the previous run; none before the first
   bool force = false;
   bool resumed = false;
   /// Certificates in the register when the previous run ended, or when the first one began; none
@@ -31,27 +31,26 @@ struct NightState {
   std::optional<std::uint64_t> issued_before{};
   /// The same when this run began, for one that is reopened.
   std::optional<std::uint64_t> issued_at_begin{};
-  bool reopened = false;  ///< a complete night, of which one campaign is done again
+  bool reopened = false;  ///< a complete run, of which one campaign is done again
   std::string site{};     ///< whose results they are, its folder
-  evaluation::NightOf of() const { return {number, date}; }
+  evaluation::RunLabel of() const { return {number, date}; }
 };
 
 /// An error if the folder holds the results of another site that is still there: campaigns of both
 /// would be taken for one another's, and the summary would report one of them only.
-Expected<NightState> begin_night(const RunOptions& options, const std::string& site,
-                                 std::optional<std::uint64_t> issued_so_far);
+Expected<RunState> begin_run(const RunOptions& options, const std::string& site,
+                             std::optional<std::uint64_t> issued_so_far);
 /// The last run, which has to be complete, as it was when it began: one campaign of it is done
 /// again. Nothing is written; what is cut short leaves the run complete.
-Expected<NightState> reopen_night(const RunOptions& options, const std::string& site);
+Expected<RunState> reopen_run(const RunOptions& options, const std::string& site);
 /// The run that was planned, as it was when it began: it is in progress. Nothing is written.
-Expected<NightState> planned_night(const RunOptions& options, const std::string& site,
-                                   std::uint64_t number);
-/// `night.issued_before` is then what the next one begins with.
-Expected<void> end_night(const std::filesystem::path& out, const NightState& night,
-                         const NightEnd& end);
+Expected<RunState> planned_run(const RunOptions& options, const std::string& site,
+                               std::uint64_t number);
+/// `run.issued_before` is then what the next one begins with.
+Expected<void> end_run(const std::filesystem::path& out, const RunState& run, const RunEnd& end);
 
-/// Holds the layout that site.toml wants (`hashed`: OUT/ab/<id>) against that of the results that
-/// are there, and marks a new output folder. Results are never moved: another layout is an error.
+/// Compares the layout of site.toml (`hashed`: OUT/ab/<id>) with that of existing results, and
+/// marks a new output folder. Results are never moved: another layout is an error.
 Expected<void> settle_folders(const std::filesystem::path& out, bool hashed, bool dry_run);
 
 /// An error while a run is planned and not merged yet: the next run would be refused.

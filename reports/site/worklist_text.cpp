@@ -10,24 +10,24 @@ namespace nonio::reports {
 
 namespace {
 
-using Kind = MorningLine::Kind;
-using State = MorningLine::State;
+using Kind = WorkItem::Kind;
+using State = WorkItem::State;
 using site::Page;
 
-/// "Out", "Known", "Fixed": what is no news says so first.
-std::string head_of(const Page& page, const MorningLine& l) {
+/// "Out", "Known", "Fixed": what is no news states that first.
+std::string head_of(const Page& page, const WorkItem& l) {
   const std::string kind = page.words.get("site.kind." + std::string(site::name_of(l.kind)));
   if (l.state == State::fixed) return page.words.get("site.kind.fixed");
   if (l.state == State::known) return page.words.get("site.known", {{"kind", kind}});
   return kind;
 }
 
-std::string where_of(const MorningLine& l) {
+std::string where_of(const WorkItem& l) {
   if (l.machine.empty()) return l.campaign + (l.axis.empty() ? "" : " " + l.axis);
   return l.machine + (l.axis.empty() ? "" : " " + l.axis);
 }
 
-std::string number_of(const Page& page, const MorningLine& l) {
+std::string number_of(const Page& page, const WorkItem& l) {
   std::string out;
   if (!l.quantity.empty()) out = site::quantity_text(page, l.quantity);
   if (!site::shows_value(l)) return out;
@@ -42,7 +42,7 @@ void say(std::string& line, const std::string& sentence) {
   if (!sentence.empty()) line += " " + sentence;
 }
 
-std::string text_of(const Page& page, const MorningLine& l) {
+std::string text_of(const Page& page, const WorkItem& l) {
   const auto part = [&](const char* name) { return typeset(site::line_text(page, l, name)); };
   std::string line = head_of(page, l);
   const std::string where = where_of(l), number = number_of(page, l);
@@ -66,8 +66,8 @@ std::string text_of(const Page& page, const MorningLine& l) {
 
 }  // namespace
 
-Expected<std::string> morning_text(const SiteHistory& history, const Templates& templates,
-                                   const std::string& language, std::size_t most) {
+Expected<std::string> worklist_text(const SiteHistory& history, const Templates& templates,
+                                    const std::string& language, std::size_t most) {
   const Wording words(templates, language, {"site"});
   const Page page{history, templates, words, ""};
   std::string out;
@@ -92,10 +92,10 @@ Expected<std::string> morning_text(const SiteHistory& history, const Templates& 
   return out;
 }
 
-bool asks(const MorningLine& line) {
+bool asks(const WorkItem& line) {
   return line.state == State::fresh && line.kind != Kind::information;
 }
 
-bool asks_by_mail(const MorningLine& line) { return asks(line) && line.sure; }
+bool asks_by_mail(const WorkItem& line) { return asks(line) && line.sure; }
 
 }  // namespace nonio::reports

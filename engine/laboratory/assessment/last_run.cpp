@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "laboratory/assessment/tonight.h"
+#include "laboratory/assessment/last_run.h"
 
 #include <simdjson.h>
 
@@ -29,9 +29,9 @@ void each(const object& o, const char* key, Take take) {
   for (const object entry : list) take(entry);
 }
 
-Tonight read(const object& o) {
-  Tonight out;
-  out.night = o["night"];
+LastRun read(const object& o) {
+  LastRun out;
+  out.run = o["night"];
   out.date = text_of(o, "date");
   if (const std::string own = text_of(o, "language"); !own.empty()) out.language = own;
   const object counts = o["counts"];
@@ -41,7 +41,7 @@ Tonight read(const object& o) {
   each(o, "failed", [&](const object& f) {
     object since;
     std::string day;
-    if (f["failed_since"].get(since) == simdjson::SUCCESS && count_of(since, "night") < out.night)
+    if (f["failed_since"].get(since) == simdjson::SUCCESS && count_of(since, "night") < out.run)
       day = text_of(since, "date");
     out.failed.push_back({text_of(f, "id"), text_of(f, "folder"), text_of(f, "reason"), day});
   });
@@ -57,7 +57,7 @@ Tonight read(const object& o) {
 
 }  // namespace
 
-Expected<Tonight> tonight_in(const std::filesystem::path& out) {
+Expected<LastRun> last_run_in(const std::filesystem::path& out) {
   const std::filesystem::path path = out / "summary.json";
   const auto text = storage::read_file(path);
   if (!text)

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/state/night.h"
+#include "batch/state/run_result.h"
 #include "campaign/reading/context.h"
 #include "platform/storage/packed_results.h"
 
@@ -17,13 +17,13 @@ namespace nonio::batch {
 /// A run that several processes, perhaps on several hosts, do in parts. It is kept in
 /// OUT/.nonio/plan: `plan.json`, written last, names a folder with a list for each shard and one of
 /// all other campaigns. Whoever does a part opens its files by these names and lists nothing.
-struct NightPlan {
+struct RunPlan {
   struct List {
     std::uint64_t campaigns = 0;
     std::string sha256;  ///< of the file
   };
-  std::string id;  ///< of this plan, and of its folder; another plan of the same night has another
-  evaluation::NightOf night{};
+  std::string id;  ///< of this plan, and of its folder; another plan of the same run has another
+  evaluation::RunLabel run{};
   std::string site;            ///< its folder on the host that planned
   reading::Inputs made_with;   ///< site.toml, plugins, templates, version: as for every campaign
   bool register_read = false;  ///< false: another process kept the register of numbers locked
@@ -43,26 +43,26 @@ std::uint64_t shard_of(const std::string& campaign, std::uint64_t shards);
 /// Writes the lists of `plan.shards.size()` shards, then plan.json; completes the plan. Campaigns
 /// in the order of their ids. Those that need the register are left to the merge if that is known
 /// already.
-Expected<void> write_plan(const std::filesystem::path& out, NightPlan& plan,
+Expected<void> write_plan(const std::filesystem::path& out, RunPlan& plan,
                           const std::vector<CampaignState>& campaigns);
-/// None if no night is planned; an error if the plan cannot be read.
-Expected<std::optional<NightPlan>> find_plan(const std::filesystem::path& out);
+/// None if no run is planned; an error if the plan cannot be read.
+Expected<std::optional<RunPlan>> find_plan(const std::filesystem::path& out);
 /// An error if there is none.
-Expected<NightPlan> read_plan(const std::filesystem::path& out);
+Expected<RunPlan> read_plan(const std::filesystem::path& out);
 /// plan.json first: without it there is no plan.
 Expected<void> remove_plan(const std::filesystem::path& out);
 /// An error names what differs here from where the run was planned.
-Expected<void> check_made_with(const NightPlan& plan, const reading::Context& context);
+Expected<void> check_made_with(const RunPlan& plan, const reading::Context& context);
 
 /// A campaign of a list. Other campaigns that have its readings are named by their ids.
 struct Listed {
   CampaignState campaign;
   std::vector<std::pair<std::uint64_t, std::string>> twins{};
 };
-Expected<std::vector<Listed>> read_shard_list(const std::filesystem::path& out,
-                                              const NightPlan& plan, std::uint64_t shard);
+Expected<std::vector<Listed>> read_shard_list(const std::filesystem::path& out, const RunPlan& plan,
+                                              std::uint64_t shard);
 /// What no shard does: unchanged, refused, left to the merge.
-Expected<std::vector<Listed>> read_rest(const std::filesystem::path& out, const NightPlan& plan);
+Expected<std::vector<Listed>> read_rest(const std::filesystem::path& out, const RunPlan& plan);
 
 /// What became of a campaign in its shard.
 struct ShardResult {
@@ -77,12 +77,12 @@ struct ShardRecord {
   std::optional<storage::PackFile> pack{};
 };
 /// Written last by whoever does the shard; two who do it write the same.
-Expected<void> write_shard_record(const std::filesystem::path& out, const NightPlan& plan,
+Expected<void> write_shard_record(const std::filesystem::path& out, const RunPlan& plan,
                                   std::uint64_t shard, const ShardRecord& record);
 /// None if the shard has not reported.
 Expected<std::optional<ShardRecord>> read_shard_record(const std::filesystem::path& out,
-                                                       const NightPlan& plan, std::uint64_t shard);
+                                                       const RunPlan& plan, std::uint64_t shard);
 /// How many shards have reported.
-std::uint64_t reported(const std::filesystem::path& out, const NightPlan& plan);
+std::uint64_t reported(const std::filesystem::path& out, const RunPlan& plan);
 
 }  // namespace nonio::batch

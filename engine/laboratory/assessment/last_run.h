@@ -11,18 +11,18 @@
 namespace nonio::assessment {
 
 /// What a run itself knows and the history does not.
-struct Tonight {
+struct LastRun {
   struct Failed {
     std::string campaign, folder;  ///< folder: relative to the site, as text
     std::string message;           ///< with file and line
-    std::string since;             ///< day of the first night of this failure; empty: tonight
+    std::string since;             ///< day of the first run with this failure; empty: this run
   };
   struct Vanished {
     std::string campaign, folder;
-    std::uint64_t last_seen_night = 0;
+    std::uint64_t last_seen_run = 0;
     std::string why;  ///< what is there instead
   };
-  std::uint64_t night = 0;
+  std::uint64_t run = 0;
   std::string date;  ///< of the run, YYYY-MM-DD: the only clock
   std::uint64_t campaigns = 0, done = 0, unchanged = 0;
   std::vector<Failed> failed{};        ///< by campaign
@@ -33,7 +33,7 @@ struct Tonight {
   std::string history_error{};         ///< the store does not contain this run
 };
 
-/// Of the last complete night, out of OUT/summary.json. An error if there is none.
-Expected<Tonight> tonight_in(const std::filesystem::path& out);
+/// Of the last complete run, from OUT/summary.json. An error if there is none.
+Expected<LastRun> last_run_in(const std::filesystem::path& out);
 
 }  // namespace nonio::assessment
