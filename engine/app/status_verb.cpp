@@ -9,6 +9,7 @@
 #include "laboratory/assessment/assess.h"
 #include "nonio/sdk/format.h"
 #include "site_words.h"
+#include "status_metrics.h"
 #include "text_layout.h"
 #include "verbs.h"
 
@@ -108,7 +109,7 @@ int print_status(const RunStatus& found, const StatusWish& wish, const Common& c
 
 Verb status_verb(Common& common) {
   struct Wish : StatusWish {
-    bool only_actions = false;
+    bool only_actions = false, metrics = false;
   };
   auto wish = std::make_shared<Wish>();
   using Takes = Argument::Takes;
@@ -126,6 +127,9 @@ Verb status_verb(Common& common) {
            {"--actions", &wish->only_actions,
             "Only the actions, in --json too. Exit status: 0 no action required, 1 action "
             "required, 2 error"},
+           {"--metrics", &wish->metrics,
+            "OpenMetrics text for a monitoring system: age of the run, campaigns by state, actions "
+            "by kind, drafts"},
            {"--since", &list.since, "Only actions since this day (YYYY-MM-DD)"},
            {"--customer", &list.customer, "Only the machines of this customer"},
            {"--language", &list.language, "de, en or it; else that of the run's summary.txt"},
@@ -146,10 +150,16 @@ Verb status_verb(Common& common) {
           "changed since.\n\nExit status: 0 the last run is complete and recent enough, also while "
           "another one is running or planned; 1 a run began and did not end, or the last one is "
           "too old; 2 there was none, or it cannot be read. The age is that of OUT/summary.json.",
-      .examples = {"nonio status out --max-age 26",
+      .examples = {"nonio status out --max-age 26", "nonio status out --metrics",
                    "nonio status out --actions --since 2026-11-01 --customer \"Sample Works\""},
       .run = [wish, &common] {
         wish->list.out = wish->out;
+        if (wish->metrics) {
+          const auto text = metrics_of(wish->out);
+          if (!text) return complain(text_of(text.error()));
+          std::cout << *text;
+          return exit_done;
+        }
         if (wish->only_actions || !wish->list.page.empty())
           return print_worklist(wish->list, common);
         const auto found = batch::run_status(wish->out);

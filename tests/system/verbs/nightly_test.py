@@ -39,6 +39,30 @@ class Nightly(VerbTest):
                             (("--language", "it"), "esecuzione 1 del 2026-11-03 è completa, 0,0 h fa: 1 campagna, 0 non riuscite")):
             self.assertEqual(first, self.nonio("status", out, *args, expect=0).stdout.split("\n")[0])
 
+    def test_metrics_of_the_last_run(self):
+        self.campaign(manifest(["scale:X", "backlash:X"], self.RUN), x=readings(scale=20, backlash=-6))
+        self.night("--date", "2026-11-03")
+        out = self.out.parent
+        text = self.nonio("status", out, "--metrics", expect=0).stdout
+        line = re.compile(r'([a-z_]+)(?:\{([a-z]+)="([^"\\]*)"\})? (-?[0-9.]+)')
+        values, families, of = {}, set(), ""
+        for row in text.splitlines():
+            if row.startswith("# TYPE "):
+                of = row.split()[2]
+                self.assertNotIn(of, families)
+                families.add(of)
+            elif not row.startswith("#"):
+                name, label, value, number = line.fullmatch(row).groups()
+                self.assertEqual(name, of)
+                values[name, value] = float(number)
+        self.assertTrue(text.endswith("\n# EOF\n"))
+        summary = json.loads((out / "summary.json").read_text())
+        for state, count in summary["counts"].items():
+            self.assertEqual(values["nonio_campaigns", state], count)
+        self.assertEqual(sum(n for (name, _), n in values.items() if name == "nonio_worklist_lines"), len(summary["lines"]))
+        self.assertLess(values["nonio_last_run_age_seconds", None], 600)
+        self.assertIn("summary.json", self.nonio("status", self.site, "--metrics", expect=2).stderr)
+
     def test_what_fails_and_what_is_missing_are_findings(self):
         self.campaign(manifest(["scale:X"], self.RUN), x=readings(scale=20, backlash=-6))
         results = self.night()
