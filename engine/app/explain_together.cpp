@@ -124,7 +124,7 @@ class ExplainTogether {
     const model::JointExplanation& x = t.explanation;
     const Quantity q = t.deviation();
     std::size_t readings = 0;
-    for (const auto& one : x.campaigns) readings += one.readings;
+    for (const auto& one : t.parts) readings += one.part.table.size();
     sentence(std::cout, 0,
              say("joint.head", {{"part", t.part},
                                 {"count", std::to_string(t.campaigns.size())},

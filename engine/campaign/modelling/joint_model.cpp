@@ -162,8 +162,9 @@ Json part_of_json(const Together& t, const config::TerminalWords& say) {
   Json campaigns = Json::array();
   for (std::size_t m = 0; m < x.campaigns.size(); ++m) {
     const auto& one = x.campaigns[m];
-    readings += one.readings;
-    Json c = {{"campaign", t.campaigns[m]}, {"date", t.dates[m]}, {"observations", one.readings}};
+    const std::size_t taken = t.parts[m].part.table.size();
+    readings += taken;
+    Json c = {{"campaign", t.campaigns[m]}, {"date", t.dates[m]}, {"observations", taken}};
     storage::put(c, "rms", one.rms, q);
     storage::put(c, "rms_after", one.rms_after, q);
     if (one.floor) storage::put(c, "noise_floor", one.floor->s, q);
