@@ -6,6 +6,7 @@
 #include "campaign/reading/names.h"
 #include "campaign_verb.h"
 #include "explain_together.h"
+#include "nonio/sdk/format.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -178,8 +179,9 @@ Verb explain_verb(Common& common) {
           common_arguments(common),
           {{"--machine", &options->together.machine,
             "Of several campaigns those of this machine: asset, serial number or model"},
-           {"--since", &options->together.since, "Of several campaigns those from this date on"},
-           {"--until", &options->together.until, "Of several campaigns those up to this date"},
+           {"--since", &options->together.since,
+            "Of several campaigns those from this day on (YYYY-MM-DD)"},
+           {"--until", &options->together.until, "Of several campaigns those up to this day"},
            {"--all", &options->all, "Every candidate, and why an effect could not be tested"},
            {"--library", &options->library,
             "Also tries the causes of the library where no effect explains: it names more causes, "
@@ -198,8 +200,12 @@ Verb explain_verb(Common& common) {
           "Verdicts: missing (an effect belongs in the model), complete (nothing missing: the "
           "model explains everything down to the noise; `nothing` in JSON), unknown (no effect "
           "explains the remaining error; it states where), unrepeatable (the readings contradict "
-          "each other: check the machine first).",
-      .examples = {"nonio model explain samples/site/02-constant-reversal"},
+          "each other: check the machine first).\n\nSeveral campaigns: each axis is fitted in all "
+          "of "
+          "them, every line with its own zero, every campaign with its own noise and model. An "
+          "effect has the same value in all, a value in each, or one before and one after a date.",
+      .examples = {"nonio model explain samples/site/02-constant-reversal",
+                   "nonio model explain samples/laboratory/LAB-02"},
       .run = [options, &common] { return explain(*options, common); }};
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "campaign/modelling/model_json.h"
+#include "nonio/math/distributions.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/json_values.h"
 
@@ -92,11 +93,13 @@ std::string place_text(const Together& t, std::size_t campaign) {
   return t.campaigns[campaign] + (t.dates[campaign].empty() ? "" : " (" + t.dates[campaign] + ")");
 }
 
-/// Whether no value of the group differs from zero by more than its uncertainty.
+/// Whether the values of the group may all be zero.
 bool is_absent(const std::vector<model::Parameter>& group) {
-  return std::all_of(group.begin(), group.end(), [](const model::Parameter& p) {
-    return p.shape || std::fabs(p.value) < 3.0 * p.u;
-  });
+  constexpr double least_p = 0.001;
+  double squares = 0.0, count = 0.0;
+  for (const model::Parameter& p : group)
+    if (!p.shape && p.u > 0.0) squares += p.value * p.value / (p.u * p.u), ++count;
+  return math::chi2_upper(squares, count) > least_p;
 }
 
 /// The campaigns with the least and the largest first value.

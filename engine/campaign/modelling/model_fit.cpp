@@ -167,12 +167,20 @@ std::vector<model::Term> chosen(const std::vector<model::Term>& terms,
   return out;
 }
 
-/// The terms in the order in which each takes most away from what those before it leave, with the
+/// The unknowns of the set-up, which every model has.
+std::vector<char> set_up_of(const std::vector<model::Term>& terms) {
+  std::vector<char> in;
+  for (const model::Term& term : terms) in.push_back(term.effect->is_nuisance ? 1 : 0);
+  return in;
+}
+
+/// The effects in the order in which each takes most away from what those before it leave, with the
 /// shapes of the whole model. Of long tables in the order of the model.
 std::vector<std::size_t> falling_order(const PartModel& part, const model::Fit& whole) {
   std::vector<std::size_t> order;
-  std::vector<char> in(part.terms.size(), 0);
-  while (order.size() < part.terms.size()) {
+  std::vector<char> in = set_up_of(part.terms);
+  const auto effects = static_cast<std::size_t>(std::count(in.begin(), in.end(), 0));
+  while (order.size() < effects) {
     std::size_t best = part.terms.size();
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t t = 0; t < part.terms.size(); ++t) {
@@ -194,7 +202,7 @@ std::vector<std::size_t> falling_order(const PartModel& part, const model::Fit& 
 void put_steps(ModelFit& out, const PartModel& part, const model::Comparison& whole) {
   const std::vector<std::size_t> order = falling_order(part, whole.fit);
   PartModel grown = part;
-  std::vector<char> in(part.terms.size(), 0);
+  std::vector<char> in = set_up_of(part.terms);
   for (std::size_t n = 0; n < order.size(); ++n) {
     grown.terms = chosen(part.terms, in);
     if (const auto c = compare_part(grown))

@@ -139,7 +139,7 @@ class Reader {
   Expected<MemberReadings> of_member(const Member& member) {
     const Observations& o = member.part->table;
     NONIO_TRY(const auto compared, compare(*member.part, member.model));
-    grounds_.emplace_back(GroundworkOf(*member.part, member.model, nullptr), compared.fit.terms);
+    grounds_.push_back({GroundworkOf(*member.part, member.model, nullptr), compared.fit.terms});
     const Ground& ground = grounds_.back().ground();
     MemberReadings out;
     out.pass = ground.repeats.pass, out.cell = ground.repeats.cell;

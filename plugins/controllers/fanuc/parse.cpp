@@ -37,7 +37,8 @@ Expected<void> put(Memory& memory, std::int64_t number, std::int64_t axis, std::
   return {};
 }
 
-// N<number>P<value>, or N<number>A<axis>P<value>A<axis>P<value>, one block a line.
+// N<number>P<value>, or N<number>A<axis>P<value>A<axis>P<value>, one block a line. Newer controls (30i,
+// 31i, 0i-F) write Q0 (pitch data) or Q1 (parameters) after the number.
 Expected<void> block(Memory& memory, std::string_view line) {
   std::int64_t number = -1, axis = 0;
   bool has_value = false;
@@ -46,7 +47,8 @@ Expected<void> block(Memory& memory, std::string_view line) {
     const char letter = line.front();
     std::int64_t n = 0;
     const auto r = std::from_chars(line.data() + 1, line.data() + line.size(), n);
-    if (r.ec != std::errc() || (letter != 'N' && letter != 'A' && letter != 'P'))
+    const bool is_kind = letter == 'Q' && (n == 0 || n == 1);
+    if (r.ec != std::errc() || (letter != 'N' && letter != 'A' && letter != 'P' && !is_kind))
       return fail("not a block: " + whole_line);
     if (letter == 'N') number = n;
     if (letter == 'A') axis = n;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nonio/controllers/skew.h"
+#include "nonio/sdk/format.h"
 
 namespace nonio::reprapfirmware {
 namespace {

@@ -67,6 +67,35 @@ class Tables(BenchTest):
         self.nonio("table", "diff", ini, self.site / "missing", expect=2)
         self.nonio("table", "diff", ini, ini, "--control", "no-such", expect=2)
 
+    def test_a_saved_skew_of_klipper(self):
+        """printer.cfg as SKEW_PROFILE SAVE leaves it, against SET_SKEW with the lengths of a parallelogram of that lean."""
+        saved, lengths, twice = (self.site / name for name in ("printer.cfg", "skew.cfg", "twice.cfg"))
+        saved.write_text("[skew_correction]\n\n#*# <------- SAVE_CONFIG ------->\n#*# [skew_correction first]\n"
+                         "#*# xy_skew = -0.00354\n#*# xz_skew = 0.0\n#*# yz_skew = 0.0\n")
+        side, along, angle = 90.0, 100.0, math.pi / 2 - math.atan(-0.00354)
+        ac, bd = (math.sqrt(side ** 2 + along ** 2 + sign * 2 * side * along * math.cos(angle)) for sign in (1, -1))
+        lengths.write_text(f"SET_SKEW XY={ac:.9f},{bd:.9f},{along:.9f}\n")
+        xy = next(t for t in self.json_of("table", "diff", saved, lengths)["tables"] if t["by"] == ["Y"])
+        self.assertAlmostEqual(xy["present"]["largest_slope_um_per_m"], 3540.0, places=3)
+        self.assertAlmostEqual(xy["new"]["largest_slope_um_per_m"], 3540.0, places=3)
+        self.assertLess(xy["largest_um"], 1e-3)
+        twice.write_text(saved.read_text() + "#*# [skew_correction second]\n#*# xy_skew = 0.1\n")
+        self.assertIn("two saved profiles, first and second",
+                      self.nonio("table", "diff", twice, twice, "--control", "klipper", expect=2).stderr)
+
+    def test_blocks_of_newer_fanuc_controls(self):
+        """N03620Q1A1P40 is N03620A1P40."""
+        rows = {3620: 33, 3621: 33, 3622: 34, 3623: 1, 3624: 50000, 3625: 0}
+        old = "%\n" + "".join(f"N{n:05d}A1P{v}\n" for n, v in rows.items()) + "N10033P2\nN10034P-1\n%\n"
+        new = old.replace("A1P", "Q1A1P").replace("N10033P", "N10033Q0P").replace("N10034P", "N10034Q1P")
+        a, b, wrong = (self.site / name for name in ("old.prm", "new.prm", "wrong.prm"))
+        a.write_text(old), b.write_text(new), wrong.write_text(new.replace("Q1A1P34", "Q7A1P34"))
+        arguments = ("--control", "fanuc", "--axis", "X", "--set", "axes=X number=1")
+        self.assertEqual(self.json_of("table", "diff", a, b, *arguments)["tables"],
+                         self.json_of("table", "diff", a, a, *arguments)["tables"])
+        self.assertIn("not a block: N03622Q7A1P34",
+                      self.nonio("table", "diff", wrong, a, *arguments, expect=2).stderr)
+
     def test_apply_predicts(self):
         self.one_axis(TARGETS, wave, wave, control="linuxcnc", extra="[options.linuxcnc]\ntype = 1\n")
         for factor, after in ((-1.0, 0.0), (1.0, 2.0), (0.0, 1.0)):

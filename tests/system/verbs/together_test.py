@@ -111,6 +111,7 @@ class Together(unittest.TestCase):
         text = explain(self.site / "c0000", self.site / "c0001").stdout
         self.assertIn("X in 2 campaigns, c0000 to c0001: 420 readings", text)
         self.assertIn("backlash:X: the same in all campaigns", text)
+        self.assertIn("--since: expected a day as YYYY-MM-DD", explain(self.site, "--since", "1.3.2026", status=2).stderr)
         self.assertIn("--auto is for one campaign", explain(self.site, "--auto", status=2).stderr)
         self.assertIn("expected two campaigns or more; found 0 (3 are not of this machine or period)",
                       explain(self.site, "--machine", "M-9", status=2).stderr)
