@@ -67,7 +67,7 @@ struct Key {
   When needed{};  ///< there it is required
   /// Of what is required or needed: "x: is missing: " and this. Empty: "x is missing".
   std::string_view missing{};
-  /// Message about a value that the following limits refuse; {} stands for the value.
+  /// Message about a value that the following limits refuse; {} is replaced by the value.
   std::string_view wanted{};
   bool may_be_secret = false;             ///< of a text: no message repeats it
   std::span<const Choice> choices{};      ///< of a text

@@ -231,8 +231,7 @@ Expected<std::vector<Together>> explain_together(
     }
     std::vector<model::Member> members;
     for (std::size_t m = 0; m < t.parts.size(); ++m)
-      members.push_back(
-          {t.campaigns[m], t.dates[m], &t.parts[m].part, t.parts[m].terms, t.parts[m].catalogue});
+      members.push_back({t.campaigns[m], &t.parts[m].part, t.parts[m].terms, t.parts[m].catalogue});
     NONIO_TRY(t.explanation, model::explain_together(members, seed));
     out.push_back(std::move(t));
   }

@@ -92,7 +92,7 @@ class Assessment::State {
     const auto lines = lines_.find(m.state.machine.name);
     storage::ValueWriter w;
     // The page is written again when the date of a forecast has passed.
-    w(m.kept.stood, m.kept.standing.until, templates,
+    w(m.kept.digest, m.kept.standing.until, templates,
       lines == lines_.end() ? std::string() : bytes_of(lines->second),
       bytes_of(site.machines[i].proposal));
     return storage::sha256(w.take());
@@ -297,7 +297,7 @@ class Assessment::State {
     std::vector<const Lesson*> lessons;
     for (Assessed& m : machines_) {
       alive_();
-      if (m.kept.stood.empty())
+      if (m.kept.digest.empty())
         if (auto well = read(m); !well) return well;
       for (const KeptMachine::Series& s : m.kept.series) lessons.push_back(&s.lesson);
     }
@@ -346,7 +346,7 @@ class Assessment::State {
       for (std::size_t k = 0; k < m.kept.series.size(); ++k)
         m.adjusted.push_back(std::move(p[next++]));
       const std::string key = standing_key(m);
-      if (key == m.kept.stood && m.kept.date <= last_run_.date &&
+      if (key == m.kept.digest && m.kept.date <= last_run_.date &&
           last_run_.date <= m.kept.standing.until) {
         m.read.reset();
         continue;
@@ -355,7 +355,7 @@ class Assessment::State {
       m.kept.standing = standing_of(*m.read, *m.described, logs_, last_run_, out_);
       m.kept.standing.interval =
           interval_facts(*m.read, months_of_rule(m.state.machine.name, logs_));
-      m.kept.stood = key;
+      m.kept.digest = key;
       m.kept.date = last_run_.date;
       m.is_new = true;
       m.read.reset();

@@ -25,8 +25,8 @@ struct KeptMachine {
     SeriesTests tests;  ///< of that trend
   };
   std::vector<Series> series{};
-  std::string stood{};  ///< digest of all that goes into `standing`, but the date
-  std::string date{};   ///< of the run
+  std::string digest{};  ///< of all that goes into `standing`, but the date
+  std::string date{};    ///< of the run
   Standing standing{};
   struct Page {
     std::string made_from{};

@@ -183,11 +183,10 @@ class JointSearch {
 
   /// Chance of such differences of an effect between the campaigns where there are none but those that
   /// its choice has.
-  double p_same(std::size_t i) const { return p_same(choices_, i); }
-  double p_same(const Choices& choices, std::size_t i) const {
-    Choices own = choices;
+  double p_same(std::size_t i) const {
+    Choices own = choices_;
     own[i].holds = Holds::own;
-    const auto a = system_.solve(choices), b = system_.solve(own);
+    const auto a = system_.solve(choices_), b = system_.solve(own);
     const auto q = static_cast<double>(b.parameters - a.parameters);
     if (!a.sound || !b.sound || !(q >= 1.0)) return 1.0;
     return math::f_upper((a.squares - b.squares) / q, q, dof_);
@@ -352,9 +351,6 @@ class JointSearch {
     for (std::size_t i = 0; i < choices_.size(); ++i) {
       JointEffect effect = described(choices_, i);
       effect.p = chance_.corrected(effect.p);
-      Choices shared = choices_;
-      shared[i].holds = Holds::shared;
-      effect.p_same = p_same(shared, i);
       const Choices rest = without(choices_, i);
       const double before = criterion(rest);
       effect.evidence = before - all;
@@ -376,9 +372,7 @@ class JointSearch {
       before.push_back(member.y);
       one.rms = member.s * std::sqrt(member.y.squaredNorm() / member.readings);
       one.rms_after = member.s * std::sqrt(left[m].squaredNorm() / member.readings);
-      for (Index i = 0; i < left[m].size(); ++i)
-        one.residual.push_back(left[m](i) * member.scale(i));
-      out.campaigns.push_back(std::move(one));
+      out.campaigns.push_back(one);
     }
     out.rms = rms_of(before);
     out.rms_after = rms_of(left);

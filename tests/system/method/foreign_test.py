@@ -169,7 +169,7 @@ class ForeignMethod(unittest.TestCase):
         self.nonio("run", self.site, "--out", self.out, plugins=plugins)
         results = json.loads((self.out / "a/results.json").read_text())
         iso = next(a for a in results["analyses"] if a["plugin"] == "iso230-2")
-        # Half of the gauge: + at 1 + 1/3 um ... and 10 um more in -, so B = +(20 / 2) um in every target.
+        # The gauge reads 20 um more in one direction; its lever halves that.
         self.assertAlmostEqual(iso["values"]["B"]["value"], 10.0, places=6)
         self.assertAlmostEqual(iso["values"]["M"]["value"], 4.0, places=6)
         self.assertIn("linuxcnc", {o["plugin"] for o in results["outputs"]})

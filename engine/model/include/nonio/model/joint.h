@@ -16,7 +16,6 @@ namespace nonio::model {
 /// The part of one campaign, in the order of their dates.
 struct Member {
   std::string campaign;
-  std::string date;  ///< YYYY-MM-DD; empty: not known
   const Part* part = nullptr;
   std::vector<Term> model;      ///< fitted with values of this campaign's own
   std::vector<Term> catalogue;  ///< what may be missing in it
@@ -39,7 +38,6 @@ struct JointEffect {
   double p = 1.0;         ///< corrected for the search
   double rms = 0.0;       ///< what this effect alone leaves in addition to the models, m or rad
   double size = 0.0;      ///< RMS of what it explains, m or rad
-  double p_same = 1.0;    ///< chance of such differences between the campaigns if there are none
   std::vector<std::string> aliases{};  ///< as good in its place
 };
 
@@ -49,7 +47,6 @@ struct JointExplanation {
     std::size_t readings = 0;
     double rms = 0.0, rms_after = 0.0;
     std::optional<NoiseFloor> floor;
-    std::vector<double> residual{};  ///< of each reading after what is named
   };
   std::vector<Campaign> campaigns;
   std::vector<JointEffect> candidates;             ///< each alone, the best first

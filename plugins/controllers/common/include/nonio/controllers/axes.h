@@ -26,7 +26,7 @@ struct KnownAxis {
   double per_si() const { return rotary ? deg_per_rad : 1e3; }
 };
 
-/// Tables of option `axes`, by axis. `keys`: "reference" stands for reference_mm and
+/// Tables of option `axes`, by axis. `keys`: "reference" is reference_mm and
 /// reference_deg, a name with ':' at its end for a plain number; none: any. What the record of a
 /// machine may state is always taken: number, reference, from, to, backlash, resolution, largest,
 /// slope.

@@ -91,7 +91,7 @@ bool has_tables(const Campaign&);
 
 /// The axis measurements with readings, in the campaign's order, and what step diagonals know of
 /// axes without them. `keys` are the settings that
-/// option `axes` takes for one axis: "reference" stands for reference_mm and reference_deg, a
+/// option `axes` takes for one axis: "reference" is reference_mm and reference_deg, a
 /// name with ':' at its end for a plain number. Findings and notes go to `result`.
 Expected<std::vector<AxisJob>> axis_jobs(const ControllerInput& input,
                                          const std::vector<std::string_view>& keys,
