@@ -345,11 +345,8 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
   if (scratch.path().empty()) return fail("no folder for temporary files");
   if (!words.valid()) return fail("no memory");
   if (auto unpacked = unpack(v, scratch.path()); !unpacked) return fail(unpacked.error());
-  process::flush_output();
-  const pid_t child = ::fork();
-  if (child == 0) {
-    process::init_child();
-    process::limit_memory(context.site.limits.memory_MB);
+  const config::Limits& limits = context.site.limits;
+  auto child = process::Child::start("the evaluation", {.memory_MB = limits.memory_MB}, [&] {
     const auto content = process::guarded(
         "the evaluation", [&] { return Again(v, pdf, scratch.path(), context).run(); });
     words.set(content ? line_of(content->values) + line_of(content->attachments) +
@@ -357,11 +354,9 @@ Expected<std::string> recompute_apart(const sign::Verified& v, std::string_view 
                             line_of(content->printed)
                       : line_of({check_ids[0], State::fails, content.error().message}) +
                             "?not looked at\n?not looked at\n?not looked at\n?not drawn again\n");
-    ::_exit(0);
-  }
-  const process::ChildEnd end = child < 0
-                                    ? process::ChildEnd{false, "no process"}
-                                    : process::wait_for_child(child, context.site.limits.seconds);
+  });
+  if (!child) return fail(child.error());
+  const process::ChildEnd end = child->wait(limits.seconds);
   if (!end.well) return fail("the evaluation did not come back: " + end.words);
   return words.get();
 }

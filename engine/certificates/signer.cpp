@@ -124,30 +124,14 @@ Expected<sign::Signed> ask(int channel, std::string_view bytes,
 Signer::Signer(const config::Signing& signing, fs::path site, double disk_seconds)
     : signing_(signing), site_(std::move(site)), disk_seconds_(disk_seconds) {}
 
-Signer::~Signer() {
-  if (to_ >= 0) ::close(to_);
-  if (from_ >= 0) ::close(from_);
-  end_process();
-}
-
-void Signer::end_process() {
-  if (pid_ >= 0) process::end_child(std::exchange(pid_, -1));
-}
-
 Expected<void> Signer::fork_process() {
-  std::cout.flush();
-  std::cerr.flush();
-  pid_ = ::fork();
-  if (pid_ == 0) serve();
-  if (pid_ > 0) return {};
-  return fail(std::string("no process that signs: ") + std::strerror(errno));
+  NONIO_TRY(child_, process::Child::start("the signature", {.silent = true}, [this] { serve(); }));
+  return {};
 }
 
-void Signer::serve() const noexcept {
-  process::init_child();
-  process::keep_silent();
+void Signer::serve() {
   ::prctl(PR_SET_DUMPABLE, 0);  // no process may read its memory
-  ::close(to_);
+  to_ = process::Handle();
   constexpr int most_deaths = 5;
   const auto key = process::guarded("the signing key", [&]() -> Expected<sign::Key> {
     if (!given_up_.empty()) return fail(given_up_);
@@ -155,25 +139,24 @@ void Signer::serve() const noexcept {
     return open_key(signing_, site_);
   });
   const auto stamping = key ? stamping_of(signing_, site_) : fail(key.error());
-  while (const auto asked = process::receive_descriptors(from_))
+  while (const auto asked = process::receive_descriptors(from_.get()))
     for (const process::Handle& stream : asked->descriptors) answer(stream.get(), key, stamping);
-  ::_exit(0);
 }
 
 Expected<sign::Identity> Signer::start() {
   NONIO_TRY(auto ends, process::channel_pair(SOCK_SEQPACKET, signing_process));
-  to_ = ends[0].release();
-  from_ = ends[1].release();
+  to_ = std::move(ends[0]);
+  from_ = std::move(ends[1]);
   if (auto made = fork_process(); !made) return fail(made.error());
   const auto deadline =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(disk_seconds_);
-  const auto hello = ask(to_, {}, [&] {
+  const auto hello = ask(to_.get(), {}, [&] {
     revive();
     return !process::is_stop_requested() && std::chrono::steady_clock::now() < deadline;
   });
   if (!hello && std::chrono::steady_clock::now() >= deadline) {
     given_up_ = process::no_answer(disk_seconds_);
-    end_process();
+    child_.end();
     revive();
     return fail("the signing key: " + given_up_);
   }
@@ -186,18 +169,19 @@ Expected<sign::Identity> Signer::start() {
 }
 
 void Signer::revive() {
-  if (pid_ > 0 && ::waitpid(pid_, nullptr, WNOHANG) == 0) return;
-  pid_ = -1;
+  if (child_ && !child_.has_ended()) return;
   ++deaths_;
   // Not now: then a later call tries again.
   [[maybe_unused]] const auto made = fork_process();
 }
 
-void Signer::leave_to_worker() const {
-  ::close(from_);
+void Signer::leave_to_worker() {
+  from_ = process::Handle();
   if (!signing_.password_env.empty()) ::unsetenv(signing_.password_env.c_str());
 }
 
-Expected<sign::Signed> Signer::sign(const std::string& bytes) const { return ask(to_, bytes); }
+Expected<sign::Signed> Signer::sign(const std::string& bytes) const {
+  return ask(to_.get(), bytes);
+}
 
 }  // namespace nonio::certificates

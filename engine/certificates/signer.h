@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -10,6 +8,8 @@
 
 #include "campaign/config/manifest.h"
 #include "nonio/sign/sign.h"
+#include "platform/process/channel.h"
+#include "platform/process/child.h"
 
 namespace nonio::certificates {
 
@@ -22,28 +22,26 @@ class Signer {
   Signer(const config::Signing& signing, std::filesystem::path site, double disk_seconds);
   Signer(const Signer&) = delete;
   Signer& operator=(const Signer&) = delete;
-  ~Signer();
 
   /// Starts the process; whose key it has, or why it has none.
   Expected<sign::Identity> start();
   /// Starts it again if it has died; requests in the meantime are not lost.
   void revive();
   /// To be called first in a worker: it cannot listen to others.
-  void leave_to_worker() const;
+  void leave_to_worker();
   Expected<sign::Signed> sign(const std::string& bytes) const;
 
  private:
   Expected<void> fork_process();
-  void end_process();
-  [[noreturn]] void serve() const noexcept;
+  void serve();
 
   const config::Signing& signing_;
   const std::filesystem::path site_;
-  pid_t pid_ = -1;
   const double disk_seconds_;
   std::string given_up_{};  ///< why signing has ended
   int deaths_ = 0;
-  int to_ = -1, from_ = -1;  ///< the two ends of the channel on which requests come
+  process::Handle to_, from_;  ///< the two ends of the channel on which requests come
+  process::Child child_{};
 };
 
 }  // namespace nonio::certificates

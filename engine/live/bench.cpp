@@ -5,7 +5,6 @@
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -80,7 +79,7 @@ struct Job {
 
 struct Running {
   Job job;
-  pid_t child = -1;
+  process::Child child;
   process::Handle pipe{};
   std::string received{};
   std::shared_ptr<SharedColumn> residual{};
@@ -155,10 +154,7 @@ int niceness(const Job& job, const Bench& bench) {
   return 0;
 }
 
-[[noreturn]] void do_job(Bench& bench, const Job& job, int pipe, std::span<double> residual,
-                         bool fitted) {
-  process::init_child();
-  process::limit_memory(bench.place->context.site.limits.memory_MB);
+void do_job(Bench& bench, const Job& job, int pipe, std::span<double> residual, bool fitted) {
   if (const int nice = niceness(job, bench); nice > 0) ::setpriority(PRIO_PROCESS, 0, nice);
   if (!needs_files(job.kind)) {
     std::string why = process::confine_files();
@@ -191,7 +187,7 @@ class Loop {
       wait();
       look_after();
     }
-    for (auto& [number, one] : running_) process::end_child(one.child);
+    running_.clear();
   }
 
  private:
@@ -248,17 +244,16 @@ class Loop {
     if (::pipe2(ends, O_CLOEXEC) != 0)
       return tell(job.number, job_state::failed, std::strerror(errno));
     process::Handle from(ends[0]), to(ends[1]);
-    std::cout.flush();
-    const pid_t child = process::fork_patiently();
-    if (child < 0) return tell(job.number, job_state::failed, std::strerror(errno));
-    if (child == 0) {
+    const double memory_MB = bench_.place->context.site.limits.memory_MB;
+    auto child = process::Child::start("a request", {.memory_MB = memory_MB}, [&] {
       from = process::Handle();
       channel_ = process::Handle();
       do_job(bench_, job, to.get(), residual->values(), fitted);
-    }
+    });
+    if (!child) return tell(job.number, job_state::failed, child.error().message);
     if (job.number != 0) tell(job.number, job_state::running, "0");
     Running& one = running_[job.number];
-    one.job = job, one.child = child, one.pipe = std::move(from);
+    one.job = job, one.child = *std::move(child), one.pipe = std::move(from);
     one.residual = std::move(residual), one.fills = fills;
   }
 
@@ -329,7 +324,6 @@ class Loop {
     const auto found = running_.find(number);
     if (found == running_.end()) return;
     if (needs_files(found->second.job.kind)) return;  // it may be writing
-    process::end_child(found->second.child);
     running_.erase(found);
   }
 
@@ -337,7 +331,7 @@ class Loop {
     const auto found = running_.find(number);
     Running one = std::move(found->second);
     running_.erase(found);
-    const process::ChildEnd end = process::wait_for_child(one.child, 5.0);
+    const process::ChildEnd end = one.child.wait(5.0);
     if (one.received.empty() || one.received.front() == begins ||
         (!end.well && one.received.front() == answers))
       return tell(number, job_state::failed,
@@ -373,7 +367,6 @@ class Loop {
       }
     }
     for (const std::uint64_t number : overdue) {
-      process::end_child(running_.at(number).child);
       running_.erase(number);
       tell(number, job_state::failed,
            "no answer within " + std::to_string(static_cast<int>(seconds_)) +

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "live/launcher.h"
 
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <iostream>
 
 #include "live/bench.h"
 #include "live/tool.h"
@@ -23,13 +21,7 @@ constexpr const char* own_program = "/proc/self/exe";
 bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
   auto ends = process::channel_pair(SOCK_STREAM, "a process of its own");
   if (!ends) return process::send_descriptors(to_server, '-', {});
-  const pid_t parent = ::getpid();
-  const pid_t child = process::fork_patiently();
-  if (child < 0) return process::send_descriptors(to_server, '-', {});
-  if (child == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(2);
-    ::setpgid(0, 0);
+  auto child = process::Child::start("a request", {}, [&] {
     ::signal(SIGCHLD, SIG_DFL);
     ::close(to_server);
     (*ends)[0] = process::Handle();
@@ -39,31 +31,28 @@ bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
     BenchWish wish = common;
     wish.folder = what.at("campaign").get<std::string>();
     run_bench(wish, std::move((*ends)[1]));
-  }
+  });
+  if (!child) return process::send_descriptors(to_server, '-', {});
+  child->release();
   return process::send_descriptors(to_server, '+', {(*ends)[0].get()});
 }
 
-[[noreturn]] void serve_launches(const BenchWish& common, int server) {
-  process::init_child();
+void serve_launches(const BenchWish& common, int server) {
   ::signal(SIGINT, SIG_IGN);   // the server ends it
   ::signal(SIGCHLD, SIG_IGN);  // bench processes leave nothing behind
   for (std::string what; process::read_text(server, what);)
     if (!launch(common, storage::Json::parse(what), server)) break;
-  ::_exit(0);
 }
 
 }  // namespace
 
 Expected<Launcher> Launcher::start(const BenchWish& common) {
   NONIO_TRY(auto ends, process::channel_pair(SOCK_STREAM, "the process that starts others"));
-  std::cout.flush();
-  std::cerr.flush();
-  const pid_t child = process::fork_patiently();
-  if (child < 0) return fail("no process could be started");
-  if (child == 0) {
-    ends[0] = process::Handle();
-    serve_launches(common, ends[1].get());
-  }
+  NONIO_TRY(auto child, process::Child::start("what starts others", {}, [&] {
+              ends[0] = process::Handle();
+              serve_launches(common, ends[1].get());
+            }));
+  child.release();
   return Launcher(std::move(ends[0]));
 }
 

@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -22,22 +21,6 @@ namespace {
 /// A message begins with it or its opposite.
 constexpr bool is_line = true;
 constexpr std::size_t most_printed = 64 << 20, most_errors = 1 << 16;
-
-[[noreturn]] void become(const std::string& program, const std::vector<std::string>& arguments,
-                         int out, int errors) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  ::setpgid(0, 0);
-  const int nothing = ::open("/dev/null", O_RDONLY);
-  ::dup2(nothing, STDIN_FILENO);
-  ::dup2(out, STDOUT_FILENO);
-  ::dup2(errors, STDERR_FILENO);
-  std::vector<char*> all{const_cast<char*>(program.c_str())};
-  for (const std::string& one : arguments) all.push_back(const_cast<char*>(one.c_str()));
-  all.push_back(nullptr);
-  ::execv(program.c_str(), all.data());
-  constexpr int cannot_run = 127;
-  ::_exit(cannot_run);
-}
 
 /// False at the end.
 bool take_from(int fd, std::string& into) {
@@ -62,9 +45,10 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
               process::Handle channel) {
   int out[2], errors[2];
   if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(errors, O_CLOEXEC) != 0) ::_exit(1);
-  const pid_t child = process::fork_patiently();
-  if (child < 0) ::_exit(1);
-  if (child == 0) become(program, arguments, out[1], errors[1]);
+  process::Child::Program own{{program}, process::present_environment(), -1, out[1], errors[1]};
+  own.command.insert(own.command.end(), arguments.begin(), arguments.end());
+  auto child = process::Child::start(own);
+  if (!child) ::_exit(1);
   ::close(out[1]);
   ::close(errors[1]);
   // What a run prints are events; what others print is one answer.
@@ -77,9 +61,9 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
     if (::poll(all.data(), all.size(), -1) < 0) continue;
     std::string word;
     const bool asked = all[2].revents == POLLIN && process::read_text(channel.get(), word);
-    if (asked) ::kill(child, SIGTERM);
+    if (asked) ::kill(child->pid(), SIGTERM);
     if ((all[2].revents != 0 && !asked) || printed.size() > most_printed) {
-      process::end_child(child);
+      child->end();
       ::_exit(1);
     }
     if (all[0].revents != 0 && !take_from(out[0], printed)) all[0].fd = -1;
@@ -88,7 +72,7 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
     tell_lines(said, sent, channel.get());
   }
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
+  while (::waitpid(child->pid(), &status, 0) < 0 && errno == EINTR)
     ;
   said.erase(0, said.size() - std::min(said.size(), most_errors));
   process::write_text(

@@ -330,20 +330,14 @@ class Checker {
       result.says = "no memory to share with a child process";
       return result;
     }
-    std::cout.flush();
-    std::cerr.flush();
     const double before = processor_seconds(RUSAGE_CHILDREN);
-    const pid_t child = ::fork();
-    if (child == 0) {
-      process::init_child();
-      limit_child();
+    auto child = process::Child::start("a check", {.memory_MB = request_.memory_MB}, [&] {
+      limit_processor();
       impure_answer = &answer;
       answer.set(told(name == "loads", stage, work));
-      ::_exit(0);
-    }
-    const process::ChildEnd end = child < 0
-                                      ? process::ChildEnd{false, "no process"}
-                                      : process::wait_for_child(child, 10.0 * request_.seconds);
+    });
+    const process::ChildEnd end = child ? child->wait(10.0 * request_.seconds)
+                                        : process::ChildEnd{false, child.error().message};
     const std::string words = answer.get();
     if (end.overdue) hung_ = most_hanging;  // it waits, which costs the most
     if (!end.well && processor_seconds(RUSAGE_CHILDREN) - before > 0.9 * request_.seconds) ++hung_;
@@ -359,11 +353,10 @@ class Checker {
     return result;
   }
 
-  void limit_child() const {
+  void limit_processor() const {
     const auto seconds = static_cast<rlim_t>(std::max(1.0, request_.seconds));
     const rlimit limit{seconds, seconds};
     ::setrlimit(RLIMIT_CPU, &limit);
-    process::limit_memory(request_.memory_MB);
   }
 
   /// Run in the child: the first letter is the verdict.

@@ -11,16 +11,13 @@
 #include <Poco/Net/SecureSMTPClientSession.h>
 #include <Poco/Net/SecureStreamSocket.h>
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/mman.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -112,53 +109,33 @@ std::string said_in(int file) {
 }
 
 /// What the program needs of the environment; passwords stay.
-std::vector<char*> kept_environment() {
+std::vector<std::string> kept_environment() {
   constexpr std::string_view kept[] = {"PATH=", "HOME=", "USER=", "LOGNAME=", "LANG=", "TZ="};
-  std::vector<char*> out;
-  for (char** one = environ; one != nullptr && *one != nullptr; ++one)
-    if (std::any_of(std::begin(kept), std::end(kept),
-                    [&](std::string_view k) { return std::string_view(*one).starts_with(k); }))
-      out.push_back(*one);
-  out.push_back(nullptr);
-  return out;
+  std::vector<std::string> all = process::present_environment();
+  std::erase_if(all, [&](const std::string& one) {
+    return std::none_of(std::begin(kept), std::end(kept),
+                        [&](std::string_view name) { return one.starts_with(name); });
+  });
+  return all;
 }
 
-/// The end of the program, as `waitpid` gives it; none with the reason in errno.
-std::optional<int> run_program(std::vector<std::string> command, int input, int output) {
-  std::vector<char*> arguments;
-  for (std::string& one : command) arguments.push_back(one.data());
-  arguments.push_back(nullptr);
-  std::vector<char*> environment = kept_environment();
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
-  for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO})
-    posix_spawn_file_actions_adddup2(&files, output, descriptor);
-  pid_t child = 0;
-  const int failed = ::posix_spawn(&child, arguments.front(), &files, nullptr, arguments.data(),
-                                   environment.data());
-  posix_spawn_file_actions_destroy(&files);
-  if (failed != 0) return errno = failed, std::nullopt;
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) return std::nullopt;
-  return status;
-}
-
-Expected<std::string> by_program(const config::Mail& mail, const net::MailMessage& message) {
+Expected<std::string> by_program(const config::Mail& mail, const net::MailMessage& message,
+                                 double seconds) {
   std::ostringstream text;
   message.write(text);
   std::string bytes = text.str();
   std::erase(bytes, '\r');  // a program on the same machine reads lines of the system
   const int input = file_in_memory(bytes), output = file_in_memory({});
+  process::ChildEnd end;
   std::vector<std::string> command{mail.sendmail, "-i", "-f", mail.from, "--"};
   command.insert(command.end(), mail.to.begin(), mail.to.end());
-  const auto status = run_program(command, input, output);
-  const std::string why = std::strerror(errno), said = said_in(output);
+  auto child =
+      process::Child::start({std::move(command), kept_environment(), input, output, output});
+  if (child.has_value()) end = child->wait(seconds);
+  const std::string said = said_in(output);
   ::close(input);
   ::close(output);
-  if (!status) return fail("cannot run " + mail.sendmail + ": " + why);
-  const process::ChildEnd end = process::child_end(*status);
+  if (!child) return fail("cannot run " + mail.sendmail + ": " + child.error().message);
   if (!end.well)
     return fail(mail.sendmail + " refused the mail: " + end.words +
                 (said.empty() ? "" : ": " + said));
@@ -262,7 +239,8 @@ Expected<std::string> deliver(const config::Mail& mail, const fs::path& site, co
                               double seconds) {
   net::MailMessage message;
   fill(message, mail, letter);
-  return mail.smtp.empty() ? by_program(mail, message) : by_server(mail, site, message, seconds);
+  return mail.smtp.empty() ? by_program(mail, message, seconds)
+                           : by_server(mail, site, message, seconds);
 }
 
 }  // namespace

@@ -7,11 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
-#include <iostream>
 #include <utility>
-
-#include "platform/process/child.h"
 
 namespace nonio::batch {
 
@@ -32,9 +28,7 @@ StoredMessage message_of(std::size_t campaign, const Expected<void>& result) {
   return message;
 }
 
-[[noreturn]] void serve(const Committer::Task& task, int channel) noexcept {
-  process::init_child();
-  process::keep_silent();
+void serve(const Committer::Task& task, int channel) {
   for (Committer::Given given; ::read(channel, &given, sizeof given) == sizeof given;) {
     std::vector<Committer::Given> batch{given};
     while (batch.size() < largest_batch &&
@@ -43,55 +37,43 @@ StoredMessage message_of(std::size_t campaign, const Expected<void>& result) {
     const auto results = task(batch);
     for (std::size_t i = 0; i < batch.size(); ++i) {
       const StoredMessage message = message_of(batch[i].campaign, results[i]);
-      if (::write(channel, &message, sizeof message) != sizeof message) ::_exit(0);
+      if (::write(channel, &message, sizeof message) != sizeof message) return;
     }
   }
-  ::_exit(0);
 }
 
 }  // namespace
 
-Committer::~Committer() { end(); }
-
 Expected<void> Committer::start() {
-  int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
-    return fail(std::string("no channel to the process that stores: ") + std::strerror(errno));
-  std::cout.flush();
-  std::cerr.flush();
-  pid_ = ::fork();
-  if (pid_ == 0) {
-    ::close(ends[0]);
-    serve(task_, ends[1]);
-  }
-  const int code = errno;
-  ::close(ends[1]);
-  channel_ = ends[0];
-  if (pid_ > 0) return {};
-  end();
-  return fail(std::string("no process that stores: ") + std::strerror(code));
+  constexpr const char* purpose = "what stores results";
+  NONIO_TRY(auto ends, process::channel_pair(SOCK_SEQPACKET, purpose));
+  NONIO_TRY(child_, process::Child::start(purpose, {.silent = true}, [&] {
+              ends[0] = process::Handle();
+              serve(task_, ends[1].get());
+            }));
+  channel_ = std::move(ends[0]);
+  return {};
 }
 
 void Committer::end() {
-  if (channel_ >= 0) ::close(std::exchange(channel_, -1));
-  if (pid_ < 0) return;
-  process::end_child(std::exchange(pid_, -1));
+  channel_ = process::Handle();
+  child_.end();
 }
 
 Expected<void> Committer::give(Given campaign) {
-  if (channel_ < 0)
+  if (!channel_)
     if (auto started = start(); !started) return started;
   pending_.push_back(campaign);
   // A process that is dead already is found by done().
-  [[maybe_unused]] const ssize_t n = ::send(channel_, &campaign, sizeof campaign, MSG_NOSIGNAL);
+  [[maybe_unused]] const ssize_t n = ::send(channel(), &campaign, sizeof campaign, MSG_NOSIGNAL);
   return {};
 }
 
 std::vector<Committer::Done> Committer::done() {
   std::vector<Done> out;
-  while (channel_ >= 0 && !pending_.empty()) {
+  while (channel_ && !pending_.empty()) {
     StoredMessage message;
-    const ssize_t n = ::recv(channel_, &message, sizeof message, MSG_DONTWAIT);
+    const ssize_t n = ::recv(channel(), &message, sizeof message, MSG_DONTWAIT);
     if (n == sizeof message) {
       const auto it = std::find_if(pending_.begin(), pending_.end(),
                                    [&](const Given& g) { return g.campaign == message.campaign; });

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -11,6 +9,8 @@
 #include <vector>
 
 #include "nonio/sdk/error.h"
+#include "platform/process/channel.h"
+#include "platform/process/child.h"
 
 namespace nonio::batch {
 
@@ -32,9 +32,6 @@ class Committer {
   using Task = std::function<std::vector<Expected<void>>(const std::vector<Given>&)>;
 
   explicit Committer(Task task) : task_(std::move(task)) {}
-  Committer(const Committer&) = delete;
-  Committer& operator=(const Committer&) = delete;
-  ~Committer();
 
   /// An error if there is no process for it.
   Expected<void> give(Given campaign);
@@ -44,14 +41,16 @@ class Committer {
   void end();
   /// What is done by now. If the process died: all that was pending.
   std::vector<Done> done();
-  int channel() const { return channel_; }  ///< readable when something is done; -1: no process
+  int channel() const {
+    return channel_.get();
+  }  ///< readable when something is done; -1: no process
 
  private:
   Expected<void> start();
 
   Task task_;
-  pid_t pid_ = -1;
-  int channel_ = -1;
+  process::Handle channel_{};
+  process::Child child_{};
   std::vector<Given> pending_;
 };
 

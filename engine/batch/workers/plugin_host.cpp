@@ -81,7 +81,7 @@ PluginHost::~PluginHost() {
 
 void PluginHost::end() {
   control_ = process::Handle();
-  if (pid_ > 0) process::end_child(std::exchange(pid_, -1));
+  child_.end();
   pass_on_prints();
 }
 
@@ -111,12 +111,9 @@ Expected<loader::Catalogue> PluginHost::load_once() {
   const process::Handle printing(prints[1]);
   constexpr int yes = 1;
   ::setsockopt((*control)[0].get(), SOL_SOCKET, SO_PASSCRED, &yes, sizeof yes);
-  std::cout.flush();
-  std::cerr.flush();
-  pid_ = process::fork_patiently();
-  if (pid_ == 0) serve((*control)[1].get(), (*answers)[1].get(), printing.get(), progress);
-  if (pid_ < 0) return fail(std::string("no process to load plugins: ") + std::strerror(errno));
-  ::setpgid(pid_, pid_);
+  NONIO_TRY(child_, process::Child::start(loading_process, {}, [&] {
+              serve((*control)[1].get(), (*answers)[1].get(), printing.get(), progress);
+            }));
   control_ = std::move((*control)[0]);
   { const process::Handle theirs = std::move((*control)[1]), also = std::move((*answers)[1]); }
   std::string hung;
@@ -128,7 +125,7 @@ Expected<loader::Catalogue> PluginHost::load_once() {
     return std::move(ready.catalogue);
   }
   if (hung == "stopped") return fail("interrupted");
-  const process::ChildEnd how = process::end_child(std::exchange(pid_, -1));
+  const process::ChildEnd how = child_.end();
   const std::string why = !hung.empty() ? hung : how.well ? "ended the process" : how.words;
   const std::string where = progress.get();
   Error error{where.empty() ? std::string(loading_process) + " died: " + why : why};
@@ -173,11 +170,11 @@ void PluginHost::leave_out(const std::string& progress, const std::string& why) 
   notes_.push_back("output " + output + " could not prepare: " + why);
 }
 
-Expected<pid_t> PluginHost::make_process(process::Handle stream,
-                                         const process::SharedStatus& stage) {
+Expected<process::Child> PluginHost::make_process(process::Handle stream,
+                                                  const process::SharedStatus& stage) {
   constexpr int most_deaths = 5;
   for (; deaths_ <= most_deaths; ++deaths_) {
-    if (pid_ < 0 || !control_)
+    if (!child_ || !control_)
       if (const auto again = start(); !again) return fail(again.error());
     const bool sent =
         process::send_descriptors(control_.get(), 'w', {stream.get(), stage.descriptor()});
@@ -185,7 +182,7 @@ Expected<pid_t> PluginHost::make_process(process::Handle stream,
     const bool heard = sent && ::poll(&one, 1, static_cast<int>(1000 * answer_seconds)) > 0;
     auto hello = heard ? process::receive_descriptors(control_.get()) : fail("no answer");
     // The kernel identifies it: a child of ours, and not the one that loads.
-    if (hello && hello->word == 'h' && hello->sender > 0 && hello->sender != pid_) {
+    if (hello && hello->word == 'h' && hello->sender > 0 && hello->sender != child_.pid()) {
       siginfo_t info{};
       if (::waitid(P_PID, static_cast<id_t>(hello->sender), &info, WEXITED | WNOHANG | WNOWAIT) ==
           0) {
@@ -194,7 +191,7 @@ Expected<pid_t> PluginHost::make_process(process::Handle stream,
           last_words_.push_back(
               {hello->sender, std::move(hello->descriptors.front()),
                process::SharedStatus(::fcntl(stage.descriptor(), F_DUPFD_CLOEXEC, 3))});
-        return hello->sender;
+        return process::Child(hello->sender);
       }
     }
     end();
@@ -279,9 +276,7 @@ loader::Plugins& PluginHost::load_all(process::SharedStatus& progress,
   return *plugins;
 }
 
-void PluginHost::serve(int control, int catalogue, int prints,
-                       process::SharedStatus& progress) noexcept {
-  process::init_child();
+void PluginHost::serve(int control, int catalogue, int prints, process::SharedStatus& progress) {
   take_input();
   Prints own(prints);
   if (!own.valid()) ::_exit(1);
@@ -305,10 +300,9 @@ void PluginHost::serve(int control, int catalogue, int prints,
     ::_exit(0);
   ::close(catalogue);
   while (ready.refused.empty()) make_sibling(control, prints);
-  ::_exit(0);
 }
 
-void PluginHost::make_sibling(int control, int prints) noexcept {
+void PluginHost::make_sibling(int control, int prints) {
   auto asked = process::receive_descriptors(control);
   if (!asked) ::_exit(0);  // the main process has ended
   if (asked->descriptors.size() != 2) return;

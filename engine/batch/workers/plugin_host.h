@@ -47,19 +47,18 @@ class PluginHost {
 
   /// A process that evaluates campaigns for whoever has the other end of `stream`, and states in
   /// `stage` what it is about to call. Made anew if the process that loads has died.
-  Expected<pid_t> make_process(process::Handle stream, const process::SharedStatus& stage);
+  Expected<process::Child> make_process(process::Handle stream, const process::SharedStatus& stage);
   /// Passes on what plugins have printed, up to a limit.
   void pass_on_prints();
 
  private:
   Expected<loader::Catalogue> load_once();
-  [[noreturn]] void serve(int control, int catalogue, int prints,
-                          process::SharedStatus& progress) noexcept;
+  void serve(int control, int catalogue, int prints, process::SharedStatus& progress);
   loader::Plugins& load_all(process::SharedStatus& progress, std::vector<std::string>& said,
                             Prints& prints) const;
   /// With a limit for all plugins together.
   void say(std::string_view text);
-  void make_sibling(int control, int prints) noexcept;
+  void make_sibling(int control, int prints);
   std::string check_secrets() const;
   Expected<std::string> answer(int stream, process::SharedStatus& progress, std::string& hung);
   void leave_out(const std::string& progress, const std::string& why);
@@ -71,7 +70,7 @@ class PluginHost {
   std::map<std::string, std::string> unprepared_;         ///< outputs, and why
   std::map<std::string, int> died_at_;                    ///< how often it died where
   std::vector<pid_t> children_before_;
-  pid_t pid_ = -1;
+  process::Child child_;
   process::Handle control_, prints_;
   /// What a process that evaluates has printed and not passed on when it died.
   struct LastWords {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "nonio/sdk/error.h"
+#include "platform/process/channel.h"
 #include "platform/process/child.h"
 #include "platform/process/shared_status.h"
 
@@ -38,7 +37,8 @@ struct Outcome {
 };
 
 /// A process that does campaigns one after the other, as its parent names them; with another one
-/// for what plugins do. Moved, not copied.
+/// for what plugins do; at the end both are killed, and everything that they left running. Moved,
+/// not copied.
 class Worker {
  public:
   using Clock = std::chrono::steady_clock;
@@ -50,16 +50,13 @@ class Worker {
   /// With a process that has the plugins at the other end of the stream that the task is made with.
   static Expected<Worker> start(PluginHost& plugins, const std::function<Task(int stream)>& task,
                                 double memory_MB);
-  Worker(Worker&& other) noexcept;
-  Worker& operator=(Worker&& other) noexcept;
-  ~Worker();  ///< kills the processes and everything that they left running
 
   void give(std::size_t campaign, Clock::duration limit);
   std::size_t campaign() const { return campaign_; }
   std::size_t given() const { return given_; }
   bool overdue() const { return Clock::now() > deadline_; }
   std::string stage() const { return stage_.get(); }
-  int channel() const { return channel_; }
+  int channel() const { return channel_.get(); }
 
   /// Whether the memory of the process has grown noticeably since its start.
   bool grown() const { return grown_; }
@@ -71,13 +68,12 @@ class Worker {
   process::ChildEnd end();
 
  private:
-  Worker(int channel, process::SharedStatus stage);
-  static Expected<Worker> prepare(int& theirs);
-  Expected<void> fork_with(const Task& task, double memory_MB, int theirs);
+  Worker() = default;
+  Expected<void> start_with(const Task& task, double memory_MB);
 
-  pid_t pid_ = -1, plugins_ = -1;  ///< -1: there is none
-  int channel_;
   process::SharedStatus stage_;
+  process::Handle channel_;
+  process::Child child_, plugins_;
   std::size_t campaign_ = 0, given_ = 0;
   Clock::time_point deadline_{};
   bool grown_ = false, shows_history_ = false;

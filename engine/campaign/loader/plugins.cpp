@@ -86,19 +86,14 @@ Probed probe_in_child(std::span<const fs::path> paths) {
   std::vector<process::SharedStatus> said(paths.size());  // empty until that one is through
   for (const process::SharedStatus& words : said)
     if (!words.valid()) return {{}, {false, "no memory"}};
-  std::cout.flush();
-  const pid_t child = process::fork_patiently();
-  if (child == 0) {
-    process::init_child();
+  auto child = process::Child::start("the plugins", {}, [&] {
     if (process::is_apart()) {
       if (const std::string why = process::confine_loading({"/"}); !why.empty()) ::_exit(1);
     }
     for (std::size_t i = 0; i < paths.size(); ++i) said[i].set("." + try_registering(paths[i]));
-    ::_exit(0);
-  }
+  });
   Probed probed;
-  probed.end = child < 0 ? process::ChildEnd{false, "no process"}
-                         : process::wait_for_child(child, probe_seconds);
+  probed.end = child ? child->wait(probe_seconds) : process::ChildEnd{false, child.error().message};
   for (const process::SharedStatus& words : said) {
     const std::string answer = words.get();
     if (answer.empty()) break;

@@ -12,8 +12,10 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <iostream>
 #include <thread>
 
 namespace nonio::process {
@@ -29,8 +31,96 @@ ChildEnd child_end(int status) {
   return {false, "signal " + std::to_string(number) + " (" + ::strsignal(number) + ")"};
 }
 
-ChildEnd end_child(pid_t child) {
-  using Clock = std::chrono::steady_clock;
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void keep_silent() {
+  const int nothing = ::open("/dev/null", O_RDWR);
+  if (nothing < 0) return;
+  ::dup2(nothing, STDIN_FILENO);
+  ::dup2(nothing, STDOUT_FILENO);
+#ifndef NONIO_SANITIZED
+  ::dup2(nothing, STDERR_FILENO);
+#endif
+  if (nothing > STDERR_FILENO) ::close(nothing);
+}
+
+/// Tried again for two seconds where the system has no process to give just now.
+pid_t fork_patiently() {
+  constexpr int most = 20;
+  for (int i = 0;; ++i) {
+    const pid_t pid = ::fork();
+    if (pid >= 0 || i == most || (errno != EAGAIN && errno != ENOMEM)) return pid;
+    ::usleep(100'000);
+  }
+}
+
+[[noreturn]] void work_and_end(const Child::Settings& settings, const std::function<void()>& work,
+                               pid_t parent) noexcept {
+  init_child();
+  if (::getppid() != parent) ::_exit(2);
+  if (settings.silent) keep_silent();
+  if (settings.memory_MB > 0.0) limit_memory(settings.memory_MB);
+  try {
+    work();
+  } catch (...) {
+    ::_exit(3);
+  }
+  ::_exit(0);
+}
+
+std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
+  std::vector<char*> all;
+  for (const std::string& text : texts) all.push_back(const_cast<char*>(text.c_str()));
+  all.push_back(nullptr);
+  return all;
+}
+
+[[noreturn]] void become(const Child::Program& program) {
+  const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  const auto from = [&](int descriptor) { return descriptor < 0 ? nothing : descriptor; };
+  ::dup2(from(program.input), STDIN_FILENO);
+  ::dup2(from(program.output), STDOUT_FILENO);
+  ::dup2(from(program.errors), STDERR_FILENO);
+  ::execve(program.command.front().c_str(), pointers_to(program.command).data(),
+           pointers_to(program.environment).data());
+  constexpr int cannot_run = 127;
+  ::_exit(cannot_run);
+}
+
+}  // namespace
+
+Child::Child(pid_t pid) : pid_(pid) { ::setpgid(pid_, pid_); }
+
+Expected<Child> Child::start(const std::string& purpose, const Settings& settings,
+                             const std::function<void()>& work) {
+  std::cout.flush();
+  std::cerr.flush();
+  std::fflush(stdout);
+  const pid_t parent = ::getpid();
+  const pid_t pid = fork_patiently();
+  if (pid == 0) work_and_end(settings, work, parent);
+  if (pid < 0) return fail("no process for " + purpose + ": " + std::strerror(errno));
+  return Child(pid);
+}
+
+Expected<Child> Child::start(const Program& program) {
+  const std::string& path = program.command.front();
+  if (::access(path.c_str(), X_OK) != 0) return fail(std::string(std::strerror(errno)));
+  return start(path, {}, [&] { become(program); });
+}
+
+bool Child::has_ended() const {
+  siginfo_t info{};
+  return pid_ > 0 &&
+         (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+          info.si_pid == pid_);
+}
+
+ChildEnd Child::end() {
+  if (pid_ < 0) return {true, {}};
+  const pid_t child = std::exchange(pid_, -1);
   ::kill(-child, SIGKILL);
   ::kill(child, SIGKILL);
   const auto patience = Clock::now() + std::chrono::seconds(2);
@@ -41,19 +131,19 @@ ChildEnd end_child(pid_t child) {
   return gone > 0 ? child_end(status) : ChildEnd{false, "does not respond (waiting in the kernel)"};
 }
 
-ChildEnd wait_for_child(pid_t child, double seconds) {
-  using Clock = std::chrono::steady_clock;
+ChildEnd Child::wait(double seconds) {
   const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
   auto pause = std::chrono::microseconds(100);
   int status = 0;
-  while (::waitpid(child, &status, WNOHANG) == 0) {
+  while (::waitpid(pid_, &status, WNOHANG) == 0) {
     if (Clock::now() > deadline) {
-      end_child(child);
+      end();
       return {false, "no answer within " + std::to_string(static_cast<int>(seconds)) + " s", true};
     }
     std::this_thread::sleep_for(pause);
     pause = std::min(pause * 2, std::chrono::microseconds(5000));
   }
+  pid_ = -1;
   return child_end(status);
 }
 
@@ -65,7 +155,6 @@ std::vector<pid_t> own_children() {
 }
 
 void end_children(const std::vector<pid_t>& kept) {
-  using Clock = std::chrono::steady_clock;
   const auto patience = Clock::now() + std::chrono::seconds(2);
   for (bool any = true; any && Clock::now() < patience;) {
     any = false;
@@ -92,24 +181,10 @@ void init_child() {
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
 }
 
-void keep_silent() {
-  const int nothing = ::open("/dev/null", O_RDWR);
-  if (nothing < 0) return;
-  ::dup2(nothing, STDIN_FILENO);
-  ::dup2(nothing, STDOUT_FILENO);
-#ifndef NONIO_SANITIZED
-  ::dup2(nothing, STDERR_FILENO);
-#endif
-  if (nothing > STDERR_FILENO) ::close(nothing);
-}
-
-pid_t fork_patiently() {
-  constexpr int most = 20;
-  for (int i = 0;; ++i) {
-    const pid_t pid = ::fork();
-    if (pid >= 0 || i == most || (errno != EAGAIN && errno != ENOMEM)) return pid;
-    ::usleep(100'000);
-  }
+std::vector<std::string> present_environment() {
+  std::vector<std::string> all;
+  for (char** one = environ; one != nullptr && *one != nullptr; ++one) all.emplace_back(*one);
+  return all;
 }
 
 std::size_t memory_held() {

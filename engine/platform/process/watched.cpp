@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <iostream>
 #include <new>
 #include <utility>
 
@@ -54,21 +53,6 @@ class Outbox {
   std::string buffer_;
 };
 
-[[noreturn]] void do_task(const Watched::Task& task, int channel, double memory_MB,
-                          SignsOfLife& signs) noexcept {
-  init_child();
-  keep_silent();
-  if (memory_MB > 0.0) limit_memory(memory_MB);
-  Outbox outbox(channel);
-  try {
-    task(signs, [&](std::string_view piece) { outbox.put(piece); });
-    outbox.send();
-  } catch (...) {
-    ::_exit(3);
-  }
-  ::_exit(0);
-}
-
 }  // namespace
 
 void SignsOfLife::reading(std::string_view path) {
@@ -83,62 +67,30 @@ Expected<Watched> Watched::start(const Task& task, double memory_MB) {
   void* shared = ::mmap(nullptr, sizeof(SignsOfLife), PROT_READ | PROT_WRITE,
                         MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED) return fail("no memory for a process that reads the site");
-  auto* signs = new (shared) SignsOfLife();
+  Watched watched;
+  watched.signs_.reset(new (shared) SignsOfLife());
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) {
-    const std::string why = std::strerror(errno);
-    ::munmap(shared, sizeof(SignsOfLife));
-    return fail("no channel to a process that reads the site: " + why);
-  }
-  std::cout.flush();
-  std::cerr.flush();
-  const pid_t pid = fork_patiently();
-  if (pid == 0) {
-    ::close(ends[0]);
-    do_task(task, ends[1], memory_MB, *signs);
-  }
-  const int code = errno;
-  ::close(ends[1]);
-  Watched child(pid, ends[0], signs);
-  if (pid < 0) return fail(std::string("no process to read the site: ") + std::strerror(code));
-  ::setpgid(pid, pid);
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    return fail(std::string("no channel to a process that reads the site: ") +
+                std::strerror(errno));
+  watched.channel_ = Handle(ends[0]);
+  Handle theirs(ends[1]);
+  NONIO_TRY(watched.child_, Child::start("the site", {.memory_MB = memory_MB, .silent = true}, [&] {
+              watched.channel_ = Handle();
+              Outbox outbox(theirs.get());
+              task(*watched.signs_, [&](std::string_view piece) { outbox.put(piece); });
+              outbox.send();
+            }));
   ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  return child;
+  return watched;
 }
 
-Watched::Watched(pid_t pid, int channel, SignsOfLife* signs)
-    : pid_(pid), channel_(channel), signs_(signs) {}
-
-Watched::Watched(Watched&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)),
-      channel_(std::exchange(other.channel_, -1)),
-      signs_(std::exchange(other.signs_, nullptr)),
-      received_(std::move(other.received_)),
-      ended_(other.ended_),
-      beats_(other.beats_),
-      last_beat_(other.last_beat_) {}
-
-Watched& Watched::operator=(Watched&& other) noexcept {
-  std::swap(pid_, other.pid_);
-  std::swap(channel_, other.channel_);
-  std::swap(signs_, other.signs_);
-  std::swap(received_, other.received_);
-  std::swap(ended_, other.ended_);
-  std::swap(beats_, other.beats_);
-  std::swap(last_beat_, other.last_beat_);
-  return *this;
-}
-
-Watched::~Watched() {
-  end();
-  if (channel_ >= 0) ::close(channel_);
-  if (signs_ != nullptr) ::munmap(signs_, sizeof(SignsOfLife));
-}
+void Watched::Shared::operator()(SignsOfLife* signs) const { ::munmap(signs, sizeof *signs); }
 
 std::vector<std::string> Watched::take() {
   std::array<char, 1 << 16> part;
   while (!ended_) {
-    const ssize_t n = ::read(channel_, part.data(), part.size());
+    const ssize_t n = ::read(channel(), part.data(), part.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0 && errno == EAGAIN) break;
     if (n <= 0)
@@ -164,11 +116,6 @@ bool Watched::is_silent(double seconds) {
     last_beat_ = Clock::now();
   }
   return std::chrono::duration<double>(Clock::now() - last_beat_).count() > seconds;
-}
-
-ChildEnd Watched::end() {
-  if (pid_ < 0) return {};
-  return end_child(std::exchange(pid_, -1));
 }
 
 std::string no_answer(double seconds) {

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "nonio/sdk/error.h"
+#include "platform/process/channel.h"
 #include "platform/process/child.h"
 
 namespace nonio::process {
@@ -33,7 +33,8 @@ struct SignsOfLife {
 };
 
 /// A child process for what may hang (a disk, a share) or crash (a parser). What it sends arrives
-/// in the same pieces; the parent waits for it no longer than it shows signs of life. Moved, not copied.
+/// in the same pieces; the parent waits for it no longer than it shows signs of life. Moved, not copied; killed at the
+/// end.
 class Watched {
  public:
   /// Sends a piece to the parent, not at once.
@@ -42,11 +43,7 @@ class Watched {
 
   /// `memory_MB`: none if 0.
   static Expected<Watched> start(const Task& task, double memory_MB = 0.0);
-  Watched(Watched&& other) noexcept;
-  Watched& operator=(Watched&& other) noexcept;
-  ~Watched();  ///< kills the process
-
-  int channel() const { return channel_; }
+  int channel() const { return channel_.get(); }
   const SignsOfLife& signs() const { return *signs_; }
   /// What has come since the last call.
   std::vector<std::string> take();
@@ -56,15 +53,18 @@ class Watched {
   bool is_silent(double seconds);
   /// What became of the process. One that hangs is killed, and left behind if the kernel does not
   /// let it go at once.
-  ChildEnd end();
+  ChildEnd end() { return child_.end(); }
 
  private:
   using Clock = std::chrono::steady_clock;
-  Watched(pid_t pid, int channel, SignsOfLife* signs);
+  /// Memory that parent and child share.
+  struct Shared {
+    void operator()(SignsOfLife* signs) const;
+  };
 
-  pid_t pid_;
-  int channel_;
-  SignsOfLife* signs_;
+  std::unique_ptr<SignsOfLife, Shared> signs_{};
+  Handle channel_{};
+  Child child_{};
   std::string received_{};
   bool ended_ = false;
   std::uint64_t beats_ = 0;

@@ -317,7 +317,7 @@ class Confinement(NightTest):
         self.assertIn(f"root would run code that other users can change: {plugins}", done.stderr)
         self.run_nonio(*args, "--root", expect=0)
         plugins.chmod(0o755)
-        self.assertIn("this runs as root", self.run_nonio(*args, "--force", expect=0).stderr)
+        self.assertIn("running as root is not needed", self.run_nonio(*args, "--force", expect=0).stderr)
 
     def test_no_plugin_code_in_the_main_process(self):
         """Nor in those that have files and register."""

@@ -178,7 +178,7 @@ class Durable(NightTest):
         for date in ("2026-11-04", "2026-11-05"):
             self.campaign("a", seed=date)
             done = self.run_nonio("--date", date, env=fault(f"fork:7:{errno.EAGAIN}:100000"), expect=1)
-            self.assertIn("no worker process", done.stderr)
+            self.assertIn("no process for a worker", done.stderr)
             self.assertEqual("failed", self.results("a")["status"])
             self.assertEqual(["last-good", "results.json", "run.json"], sorted(os.listdir(self.out / "a")))
             self.assertEqual(good, tree(self.out / "a" / "last-good"))
