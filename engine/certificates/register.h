@@ -131,7 +131,6 @@ class Register {
   Expected<std::vector<WaitingDraft>> all_drafts();
   /// In place of an earlier one of the campaign. What its author stated stays if it is the same.
   Expected<void> enter_draft(const WaitingDraft& draft);
-  Expected<void> drop_draft(const std::string& campaign);
   Expected<std::optional<WaitingDraft>> draft(const std::string& campaign);
   /// The approval of the draft by its author, who has seen it; an error if the draft, or what an
   /// author states about it, has changed since.

@@ -117,12 +117,6 @@ Expected<void> Register::enter_draft(const WaitingDraft& draft) {
   return transaction.end();
 }
 
-Expected<void> Register::drop_draft(const std::string& campaign) {
-  storage::Database::Transaction transaction(*database_);
-  database_->rows("DELETE FROM drafts WHERE campaign = ?", {campaign});
-  return transaction.end();
-}
-
 Expected<void> Register::check_seen(const WaitingDraft& seen, const Approval& by) {
   NONIO_TRY(const auto waiting, draft(seen.campaign));
   if (!waiting)

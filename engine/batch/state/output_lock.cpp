@@ -110,6 +110,11 @@ void sweep(const fs::path& path, const User& own) {
     if (entry.path().string().starts_with(front)) ::unlink(entry.path().c_str());
 }
 
+/// An error of the moment would leave the file until the next run.
+void remove_temporary(const std::string& path) {
+  if (::unlink(path.c_str()) != 0) ::unlink(path.c_str());
+}
+
 enum class Made { done, taken, no_links };
 
 /// Gives `path` the bytes, if there is no such file. link(2) is one step on every server; two names
@@ -123,13 +128,13 @@ Expected<Made> make_user(const fs::path& path, const User& user, const std::stri
   const int trouble = written ? 0 : errno;
   ::close(fd);
   if (!written) {
-    ::unlink(own.c_str());
+    remove_temporary(own);
     return fail("cannot write " + own + ": " + std::strerror(trouble));
   }
   const int linked = ::link(own.c_str(), path.c_str()) == 0 ? 0 : errno;
   struct stat state {};
   const bool two_names = ::stat(own.c_str(), &state) == 0 && state.st_nlink == 2;
-  ::unlink(own.c_str());
+  remove_temporary(own);
   if (linked == 0 || two_names) return Made::done;
   if (linked == EEXIST) return Made::taken;
   if (linked == EPERM || linked == EOPNOTSUPP || linked == ENOSYS || linked == EMLINK)

@@ -242,6 +242,10 @@ void SiteParts::complete(config::MachineRecords& records) const {
 }
 
 Expected<void> SiteParts::keep(const evaluation::RunLabel& run) const {
+  // Copies without a list would be taken for a list that was lost.
+  NONIO_TRY(const auto listed, storage::is_there(out_ / inventory_name));
+  if (!listed)
+    if (auto begun = put_inventory(run, parts_); !begun) return begun;
   std::map<fs::path, std::vector<Artifact>> copies;
   for (const auto& [path, bytes] : renewed_)
     copies[out_ / copies_folder / fs::path(path).parent_path()].push_back(
@@ -254,6 +258,11 @@ Expected<void> SiteParts::keep(const evaluation::RunLabel& run) const {
     if (auto gone = remove_file(out_ / copies_folder / path); !gone) return gone;
   }
   for (const auto& [path, bytes] : renewed_) parts[path] = {storage::sha256(bytes), {}, {}};
+  return put_inventory(run, parts);
+}
+
+Expected<void> SiteParts::put_inventory(const evaluation::RunLabel& run,
+                                        const std::map<std::string, Part>& parts) const {
   storage::Json json = {{"schema", inventory_schema}, {"night", run.number}, {"date", run.date}};
   json["files"] = storage::Json::object();
   for (const auto& [path, part] : parts) {

@@ -49,6 +49,8 @@ class SiteParts {
   void leave_out_removed(const std::vector<config::Forgotten>& forgotten);
   void note_lost();
   std::string why_of(const std::string& path) const;
+  Expected<void> put_inventory(const evaluation::RunLabel& run,
+                               const std::map<std::string, Part>& parts) const;
 
   std::filesystem::path site_{}, out_{};
   std::string date_{}, damaged_{};  ///< of the inventory; why it cannot be read

@@ -285,8 +285,12 @@ std::string sentence_of(const model::JointEffect& e, const Together& t,
 std::string sentence_of(const Together& t, const config::TerminalWords& say) {
   const model::JointExplanation& x = t.explanation;
   const Quantity q = t.deviation();
+  // A small effect of many campaigns is in a digit that is not printed otherwise.
+  constexpr int usual = 3, most = 5;
+  const auto text_of = [&](double v, int digits) { return short_text(printed(v, q), digits); };
+  const int digits = text_of(x.rms, usual) == text_of(x.rms_after, usual) ? most : usual;
   const auto text = [&](double v) {
-    return short_text(printed(v, q)) + " " + std::string(unit_of(q).symbol);
+    return text_of(v, digits) + " " + std::string(unit_of(q).symbol);
   };
   std::vector<std::string> names;
   for (const model::JointEffect& e : x.effects) names.push_back(e.effect);

@@ -612,8 +612,5 @@ std::string campaign_key_help(std::string_view path) {
   return help_of(config::campaign_file(), path);
 }
 std::string site_key_help(std::string_view path) { return help_of(config::site_file(), path); }
-std::string machine_key_help(std::string_view path) {
-  return help_of(config::machine_file(), path);
-}
 
 }  // namespace nonio::schema

@@ -27,6 +27,5 @@ std::string forgotten_schema(const loader::Plugins& plugins);
 /// "environment.warm_up". Of a key that does not exist: empty.
 std::string campaign_key_help(std::string_view path);
 std::string site_key_help(std::string_view path);
-std::string machine_key_help(std::string_view path);
 
 }  // namespace nonio::schema

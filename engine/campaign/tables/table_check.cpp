@@ -293,7 +293,8 @@ Expected<std::optional<Underlay>> active_compensation(const reading::ReadCampaig
   if (read.active_tables.empty()) return std::optional<Underlay>();
   const Campaign& campaign = read.manifest->campaign;
   Underlay on{{}, options, {}};
-  for (const auto& [axis, files] : read.active_tables) {
+  for (const auto& [name, files] : read.active_tables) {
+    const std::string& axis = name;  // clang 14 captures no structured binding
     const std::string who =
         "the compensation that was active while axis " + axis + " was measured: ";
     auto tables = tables_in(controller, files, campaign, options);

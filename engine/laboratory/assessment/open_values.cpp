@@ -94,17 +94,6 @@ std::vector<const LimitWithoutValue*> open_limits(const StoredMachine& m) {
   return out;
 }
 
-std::vector<const LimitWithoutValue*> limits_not_measured(const StoredMachine& m) {
-  const auto newest = newest_of_axes(m);
-  std::set<std::pair<std::string, std::string>> seen;
-  std::vector<const LimitWithoutValue*> out;
-  for (const LimitWithoutValue& limit : m.without_value)
-    if (!limit.axis.empty() && !newest.contains(limit.axis) &&
-        seen.emplace(limit.axis, limit.quantity).second)
-      out.push_back(&limit);
-  return out;
-}
-
 reports::OpenValue open_value(const StoredMachine& m, std::size_t result) {
   const StoredResult& r = m.results[result];
   const Quantity q = quantity_of_unit(r.unit);

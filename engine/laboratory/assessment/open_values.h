@@ -29,10 +29,6 @@ std::vector<Judged> open_results(const store::StoredMachine& machine, const Show
 /// Limits for which the newest campaign that measured their axis has no value.
 std::vector<const store::LimitWithoutValue*> open_limits(const store::StoredMachine& machine);
 
-/// Limits of axes that no campaign has measured.
-std::vector<const store::LimitWithoutValue*> limits_not_measured(
-    const store::StoredMachine& machine);
-
 reports::OpenValue open_value(const store::StoredMachine& machine, std::size_t result);
 reports::OpenValue open_value(const store::StoredMachine& machine,
                               const store::LimitWithoutValue& limit);

@@ -15,27 +15,18 @@ std::vector<std::size_t> ascending(const std::vector<double>& p) {
   return order;
 }
 
-/// p times factor m/i, made monotone from the largest down.
-std::vector<double> stepped_up(const std::vector<double>& p, double factor) {
+}  // namespace
+
+std::vector<double> benjamini_hochberg(const std::vector<double>& p) {
   const auto order = ascending(p);
   const auto m = static_cast<double>(p.size());
   std::vector<double> out(p.size(), 1.0);
   double least = 1.0;
   for (std::size_t i = p.size(); i-- > 0;) {
-    least = std::min(least, p[order[i]] * factor * m / static_cast<double>(i + 1));
+    least = std::min(least, p[order[i]] * m / static_cast<double>(i + 1));
     out[order[i]] = least;
   }
   return out;
-}
-
-}  // namespace
-
-std::vector<double> benjamini_hochberg(const std::vector<double>& p) { return stepped_up(p, 1.0); }
-
-std::vector<double> benjamini_yekutieli(const std::vector<double>& p) {
-  double sum = 0.0;
-  for (std::size_t i = 1; i <= p.size(); ++i) sum += 1.0 / static_cast<double>(i);
-  return stepped_up(p, sum);
 }
 
 std::vector<double> holm(const std::vector<double>& p) {

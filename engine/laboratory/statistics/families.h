@@ -10,8 +10,6 @@ namespace nonio::statistics {
 /// Benjamini and Hochberg 1995: of the news at most this share is false in the mean; tests that are
 /// independent or positively correlated.
 std::vector<double> benjamini_hochberg(const std::vector<double>& p);
-/// Benjamini and Yekutieli 2001: the same for any correlation.
-std::vector<double> benjamini_yekutieli(const std::vector<double>& p);
 /// Holm 1979: at most this chance of any false news.
 std::vector<double> holm(const std::vector<double>& p);
 

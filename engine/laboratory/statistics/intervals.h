@@ -14,7 +14,7 @@
 namespace nonio::statistics {
 
 struct Proposal {
-  enum class Method { staircase, control_chart, fleet, reliability, drift };
+  enum class Method { staircase, control_chart, fleet };
   Method method = Method::staircase;
   std::optional<double> months{};  ///< none: not determined by this history
   /// Why: id of a word, and the numbers that belong to it, by name.
@@ -46,61 +46,5 @@ Proposal control_chart(const Series&, const Trend&, double limit,
 /// 0.5 and by more than 5 days. Why: "fleet-shorter", "fleet-longer", "fleet-as-it-is"; none:
 /// "no-interval", "no-target", "no-machines".
 Proposal fleet(double months, int passed, int machines, double target = 0.95);
-
-/// Machines of one kind that were in tolerance after intervals of unlike length.
-struct Tried {
-  double months = 0.0;
-  int machines = 0, passed = 0;
-};
-
-/// Probability of being in tolerance after a time.
-struct Reliability {
-  /// exp(-a t); exp(-(a t)^b); 2 Phi(1/sqrt(a + b t)) - 1
-  enum class Model { exponential, weibull, random_walk };
-  Model model = Model::exponential;
-  double a = 0.0, b = 0.0;
-  double log_likelihood = 0.0;  ///< binomial, without its coefficients
-
-  double at(double months) const;
-};
-
-/// By maximum likelihood (method S2). None if all or none passed, or of fewer than two times.
-std::optional<Reliability> likeliest(Reliability::Model, const std::vector<Tried>&);
-
-/// The time at which the likeliest of the three models (by AIC) comes to the target. Why:
-/// "reliability"; none: "no-target", "all-passed", "few-machines" (20), "few-times" (3),
-/// "beyond-tried" (longer than every time that was tried).
-Proposal reliability(const std::vector<Tried>&, double target);
-
-/// Drift since the last adjustment, of many like machines: d = b1 t + b2 t^2 + ..., through 0.
-/// Source: H. Castrup, Calibration intervals from variables data; NASA-HDBK-8739.19-5, 7.
-struct Drift {
-  std::vector<double> b, C;  ///< coefficients; covariance row by row
-  double s = 0.0, dof = 0.0;
-
-  double at(double t) const;
-  double u_prediction(double t) const;  ///< of one value there
-};
-
-/// None if degree + 1 or fewer values, or they cannot separate the coefficients.
-std::optional<Drift> drift_since_adjustment(const std::vector<double>& t,
-                                            const std::vector<double>& d, int degree);
-
-/// Time at which u0 and the prediction's together come to `most`; none within `longest`.
-std::optional<double> until_uncertainty(const Drift&, double u0, double most, double longest);
-
-struct Limits {
-  std::optional<double> lower{}, upper{};
-};
-/// Time at which the prediction's bound of this confidence (two-sided with two limits) meets a
-/// limit; 0 if it is beyond at once; none within `longest`, or without a limit.
-std::optional<double> until_limit(const Drift&, double value, double u0, Limits, double confidence,
-                                  double longest);
-
-/// until_limit for t in months since the adjustment, but not farther than half beyond the longest
-/// time in `t`. Why: "drift-meets-limit", "as-far-as-seen"; none: "few-readings", "no-limit",
-/// "out-already".
-Proposal drift_interval(const std::vector<double>& t, const std::vector<double>& d, int degree,
-                        double value, double u0, Limits, double confidence = 0.95);
 
 }  // namespace nonio::statistics

@@ -78,11 +78,4 @@ double excess_of_ratios(std::vector<double> ratios) {
   return std::max(1.0, std::sqrt(*middle / median_of_chi2));
 }
 
-double excess_scatter(const std::vector<const Series*>& all) {
-  std::vector<double> ratios;
-  for (const Series* s : all)
-    for (const Scatter& one : scatter_of(*s)) ratios.push_back(one.ratio);
-  return excess_of_ratios(std::move(ratios));
-}
-
 }  // namespace nonio::statistics

@@ -41,7 +41,7 @@ struct Series {
   std::vector<Declared> declared{};
   std::uint64_t seed = 1;  ///< of simulated nulls; the same for the same campaigns
   /// Factor of all `u`: campaigns of a laboratory may scatter more than their own `u` states
-  /// (excess_scatter).
+  /// (excess_of_ratios).
   double excess = 1.0;
   /// Standard deviation, per year, of the slopes that such series have in this laboratory
   /// (spread_of_slopes): what is known of a slope before the points, while steps are searched. 0:
@@ -61,18 +61,16 @@ struct Series {
 /// a time before the one before it, an event after the last point.
 Expected<void> check(const Series&);
 
-/// By how much points scatter more than their u, over many series: the root of the median of
-/// d^2/u(d)^2 over 0.4549, the median of chi-square with 1 degree of freedom, d each point less the
-/// line through its neighbours: levels, slopes and what they have in common cancel, and a step in
-/// few of them moves a median little. Not over a declared event; not below 1, and 1 for fewer than
-/// 20 points.
-double excess_scatter(const std::vector<const Series*>&);
-/// d^2/u(d)^2 at a point of one series, and what it gives for those of many together.
+/// d^2/u(d)^2 at a point of a series, d the point less the line through its neighbours: levels,
+/// slopes and what they have in common cancel. Not over a declared event.
 struct Scatter {
   std::size_t point = 0;
   double ratio = 0.0;
 };
 std::vector<Scatter> scatter_of(const Series&);
+/// By how much points scatter more than their u, over many series: the root of the median of the
+/// ratios over 0.4549, the median of chi-square with 1 degree of freedom; a step in few of them
+/// moves a median little. Not below 1, and 1 for fewer than 20 points.
 double excess_of_ratios(std::vector<double> ratios);
 
 /// Slope per year, fitted together with a step at each declared event and at each place where

@@ -52,10 +52,6 @@ double binomial_lower(int count, int trials, double p) {
   return cdf(boost::math::binomial_distribution<double, Quiet>(trials, p), count);
 }
 
-double t_upper_quantile(double p, double dof) {
-  return quantile(complement(boost::math::students_t_distribution<double, Quiet>(dof), p));
-}
-
 double test_ratio(double found, double scatter) {
   return found == 0.0 && scatter == 0.0 ? 0.0 : found / scatter;
 }

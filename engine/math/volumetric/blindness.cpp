@@ -109,13 +109,6 @@ struct Echelon {
 
 }  // namespace
 
-Corner unit_error(const std::string& name, const Corner& at, const Corner& low,
-                  const Corner& high) {
-  for (const OneError& e : all_errors)
-    if (name == e.name) return unit_shape(e, at, low, high);
-  return {};
-}
-
 Blindness blind_to(const std::vector<ThroughVolume>& lines) {
   Blindness out;
   if (lines.empty()) return out;

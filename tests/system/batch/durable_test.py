@@ -186,7 +186,7 @@ class Durable(NightTest):
             self.assertEqual({"night": 2, "date": "2026-11-04"}, entry["failed_since"])
             self.assertEqual({"night": 1, "date": "2026-11-03", "status": "ok" if "ok" in entry["last_good"]["status"]
                               else "attention", "folder": "a/last-good"}, entry["last_good"])
-        self.assertIn("failed since night 2 of 2026-11-04", (self.out / "summary.txt").read_text())
+        self.assertIn("failed since run 2 of 2026-11-04", (self.out / "summary.txt").read_text())
         self.run_nonio(expect=0)
         self.assertFalse((self.out / "a" / "last-good").exists())
 
@@ -202,7 +202,7 @@ class Durable(NightTest):
         summary = self.summary()
         self.assertEqual((2, "2026-11-04", {"tonight": 2, "night_before": 1}),
                          (summary["night"], summary["date"], summary["seen"]))
-        self.assertIn("Night 2 of 2026-11-04; 2 campaigns seen, 1 the night before",
+        self.assertIn("Run 2 of 2026-11-04; 2 campaigns seen, 1 in the previous run",
                       (self.out / "summary.txt").read_text())
         self.assertIn("--date", self.run_nonio("--date", "2026-02-30", expect=2).stderr)
 
@@ -223,7 +223,7 @@ class Durable(NightTest):
         self.run_nonio("--force", env=fault("rename:3:KILL", main=True))
         done = self.status("--max-age", "0")
         self.assertEqual(1, done.returncode)
-        self.assertIn("night 2", done.stdout)
+        self.assertIn("run 2", done.stdout)
         self.assertIn("did not end", done.stdout)
 
     def test_kill_9_in_changed_and_forced_nights(self):

@@ -181,13 +181,6 @@ const Remark* rules_of(const Results::Analysed& a) {
   return nullptr;
 }
 
-std::vector<std::string> sureness_of(const Source& source, const Results::Analysed& a) {
-  std::vector<std::string> out;
-  for (const Remark& note : a.evaluation.notes)
-    if (is_sureness(note)) out.push_back(rule_note(source, note));
-  return out;
-}
-
 void add_rule_tables(const Source& source, const Results::Analysed& a, Blocks& blocks) {
   const std::string field = "results of " + a.plugin + ", measurement " + a.measurement;
   const bool two_languages =

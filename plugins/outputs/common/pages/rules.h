@@ -12,9 +12,6 @@ namespace nonio::pages {
 /// The note that names the rules and their titles; null if the values are of one method.
 const Remark* rules_of(const Results::Analysed&);
 
-/// How sure their formulas are, in sentences.
-std::vector<std::string> sureness_of(const Source&, const Results::Analysed&);
-
 /// A column for each rule, a row for each symbol; rules that give the same values share a column.
 void add_rule_tables(const Source&, const Results::Analysed&, Blocks&);
 /// Decisions, what each rule does, and why they differ.

@@ -15,8 +15,6 @@ void near(const std::vector<double>& found, const std::vector<double>& expected)
 TEST(Families, AdjustedByHand) {
   const std::vector<double> p{0.01, 0.04, 0.03, 0.005};
   near(benjamini_hochberg(p), {0.02, 0.04, 0.04, 0.02});
-  const double c = 1 + 1.0 / 2 + 1.0 / 3 + 1.0 / 4;
-  near(benjamini_yekutieli(p), {0.02 * c, 0.04 * c, 0.04 * c, 0.02 * c});
   near(holm(p), {0.03, 0.06, 0.06, 0.02});
 }
 

@@ -264,11 +264,12 @@ TEST(ExcessScatter, IsThatOfTheLaboratory) {
                               [&](std::size_t k, double) { return i < 4 && k > 3 ? 9.0 : 0.0; }));
     for (Point& p : all.back().points) p.u = 0.3;
   }
-  std::vector<const Series*> pointers;
-  for (const Series& s : all) pointers.push_back(&s);
-  EXPECT_NEAR(excess_scatter(pointers), 1.5, 0.2);
-  pointers.resize(2);
-  EXPECT_EQ(excess_scatter(pointers), 1.0);  // too few to say
+  std::vector<double> ratios;
+  for (const Series& s : all)
+    for (const Scatter& one : scatter_of(s)) ratios.push_back(one.ratio);
+  EXPECT_NEAR(excess_of_ratios(ratios), 1.5, 0.2);
+  ratios.resize(10);
+  EXPECT_EQ(excess_of_ratios(ratios), 1.0);  // too few to say
 }
 
 TEST(SpreadOfSlopes, HoldsASlopeWhereAStepIsAskedAndNotWhereItIsTold) {

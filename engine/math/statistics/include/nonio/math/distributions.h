@@ -15,8 +15,6 @@ double chi2_upper(double chi2, double dof);
 double normal_quantile(double p);
 /// P(count or fewer) of so many trials that succeed with probability p.
 double binomial_lower(int count, int trials, double p);
-/// t with P(T > t) = p
-double t_upper_quantile(double p, double dof);
 /// What a test divides by: 0 where there is nothing of either (readings without scatter that do not
 /// differ), so that only what is really unknown is NaN.
 double test_ratio(double found, double scatter);

@@ -38,7 +38,4 @@ struct Blindness {
 /// The volume is the box that holds all lines; an axis that does not move has no errors.
 Blindness blind_to(const std::vector<ThroughVolume>& lines);
 
-/// e_x, e_y, e_z at a place, for a size of 1 of one error: the columns of the above.
-Corner unit_error(const std::string& name, const Corner& at, const Corner& low, const Corner& high);
-
 }  // namespace nonio::math
