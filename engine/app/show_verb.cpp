@@ -63,13 +63,13 @@ Expected<Shown> evaluated_now(const fs::path& folder, const Common& common) {
 Expected<Shown> of_run(const fs::path& folder, const Common& common) {
   auto text = storage::read_file(folder / evaluation::results_name);
   if (!text) return fail(text.error());
-  std::string digest;
-  auto templates = config::read_templates(common.template_folders(), digest);
-  if (!templates) return fail(templates.error());
-  Shown shown{std::move(*text), std::move(*templates)};
+  std::string language = "en", digest;
   if (const auto record = evaluation::read_record(folder); record && !record->language.empty())
-    shown.language = record->language;
-  return shown;
+    language = record->language;
+  auto templates = config::read_templates(common.template_folders(), digest, nullptr, {},
+                                          config::words_in(language));
+  if (!templates) return fail(templates.error());
+  return Shown{std::move(*text), std::move(*templates), language};
 }
 
 /// The number of a finding's evidence by its name with the unit: mean_um.

@@ -70,14 +70,14 @@ int print_worklist(const WorklistWish& wish, const Common& common) {
     if (!with_site) return complain(text_of(with_site.error()));
     folders = std::move(*with_site);
   }
-  std::string digest;
-  const auto templates = config::read_templates(folders, digest);
+  std::string language = wish.language.empty() ? last_run->language : wish.language, digest;
+  const auto below = wish.page.empty() ? config::words_in(language) : std::vector<std::string>();
+  const auto templates = config::read_templates(folders, digest, nullptr, {}, below);
   if (!templates) return complain(templates.error().message);
   auto assessment = assessment::Assessment::of(
       wish.out, *last_run, [] {}, assessment::Assessment::Kept::used,
       entered ? &*entered : nullptr);
   if (!assessment) return complain(assessment.error().message);
-  std::string language = wish.language.empty() ? last_run->language : wish.language;
   if (!templates->tables.contains("words/" + language + "/site")) {
     if (!wish.language.empty())
       return complain("--language: there are no words/" + language +

@@ -116,6 +116,10 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
   return templates;
 }
 
+std::vector<std::string> words_in(const std::string& language) {
+  return {"words/en/", "words/" + language + "/", "causes/"};
+}
+
 Expected<CarriedTemplates> templates_from(std::string_view text, const Templates& installed,
                                           std::string_view installed_text) {
   const storage::Json json = storage::Json::parse(text, nullptr, false),

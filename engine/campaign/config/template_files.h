@@ -30,6 +30,10 @@ Expected<Templates> read_templates(const std::vector<std::filesystem::path>& fol
                                    const TemplateFiles& own = {},
                                    const std::vector<std::string>& below = {});
 
+/// What sentences in `language` need: its words, the English ones for those that it lacks, and the
+/// causes. No fonts and pages, which take most of the time.
+std::vector<std::string> words_in(const std::string& language);
+
 /// Templates that travelled in a signed file.
 struct CarriedTemplates {
   Templates templates;

@@ -41,8 +41,7 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   // After the process for the plugins was forked: it would copy each page of them when it frees them.
   NONIO_TRY(const auto folders, config::with_site_templates(template_folders, site));
   std::vector<std::string> below;
-  if (what == TemplatesFor::terminal)
-    below = {"words/en/", "words/" + context.site.language + "/", "causes/"};
+  if (what == TemplatesFor::terminal) below = config::words_in(context.site.language);
   NONIO_TRY(auto templates,
             config::read_templates(folders, context.templates_sha256, nullptr, {}, below));
   context.templates = std::move(templates);
