@@ -298,7 +298,7 @@ class Packs(NightTest):
         catalogue = self.parts / ".nonio" / "packs" / "catalogue"
         text = catalogue.read_text()
         catalogue.write_text(text.replace("c0", "c9"))
-        self.assertIn("catalogue, which says in which pack", self.run_nonio(out=self.parts, expect=2).stderr)
+        self.assertIn("catalogue, the index of the packs, is damaged", self.run_nonio(out=self.parts, expect=2).stderr)
         catalogue.write_text(text)
         self.run_nonio("--date", "2026-11-03", out=self.parts)
         self.assertEqual(self.ids("failed", self.parts), ["wrong"])

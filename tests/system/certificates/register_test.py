@@ -258,11 +258,13 @@ class Register(NumberedTest):
         self.give_new_readings(names, nights)
         while kills < KILLS:
             began = time.monotonic()
-            process = subprocess.Popen(self.command("--jobs", "4"), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                       env=self.environment)
+            errors = self.root / "errors"
+            with errors.open("w") as file:
+                process = subprocess.Popen(self.command("--jobs", "4"), stdout=subprocess.DEVNULL, stderr=file,
+                                           env=self.environment)
             try:
                 code = process.wait(rng.uniform(0.0, longest))
-                self.assertEqual(code, 0)
+                self.assertEqual(code, 0, errors.read_text())
                 longest = time.monotonic() - began
                 nights += 1
                 self.give_new_readings(names, nights)
