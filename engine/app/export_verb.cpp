@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio export`: the results of campaigns out of packs, or from wherever they lie, into folders.
+// `nonio export`: the results of campaigns as spreadsheets, or as the files of a run in folders.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -8,9 +8,11 @@
 #include "batch/state/output_lock.h"
 #include "campaign/config/manifest.h"
 #include "campaign/evaluation/results_files.h"
+#include "campaign_workbook.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "platform/storage/pack.h"
+#include "results_folder.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -23,7 +25,7 @@ namespace {
 
 struct GetWish {
   std::vector<std::string> ids;
-  std::string out, to;
+  std::string out, to, format;
   bool all = false, list = false;
 };
 
@@ -132,7 +134,91 @@ bool get_one(const GetWish& wish, const std::string& id, const Common& common) {
   return true;
 }
 
+/// What a person names: a campaign, its results, or with --out an id.
+fs::path named(const GetWish& wish, const std::string& id) {
+  return wish.out.empty() || what_holds(results_at(id)) != Holds::nothing
+             ? results_at(id)
+             : storage::results_folder(wish.out, id);
+}
+
+/// The folders of the campaigns whose spreadsheets are wanted.
+Expected<std::vector<fs::path>> sources_of(const GetWish& wish) {
+  std::vector<fs::path> out;
+  const auto take_run = [&](const std::string& run) {
+    return storage::each_results_folder(run, [&](const fs::path& folder) {
+      if (storage::is_there(folder / evaluation::results_name).value_or(false))
+        out.push_back(folder);
+    });
+  };
+  if (wish.all)
+    if (const auto listed = take_run(wish.out); !listed) return fail(listed.error());
+  for (const std::string& id : wish.ids) {
+    const fs::path folder = named(wish, id);
+    const Holds holds = what_holds(folder);
+    if (holds == Holds::nothing) return fail(holds_nothing(folder));
+    if (holds != Holds::run)
+      out.push_back(folder);
+    else if (const auto listed = take_run(folder.string()); !listed)
+      return fail(listed.error());
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+/// The name of the spreadsheet in its folder. The same bytes may be there, other ones stay.
+Expected<std::string> export_one(const fs::path& folder, const GetWish& wish,
+                                 const Common& common) {
+  NONIO_TRY(const auto shown, what_holds(folder) == Holds::campaign
+                                  ? evaluated_now(folder, common, Documents::left_out)
+                                  : of_run(folder, common));
+  NONIO_TRY(const auto book, workbook_of(shown));
+  NONIO_TRY(auto bytes, storage::xlsx_bytes(book));
+  const std::string name = book.title + "." + wish.format;
+  const fs::path path = fs::path(wish.to) / name;
+  NONIO_TRY(const auto there, storage::is_there(path));
+  if (there && storage::sha256_of_file(path).value_or("") != storage::sha256(bytes))
+    return fail(
+        "exists with different content; nothing was written. Remove it, or give --to "
+        "another folder");
+  if (!there)
+    if (auto put = storage::publish(wish.to, {{name, std::move(bytes)}}); !put)
+      return fail(put.error());
+  return name;
+}
+
+int export_spreadsheets(GetWish wish, const Common& common) {
+  if (wish.list) return complain("--list writes nothing; expected no --format with it");
+  if (wish.all && wish.out.empty()) return complain("--all needs --out OUT, the folder of a run");
+  if (wish.ids.empty() && !wish.all)
+    return complain("expected a campaign, its results (OUT/ID), or --out OUT --all");
+  if (wish.to.empty()) wish.to = ".";
+  const auto sources = sources_of(wish);
+  if (!sources) return complain(sources.error().message);
+  bool well = true;
+  for (const fs::path& folder : *sources) {
+    const auto name = export_one(folder, wish, common);
+    if (!name) {
+      complain(folder.string() + ": " + text_of(name.error()));
+      well = false;
+    } else if (common.json) {
+      print_json(Json{{"schema", "nonio-get/1"},
+                      {"id", fs::path(*name).stem().string()},
+                      {"place", folder.string()},
+                      {"folder", wish.to},
+                      {"file", *name}},
+                 -1);
+    } else if (!common.quiet) {
+      std::cout << (fs::path(wish.to) / *name).string() << "\n";
+    }
+  }
+  return well ? exit_done : exit_failed;
+}
+
 int get(const GetWish& wish, const Common& common) {
+  if (!wish.format.empty()) return export_spreadsheets(wish, common);
+  if (wish.out.empty())
+    return complain("expected --out OUT, the folder of `nonio run`, or --format xlsx");
   if (wish.ids.empty() && !wish.all && !wish.list)
     return complain("expected the ids of campaigns, --all, or --list");
   if (!wish.ids.empty() && wish.all)
@@ -159,21 +245,32 @@ Verb export_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "export",
-      .summary = "Writes the results of campaigns out of packs into folders, or lists them",
-      .arguments =
-          {{"ID", &wish->ids, "Ids of campaigns"},
-           required(existing(Takes::folder, {"--out", &wish->out, "Output folder of `nonio run`"})),
+      .summary = "Writes the results of campaigns as spreadsheets, or out of packs into folders",
+      .arguments = joined(
+          {{"CAMPAIGN|OUT/ID|ID", &wish->ids,
+            "Campaigns, results of a run, or with --out ids of campaigns"},
+           existing(Takes::folder, {"--out", &wish->out, "Output folder of `nonio run`"}),
+           one_of({"xlsx"},
+                  {.name = "--format",
+                   .target = &wish->format,
+                   .help = "Write ID.xlsx for each campaign: summary, charts, points, curves, "
+                           "budget; of a campaign (evaluated now) the readings too"}),
            takes(Takes::folder,
                  {"--to", &wish->to,
                   "Write into FOLDER/ID and leave the output folder unchanged. Without it: OUT/ID, "
-                  "which replaces the pack and is the target of the links of the pages"}),
-           {"--all", &wish->all, "All packed campaigns (with --to: all campaigns)"},
+                  "which replaces the pack and is the target of the links of the pages. With "
+                  "--format: FOLDER/ID.xlsx, without it in the current folder"}),
+           {"--all", &wish->all,
+            "All packed campaigns (with --to or --format: all campaigns of --out)"},
            {"--list", &wish->list,
             "Write nothing: list where the results are stored; with ids also each file with size "
             "and SHA-256"},
-           {"--json", &common.json, "Machine-readable output on stdout"},
-           {"--quiet", &common.quiet, "No output unless something is wrong"}},
+           templates_argument(common)},
+          common_arguments(common)),
       .footer =
+          "In a spreadsheet numbers are numbers with the digits of results.json and texts are "
+          "never formulas. The same results give the same bytes; a spreadsheet that was changed "
+          "is not overwritten. A sheet of readings of an axis can be read again.\n\n"
           "A shard with --pack stores the results of its campaigns as one file. All commands and "
           "the next run read them there. Programs that read files, and the links of the pages, "
           "need them in folders.\n\nEach file is compared with its SHA-256 in run.json; a damaged "
@@ -182,7 +279,8 @@ Verb export_verb(Common& common) {
           "OUT/.nonio/packs/NAME.sqlar (compare "
           "the digests yourself).\n\nExit status: 0 done; 1 some campaign was not written; 2 usage "
           "or configuration.",
-      .examples = {"nonio export 09-tolerances --out out --to /tmp/to-look-at",
+      .examples = {"nonio export samples/site/09-tolerances --format xlsx --to /tmp/to-look-at",
+                   "nonio export 09-tolerances --out out --to /tmp/to-look-at",
                    "nonio export --list --out out", "nonio export --all --out out"},
       .run = [wish, &common] { return get(*wish, common); }};
 }

@@ -70,6 +70,15 @@ class Spreadsheet(unittest.TestCase):
                 self.assertEqual(self.values(), expected)
                 self.assertTrue(expected)
 
+    def test_files_of_other_programs(self):
+        expected = self.values()
+        for file in sorted((ROOT / "tests/fuzz/corpus/spreadsheet").glob("*.*s*")):
+            with self.subTest(file.name):
+                shutil.rmtree(self.out)
+                shutil.copy(file, self.site / "a" / file.name)
+                self.use(file.name)
+                self.assertEqual(self.values(), expected)
+
     def test_formulas_and_rows_below(self):
         expected = self.values()
         shutil.rmtree(self.out)

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shown_results.h"
+
+#include <nlohmann/json.hpp>
+
+#include "campaign/config/template_files.h"
+#include "campaign/evaluation/evaluation.h"
+#include "campaign/evaluation/record.h"
+#include "campaign/evaluation/results_json.h"
+#include "platform/storage/digest.h"
+#include "platform/storage/files.h"
+#include "results_folder.h"
+
+namespace nonio::app {
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The number of a finding's evidence by its name with the unit: mean_um.
+Number number_of(const std::string& key, const Json& value) {
+  Number n{key, value.get<double>(),
+           value.is_number_integer() ? Quantity::count
+           : key == "p"              ? Quantity::probability
+                                     : Quantity::number};
+  std::size_t longest = 0;
+  for (int i = 0; i <= static_cast<int>(Quantity::angle_per_kelvin); ++i) {
+    const Unit unit = unit_of(static_cast<Quantity>(i));
+    if (unit.suffix.size() <= longest || !key.ends_with(unit.suffix)) continue;
+    longest = unit.suffix.size();
+    n.quantity = static_cast<Quantity>(i);
+  }
+  n.name.resize(key.size() - longest);
+  n.value /= unit_of(n.quantity).per_si;
+  return n;
+}
+
+}  // namespace
+
+Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Documents documents) {
+  auto place = reading::open_workplace(folder, common.plugin_folders(), common.template_folders(),
+                                       NONIO_VERSION);
+  if (!place) return fail(place.error());
+  if (!common.quiet)
+    for (const std::string& note : (*place)->notes) complain(note);
+  const reading::Context& context = (*place)->context;
+  const reading::Stage stage = [](const std::string&) {};
+  evaluation::AnalysedCampaign analysed = evaluation::analyse(
+      reading::read_campaign(folder, context, stage), id_of_campaign(folder), context, stage, {});
+  std::vector<Observations> observations = analysed.read.observations;
+  if (documents == Documents::left_out) analysed.documents.clear();
+  const evaluation::Evaluated evaluated =
+      evaluation::write_documents(std::move(analysed), nullptr, context, stage);
+  std::vector<evaluation::RecordedFile> files;
+  for (const Results::Written& w : evaluated.results.outputs)
+    for (const Artifact& a : w.result.artifacts)
+      files.push_back({a.name, a.bytes.size(), storage::sha256(a.bytes)});
+  std::string text = evaluation::results_json(evaluated, context, files);
+  return Shown{std::move(text), std::move((*place)->context.templates), context.site.language,
+               std::move(observations)};
+}
+
+Expected<Shown> of_run(const fs::path& folder, const Common& common) {
+  auto text = storage::read_file(folder / evaluation::results_name);
+  if (!text) return fail(text.error());
+  std::string language = "en", digest;
+  if (const auto record = evaluation::read_record(folder); record && !record->language.empty())
+    language = record->language;
+  auto templates = config::read_templates(common.template_folders(), digest, nullptr, {},
+                                          config::words_in(language));
+  if (!templates) return fail(templates.error());
+  return Shown{std::move(*text), std::move(*templates), language, {}};
+}
+
+Finding finding_of(const Json& json) {
+  Finding f{.id = json.at("id"), .attention = json.at("severity") == "attention"};
+  for (const auto& [key, value] : json.at("evidence").items())
+    if (value.is_string())
+      f.texts.emplace_back(key, value.get<std::string>());
+    else
+      f.evidence.push_back(number_of(key, value));
+  f.advice = json.value("advice", "");
+  f.measurement = json.value("measurement", "");
+  return f;
+}
+
+}  // namespace nonio::app
