@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# `cmake --build BUILD --target package`: nonio_*.deb and libnonio-dev_*.deb. What only a package has (timer, user, Debian's
+# `cmake --build BUILD --target package`: nonio_*.deb, libnonio-dev_*.deb and, with pybind11, python3-nonio_*.deb. What only a package has (timer, user, Debian's
 # papers) is left out by `cmake --install`.
 set(NONIO_PACKAGE_CONTACT "Nonio maintainers <nonio@localhost>" CACHE STRING
     "Maintainer of the packages: name <address> of who builds and hands them on")
@@ -31,6 +31,9 @@ function(pack component package)
 endfunction()
 pack(nonio nonio)
 pack(dev libnonio-dev)
+if(TARGET nonio_python)
+  pack(python python3-nonio)
+endif()
 install(FILES ${parts}/nonio.service ${parts}/nonio.timer DESTINATION lib/systemd/system COMPONENT nonio EXCLUDE_FROM_ALL)
 install(FILES ${parts}/nonio.default DESTINATION /etc/default RENAME nonio COMPONENT nonio EXCLUDE_FROM_ALL)
 install(FILES ${parts}/Containerfile DESTINATION share/doc/nonio/examples COMPONENT nonio EXCLUDE_FROM_ALL)
@@ -45,6 +48,9 @@ set(CPACK_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_THREADS 0)
 set(CPACK_COMPONENTS_ALL nonio dev)
+if(TARGET nonio_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -87,4 +93,16 @@ package, a kit for tables of controls, and the skeletons that the command
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "nonio (= ${PROJECT_VERSION}-${revision}), libexpected-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "cmake, g++")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-nonio)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SOURCE nonio)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "batch evaluation of machine-tool calibrations (Python package)
+Nonio evaluates calibrations of machine tools. This package reads campaigns,
+evaluates them and fits models to them in Python, also with physical effects
+that are written in Python. It calls the libraries of Nonio, so the numbers are
+those of the program.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "nonio (= ${PROJECT_VERSION}-${revision}), python3 (>= 3.11), python3 (<< 3.12)")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-pandas")
 include(CPack)

@@ -100,11 +100,6 @@ bool is_day(const std::string& text) {
       .ok();
 }
 
-std::string text_of(const Error& e) {
-  return e.file + (e.line != 0 ? ":" + std::to_string(e.line) : "") +
-         (e.column.empty() ? "" : " (" + e.column + ")") + (e.file.empty() ? "" : ": ") + e.message;
-}
-
 int complain(const std::string& message, int status) {
   std::cerr << command_words() << ": " << message << "\n";
   return status;

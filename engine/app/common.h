@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "campaign/reading/error_text.h"
 #include "command_line.h"
 #include "nonio/sdk/error.h"
 
@@ -40,8 +41,7 @@ std::string today();
 /// YYYY-MM-DD, a day that is in the calendar.
 bool is_day(const std::string& text);
 
-/// "campaign.toml:12 (target_mm): ..."
-std::string text_of(const Error& error);
+using reading::text_of;
 /// "nonio run: ..." on stderr, with the words of the command as they were typed; returns the
 /// exit status.
 int complain(const std::string& message, int status = exit_usage);

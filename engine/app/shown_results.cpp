@@ -7,7 +7,6 @@
 #include "campaign/evaluation/evaluation.h"
 #include "campaign/evaluation/record.h"
 #include "campaign/evaluation/results_json.h"
-#include "platform/storage/digest.h"
 #include "platform/storage/files.h"
 #include "results_folder.h"
 
@@ -51,11 +50,7 @@ Expected<Shown> evaluated_now(const fs::path& folder, const Common& common, Docu
   if (documents == Documents::left_out) analysed.documents.clear();
   const evaluation::Evaluated evaluated =
       evaluation::write_documents(std::move(analysed), nullptr, context, stage);
-  std::vector<evaluation::RecordedFile> files;
-  for (const Results::Written& w : evaluated.results.outputs)
-    for (const Artifact& a : w.result.artifacts)
-      files.push_back({a.name, a.bytes.size(), storage::sha256(a.bytes)});
-  std::string text = evaluation::results_json(evaluated, context, files);
+  std::string text = evaluation::results_json(evaluated, context);
   return Shown{std::move(text), std::move((*place)->context.templates), context.site.language,
                std::move(observations)};
 }

@@ -38,6 +38,7 @@ MAY = {
     "engine/plugin_check": {"sdk", "math", "model"},
     "engine/simulation": {"sdk", "math", "model"},
     "engine/app": {"sdk"},
+    "engine/python": {"sdk", "model"},
     "reports": {"sdk", "pdf", "reports", "workbench"},
     "plugins/readers": {"sdk", "math"},
     "plugins/analyses": {"sdk", "math"},
@@ -57,7 +58,8 @@ HOMES = {
     "hpdf": {"engine/pdf"}, "qrencode": {"reports"}, "libdeflate": {"engine/pdf"},
     "openssl/": {"engine/pdf", "engine/sign", "engine/platform/storage"}, "xmlsec/": {"engine/sign"},
     "libxml/": {"engine/sign"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"},
-    "nlohmann": ENGINE | {"engine/app"},
+    "pybind11/": {"engine/python"},
+    "xlsxwriter": {"engine/platform/storage"}, "nlohmann": ENGINE | {"engine/app"},
     "Eigen": {"engine/math", "engine/model", "plugins/analyses", "plugins/effects"},
     "math/eigen/": {"engine/laboratory/statistics"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/platform/storage"}, "libpq": {"engine/platform/storage"},
 }
@@ -80,7 +82,7 @@ def product_of(header):
 def of_product(path, header):
     """Why a source may not include `header`, which belongs to a product of the engine."""
     to, inner = product_of(header)
-    if path.startswith("engine/app/"):
+    if path.startswith(("engine/app/", "engine/python/")):  # the program, and the module of Python
         return f"{header} brings a third-party type" if header in LEAKS else None
     own = product_of(path.removeprefix("engine/")) if path.startswith("engine/") else None
     if not own:

@@ -11,6 +11,7 @@
 #include "campaign/evaluation/issue_json.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/json_writer.h"
+#include "platform/storage/digest.h"
 
 namespace nonio::evaluation {
 
@@ -358,6 +359,14 @@ std::string results_json(const Evaluated& e, const reading::Context& context,
   put_notes(json, e.results.notes, context.templates);
   json.end_object();
   return json.take();
+}
+
+std::string results_json(const Evaluated& evaluated, const reading::Context& context) {
+  std::vector<RecordedFile> files;
+  for (const Results::Written& w : evaluated.results.outputs)
+    for (const Artifact& a : w.result.artifacts)
+      files.push_back({a.name, a.bytes.size(), storage::sha256(a.bytes)});
+  return results_json(evaluated, context, files);
 }
 
 }  // namespace nonio::evaluation

@@ -4,7 +4,7 @@ import dataclasses
 import re
 
 COMMANDS = ("console", "sh")
-DATA = ("cmake", "cpp", "csv", "json", "text", "toml")
+DATA = ("cmake", "cpp", "csv", "json", "python", "text", "toml")
 FENCE = re.compile(r"^( *)(?:```|~~~)(\S*)$")
 # Who reads the page does not see these.
 NOTE = re.compile(r"^ *<!-- (?:(not run): (\S.*)|(file): (\S+)|(here): (\S+) is (\S+)) -->$")

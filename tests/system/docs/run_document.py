@@ -41,7 +41,8 @@ class Terminal:
         self.folder = folder
         self.state = folder.parent / "state"
         self.environment = {"PATH": f"{programs}:{os.environ['PATH']}", "HOME": str(folder), "LC_ALL": "C", "NONIO_ALLOW_ROOT": "1",
-                            "TMPDIR": str(folder.parent), "CMAKE_GENERATOR": "Ninja"}
+                            "TMPDIR": str(folder.parent), "CMAKE_GENERATOR": "Ninja", "PYTHONDONTWRITEBYTECODE": "1",
+                            "PYTHONPATH": str(programs.parent / "lib/python3/dist-packages")}
         for name in ("CXX", "CMAKE_CXX_COMPILER_LAUNCHER"):
             if os.environ.get(name):
                 self.environment[name] = os.environ[name]

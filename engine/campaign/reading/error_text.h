@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "nonio/sdk/error.h"
+
+namespace nonio::reading {
+
+/// "campaign.toml:12 (target_mm): ..."
+std::string text_of(const Error& error);
+
+}  // namespace nonio::reading
