@@ -86,6 +86,18 @@ int diff_with_campaign(const std::string& backup, const std::string& folder, con
   return tell_differences(present->control->info.name, all, common);
 }
 
+/// A file that states no axis gives its name to the table: two such files are of one axis.
+void join_unnamed(const Loaded& was, Loaded& will) {
+  const auto only_unnamed = [](const Loaded& l) {
+    return l.tables.size() == 1 &&
+           std::any_of(l.files.begin(), l.files.end(),
+                       [&](const Artifact& f) { return f.name == l.tables.front().output; });
+  };
+  if (!only_unnamed(was) || !only_unnamed(will)) return;
+  will.tables.front().output = was.tables.front().output;
+  will.tables.front().input = was.tables.front().input;
+}
+
 int diff(const TableWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
@@ -106,8 +118,9 @@ int diff(const TableWish& w, const Common& common) {
   };
   const auto was = load(plugins, w.table, w.control, campaign, *settings, options);
   if (!was) return complain(text_of(was.error()));
-  const auto will = load(plugins, w.other, was->control->info.name, campaign, *settings, options);
+  auto will = load(plugins, w.other, was->control->info.name, campaign, *settings, options);
   if (!will) return complain(text_of(will.error()));
+  join_unnamed(*was, *will);
   return tell_differences(was->control->info.name, tables::differences(was->tables, will->tables),
                           common);
 }

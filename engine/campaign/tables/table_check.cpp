@@ -196,14 +196,24 @@ Expected<const Controller*> control_of(const loader::Plugins& plugins, const std
     return fail("no control \"" + name + "\"" + storage::suggestion(name, names) + "; there are " +
                 storage::listed(names));
   if (named.size() == 1) return named.front();
+  std::vector<const Controller*> nearly;  // whose form it has, but for one line
   for (const Controller* o : all) {
     const auto settled = config::options_from(o->info, options);
-    if (settled && tables_in(*o, files, campaign, *settled)) able.push_back(o);
+    if (!settled) continue;
+    const auto tables = tables_in(*o, files, campaign, *settled);
+    if (tables) able.push_back(o);
+    if (!tables && tables.error().line != 0) nearly.push_back(o);
   }
+  if (able.empty()) able = std::move(nearly);
   if (able.size() == 1) return able.front();
-  return fail(files.front().name + ": " +
-              (able.empty() ? "no control" : std::to_string(able.size()) + " controls") +
-              " could have written it; state --control, one of " + storage::listed(names));
+  if (able.empty())
+    return fail(files.front().name +
+                ": no control that Nonio knows could have written it; it knows " +
+                storage::listed(names));
+  names.clear();
+  for (const Controller* o : able) names.push_back(o->info.name);
+  return fail(files.front().name + ": " + std::to_string(able.size()) +
+              " controls could have written it; state --control, one of " + storage::listed(names));
 }
 
 std::vector<TableDifference> differences(const Tables& present, const Tables& next) {

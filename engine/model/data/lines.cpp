@@ -295,8 +295,12 @@ void append_run(Part& part, const Observations& listed, const Measurement& m) {
   axis.approach.insert(axis.approach.end(), from.approach.begin(), from.approach.end());
   part.along = axis.position;
   part.way = axis.approach;
-  to.line.insert(to.line.end(), more.size(), static_cast<std::uint32_t>(to.lines.size()));
-  to.lines.push_back({m.id, more.lines.empty() ? Vector{} : more.lines.front().sense});
+  if (more.lines.size() > 1) {  // each with its own zero
+    append_lines(to, more, m.id);
+  } else {
+    to.line.insert(to.line.end(), more.size(), static_cast<std::uint32_t>(to.lines.size()));
+    to.lines.push_back({m.id, more.lines.empty() ? Vector{} : more.lines.front().sense});
+  }
   append_readings(part, more, m.id);
   std::copy(order.rows.begin(), order.rows.end(),
             part.row.end() - static_cast<std::ptrdiff_t>(order.rows.size()));

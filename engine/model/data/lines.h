@@ -24,8 +24,8 @@ bool senses_several(const Observations&);
 /// Coordinates (0, 1, 2) that its axes move along or that it senses.
 std::vector<std::size_t> coordinates_of(const Observations&);
 
-/// One more measurement of the part's axis, as a line of its own, in the order in which its
-/// readings were taken.
+/// One more measurement of the part's axis, with its lines, in the order in which its readings were
+/// taken. A single line has the name of the measurement.
 void append_run(Part& part, const Observations& listed, const Measurement& m);
 
 /// The measurements `members` of a campaign as the table of a part in space. The position of an

@@ -38,6 +38,10 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
+tl::unexpected<Error> fail_at(std::string_view name, std::size_t line, std::string message) {
+  return fail(Error{std::move(message), std::string(name), line});
+}
+
 std::vector<std::string_view> words_of(std::string_view line, std::string_view separators) {
   std::vector<std::string_view> words;
   for (std::size_t i = 0; i < line.size();) {

@@ -26,14 +26,18 @@ ControlTable declared() {
   return t;
 }
 
+/// Of type 1: columns 2 and 3 are what is added.
+ControlTable corrections(ControlTable t) {
+  t.entry = ControlTable::Entry::absolute;
+  t.sign = ControlTable::Sign::correction;
+  return t;
+}
+
 /// In the machine's unit; type 1 holds what is added, type 0 the actual position.
 ControlTable table_of(const Settings& o) {
   ControlTable t = declared();
   if (o.text("units", "mm") == "inch") t.position_unit.linear = t.value_unit.linear = 25.4e-3;
-  if (o.integer("type") == 0) return t;
-  t.entry = ControlTable::Entry::absolute;
-  t.sign = ControlTable::Sign::correction;
-  return t;
+  return o.integer("type") == 0 ? t : corrections(std::move(t));
 }
 
 // Three numbers a line and nothing else: the reader stops at anything that is not.
@@ -128,9 +132,9 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
   std::size_t last = all.size();
   while (last > 0 && controllers::trimmed(all[last - 1]).empty()) --last;
   if (taken < last && taken == most_entries)
-    return fail(f.name + ", line " + std::to_string(taken + 1) +
-                ": the control refuses more than " + std::to_string(most_entries) +
-                " entries (\"too many compensation entries\")");
+    return controllers::fail_at(f.name, taken + 1,
+                                "the control refuses more than " + std::to_string(most_entries) +
+                                    " entries (\"too many compensation entries\")");
   if (taken < last)
     return fail(f.name + ", line " + std::to_string(taken + 1) +
                 ": expected three numbers, found \"" + std::string(all[taken].substr(0, 60)) +
@@ -150,10 +154,20 @@ Expected<void> whole(const Artifact& f, std::size_t taken, const std::vector<Art
   return {};
 }
 
-// As the controller's source and runs of it show: reading stops for good at the first line that is
-// not three numbers; a nominal that does not increase drops its line, which is never intended;
-// trims are floats. The file knows
-// no axis: its name does, or there is one axis only.
+/// Whether the entries rise with this slope from each end, to within a tenth of the range: actual
+/// positions have slope 1, since an axis goes to where it is sent, and corrections have slope 0. The
+/// file does not state its type.
+bool follow(const controllers::RawTable& raw, double slope) {
+  const auto& x = raw.position;
+  const double tenth = 0.1 * (x.back() - x.front());
+  for (const auto* entries : {&raw.plus, &raw.minus})
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (const std::size_t end : {std::size_t{0}, x.size() - 1})
+        if (std::fabs((*entries)[i] - (*entries)[end] - slope * (x[i] - x[end])) > tenth)
+          return false;
+  return true;
+}
+
 /// The settings of a joint that go with its table state how to interpret it.
 Expected<void> check_type(const TableInput& in) {
   const std::int64_t type = in.options.integer("type");
@@ -175,6 +189,9 @@ Expected<void> check_type(const TableInput& in) {
   return {};
 }
 
+// As the controller's source and runs of it show: reading stops for good at the first line that is
+// not three numbers; a nominal that does not increase drops its line, which is never intended;
+// trims are floats. The axis is in the name of the file, or there is one axis only.
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   if (auto fits = check_type(in); !fits) return tl::unexpected<Error>(fits.error());
   const auto axes = controllers::known_axes(in);
@@ -205,7 +222,11 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     }
     if (raw.position.empty()) continue;  // an .ini, or words; or a table that has no effect
     if (auto ok = whole(f, taken, in.files); !ok) return tl::unexpected<Error>(ok.error());
-    auto read = controllers::loaded(t, raw);
+    const bool rises = follow(raw, 1.0), flat = follow(raw, 0.0);
+    if (t.entry == ControlTable::Entry::absolute && rises && !flat)
+      return controllers::fail_at(
+          f.name, 1, "columns 2 and 3 are actual positions: state type = 0 (COMP_FILE_TYPE)");
+    auto read = controllers::loaded(flat && !rises ? corrections(t) : t, raw);
     if (!read) return tl::unexpected<Error>(read.error());
     for (auto* trims : {&read->plus, &read->minus})
       for (double& v : *trims) v = static_cast<double>(static_cast<float>(v / unit)) * unit;

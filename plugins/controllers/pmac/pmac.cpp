@@ -33,9 +33,10 @@ Expected<ControlTable> in_counts(const controllers::AxisSettings& settings, cons
                                  bool rotary, ControlTable t) {
   const auto counts = settings.find(rotary ? "counts_per_deg" : "counts_per_mm");
   if (counts == settings.end() || !(counts->second > 0.0))
-    return controllers::wrong_axes("axis " + axis + ": how many counts has the encoder? Set " +
-                                   (rotary ? "counts_per_deg" : "counts_per_mm") +
-                                   " = ... under [options.pmac.axes." + axis + "]");
+    return controllers::wrong_axes(
+        "axis " + axis + ": how many counts has the encoder? Set " +
+        (rotary ? "counts_per_deg" : "counts_per_mm") + " = ... under [options.pmac.axes." + axis +
+        "], or for two files --axis X --set \"axes=X number=3 counts_per_mm=...\"");
   const double count = 1.0 / (counts->second * (rotary ? deg_per_rad : 1e3));
   t.position_unit = t.position_step = {count, count};
   t.value_unit = t.value_step = {count / 16.0, count / 16.0};
@@ -104,39 +105,175 @@ Expected<std::vector<Artifact>> files(const Sheet& s) {
                                {stem + ".txt", controllers::comments(words, "")}};
 }
 
+struct Word {
+  std::string text;  ///< in capital letters
+  std::size_t line = 0;
+};
+
+/// Without comments: ';' or "//" to the end of the line.
+std::vector<Word> words_in(std::string_view bytes) {
+  std::vector<Word> out;
+  std::size_t number = 0;
+  for (std::string_view line : controllers::lines_of(bytes)) {
+    ++number;
+    line = line.substr(0, std::min(line.find(';'), line.find("//")));
+    for (const std::string_view word : controllers::words_of(line, " ,\t\r")) {
+      std::string text(word);
+      for (char& c : text)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+      out.push_back({std::move(text), number});
+    }
+  }
+  return out;
+}
+
+/// #motor DEFINE COMP entries[,#source[,#target]],span and the entries; the motor may be addressed
+/// in a line before.
+struct Definition {
+  std::size_t motor = 0, source = 0, target = 0;
+  std::int64_t entries = 0, span = 0;
+  std::vector<double> values{};
+  std::size_t line = 0;
+};
+
+class Definitions {
+ public:
+  Definitions(const Artifact& file) : file_(file), words_(words_in(file.bytes)) {}
+
+  /// None in a text that goes with a table.
+  Expected<std::vector<Definition>> all() {
+    std::vector<Definition> out;
+    while (at_ < words_.size()) {
+      if (const auto motor = motor_at(at_)) {
+        motor_ = *motor;
+        ++at_;
+      } else if (is("DELETE") || is("DEL")) {  // what was there before
+        at_ += 2;
+      } else if (is("DEFINE") || is("DEF")) {
+        NONIO_TRY(auto one, definition());
+        out.push_back(std::move(one));
+      } else if (!out.empty() || motor_ != 0) {
+        return wrong("expected #motor or DEFINE COMP, found " + words_[at_].text);
+      } else {
+        return out;
+      }
+    }
+    return out;
+  }
+
+ private:
+  bool is(std::string_view word, std::size_t ahead = 0) const {
+    return at_ + ahead < words_.size() && words_[at_ + ahead].text == word;
+  }
+  std::optional<std::size_t> motor_at(std::size_t i) const {
+    if (i >= words_.size() || !words_[i].text.starts_with('#')) return std::nullopt;
+    std::string_view number = std::string_view(words_[i].text).substr(1);
+    if (number.ends_with('D')) number.remove_suffix(1);  // by the desired position
+    const auto motor = controllers::whole(number);
+    if (!motor || *motor < 1 || *motor > 1000) return std::nullopt;
+    return static_cast<std::size_t>(*motor);
+  }
+  std::optional<std::int64_t> number() {
+    const auto value = at_ < words_.size() ? controllers::whole(words_[at_].text) : std::nullopt;
+    if (value) ++at_;
+    return value;
+  }
+  tl::unexpected<Error> wrong(std::string message) const {
+    const std::size_t last = words_.empty() ? 1 : words_.back().line;
+    return controllers::fail_at(file_.name, at_ < words_.size() ? words_[at_].line : last,
+                                std::move(message));
+  }
+
+  Expected<Definition> definition() {
+    if (!is("COMP", 1))
+      return wrong("only DEFINE COMP is read, found " + words_[at_].text +
+                   (at_ + 1 < words_.size() ? " " + words_[at_ + 1].text : ""));
+    Definition d{motor_, motor_, motor_};
+    d.line = words_[at_].line;
+    if (motor_ == 0) return wrong("expected the motor (#1) before DEFINE COMP");
+    at_ += 2;
+    const auto entries = number();
+    if (!entries) return wrong("expected the number of entries; tables of two axes are not read");
+    if (const auto source = motor_at(at_)) d.source = d.target = *source, ++at_;
+    if (const auto target = motor_at(at_)) d.target = *target, ++at_;
+    const auto span = number();
+    if (!span || *entries < 2 || *entries > 100000 || *span < *entries)
+      return wrong("expected a count of entries from 2 and a length in counts, not shorter");
+    d.entries = *entries;
+    d.span = *span;
+    while (d.values.size() < static_cast<std::size_t>(d.entries)) {
+      const auto value = number();
+      if (!value)
+        return wrong("expected " + std::to_string(d.entries) + " entries of motor " +
+                     std::to_string(d.motor) + ", found " + std::to_string(d.values.size()) +
+                     (at_ < words_.size() ? " before " + words_[at_].text : ""));
+      d.values.push_back(static_cast<double>(*value));
+    }
+    if (at_ < words_.size() && controllers::whole(words_[at_].text))
+      return wrong("expected " + std::to_string(d.entries) + " entries of motor " +
+                   std::to_string(d.motor) + ", found more");
+    return d;
+  }
+
+  const Artifact& file_;
+  std::vector<Word> words_;
+  std::size_t at_ = 0, motor_ = 0;
+};
+
+/// The axis of a motor; of a table that moves the motor from which it takes its position, also by
+/// the motor in whose memory it is.
+controllers::KnownAxis axis_of(const std::vector<controllers::KnownAxis>& axes,
+                               const Definition& d) {
+  controllers::KnownAxis target = axis_numbered(axes, d.target);
+  const bool known = !target.settings.empty();
+  return known || d.source != d.target ? target : axis_numbered(axes, d.motor);
+}
+
+Expected<LoadedTable> table_of(const Definition& d, const controllers::KnownAxis& axis,
+                               const controllers::KnownAxis& source) {
+  controllers::RawTable raw{axis, {0.0}, {0.0}};
+  raw.outside = LoadedTable::Outside::repeats;
+  for (std::int64_t k = 1; k <= d.entries; ++k) {
+    raw.position.push_back(static_cast<double>(k * d.span) / static_cast<double>(d.entries));
+    raw.plus.push_back(d.values[static_cast<std::size_t>(k) - 1]);
+  }
+  NONIO_TRY(const auto t, in_counts(raw.axis.settings, raw.axis.name, raw.axis.rotary, declared()));
+  NONIO_TRY(auto read, controllers::loaded(t, raw));
+  if (source.name == axis.name) return read;
+  NONIO_TRY(const auto of_source,
+            in_counts(source.settings, source.name, source.rotary, declared()));
+  for (double& x : read.position.front())
+    x *= of_source.position_unit.of(source.rotary) / t.position_unit.of(axis.rotary);
+  read.input = {source.name};
+  return read;
+}
+
 Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const auto axes = controllers::known_axes(in);
   if (!axes) return tl::unexpected<Error>(axes.error());
   std::vector<LoadedTable> tables;
   std::map<std::string, double> backlash;
+  std::optional<Error> unknown;  // a motor that no axis has
   for (const Artifact& f : in.files) {
-    if (f.bytes.rfind('#', 0) != 0) {  // the text that goes with it
+    NONIO_TRY(const auto all, Definitions(f).all());
+    if (all.empty()) {  // the text that goes with it
       if (const auto v = controllers::parameter_in(f.bytes, declared().backlash))
         backlash[axis_of_file(*axes, f.name, "pmac-").name] = *v;
       continue;
     }
-    const auto w = controllers::words_of(f.bytes, " ,\t\r\n");
-    const auto motor = controllers::whole(w[0].substr(1));
-    const auto entries = controllers::whole(w.size() > 4 ? w[3] : ""),
-               span = controllers::whole(w.size() > 4 ? w[4] : "");
-    if (!motor || !entries || !span || w[1] != "DEFINE" || w[2] != "COMP" || *entries < 2 ||
-        *span < *entries || w.size() != static_cast<std::size_t>(*entries) + 5)
-      return fail("not a table \"#n DEFINE COMP entries,span\" with as many entries");
-    controllers::RawTable raw{axis_numbered(*axes, static_cast<std::size_t>(*motor)), {0.0}, {0.0}};
-    raw.outside = LoadedTable::Outside::repeats;
-    for (std::int64_t k = 1; k <= *entries; ++k) {
-      const auto v = controllers::whole(w[static_cast<std::size_t>(k) + 4]);
-      if (!v) return fail("not an entry: " + std::string(w[static_cast<std::size_t>(k) + 4]));
-      raw.position.push_back(static_cast<double>(k * *span) / static_cast<double>(*entries));
-      raw.plus.push_back(static_cast<double>(*v));
+    for (const Definition& d : all) {
+      const controllers::KnownAxis axis = axis_of(*axes, d);
+      auto read = table_of(d, axis, d.source == d.target ? axis : axis_numbered(*axes, d.source));
+      if (read) {
+        tables.push_back(std::move(*read));
+      } else {
+        unknown = read.error();
+        unknown->file = f.name, unknown->line = d.line;
+        if (!axis.settings.empty()) return tl::unexpected<Error>(*unknown);
+      }
     }
-    const auto t = in_counts(raw.axis.settings, raw.axis.name, raw.axis.rotary, declared());
-    if (!t) return tl::unexpected<Error>(t.error());
-    auto read = controllers::loaded(*t, raw);
-    if (!read) return tl::unexpected<Error>(read.error());
-    tables.push_back(std::move(*read));
   }
-  if (tables.empty()) return fail("no DEFINE COMP");
+  if (tables.empty()) return unknown ? tl::unexpected<Error>(*unknown) : fail("no DEFINE COMP");
   for (LoadedTable& t : tables)
     if (const auto it = backlash.find(t.output); it != backlash.end()) t.backlash = it->second;
   return tables;

@@ -31,8 +31,10 @@ struct Table {
   std::string input, output;
 };
 
+constexpr std::int64_t most_elements = 5000;  // of MD38000, manual K3
+
 struct Memory {
-  std::size_t points = 200;              // MD38000, MD18342
+  std::size_t points = 0;                // MD38000, MD18342, if they are stated
   std::map<std::string, Table> encoder;  // "0,AX1"
   std::map<std::string, Table> cec;      // table number
   std::map<std::string, double> backlash;
@@ -73,6 +75,7 @@ Expected<void> put_parameter(Table& table, const std::string& what, const Assign
   } else if (what == "MAX") {
     table.max = *v;
   } else if (what == "IS_MODULO") {
+    if (*v != 0.0 && *v != 1.0) return fail("IS_MODULO is 0 or 1 in the control, found " + a.value);
     table.modulo = *v != 0.0;
   } else if (what == "DIRECTION") {
     if (*v != -1.0 && *v != 0.0 && *v != 1.0)
@@ -91,8 +94,13 @@ Expected<void> put_entry(Table& table, const std::string& index, const Assignmen
   const auto point = controllers::whole(index);
   const auto v = real(a.value);
   if (!point || *point < 0 || !v) return fail("not a number in " + a.name + " = " + a.value);
-  if (*point >= static_cast<std::int64_t>(most))
-    return fail("alarm 12400: element " + index + " of " + a.name + " does not exist");
+  if (most > 0 && *point >= static_cast<std::int64_t>(most))
+    return fail("alarm 12400: element " + index + " of " + a.name +
+                " does not exist: option max_points (MD38000, MD18342 of the control) is " +
+                std::to_string(most));
+  if (*point >= most_elements)
+    return fail("element " + index + " of " + a.name + ": no control has more than " +
+                std::to_string(most_elements));
   table.entry[static_cast<std::size_t>(*point)] = *v;
   return {};
 }
@@ -129,25 +137,37 @@ Expected<void> put(Memory& memory, const Assignment& a) {
   return fail("unknown variable " + a.name);
 }
 
-Expected<void> read_file(Memory& memory, std::string_view bytes) {
-  bool begun = false, ended = false;
-  for (std::string_view line : controllers::lines_of(bytes)) {
+/// An archive has %_N_, CHANDATA(1), assignments and M17; a part program that sets the tables has the
+/// assignments alone, and ends with M17, M2 or M30.
+Expected<void> read_file(Memory& memory, const Artifact& file) {
+  bool any = false, archive = false, begun = false, ended = false;
+  std::size_t number = 0;
+  const auto wrong = [&](std::string message) -> Expected<void> {
+    if (!any) return fail(std::move(message));
+    return controllers::fail_at(file.name, number, std::move(message));
+  };
+  for (std::string_view line : controllers::lines_of(file.bytes)) {
+    ++number;
     line = trimmed(line.substr(0, line.find(';')));
     if (line.empty()) continue;
-    if (ended) return fail("text after M17: " + std::string(line));
-    if (line[0] == '%') continue;
-    if (line == "CHANDATA(1)") {
-      begun = true;
-    } else if (line == "M17") {
+    if (ended) return wrong("text after the end of the program: " + std::string(line));
+    if (line[0] == '%') {
+      archive = true;
+    } else if (line == "CHANDATA(1)") {
+      archive = begun = true;
+    } else if (line == "M17" || (!archive && (line == "M2" || line == "M02" || line == "M30"))) {
       ended = true;
+    } else if (!archive && (line == "M0" || line == "M00")) {
+      continue;  // a stop of the program
     } else {
-      if (!begun) return fail("assignment before CHANDATA: " + std::string(line));
+      if (archive && !begun) return wrong("assignment before CHANDATA: " + std::string(line));
       auto a = assignment(line);
-      if (!a) return tl::unexpected<Error>(a.error());
-      if (auto done = put(memory, *a); !done) return done;
+      if (!a) return wrong(a.error().message);
+      any = any || a->name.starts_with("A");
+      if (auto done = put(memory, *a); !done) return wrong(done.error().message);
     }
   }
-  return ended ? Expected<void>{} : fail("no M17 at the end");
+  return ended ? Expected<void>{} : wrong("no M17 at the end");
 }
 
 Expected<void> whole(const Table& t) {
@@ -201,12 +221,15 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
   const auto axes = controllers::known_axes(in);
   if (!axes) return tl::unexpected<Error>(axes.error());
   Memory memory;
-  memory.points = static_cast<std::size_t>(in.options.integer("max_points", 200));
+  // The default is that of the smallest control: a file of a larger one states more by itself.
+  constexpr std::int64_t fewest = 200;
+  if (const auto points = in.options.integer("max_points", fewest); points != fewest)
+    memory.points = static_cast<std::size_t>(points);
   for (const Artifact& f : in.files)
-    if (auto done = read_file(memory, f.bytes); !done) return tl::unexpected<Error>(done.error());
+    if (auto done = read_file(memory, f); !done) return tl::unexpected<Error>(done.error());
   std::vector<LoadedTable> tables;
   const auto add = [&](Expected<LoadedTable> t) -> Expected<void> {
-    if (!t) return tl::unexpected<Error>(t.error());
+    if (!t) return controllers::fail_at(in.files.front().name, 1, t.error().message);
     tables.push_back(std::move(*t));
     return {};
   };

@@ -25,7 +25,7 @@ bool is_word(std::string_view line) {
 std::optional<std::int64_t> number_of(const std::string& list) {
   for (const std::string_view line : controllers::lines_of(list))
     if (const auto words = controllers::words_of(line);
-        words.size() > 1 && words[0] == "kopf.achs_nr")
+        words.size() > 1 && (words[0] == "kopf.achs_nr" || words[0] == "kopf.log_achs_nr"))
       return controllers::whole(words[1]);
   return std::nullopt;
 }

@@ -30,8 +30,9 @@ ControlTable declared() {
   t.facts = {
       {"sign-ssfk", Confidence::documented, "delta = actual - setpoint."},
       {"head", Confidence::inferred,
-       "Inferred: the key kopf.achs_nr (another page of the maker states kopf.log_achs_nr), and "
-       "equal ends of a modulo table."},
+       "Inferred: the key kopf.achs_nr is written; kopf.log_achs_nr of another page of the maker "
+       "is "
+       "read too. Inferred: equal ends of a modulo table."},
       {"cross", Confidence::unsure,
        "Cross tables (kw.crosscomp): the maker does not state which sign they have, nor surely "
        "whose list they belong to; they are written only where option cross_sign states it."}};
@@ -168,9 +169,16 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
     if (auto ended = controllers::ends_whole(f.name, f.bytes); !ended)
       return tl::unexpected<Error>(ended.error());
     const List list = read_list(f.bytes);
-    const auto number = list.find("kopf.achs_nr");
-    if (number == list.end() || !(number->second >= 1.0 && number->second < 1e6))
-      return fail("no kopf.achs_nr");
+    auto number = list.find("kopf.achs_nr");
+    const auto logical = list.find("kopf.log_achs_nr");
+    if (number != list.end() && logical != list.end() && number->second != logical->second)
+      return controllers::fail_at(f.name, 1, "kopf.achs_nr and kopf.log_achs_nr differ");
+    if (number == list.end()) number = logical;
+    if (number == list.end() || !(number->second >= 1.0 && number->second < 1e6)) {
+      const std::string missing = "no kopf.achs_nr, nor kopf.log_achs_nr";
+      if (f.bytes.find("kw.") == std::string::npos) return fail(missing);
+      return controllers::fail_at(f.name, 1, missing);
+    }
     const auto axis = axis_numbered(*axes, static_cast<std::size_t>(number->second));
     if (list.count("kw.ssfk.kw_nr_max") != 0) {
       auto read = screw(list, axis);

@@ -122,20 +122,26 @@ Expected<double> unit_of_option(const ReadInput& input, const char* option, bool
                                     "\"; a log does not state its units"));
 }
 
+/// The first PVs that a log names.
+std::string pvs_of(std::string_view bytes) {
+  std::set<std::string> known;
+  Lines lines(bytes);
+  std::string_view line;
+  while (known.size() < 12 && lines.next(line))
+    if (const auto entry = entry_of(line); entry && is_utf8(entry->pv)) known.emplace(entry->pv);
+  std::string list;
+  for (const std::string& pv : known) list += (list.empty() ? "" : ", ") + shown(pv);
+  return list;
+}
+
 Expected<Wiring> wiring_of(const ReadInput& input, bool rotary) {
   Wiring w;
   for (const auto& [option, to] :
        {std::pair{"target_pv", &w.target}, {"reference_pv", &w.reference}, {"test_pv", &w.test}}) {
     *to = input.options.text(option);
     if (!to->empty()) continue;
-    std::set<std::string> known;
-    Lines lines(input.bytes);
-    std::string_view line;
-    while (known.size() < 12 && lines.next(line))
-      if (const auto entry = entry_of(line); entry && is_utf8(entry->pv)) known.emplace(entry->pv);
-    std::string list;
-    for (const std::string& pv : known) list += (list.empty() ? "" : ", ") + shown(pv);
-    return fail(of_option(option, "expected the name of a PV, found none; in the log: " + list));
+    return fail(of_option(
+        option, "expected the name of a PV, found none; in the log: " + pvs_of(input.bytes)));
   }
   if (w.target == w.reference || w.target == w.test || w.reference == w.test)
     return fail(
@@ -284,7 +290,11 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
             entries_of(input.bytes, {wiring->target, wiring->reference, wiring->test}));
   NONIO_TRY(const auto samples, Sampler(*wiring).samples(entries));
   if (samples.empty())
-    return fail("expected test numbers (1101 ...) of PV " + wiring->test + ", found none");
+    return fail("expected test numbers (1101 ...) of PV " + wiring->test +
+                ", found none, and without them the stops of the axis are not known; in the log: " +
+                pvs_of(input.bytes) +
+                ". State the PV with the numbers as test_pv, or write a table with a row for each "
+                "stop (run, direction, target and deviation) for the reader csv or long-table");
   NONIO_TRY(const auto targets, targets_of(samples));
   if (auto ok = whole(samples, targets.size()); !ok) return fail(ok.error());
   std::vector<double> listed;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
+#include <tuple>
 
 #include "lines.h"
 #include "nonio/sdk/column_map.h"
@@ -15,16 +17,28 @@ using namespace readers;
 
 namespace {
 
-enum class Role : std::uint8_t { ignore, cycle, pos, target, direction, value };
-constexpr std::array<std::pair<const char*, Role>, 6> roles = {{{"ignore", Role::ignore},
+enum class Role : std::uint8_t {
+  ignore,
+  cycle,
+  pos,
+  target,
+  direction,
+  value,
+  value_plus,
+  value_minus
+};
+constexpr std::array<std::pair<const char*, Role>, 8> roles = {{{"ignore", Role::ignore},
                                                                 {"cycle", Role::cycle},
                                                                 {"pos", Role::pos},
                                                                 {"target", Role::target},
                                                                 {"direction", Role::direction},
-                                                                {"value", Role::value}}};
+                                                                {"value", Role::value},
+                                                                {"value +", Role::value_plus},
+                                                                {"value -", Role::value_minus}}};
 
 struct Map : TableMap {
   std::vector<Role> columns;
+  std::string heading;  ///< before the target in a line above the rows; empty: it has a column
   bool has(Role role) const {
     return std::find(columns.begin(), columns.end(), role) != columns.end();
   }
@@ -36,22 +50,23 @@ Expected<std::vector<Role>> columns_of(const std::vector<std::string>& texts) {
     const auto role =
         std::find_if(roles.begin(), roles.end(), [&](const auto& r) { return text == r.first; });
     if (role == roles.end())
-      return fail(of_option("columns",
-                            "expected target, value, cycle (the run), pos (number of the target), "
-                            "direction or ignore; found " +
-                                shown(text)));
+      return fail(
+          of_option("columns",
+                    "expected target, value, \"value +\", \"value -\", cycle (the run), pos "
+                    "(number of the target), direction or ignore; found " +
+                        shown(text)));
     const bool twice = std::find(columns.begin(), columns.end(), role->second) != columns.end();
     if (role->second != Role::ignore && twice)
       return fail(of_option("columns", "expected \"" + text + "\" once, found it twice"));
     columns.push_back(role->second);
   }
-  for (const auto& [name, role] : {roles[3], roles[5], roles[1]})
-    if (std::find(columns.begin(), columns.end(), role) == columns.end())
-      return fail(
-          of_option("columns", std::string("expected one \"") + name +
-                                   "\", found none. A table does not state what its columns "
-                                   "are, and it is not guessed"));
   return columns;
+}
+
+tl::unexpected<Error> needs_one(const char* name) {
+  return fail(of_option("columns", std::string("expected one \"") + name +
+                                       "\", found none. A table does not state what its columns "
+                                       "are, and it is not guessed"));
 }
 
 Expected<Map> map_of(const Settings& options, bool rotary) {
@@ -60,12 +75,27 @@ Expected<Map> map_of(const Settings& options, bool rotary) {
   NONIO_TRY(auto table, table_map_of(options, rotary));
   static_cast<TableMap&>(map) = std::move(table);
   map.columns = std::move(columns);
-  for (const RowRange& rows : map.tables)
-    if ((rows.way == Way::none) != map.has(Role::direction))
-      return fail(of_option("tables", std::string("expected how the axis went, from a column "
-                                                  "\"direction\" or of each of the tables (\"12-36 "
-                                                  "forward\"), found it ") +
-                                          (rows.way == Way::none ? "nowhere" : "twice")));
+  map.heading = options.text("heading");
+  const bool both = map.has(Role::value_plus) || map.has(Role::value_minus);
+  if (!map.has(Role::target) && map.heading.empty()) return needs_one("target");
+  if (!map.has(Role::value) && !both) return needs_one("value");
+  if (!map.has(Role::cycle)) return needs_one("cycle");
+  if (map.has(Role::target) && !map.heading.empty())
+    return fail(
+        of_option("heading", "expected the target in a column or in a heading, found both"));
+  if (map.has(Role::value) && both)
+    return fail(
+        of_option("columns", "expected \"value\", or \"value +\" and \"value -\"; found both"));
+  for (const RowRange& rows : map.tables) {
+    const int stated =
+        (rows.way != Way::none ? 1 : 0) + (map.has(Role::direction) ? 1 : 0) + (both ? 1 : 0);
+    if (stated != 1)
+      return fail(of_option("tables",
+                            std::string("expected how the axis went, from a column \"direction\", "
+                                        "from columns \"value +\" and \"value -\" or of each of "
+                                        "the tables (\"12-36 forward\"), found it ") +
+                                (stated == 0 ? "nowhere" : "twice")));
+  }
   return map;
 }
 
@@ -90,6 +120,7 @@ class TableReader {
              map_.tables[table].last < number)
         ++table;
       if (table == map_.tables.size()) break;
+      if (take_heading(line)) continue;
       if (number < map_.tables[table].first || content_of(line) != Content::fields) continue;
       if (auto error = not_text(line)) return fail(at_line(number, error->message));
       if (auto ok = row(line, number, map_.tables[table].way); !ok) return fail(ok.error());
@@ -110,11 +141,35 @@ class TableReader {
     Row row;
     row.way = way;
     row.line = number;
+    if (!map_.heading.empty()) {
+      if (!heading_target_)
+        return fail(at_line(number, "expected a heading with " + shown(map_.heading) +
+                                        " and the target above the rows, found none"));
+      row.target = *heading_target_;
+    }
     for (std::size_t k = 0; k < fields->size(); ++k)
       if (auto ok = field((*fields)[k], k, row); !ok) return ok;
     if (auto ok = same_target(row); !ok) return ok;
-    rows_.push_back(row);
+    if (map_.has(Role::value)) rows_.push_back(row);
+    for (const auto& [role, of_role, value] : {std::tuple{Role::value_plus, Way::plus, plus_},
+                                               std::tuple{Role::value_minus, Way::minus, minus_}}) {
+      if (!map_.has(role)) continue;
+      row.way = of_role, row.value = value;
+      rows_.push_back(row);
+    }
     return {};
+  }
+
+  /// "## Target position 15 mm, both directions": the number after the words of the option.
+  bool take_heading(std::string_view line) {
+    const std::size_t at = map_.heading.empty() ? line.npos : line.find(map_.heading);
+    if (at == line.npos) return false;
+    const auto words = by_blanks(line.substr(at + map_.heading.size()));
+    const Field target =
+        words.empty() ? Field{} : parse_number(words.front(), map_.separator != ',');
+    heading_target_ =
+        target.kind == Field::Kind::taken ? std::optional(target.value) : std::nullopt;
+    return true;
   }
 
   Expected<void> field(std::string_view text, std::size_t k, Row& row) {
@@ -131,11 +186,14 @@ class TableReader {
       return wrong("the number of a target, 1 or more,");
     if (role == Role::direction && (row.way = direction_of_word(text)) == Way::none)
       return wrong("+, -, forward or reverse");
-    if (role != Role::target && role != Role::value) return {};
+    if (role != Role::target && role < Role::value) return {};
     const bool target = role == Role::target;
     NONIO_TRY(const auto number, target ? numbers_.number(text, row.line, in_column("a target"))
                                         : numbers_.reading(text, row.line, in_column("a number")));
-    (target ? row.target : row.value) = number;
+    (target                      ? row.target
+     : role == Role::value_plus  ? plus_
+     : role == Role::value_minus ? minus_
+                                 : row.value) = number;
     return {};
   }
 
@@ -156,6 +214,8 @@ class TableReader {
   Numbers numbers_;
   std::map<std::uint32_t, Row> by_pos_;
   std::vector<Row> rows_;
+  std::optional<double> heading_target_{};  ///< of the last heading, as in the file
+  double plus_ = 0.0, minus_ = 0.0;         ///< of this row
 };
 
 /// How the first run that went forward lists its targets; 0 if it is not known.
@@ -192,12 +252,16 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
 
 Reader reader() {
   Reader r;
-  r.info = {"long-table",
-            "1.0",
-            "Tables with a row for each reading, as the user maps their columns; only where the "
-            "measurement names this reader.",
-            {{"columns", std::vector<std::string>{}, "",
-              "What each column is, in order: target, value, cycle, pos, direction, ignore."}}};
+  r.info = {
+      "long-table",
+      "1.0",
+      "Tables with a row for each reading, as the user maps their columns; only where the "
+      "measurement names this reader.",
+      {{"columns", std::vector<std::string>{}, "",
+        "What each column is, in order: target, value, \"value +\", \"value -\", cycle, pos, "
+        "direction, ignore."},
+       {"heading", std::string(), "",
+        "One table for each target: the words before the target in the line above a table."}}};
   for (Option& option : table_map_options()) r.info.options.push_back(std::move(option));
   // It could not be distinguished from any other table.
   r.recognises = [](std::string_view) { return false; };

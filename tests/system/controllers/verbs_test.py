@@ -50,6 +50,89 @@ class Tables(BenchTest):
         self.assertAlmostEqual(d["new"]["largest_slope_um_per_m"], 100.0, places=4)
         self.assertEqual(d["present"]["largest_um"], 0.0)
 
+    def put(self, name, text):
+        path = self.site / name
+        path.write_text(text)
+        return path
+
+    def test_a_list_of_twincat_by_either_key_of_its_axis(self):
+        body = "kw.ssfk.unit 1\nkw.ssfk.interval 100000\nkw.ssfk.kw_startpos -200000\nkw.ssfk.kw_nr_max 3\nkw.ssfk.bilateral 1\n" + "".join(
+            f"kw.ssfk.table[{i}].{side} {v}\n" for side, column in (("pos", (0, 30, -40)), ("neg", (0, 55, 70))) for i, v in enumerate(column))
+        one, other = (self.put(f"{key}.lis", f"kopf.{key} 3\n" + body) for key in ("achs_nr", "log_achs_nr"))
+        d = self.json_of("diff", one, other)["tables"][0]
+        self.assertEqual((d["output"], d["largest_um"], d["new"]["largest_um"]), ("3", 0.0, 7.0))
+        both = self.put("both.lis", "kopf.achs_nr 3\nkopf.log_achs_nr 4\n" + body)
+        self.assertIn("both.lis:1: ", self.nonio("diff", both, one, expect=2).stderr)
+        neither = self.put("neither.lis", body)
+        self.assertIn("neither.lis:1: controller twincat-cnc: no kopf.achs_nr", self.nonio("diff", neither, one, expect=2).stderr)
+
+    def test_the_type_of_a_comp_file_by_its_entries(self):
+        nothing = self.put("a.comp", "".join(f"{x} 0 0\n" for x in (0, 120, 240)))
+        trims = self.put("b.comp", "0 0 0\n80 -0.2 -0.2\n200 0.3 0.3\n360 0 0\n")
+        positions = self.put("c.comp", "0 0.004 0.004\n100 100.01 100.02\n200 199.99 200\n")
+        d = self.json_of("diff", nothing, trims)["tables"]
+        self.assertEqual(len(d), 1)
+        self.assertAlmostEqual(d[0]["largest_um"], 300.0, places=4)
+        d = self.json_of("diff", nothing, trims, "--axis", "B")["tables"][0]
+        self.assertAlmostEqual(d["largest_arcsec"], 0.3 * 3600, places=4)
+        d = self.json_of("diff", positions, positions, "--axis", "X")["tables"][0]
+        self.assertAlmostEqual(d["new"]["largest_um"], 20.0, places=4)
+        refused = self.nonio("diff", positions, positions, "--control", "linuxcnc", "--axis", "X", "--set", "type=1", expect=2).stderr
+        self.assertIn("c.comp:1: controller linuxcnc: columns 2 and 3 are actual positions: state type = 0", refused)
+
+    def test_compensation_tables_of_pmac_as_makers_write_them(self):
+        of = ("--control", "pmac", "--axis", "X", "--set", "axes=X number=2 counts_per_mm=1000")
+        plain = self.put("a.pmc", "#2 DEFINE COMP 4,4000\n-160 320,0,0\n")
+        forms = ("; one line\n#2 DEFINE COMP 4 #2,#2,4000 ; comment\n-160,320,0,0\n#7 DEFINE COMP 2,2000\n1 2\n",
+                 "#2\nDELETE COMP\ndefine comp 4,4000\n-160\n320\n0\n0\n", "#2 def comp 4,#2,4000\n-160,320 // here\n0,0\n")
+        for k, text in enumerate(forms):
+            d = self.json_of("diff", self.put(f"form{k}.pmc", text), plain, *of)["tables"]
+            self.assertEqual([(t["output"], t["largest_um"], t["present"]["largest_um"]) for t in d], [("X", 0.0, 20.0)], text)
+        # motor 5 by the position of motor 2, which has other counts
+        cross = self.put("cross.pmc", "#5 DEFINE COMP 4,#2,#5,4000\n-160 320 0 0\n")
+        d = self.json_of("diff", cross, cross, "--control", "pmac", "--axis", "X", "--axis", "Y",
+                         "--set", "axes=X number=2 counts_per_mm=1000, Y number=5 counts_per_mm=500")["tables"][0]
+        self.assertEqual((d["output"], d["by"], d["new"]["largest_um"], d["new"]["largest_step_from_mm"]), ("Y", ["X"], 40.0, 1.0))
+        for text, line, words in (("#2 DEFINE COMP 4,4000\n1 2 3\n", 2, "expected 4 entries of motor 2, found 3"),
+                                  ("#2 DEFINE COMP 4,4000\n1 2 3 4 5\n", 2, "expected 4 entries of motor 2, found more"),
+                                  ("#2 DEFINE COMP 4,4000\n1 2 x 4\n", 2, "found 2 before X"),
+                                  ("#2\n#2 DEFINE BLCOMP 4,4000\n1 2 3 4\n", 2, "only DEFINE COMP is read, found DEFINE BLCOMP"),
+                                  ("#2 DEFINE COMP 2.3,4000,4000\n1\n", 1, "tables of two axes are not read")):
+            bad = self.put("bad.pmc", text)
+            self.assertIn(f"bad.pmc:{line}: controller pmac: ", error := self.nonio("diff", bad, plain, *of, expect=2).stderr)
+            self.assertIn(words, error)
+        self.assertIn("a.pmc:1: controller pmac: axis 2: how many counts has the encoder?", self.nonio("diff", plain, plain, expect=2).stderr)
+
+    def test_tables_of_siemens_of_any_size_and_as_part_program(self):
+        entries = [0.001 * (i % 9) for i in range(640)]
+        encoder = "%_N_AX_EEC_INI\nCHANDATA(1)\n" + "".join(f"$AA_ENC_COMP[0,{i},X1]={v:g}\n" for i, v in enumerate(entries)) + (
+            "$AA_ENC_COMP_STEP[0,X1]=1.0\n$AA_ENC_COMP_MIN[0,X1]=0.0\n$AA_ENC_COMP_MAX[0,X1]=639.0\n$AA_ENC_COMP_IS_MODULO[0,X1]=0\nM17\n")
+        large = self.put("large.ini", encoder)
+        found = self.json_of("diff", large, large)
+        self.assertEqual((found["control"], found["tables"][0]["new"]["largest_um"]), ("siemens-840d", 8.0))
+        error = self.nonio("diff", large, large, "--set", "max_points=500", expect=2).stderr
+        self.assertIn("large.ini:503: controller siemens-840d: alarm 12400", error)
+        self.assertIn("option max_points", error)
+        table = "".join(f"$AN_CEC[2,{i}]={v}\n" for i, v in enumerate((0.0, 0.011, 0.03))) + (
+            "$AN_CEC_INPUT_AXIS[2]=(Z1)\n$AN_CEC_OUTPUT_AXIS[2]=(Z1)\n$AN_CEC_STEP[2]=100\n$AN_CEC_MIN[2]=0\n$AN_CEC_MAX[2]=200\n"
+            "$AN_CEC_DIRECTION[2]=1\n$AN_CEC_IS_MODULO[2]=0\n")
+        archive = self.put("archive.ini", "%_N_NC_CEC_INI\nCHANDATA(1)\n" + table + "M17\n")
+        for end in ("M17\n", "M0\n\nM17\n", "M30\n"):
+            d = self.json_of("diff", self.put("program.spf", "; set\n" + table + end), archive)["tables"]
+            self.assertEqual([(t["output"], t["largest_um"], t["present"]["largest_um"]) for t in d], [("Z1", 0.0, 30.0)])
+        for text, line, words in ((table, 10, "no M17 at the end"), (table.replace("MODULO[2]=0", "MODULO[2]=-1") + "M17\n", 10, "IS_MODULO is 0 or 1"),
+                                  ("%_N_NC_CEC_INI\n" + table + "M17\n", None, "assignment before CHANDATA")):
+            error = self.nonio("diff", self.put("bad.spf", text), archive, "--control", "siemens-840d", expect=2).stderr
+            self.assertIn(words, error)
+            if line:
+                self.assertIn(f"bad.spf:{line}: ", error)
+
+    def test_a_file_of_no_known_control(self):
+        other = self.put("other.dat", "unit = mm\n[X]\n-100.0, 0.003, 0.012\n0.0, 0.0, 0.009\n")
+        error = self.nonio("diff", other, other, expect=2).stderr
+        self.assertIn("other.dat: no control that Nonio knows could have written it; it knows aerotech, ", error)
+        self.assertNotIn("--control", error)
+
     def test_the_control_is_known_by_its_files_or_asked_for(self):
         old = self.comp("linuxcnc-X.comp", lambda x: 1.0)
         self.assertEqual(self.json_of("diff", old, old, "--axis", "X", "--set", "type=1")["control"], "linuxcnc")
@@ -63,7 +146,7 @@ class Tables(BenchTest):
         self.assertEqual(self.json_of("diff", ini, ini, "--axis", "X")["tables"][0]["output"], "X")
         nothing = self.site / "nothing.txt"
         nothing.write_text("hello\n")
-        self.assertIn("--control", self.nonio("table", "diff", nothing, nothing, expect=2).stderr)
+        self.assertIn("no control that Nonio knows", self.nonio("table", "diff", nothing, nothing, expect=2).stderr)
         self.nonio("table", "diff", ini, self.site / "missing", expect=2)
         self.nonio("table", "diff", ini, ini, "--control", "no-such", expect=2)
 

@@ -269,9 +269,11 @@ void implausible_span(const Campaign& campaign, const Measurement& m, const Obse
                           .attention = true,
                           .evidence = {{"span", span, position}, {"other", widest, position}}});
   if (axis->travel || axis->rotary) {
-    // One turn, if the travel is not stated.
+    // One turn, if the travel is not stated. A table that may turn further is measured over one.
+    const double turn = 360.0 / deg_per_rad,
+                 stated = axis->travel ? axis->travel->second - axis->travel->first : turn;
     const double travel =
-        axis->travel ? axis->travel->second - axis->travel->first : 360.0 / deg_per_rad;
+        axis->rotary && stated > turn && span <= most_of_travel * turn ? turn : stated;
     if (!axis->travel && widest > 7.0 / deg_per_rad && span <= most_of_travel * travel) return;
     if (widest < least_of_travel * travel || span > most_of_travel * travel)
       out.push_back({.id = "plausibility.span-against-travel",

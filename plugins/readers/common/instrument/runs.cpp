@@ -120,6 +120,7 @@ Expected<void> Runs::add(const Reading& r) {
                                     std::to_string(known->second) + "; expected each once"));
   if (std::isnan(r.deviation)) {
     ++obs_.missing;
+    if (not_taken_.empty() || not_taken_.back() != r.line) not_taken_.push_back(r.line);
     return {};
   }
   obs_.deviation.push_back(r.deviation);
@@ -135,6 +136,15 @@ Expected<Observations> Runs::finish() {
   if (obs_.size() == 0)
     return fail("expected readings, found " + std::to_string(obs_.missing) +
                 " of which not one was taken");
+  if (!not_taken_.empty()) {
+    constexpr std::size_t most = 20;
+    std::string lines;
+    for (std::size_t k = 0; k < std::min(most, not_taken_.size()); ++k)
+      lines += (k == 0 ? "" : ", ") + std::to_string(not_taken_[k]);
+    obs_.notes.push_back({"instrument.not-taken",
+                          {},
+                          {{"lines", lines + (not_taken_.size() > most ? ", ..." : "")}}});
+  }
   return std::move(obs_);
 }
 

@@ -78,6 +78,7 @@ class Runs {
 
  private:
   std::map<std::tuple<std::uint32_t, std::int8_t, double>, std::uint64_t> lines_;
+  std::vector<std::uint64_t> not_taken_{};  ///< lines
   Observations obs_;
 };
 

@@ -58,7 +58,10 @@ inline bool means_not_taken(std::string_view text) {
   if (text.empty() || same_word(text, "n/a")) return true;
   if (missing_in_spreadsheet(text)) return true;
   if (text.front() == '+' || text.front() == '-') text.remove_prefix(1);
-  return same_word(text, "nan") || same_word(text, "inf") || same_word(text, "infinity");
+  for (const std::string_view mark : {"nan", "inf", "infinity", "out of range", "over range",
+                                      "overrange", "under range", "underrange"})
+    if (same_word(text, mark)) return true;
+  return false;
 }
 
 /// A number taken apart; value = digits * 10^exponent.
