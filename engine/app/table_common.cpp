@@ -105,7 +105,7 @@ Expected<Loaded> understood(
   if (!options) return tl::unexpected<Error>(options.error().front());
   auto tables = tables::tables_in(*found, files, campaign, *options);
   if (tables) return Loaded{found, std::move(*tables), std::move(files)};
-  if (tables.error().line != 0) return fail(tables.error());
+  if (tables.error().line != 0) return fail(tables.error().message);  // which names the file
   std::string names;
   for (const Artifact& f : files) names += (names.empty() ? "" : ",") + f.name;
   return fail(names + ": " + tables.error().message);

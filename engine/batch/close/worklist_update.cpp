@@ -100,6 +100,11 @@ Expected<std::string> mail_text(reports::SiteHistory& site, const reading::Conte
   std::erase_if(site.lines, [&](const reports::WorkItem& line) {
     return !is_reason_for_mail(line, context.site.mail->on);
   });
+  if (std::string base = context.site.mail->base_url; !base.empty()) {
+    if (!base.ends_with('/')) base += '/';
+    for (reports::WorkItem& line : site.lines)
+      if (!line.link.empty()) line.link = base + line.link;
+  }
   auto text = site.lines.empty()
                   ? Expected<std::string>()
                   : reports::worklist_text(site, context.templates, language, site.lines.size());

@@ -134,6 +134,7 @@ struct Mail {
   std::vector<std::string> to;
   std::string from;
   On on = On::decision;
+  std::string base_url;        ///< of the output folder, for links; empty: they are relative
   std::string sendmail, smtp;  ///< exactly one: a program, the name of a server
   Tls tls = Tls::starttls;
   int port = 0;       ///< never 0 when read

@@ -56,6 +56,7 @@ Mail read_mail(TableReader& reader) {
   const std::string on = reader.text("on"), tls = reader.text("tls");
   m.on = on == "lost" ? Mail::On::lost : on == "out" ? Mail::On::out : Mail::On::decision;
   m.tls = tls == "tls" ? Mail::Tls::tls : tls == "none" ? Mail::Tls::none : Mail::Tls::starttls;
+  m.base_url = reader.text("base_url");
   m.sendmail = reader.text("sendmail");
   m.smtp = reader.text("smtp");
   m.port = reader.integer("port").value_or(usual_port(m.tls));

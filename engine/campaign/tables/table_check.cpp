@@ -208,7 +208,7 @@ Expected<const Controller*> control_of(const loader::Plugins& plugins, const std
   if (able.size() == 1) return able.front();
   if (able.empty())
     return fail(files.front().name +
-                ": no control that Nonio knows could have written it; it knows " +
+                ": no control known to Nonio could have written it; known are " +
                 storage::listed(names));
   names.clear();
   for (const Controller* o : able) names.push_back(o->info.name);

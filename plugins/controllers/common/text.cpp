@@ -38,8 +38,10 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-tl::unexpected<Error> fail_at(std::string_view name, std::size_t line, std::string message) {
-  return fail(Error{std::move(message), std::string(name), line});
+tl::unexpected<Error> fail_at(std::string_view name, std::size_t line, const std::string& message) {
+  Error error{std::string(name) + ", line " + std::to_string(line) + ": " + message};
+  error.line = line;
+  return fail(std::move(error));
 }
 
 std::vector<std::string_view> words_of(std::string_view line, std::string_view separators) {

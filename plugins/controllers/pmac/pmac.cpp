@@ -178,10 +178,9 @@ class Definitions {
     if (value) ++at_;
     return value;
   }
-  tl::unexpected<Error> wrong(std::string message) const {
+  tl::unexpected<Error> wrong(const std::string& message) const {
     const std::size_t last = words_.empty() ? 1 : words_.back().line;
-    return controllers::fail_at(file_.name, at_ < words_.size() ? words_[at_].line : last,
-                                std::move(message));
+    return controllers::fail_at(file_.name, at_ < words_.size() ? words_[at_].line : last, message);
   }
 
   Expected<Definition> definition() {
@@ -267,8 +266,7 @@ Expected<std::vector<LoadedTable>> parse(const TableInput& in) {
       if (read) {
         tables.push_back(std::move(*read));
       } else {
-        unknown = read.error();
-        unknown->file = f.name, unknown->line = d.line;
+        unknown = controllers::fail_at(f.name, d.line, read.error().message).value();
         if (!axis.settings.empty()) return tl::unexpected<Error>(*unknown);
       }
     }

@@ -142,9 +142,9 @@ Expected<void> put(Memory& memory, const Assignment& a) {
 Expected<void> read_file(Memory& memory, const Artifact& file) {
   bool any = false, archive = false, begun = false, ended = false;
   std::size_t number = 0;
-  const auto wrong = [&](std::string message) -> Expected<void> {
-    if (!any) return fail(std::move(message));
-    return controllers::fail_at(file.name, number, std::move(message));
+  const auto wrong = [&](const std::string& message) -> Expected<void> {
+    if (!any) return fail(message);
+    return controllers::fail_at(file.name, number, message);
   };
   for (std::string_view line : controllers::lines_of(file.bytes)) {
     ++number;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """verify_page_test.py NONIO PAGE: the page that verifies certificates gives the verdicts of `nonio certificate verify`, shows what a
-certificate contains, and asks for nothing but itself."""
+certificate contains, and requests nothing but itself."""
 import base64
 import json
 import os
@@ -23,7 +23,7 @@ SEED = int(os.environ.get("NONIO_SEED") or random.SystemRandom().randrange(10 **
 
 
 def wanted(file, root, signer):
-    """The verdict of the program; its exit status says the same."""
+    """The verdict of the program; its exit status is the same."""
     trust = (["--trust", root] if root else []) + (["--signer", signer] if signer else [])
     done = subprocess.run([NONIO, "certificate", "verify", "--json", *map(str, trust), file], capture_output=True, text=True, check=False)
     return json.loads(done.stdout)["verdict"]
@@ -75,7 +75,7 @@ def main():
                 browser.value(f"globalThis.given = Uint8Array.from(atob('{base64.b64encode(data).decode()}'), c => c.charCodeAt(0)); 0")
                 got = browser.value(f"verify(given, rootsOf({pem}), {signers}).then(r => r.verdict)")
                 seen.setdefault(got, []).append(what)
-                assert got == should, f"{what}: the page says {got}, the program {should}"
+                assert got == should, f"{what}: {got} on the page, {should} by the program"
             assert {"incomplete", "untrusted", "altered", "no-certificate"} <= set(seen), seen
             # What a person does: drop, trust, read.
             browser.value(f"globalThis.given = Uint8Array.from(atob('{base64.b64encode(pdf).decode()}'), c => c.charCodeAt(0)); 0")

@@ -267,6 +267,7 @@ class Mail(unittest.TestCase):
                              ("smtp = \"a\"\npassword_file = \"p\"\n", "is a password without user"),
                              ("sendmail = \"sendmail\"\n", "expected a path that begins with /"),
                              ("sendmail = \"/s\"\nport = 25\n", "it belongs to smtp"),
+                             ("smtp = \"a\"\nbase_url = \"lab.example/out\"\n", "expected an address that begins with https://"),
                              ("smtp = \"a\"\non = \"never\"\n", "never"), ("smtp = \"a b\"\n", "expected the name of a server")):
             status, said, _ = self.send(keys)
             self.assertEqual(status, 2, keys)

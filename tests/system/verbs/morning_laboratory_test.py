@@ -41,7 +41,8 @@ class Site:
         post.write_text(f'#!/bin/sh\ncat > "{self.letter}"\n')
         post.chmod(post.stat().st_mode | stat.S_IXUSR)
         with open(self.site / "site.toml", "a") as f:
-            f.write(f'\n[mail]\nto = ["a@lab.test"]\nfrom = "nonio@lab.test"\nsendmail = "{post}"\n')
+            f.write(f'\n[mail]\nto = ["a@lab.test"]\nfrom = "nonio@lab.test"\nsendmail = "{post}"\n'
+                    'base_url = "https://lab.test/out"\n')
 
     def night(self, date):
         nonio("run", self.site, "--out", self.out, "--quiet", "--date", date)
@@ -88,6 +89,9 @@ class Mornings(unittest.TestCase):
         mailed = [line for line in self.lines if line["mail"]]
         self.assertGreaterEqual(len(mailed), 12)
         self.assertEqual(len(letter.splitlines()), len(mailed))
+        links = re.findall(r"\[(\S+)\]$", letter, re.M)
+        self.assertEqual(sorted(links), sorted("https://lab.test/out/" + line["link"] for line in mailed if line.get("link")))
+        self.assertGreaterEqual(len(links), 12)
         for line in mailed:
             if line.get("axis"):
                 self.assertIn(f"{line['machine']} {line['axis']}: ", letter)

@@ -288,6 +288,12 @@ constexpr Key mail_keys[] = {
              "tolerance; or any line requires action.",
      .otherwise = "decision",
      .choices = mail_reasons},
+    {.name = "base_url",
+     .holds = text,
+     .help = "Address at which people open the output folder: https://lab.example/out. Links in a "
+             "mail begin with it; without it they are relative to the output folder.",
+     .wanted = "expected an address that begins with https:// or http://, found \"{}\"",
+     .text = {.not_letters = " \t\r\n<>\"[]", .longest = 500, .begins = "http"}},
     {.name = "sendmail",
      .holds = text,
      .help = "Program that takes the mail, with its whole path; alternative to smtp.",

@@ -141,7 +141,7 @@ Expected<Observations> Runs::finish() {
     std::string lines;
     for (std::size_t k = 0; k < std::min(most, not_taken_.size()); ++k)
       lines += (k == 0 ? "" : ", ") + std::to_string(not_taken_[k]);
-    obs_.notes.push_back({"instrument.not-taken",
+    obs_.notes.push_back({"readings.lines-not-taken",
                           {},
                           {{"lines", lines + (not_taken_.size() > most ? ", ..." : "")}}});
   }

@@ -119,7 +119,7 @@ TEST_P(Mutants, OfTheFileAreReadAsItWasOrRefused) {
   EXPECT_GT(refused, 100);
 }
 
-// Behind them: any XML, packed with the right check sums.
+// Any XML, packed with the right check sums.
 TEST_P(Mutants, OfTheXmlAreReadOrRefused) {
   const Members members = members_of(bytes_of(GetParam()));
   const auto original = read(archive_of(members));

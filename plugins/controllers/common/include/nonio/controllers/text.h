@@ -21,7 +21,7 @@ std::vector<std::string_view> lines_of(std::string_view text);
 Expected<void> ends_whole(std::string_view name, std::string_view text);
 /// An error in a file whose form is that of the control: by its line the file is recognised, and
 /// the message is shown in place of "no known control".
-tl::unexpected<Error> fail_at(std::string_view name, std::size_t line, std::string message);
+tl::unexpected<Error> fail_at(std::string_view name, std::size_t line, const std::string& message);
 /// The text between these characters.
 std::vector<std::string_view> words_of(std::string_view line,
                                        std::string_view separators = " \t\r");
