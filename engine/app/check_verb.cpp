@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `nonio check`: what `nonio run` would reject, without output.
+// `nonio check`: what `nonio run` would reject, without output; what a file of readings contains.
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -10,6 +10,7 @@
 #include "campaign/config/site_logs.h"
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/reading/campaign_reader.h"
+#include "check_file.h"
 #include "results_folder.h"
 #include "site_words.h"
 #include "verbs.h"
@@ -22,6 +23,7 @@ namespace {
 
 struct CheckWish {
   std::string folder;
+  std::vector<std::string> columns;
   bool only_templates = false;
 };
 
@@ -134,10 +136,16 @@ Verb check_verb(Common& common) {
   auto wish = std::make_shared<CheckWish>();
   return {
       .name = "check",
-      .summary = "Validates a campaign, or a site with all its campaigns; writes no output",
+      .summary =
+          "Validates a campaign, a site with all its campaigns, or a file of readings; writes "
+          "no output",
       .arguments = joined(
-          {existing(Argument::Takes::folder,
-                    {"SITE|CAMPAIGN", &wish->folder, "Folder of a site or of one campaign"}),
+          {existing(Argument::Takes::path,
+                    {"SITE|CAMPAIGN|FILE", &wish->folder,
+                     "Folder of a site or of one campaign; or a file with readings of one axis"}),
+           {"--column", &wish->columns,
+            "For a FILE with other names of columns: \"NAME = KNOWN\" such as \"Soll mm = "
+            "target_mm\"; may be given several times"},
            {"--only-templates", &wish->only_templates,
             "Check the templates of reports and certificates instead: layouts, the texts of every "
             "language and their placeholders, missing characters. Without SITE: those that are "
@@ -154,6 +162,10 @@ Verb check_verb(Common& common) {
       .run = [wish, &common] {
         if (wish->only_templates) return check_templates(wish->folder, common);
         if (wish->folder.empty()) return complain("expected the folder of a site or campaign");
+        std::error_code error;
+        if (fs::is_regular_file(wish->folder, error))
+          return check_file(wish->folder, wish->columns, common);
+        if (!wish->columns.empty()) return complain("--column is for a file of readings");
         return Check(common).run(wish->folder);
       }};
 }

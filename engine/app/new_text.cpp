@@ -293,24 +293,29 @@ std::string campaign_text(const NewCampaign& c) {
     text += "\n[[measurement]]\nid = " + quoted(a.axis.name) +
             "\nkind = \"axis\"\naxis = " + quoted(a.axis.name) + "\nfile = " + quoted(a.file);
     text += a.example() ? "  # EXAMPLE readings\n" : "\n";
+    if (!c.reader.empty() && !a.example()) text += "reader = " + quoted(c.reader) + "\n";
     text += test_text(a);
   }
-  return text +
-         "# exclude = [57]  # lines of the file with excluded readings\n"
-         "# exclude_reason = \"beam interrupted, see the record of the test\"\n\n"
-         "# The error model, for `nonio model compare` and `nonio model explain`.\n"
-         "# [model]\n"
-         "# effects = [\"scale:" +
-         c.axes.front().axis.name + "\", \"backlash:" + c.axes.front().axis.name +
-         "\"]\n\n"
-         "# Analyses and outputs of this campaign, if different from those of the site.\n"
-         "# [run]\n"
-         "# analyses = [\"iso230-2\"]\n"
-         "# outputs = [\"pdf-report\", \"certificate\"]\n" +
-         certificate_text() +
-         "\n# Options of one plugin, for this campaign.\n"
-         "# [options.iso230-2]\n"
-         "# edition = 2014\n";
+  text +=
+      "# exclude = [57]  # lines of the file with excluded readings\n"
+      "# exclude_reason = \"beam interrupted, see the record of the test\"\n\n"
+      "# The error model, for `nonio model compare` and `nonio model explain`.\n"
+      "# [model]\n"
+      "# effects = [\"scale:" +
+      c.axes.front().axis.name + "\", \"backlash:" + c.axes.front().axis.name +
+      "\"]\n\n"
+      "# Analyses and outputs of this campaign, if different from those of the site.\n"
+      "# [run]\n"
+      "# analyses = [\"iso230-2\"]\n"
+      "# outputs = [\"pdf-report\", \"certificate\"]\n" +
+      certificate_text() +
+      "\n# Options of one plugin, for this campaign.\n"
+      "# [options.iso230-2]\n"
+      "# edition = 2014\n";
+  if (c.reader.empty()) return text;
+  text += "\n# What the columns of the files are.\n[options." + c.reader + "]\ncolumns = [\n";
+  for (const std::string& column : c.columns) text += "  " + quoted(column) + ",\n";
+  return text + "]\n";
 }
 
 std::string example_readings(const Axis& axis, const std::string& campaign) {

@@ -20,6 +20,8 @@ struct NewAxis {
 struct NewCampaign {
   std::string id, customer, operator_name, date, maker, machine, serial, asset, control, instrument;
   std::vector<NewAxis> axes;
+  std::string reader{};                ///< of all files, by `columns`; empty: by their content
+  std::vector<std::string> columns{};  ///< names of columns as a person stated them
   bool example() const;
 };
 

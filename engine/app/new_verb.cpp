@@ -13,6 +13,7 @@
 #include "campaign/config/site_files.h"
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/reading/campaign_reader.h"
+#include "campaign/reading/stated_table.h"
 #include "new_text.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/files.h"
@@ -30,7 +31,7 @@ namespace {
 struct NewWish {
   std::string what, folder, id, customer, operator_name, date, maker, machine, serial, asset,
       control, instrument, laboratory, address, country;
-  std::vector<std::string> axes, files, settings;
+  std::vector<std::string> axes, files, columns, settings;
   bool empty = false, defaults = false;
 };
 
@@ -304,6 +305,27 @@ Expected<NewCampaign> settled(const NewWish& wish, const fs::path& folder, Quest
   return c;
 }
 
+/// The reader of files whose columns are stated.
+Expected<void> take_columns(const NewWish& wish, NewCampaign& c, const Common& common) {
+  if (wish.columns.empty()) return {};
+  for (const std::string& column : wish.columns)
+    if (auto done = one_line("--column", column); !done) return done;
+  loader::Plugins plugins;
+  plugins.load(common.plugin_folders());
+  for (const NewAxis& a : c.axes) {
+    if (a.example()) continue;
+    const auto table = reading::stated_table(plugins, a.bytes, 2);
+    if (!table) return fail("--column: " + a.file + " contains no table with columns");
+    if (!c.reader.empty() && c.reader != table->reader->info.name)
+      return fail("--column: expected files of one format, found those of the readers " + c.reader +
+                  " and " + table->reader->info.name);
+    c.reader = table->reader->info.name;
+  }
+  if (c.reader.empty()) return fail("--column: expected a file of readings (--file)");
+  c.columns = wish.columns;
+  return {};
+}
+
 std::vector<Artifact> files_of(const NewCampaign& c, std::string manifest) {
   std::vector<Artifact> files;
   for (const NewAxis& a : c.axes)
@@ -369,7 +391,8 @@ int write_new(const std::vector<NewFiles>& all, const NewWish& wish, const std::
 Expected<NewFiles> campaign_files(const NewWish& wish, const fs::path& folder,
                                   const std::optional<fs::path>& site, Questions& ask,
                                   bool& example, const Common& common) {
-  NONIO_TRY(const auto campaign, settled(wish, folder, ask));
+  NONIO_TRY(auto campaign, settled(wish, folder, ask));
+  if (auto done = take_columns(wish, campaign, common); !done) return fail(done.error());
   example = campaign.example();
   NONIO_TRY(auto values, settings_of(wish.settings));
   if (site)
@@ -509,6 +532,9 @@ Verb new_verb(Common& common) {
            takes(Takes::file, {"--file", &wish->files,
                                "AXIS=PATH: readings of that axis, copied; may be given several "
                                "times. An axis without a file gets example readings"}),
+           {"--column", &wish->columns,
+            "Columns of these files with other names: \"NAME = KNOWN\" such as \"Soll mm = "
+            "target_mm\"; may be given several times"},
            {"--laboratory", &wish->laboratory, "For a site: name of the laboratory"},
            {"--address", &wish->address, "For a site: its address"},
            {"--country", &wish->country, "For a site: country, two letters"},

@@ -179,9 +179,11 @@ std::string extract_id(std::string_view text);
 bool is_campaign_id(std::string_view id);
 
 /// The options of one plugin: defaults, then the site's, then the campaign's; each checked for
-/// name, kind, range and choice.
+/// name, kind, range and choice. `others`: of plugins of another kind with the same name, which
+/// share its table.
 Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
-                                 const RawOptions& campaign);
+                                 const RawOptions& campaign,
+                                 const std::vector<Option>& others = {});
 
 /// A TOML file of templates/ as flat settings.
 Expected<Settings> parse_settings(std::string_view text, const std::string& file);

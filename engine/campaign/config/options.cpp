@@ -127,7 +127,7 @@ std::string choice_complaint(const Option& option, const Setting& setting) {
 }  // namespace
 
 Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
-                                 const RawOptions& campaign) {
+                                 const RawOptions& campaign, const std::vector<Option>& others) {
   Settings settings;
   std::vector<Error> errors;
   std::vector<std::string> known;
@@ -140,9 +140,10 @@ Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
     if (of_plugin == source->end()) continue;
     for (const auto& [name, raw] : of_plugin->second) {
       const std::string place = "options." + plugin.name + "." + name;
-      const auto option = std::find_if(plugin.options.begin(), plugin.options.end(),
-                                       [&, &n = name](const Option& o) { return o.name == n; });
+      const auto has_name = [&n = name](const Option& o) { return o.name == n; };
+      const auto option = std::find_if(plugin.options.begin(), plugin.options.end(), has_name);
       if (option == plugin.options.end()) {
+        if (std::any_of(others.begin(), others.end(), has_name)) continue;
         errors.push_back(Error{"unknown option " + place + storage::suggestion(name, known),
                                raw.file, raw.line});
         continue;

@@ -30,7 +30,8 @@ Error Work::error_at(std::string key, const std::string& message) const {
 }
 
 std::optional<Settings> Work::settle(const Info& info) const {
-  auto options = config::settle_options(info, context.site.options, read.manifest->options);
+  auto options = config::settle_options(info, context.site.options, read.manifest->options,
+                                        context.plugins->options_of_namesakes(info));
   if (options) return std::move(*options);
   for (Error& e : options.error()) report(std::move(e));
   return std::nullopt;

@@ -383,7 +383,8 @@ class Importer {
                                      reading::what_is_wrong(bytes, found.file)
                                : plugins_.absence("reader", name));
     name = reader->info.name;
-    const auto options = config::settle_options(reader->info, site_options(), manifest.options);
+    const auto options = config::settle_options(reader->info, site_options(), manifest.options,
+                                                plugins_.options_of_namesakes(reader->info));
     if (!options) return fail(options.error().front());
     return reading::checked_read(
         *reader, {bytes, manifest.campaign, m, *options, {}, plugins_.method(m.kind)});

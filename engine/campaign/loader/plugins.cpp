@@ -320,6 +320,20 @@ bool may_contain(const fs::path& file, std::string_view kind, std::string_view n
 
 }  // namespace
 
+std::vector<Option> Plugins::options_of_namesakes(const Info& plugin) const {
+  std::vector<Option> found;
+  const auto take = [&](const auto& all) {
+    for (const auto& one : all)
+      if (one.info.name == plugin.name && one.info.summary != plugin.summary)
+        found.insert(found.end(), one.info.options.begin(), one.info.options.end());
+  };
+  take(readers_);
+  take(analyses_);
+  take(outputs_);
+  take(controllers_);
+  return found;
+}
+
 std::string Plugins::absence(std::string_view kind, std::string_view name) const {
   std::vector<std::string> candidates;
   const std::string prefix = std::string(kind) + " ";

@@ -69,6 +69,9 @@ class Plugins final : public Registry {
   }
   const std::vector<Controller>& controllers() const { return controllers_; }
 
+  /// Options of plugins of other kinds with the same name: [options.<name>] is a table of all.
+  std::vector<Option> options_of_namesakes(const Info& plugin) const;
+
   /// Why a plugin of that name is missing, with the nearest name; of an output also among the
   /// controllers, which `[run] outputs` names with them.
   std::string absence(std::string_view kind, std::string_view name) const;

@@ -193,7 +193,8 @@ Expected<void> describe_channels(const CampaignSource& from, const ReadCampaign&
 
 std::optional<Settings> settle_reader(const CampaignSource& from, const Info& info,
                                       ReadCampaign& out) {
-  auto options = config::settle_options(info, from.context.site.options, out.manifest->options);
+  auto options = config::settle_options(info, from.context.site.options, out.manifest->options,
+                                        from.context.plugins->options_of_namesakes(info));
   if (options) return std::move(*options);
   for (Error& e : options.error()) report_in(out, std::move(e));
   return std::nullopt;

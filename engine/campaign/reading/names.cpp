@@ -99,7 +99,9 @@ std::vector<Error> site_mistakes(const Context& context) {
   for (Error& e : ownerless_options(context.site.options, plugins)) errors.push_back(std::move(e));
   const auto check_options = [&](const auto& all) {
     for (const auto& plugin : all)
-      if (auto settled = config::settle_options(plugin.info, context.site.options, {}); !settled)
+      if (auto settled = config::settle_options(plugin.info, context.site.options, {},
+                                                plugins.options_of_namesakes(plugin.info));
+          !settled)
         for (Error& e : settled.error()) errors.push_back(std::move(e));
   };
   check_options(plugins.readers());

@@ -160,6 +160,7 @@ bool Rows::parse(std::size_t column, Field& number) {
 bool Rows::parse_field(std::size_t column, Row& row) {
   const std::string_view text = fields_[column];
   const Role role = header_.roles[column];
+  if (role == Role::ignored) return true;
   if (role == Role::run) {
     row.key.run = parse_run(text);
     if (row.key.run != 0) return true;
@@ -303,15 +304,29 @@ Observations empty_observations(const Measurement& m, const Expectation& e) {
   return obs;
 }
 
-Expected<Header> read_header(Lines& lines, const Expectation& expectation) {
+/// The next line; with stated columns the next one that has all of them, whatever is above.
+Expected<std::string_view> header_line(Lines& lines, const StatedColumns& stated) {
   std::string_view line;
   std::optional<Error> error;
-  if (!next_content(lines, line, error))
-    return error ? fail(std::move(*error)) : fail("expected a header row, found an empty file");
+  std::vector<std::string_view> names;
+  while (next_content(lines, line, error)) {
+    if (stated.empty()) return line;
+    if (split(line, find_separator(line, stated), names) && stated.all_in(names)) return line;
+  }
+  if (error) return fail(std::move(*error));
+  return stated.empty() ? fail("expected a header row, found an empty file")
+                        : fail("expected a row with the columns " + stated.list() +
+                               " (option columns), found none");
+}
+
+Expected<Header> read_header(Lines& lines, const Expectation& expectation,
+                             const StatedColumns& stated) {
+  NONIO_TRY(const auto line, header_line(lines, stated));
+  std::optional<Error> error;
   if ((error = not_text(line))) return fail(std::move(*error));
-  if ((error = other_separator(lines.separator(), find_separator(line))))
+  if ((error = other_separator(lines.separator(), find_separator(line, stated))))
     return fail(std::move(*error));
-  return parse_header(line, expectation);
+  return parse_header(line, expectation, stated);
 }
 
 Expected<void> read_rows(const ReadInput& input, Lines& lines, const Header& header, Rows& rows) {
@@ -353,6 +368,7 @@ bool has_spatial_name(std::string_view line) {
 /// Readings over one position: of an axis, or of the distance along a diagonal.
 Expected<Observations> read_runs(const ReadInput& input) {
   NONIO_TRY(const auto expectation, expectation_of(input));
+  NONIO_TRY(const auto stated, StatedColumns::of(input.options.texts(columns_option)));
   Lines lines(input.bytes);
   const Ends ends = ends_of(input.bytes);
   const auto in_file = [&](Error error, std::uint64_t line) {
@@ -360,7 +376,7 @@ Expected<Observations> read_runs(const ReadInput& input) {
     if (error.line == 0) error.line = line;
     return fail(std::move(error));
   };
-  const Expected<Header> header = read_header(lines, expectation);
+  const Expected<Header> header = read_header(lines, expectation, stated);
   if (!header) return in_file(header.error(), lines.number());
   Observations obs = empty_observations(input.measurement, expectation);
   Rows rows(*header, expectation, obs);
@@ -433,6 +449,34 @@ bool recognises(std::string_view head) {
     if (content_of(line) == Content::fields && !(lines.number() == 1 && stated_separator(line)))
       return known_names(line, find_separator(line)) > 0 || has_spatial_name(line);
   return false;
+}
+
+Option columns_declared() {
+  return {
+      std::string(columns_option), std::vector<std::string>(), "",
+      "Columns with other names: \"NAME = KNOWN\" for each, such as \"Soll mm = target_mm\", or "
+      "\"NAME = ignore\". Rows above the one that has them are not read. Kinds axis, "
+      "straightness, angle and diagonal"};
+}
+
+Expected<std::vector<std::vector<std::string>>> first_rows(std::string_view bytes,
+                                                           std::size_t most) {
+  std::vector<std::vector<std::string>> out;
+  Lines lines(bytes);
+  std::string_view line;
+  std::optional<Error> error;
+  std::vector<std::string_view> fields;
+  char separator = ',';
+  while (out.size() < most && next_content(lines, line, error)) {
+    if (auto wrong = not_text(line)) return fail(std::move(*wrong));
+    const auto in_line = [&](char c) { return std::count(line.begin(), line.end(), c); };
+    if (out.empty())
+      for (const char other : {';', '\t'})
+        if (in_line(other) > in_line(separator)) separator = other;
+    if (split(line, separator, fields)) out.emplace_back(fields.begin(), fields.end());
+  }
+  if (error) return fail(std::move(*error));
+  return out;
 }
 
 bool reads(std::string_view kind) {

@@ -36,6 +36,8 @@ constexpr std::array<Known, 13> known_columns = {{
     {"humidity_pct", Role::humidity},
 }};
 
+constexpr std::string_view ignore = "ignore";
+
 const Known* find(std::string_view name) {
   const auto it = std::find_if(known_columns.begin(), known_columns.end(),
                                [&](auto& k) { return k.name == name; });
@@ -127,28 +129,74 @@ bool Header::has(Role role) const {
   return std::find(roles.begin(), roles.end(), role) != roles.end();
 }
 
-std::size_t known_names(std::string_view row, char separator) {
-  std::vector<std::string_view> names;
-  if (!split(row, separator, names)) return 0;
-  return static_cast<std::size_t>(std::count_if(
-      names.begin(), names.end(), [](std::string_view name) { return find(name) != nullptr; }));
+Expected<StatedColumns> StatedColumns::of(const std::vector<std::string>& entries) {
+  StatedColumns out;
+  for (const std::string& entry : entries) {
+    const std::size_t equals = entry.rfind('=');
+    const auto name = trimmed(std::string_view(entry).substr(0, std::min(equals, entry.size())));
+    const auto known = equals == entry.npos ? std::string_view()
+                                            : trimmed(std::string_view(entry).substr(equals + 1));
+    if (name.empty() || (known != ignore && find(known) == nullptr)) {
+      std::string list;
+      for (const Known& k : known_columns) list += std::string(k.name) + ", ";
+      return fail("option columns: expected entries such as \"Soll mm = target_mm\", with one of " +
+                  list + "ignore; found " + shown(entry));
+    }
+    out.names_.emplace_back(name, known);
+  }
+  return out;
 }
 
-char find_separator(std::string_view row) {
+std::string_view StatedColumns::known(std::string_view name) const {
+  const auto it = std::find_if(names_.begin(), names_.end(),
+                               [&](const auto& one) { return one.first == trimmed(name); });
+  return it == names_.end() ? name : std::string_view(it->second);
+}
+
+bool StatedColumns::all_in(const std::vector<std::string_view>& row) const {
+  return std::all_of(names_.begin(), names_.end(), [&](const auto& one) {
+    return std::any_of(row.begin(), row.end(),
+                       [&](std::string_view name) { return trimmed(name) == one.first; });
+  });
+}
+
+std::string StatedColumns::list() const {
+  std::string out;
+  for (const auto& [name, known] : names_) out += (out.empty() ? "" : ", ") + shown(name);
+  return out;
+}
+
+std::size_t known_names(std::string_view row, char separator, const StatedColumns& stated) {
+  std::vector<std::string_view> names;
+  if (!split(row, separator, names)) return 0;
+  return static_cast<std::size_t>(
+      std::count_if(names.begin(), names.end(), [&](std::string_view name) {
+        const std::string_view known = stated.known(name);
+        return known == ignore || find(known) != nullptr;
+      }));
+}
+
+char find_separator(std::string_view row, const StatedColumns& stated) {
   char best = ',';
   for (const char separator : {';', '\t'})
-    if (known_names(row, separator) > known_names(row, best)) best = separator;
+    if (known_names(row, separator, stated) > known_names(row, best, stated)) best = separator;
   return best;
 }
 
-Expected<Header> parse_header(std::string_view row, const Expectation& e) {
+Expected<Header> parse_header(std::string_view row, const Expectation& e,
+                              const StatedColumns& stated) {
   Header header;
-  header.separator = find_separator(row);
+  header.separator = find_separator(row, stated);
   std::vector<std::string_view> names;
   if (!split(row, header.separator, names))
     return fail("header row: unterminated quoted field, or text after the closing quote");
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const Known* column = find(names[i]);
+    if (!stated.empty() && stated.known(names[i]) == ignore) {
+      header.roles.push_back(Role::ignored);
+      header.names.emplace_back(trimmed(names[i]));
+      continue;
+    }
+    const Known* column = find(stated.known(names[i]));
     if (column == nullptr && is_channel(names[i])) {
       const std::string name(names[i]);
       if (std::find(header.names.begin(), header.names.end(), name) != header.names.end())

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "nonio/sdk/error.h"
@@ -16,6 +17,7 @@ enum class Role : std::uint8_t {
   direction,
   target,
   reading,
+  ignored,  ///< a person stated that it is none of these
   time,
   material,
   air,
@@ -30,6 +32,24 @@ struct ChannelEnding {
 };
 inline constexpr ChannelEnding channel_endings[] = {
     {"_c", "degC"}, {"_rpm", "rpm"}, {"_pct", "%"}, {"_kw", "kW"}, {"_a", "A"}};
+
+/// What a person stated of columns with other names (option `columns`): the name in the file and
+/// the known name, "ignore" for none.
+class StatedColumns {
+ public:
+  /// Of entries such as "Soll mm = target_mm". An error if one has another form.
+  static Expected<StatedColumns> of(const std::vector<std::string>& entries);
+  bool empty() const { return names_.empty(); }
+  /// The known name; the same name where nothing is stated of it.
+  std::string_view known(std::string_view name) const;
+  /// Whether the row has all the names that are stated.
+  bool all_in(const std::vector<std::string_view>& row) const;
+  /// The names as a list, for messages.
+  std::string list() const;
+
+ private:
+  std::vector<std::pair<std::string, std::string>> names_{};
+};
 
 /// What the file is expected to hold.
 struct Expectation {
@@ -54,12 +74,13 @@ struct Header {
   bool comma_allowed() const { return separator != ','; }
 };
 
-/// The separator with which most names of the header row are known ones.
-char find_separator(std::string_view row);
+/// The separator with which most names of the header row are known or stated ones.
+char find_separator(std::string_view row, const StatedColumns& stated = {});
 
-/// How many names of the row are known ones.
-std::size_t known_names(std::string_view row, char separator);
+/// How many names of the row are known or stated ones.
+std::size_t known_names(std::string_view row, char separator, const StatedColumns& stated = {});
 
-Expected<Header> parse_header(std::string_view row, const Expectation& expectation);
+Expected<Header> parse_header(std::string_view row, const Expectation& expectation,
+                              const StatedColumns& stated = {});
 
 }  // namespace nonio::csv

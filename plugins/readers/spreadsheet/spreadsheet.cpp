@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "csv.h"
+#include "header.h"
 #include "nonio/sdk/format.h"
 #include "sheet.h"
 
@@ -13,11 +14,13 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-/// A row as a line of a file with tabs.
-std::string line_of(const Row& row) {
+/// A row as a line of a file with tabs and at least `width` fields: blank cells at the end of a row
+/// are not in the sheet.
+std::string line_of(const Row& row, std::size_t width = 0) {
   std::string out;
-  for (std::size_t k = 0; k < row.size(); ++k) {
+  for (std::size_t k = 0; k < std::max(row.size(), width); ++k) {
     if (k > 0) out += '\t';
+    if (k >= row.size()) continue;
     for (const char c : row[k]) out += c == '\t' || c == '\n' || c == '\r' ? ' ' : c;
   }
   return out;
@@ -29,9 +32,18 @@ bool is_blank(const Row& row) {
   });
 }
 
-/// Whether a row has the names of columns: those of csv, or those that the method declares.
-bool is_header(const Row& row, const Method* method) {
+/// Whose names begin a table: of csv, of the method, or stated by a person.
+struct Wanted {
+  const Method* method = nullptr;
+  csv::StatedColumns stated{};
+};
+
+/// Whether a row has the names of columns.
+bool is_header(const Row& row, const Wanted& wanted) {
   if (is_blank(row)) return false;
+  if (!wanted.stated.empty())
+    return wanted.stated.all_in(std::vector<std::string_view>(row.begin(), row.end()));
+  const Method* const method = wanted.method;
   if (method == nullptr || method->columns.empty()) return csv::recognises(line_of(row) + "\n");
   return std::any_of(row.begin(), row.end(), [&](const std::string& cell) {
     return std::any_of(method->columns.begin(), method->columns.end(), [&](const auto& column) {
@@ -45,10 +57,10 @@ struct Table {
   std::size_t first = 0, after = 0;  ///< rows, the header first
 };
 
-Table table_of(const Sheet& sheet, const Method* method) {
+Table table_of(const Sheet& sheet, const Wanted& wanted) {
   const auto& rows = sheet.rows();
   const auto header = std::find_if(rows.begin(), rows.end(),
-                                   [&](const Row& row) { return is_header(row, method); });
+                                   [&](const Row& row) { return is_header(row, wanted); });
   if (header == rows.end()) return {};
   const auto end = std::find_if(header, rows.end(), is_blank);
   return {&sheet, static_cast<std::size_t>(header - rows.begin()),
@@ -64,10 +76,12 @@ std::string names_of(const std::vector<Sheet>& sheets) {
 /// The table of the sheet that is named, or of the only one with readings.
 Expected<Table> chosen(const Book& book, const ReadInput& input) {
   const std::string wanted = input.options.text("sheet");
+  NONIO_TRY(auto stated, csv::StatedColumns::of(input.options.texts(csv::columns_option)));
+  const Wanted names{input.method, std::move(stated)};
   std::vector<Table> found;
   for (const Sheet& sheet : book.sheets) {
     if (!wanted.empty() && sheet.name != wanted) continue;
-    const Table table = table_of(sheet, input.method);
+    const Table table = table_of(sheet, names);
     if (table.sheet != nullptr) found.push_back(table);
   }
   if (found.size() == 1) return found.front();
@@ -82,11 +96,31 @@ Expected<Table> chosen(const Book& book, const ReadInput& input) {
                                       [&](const Sheet& s) { return s.name == wanted; }))
     return fail(option + ": there is no sheet \"" + wanted + "\"; found " + names_of(book.sheets));
   return fail("no row with the names of columns was found in " +
-              (wanted.empty() ? names_of(book.sheets) : "\"" + wanted + "\"") +
-              "; expected names such as target_mm and deviation_um");
+              (wanted.empty() ? names_of(book.sheets) : "\"" + wanted + "\"") + "; expected " +
+              (names.stated.empty() ? "names such as target_mm and deviation_um"
+                                    : names.stated.list() + " (option columns)"));
 }
 
 }  // namespace
+
+Expected<std::vector<Row>> first_rows(std::string_view bytes, std::size_t most) {
+  const auto book = is_ods(bytes) ? read_ods(bytes) : read_xlsx(bytes);
+  if (!book) return fail(book.error());
+  // The fullest sheet, from its widest row on: above it are titles.
+  const auto longest = std::max_element(
+      book->sheets.begin(), book->sheets.end(),
+      [](const Sheet& a, const Sheet& b) { return a.rows().size() < b.rows().size(); });
+  if (longest == book->sheets.end()) return std::vector<Row>();
+  const auto cells = [](const Row& row) {
+    return std::count_if(row.begin(), row.end(), [](const auto& cell) { return !cell.empty(); });
+  };
+  const auto& rows = longest->rows();
+  const auto first = std::max_element(
+      rows.begin(), rows.end(), [&](const Row& a, const Row& b) { return cells(a) < cells(b); });
+  return std::vector<Row>(first, rows.end() - first > static_cast<std::ptrdiff_t>(most)
+                                     ? first + static_cast<std::ptrdiff_t>(most)
+                                     : rows.end());
+}
 
 bool recognises(std::string_view head) { return head.starts_with("PK\x03\x04"); }
 
@@ -96,8 +130,9 @@ Expected<Observations> read(const ReadInput& input) {
   NONIO_TRY(const Table table, chosen(*book, input));
   const auto& rows = table.sheet->rows();
   std::string text;  // one line for each row, so that errors name rows of the sheet
+  const std::size_t width = rows[table.first].size();
   for (std::size_t r = 0; r < table.after; ++r)
-    text += (r < table.first ? "#" : line_of(rows[r])) + "\n";
+    text += (r < table.first ? "#" : line_of(rows[r], width)) + "\n";
   const ReadInput as_csv{.bytes = text,
                          .campaign = input.campaign,
                          .measurement = input.measurement,

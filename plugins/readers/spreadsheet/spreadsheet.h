@@ -14,6 +14,9 @@ bool recognises(std::string_view head);
 /// it, a blank row ends it. Lines of errors and readings are rows of the sheet. Options: `sheet`, the
 /// name of a sheet (default: the only one with such a row). Errors as of csv; a workbook that is damaged
 /// or encrypted; two sheets with readings.
+/// The first rows of the longest sheet, from the one with most cells on.
+Expected<std::vector<std::vector<std::string>>> first_rows(std::string_view bytes,
+                                                           std::size_t most);
 Expected<Observations> read(const ReadInput& input);
 
 }  // namespace nonio::spreadsheet

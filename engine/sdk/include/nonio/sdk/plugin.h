@@ -78,6 +78,10 @@ struct Reader {
   Expected<Observations> (*read)(const ReadInput&) = nullptr;
   /// Whether it also reads the columns that a method declares (`ReadInput::method`), of any kind.
   bool reads_columns = false;
+  /// Optional: the first rows of a table as text, the names of its columns first, for a person who
+  /// states what they are (option `columns`). At most `most` rows.
+  Expected<std::vector<std::vector<std::string>>> (*first_rows)(std::string_view bytes,
+                                                                std::size_t most) = nullptr;
 };
 
 /// The content of a file of readings, by the columns that a method declares. SI; NaN where a value
@@ -323,7 +327,7 @@ class Registry {
 };
 
 /// The version of this interface: its only definition.
-#define NONIO_SDK_VERSION 17
+#define NONIO_SDK_VERSION 18
 
 #define NONIO_STRING_(x) #x
 #define NONIO_STRING(x) NONIO_STRING_(x)
