@@ -89,9 +89,11 @@ std::vector<std::string> campaigns_in(const fs::path& site) {
 Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish) {
   std::error_code error;
   const bool is_campaign = fs::exists(wish.folder / config::manifest_name, error);
-  if (!is_campaign && campaigns_in(wish.folder).empty())
+  if (!is_campaign && !fs::exists(wish.folder / config::site_name, error) &&
+      campaigns_in(wish.folder).empty())
     return fail("there is no " + std::string(config::manifest_name) + " in " + wish.name +
-                " or in a folder below it: it is neither a campaign nor a site");
+                " or in a folder below it, and no " + config::site_name +
+                ": it is neither a campaign nor a site");
   NONIO_TRY(auto shells, shells_of(wish));
   NONIO_TRY(auto launcher, Launcher::start({wish.folder, wish.plugin_folders, wish.template_folders,
                                             wish.own_plugins, wish.version}));

@@ -16,6 +16,7 @@
 #include "campaign/evaluation/record.h"
 #include "live/campaign_service.h"
 #include "live/desk.h"
+#include "live/site_campaigns.h"
 #include "live/site_news.h"
 #include "live/site_run.h"
 #include "live/tool.h"
@@ -56,7 +57,18 @@ class SiteService : public Starting {
   ~SiteService() override { close(); }
 
   Expected<void> begin() override {
-    run_ = std::make_unique<SiteRun>(launcher_, wish_.out, [this] { tell("run"); });
+    campaigns_ = std::make_unique<SiteCampaigns>(
+        wish_.folder, wish_.out,
+        [this](std::vector<std::string> arguments) {
+          for (const std::string& folder : wish_.plugin_paths)
+            arguments.push_back(option("plugin-path", folder));
+          return call(arguments);
+        },
+        [this] { publish("campaigns"); });
+    run_ = std::make_unique<SiteRun>(launcher_, wish_.out, [this] {
+      if (!run_->is_running()) look_at_campaign();
+      publish("run");
+    });
     news_ = std::make_unique<SiteNews>(wish_.folder, wish_.out,
                                        [this](const std::string& what) { tell(what.c_str()); });
     return {};
@@ -86,9 +98,12 @@ class SiteService : public Starting {
   ToolEnd call(const std::vector<std::string>& arguments);
   std::vector<std::string> with_places(std::vector<std::string> arguments) const;
   std::optional<std::string> folder_of(const std::string& campaign) const;
+  bool is_campaign(const std::string& folder) const;
   std::string id_of(const std::string& folder) const;
   std::shared_ptr<Desk> desk(const std::string& campaign);
   void tell(const char* what);
+  void publish(const char* what);
+  void look_at_campaign();
 
   LiveWish wish_;
   Launcher launcher_;
@@ -97,10 +112,12 @@ class SiteService : public Starting {
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Desk>> desks_;
   std::vector<std::string> order_;  ///< of the desks, the one used last behind
+  std::string run_folder_;          ///< of the campaign that was run last; empty: of all
   Events events_;
   std::atomic<std::uint64_t> version_ = 1;
   std::set<int> channels_;  ///< of verbs at work
   std::atomic<bool> over_ = false;
+  std::unique_ptr<SiteCampaigns> campaigns_;
   std::unique_ptr<SiteRun> run_;
   std::unique_ptr<SiteNews> news_;  ///< its thread uses all of the above
 };
@@ -118,6 +135,7 @@ void SiteService::add_routes() {
                      most_certificate});
   for (const char* path : {"/api/ack", "/api/event", "/api/release", "/api/run", "/api/run/cancel"})
     routes_.push_back({Method::post, path, false, true, of_json});
+  for (Route& route : SiteCampaigns::routes()) routes_.push_back(std::move(route));
   for (Route& route : Desk::routes("/c/{campaign}")) routes_.push_back(std::move(route));
 }
 
@@ -130,22 +148,43 @@ void SiteService::close() {
   for (const int channel : channels_) ::shutdown(channel, SHUT_RDWR);
 }
 
+/// The one that was run last.
+void SiteService::look_at_campaign() {
+  std::string folder;
+  {
+    const std::lock_guard lock(mutex_);
+    folder = run_folder_;
+  }
+  if (!folder.empty()) campaigns_->index().look_at(folder);
+  campaigns_->index().look_soon();
+}
+
 void SiteService::tell(const char* what) {
+  campaigns_->index().look_soon();
+  publish(what);
+}
+
+void SiteService::publish(const char* what) {
   const std::uint64_t version = ++version_;
   events_.publish({version, what, "", storage::dump_line({{"version", version}})});
 }
 
 /// Below the site, of a campaign that is named by its folder or by the id of its results.
 std::optional<std::string> SiteService::folder_of(const std::string& campaign) const {
-  const auto all = campaigns_in(wish_.folder);
-  const auto is_there = [&](const std::string& folder) {
-    return std::find(all.begin(), all.end(), folder) != all.end();
-  };
-  if (is_there(campaign)) return campaign;
+  if (is_campaign(campaign)) return campaign;
   if (wish_.out.empty() || !config::is_campaign_id(campaign)) return std::nullopt;
   const auto record = evaluation::read_record(storage::results_folder(wish_.out, campaign));
-  if (record && is_there(record->folder)) return record->folder;
+  if (record && is_campaign(record->folder)) return record->folder;
   return std::nullopt;
+}
+
+/// Whether a folder below the site, and not above or beyond a link, has a manifest.
+bool SiteService::is_campaign(const std::string& folder) const {
+  if (campaigns_->index().has(folder)) return true;
+  const auto path = storage::path_inside(wish_.folder, folder);
+  if (folder.empty() || !path || fs::path(folder).lexically_normal() != folder) return false;
+  std::error_code error;
+  return fs::is_regular_file(*path / config::manifest_name, error);
 }
 
 /// The id that its manifest gives; empty if it gives none.
@@ -159,8 +198,7 @@ std::shared_ptr<Desk> SiteService::desk(const std::string& campaign) {
   if (over_) return nullptr;
   std::erase(order_, campaign);
   if (!desks_.contains(campaign)) {
-    const auto all = campaigns_in(wish_.folder);
-    if (std::find(all.begin(), all.end(), campaign) == all.end()) return nullptr;
+    if (!is_campaign(campaign)) return nullptr;
     if (order_.size() == most_desks) {
       desks_[order_.front()]->close();
       desks_.erase(order_.front());
@@ -183,6 +221,12 @@ Answer SiteService::answer(const Request& request) {
     if (one == nullptr) return refused(404, "no_campaign", {{"campaign", request.names.front()}});
     return one->answer(path.substr(below.size()),
                        request.names.size() == 2 ? request.names.back() : "", request);
+  }
+  if (const std::string what = path.substr(root.size());
+      what == "campaigns" || what == "machines" || what == "records" || what == "preview") {
+    Answer out = campaigns_->answer(what, request);
+    if (request.route.writes && out.status == 200) tell("campaigns");
+    return out;
   }
   if (request.route.method == Method::get) return get(path, request);
   return post(path.substr(root.size()), request);
@@ -289,7 +333,7 @@ Answer SiteService::state() {
                {"edit", wish_.edit},
                {"site", wish_.name},
                {"out", wish_.out.string()},
-               {"campaigns", campaigns_in(wish_.folder)},
+               {"campaigns", campaigns_->index().size()},
                {"running", run_->is_running()},
                {"night",
                 {{"state", run.state},
@@ -396,7 +440,9 @@ Answer SiteService::release(const Json& body) {
   for (const auto& [finding, why] : reasons.items())
     arguments.push_back(option("reason", finding + "=" + why.get<std::string>()));
   arguments.push_back((wish_.folder / *folder).string());
-  return entered(with_places(std::move(arguments)));
+  Answer out = entered(with_places(std::move(arguments)));
+  campaigns_->index().look_at(*folder);
+  return out;
 }
 
 Answer SiteService::verify(const Request& request) {
@@ -417,13 +463,15 @@ Answer SiteService::verify(const Request& request) {
 Answer SiteService::run(const Json& body) {
   if (wish_.out.empty()) return refused(409, "no_out");
   std::vector<std::string> arguments{"run", option("out", wish_.out.string())};
-  std::string id;
+  std::string id, of_one;
   if (body.contains("campaign")) {
     const auto folder = folder_of(body["campaign"].get<std::string>());
     if (!folder)
       return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
     id = id_of(*folder);
-    arguments.push_back(option("only", *folder));
+    of_one = *folder;
+    // The first run of a site is of all its campaigns.
+    if (news_->run().last != 0) arguments.push_back(option("only", *folder));
   }
   arguments.push_back(wish_.folder.string());
   const std::string command = command_line(arguments);
@@ -431,6 +479,10 @@ Answer SiteService::run(const Json& body) {
   const auto begun = run_->begin(with_places(std::move(arguments)), command, id);
   if (!begun) return refusal(503, begun.error().message);
   if (!*begun) return refused(409, "run_at_work");
+  {
+    const std::lock_guard lock(mutex_);
+    run_folder_ = of_one;
+  }
   tell("run");
   return answered(202, {{"version", version_.load()}, {"command", command}});
 }

@@ -240,8 +240,9 @@ class Describing {
   std::optional<std::int64_t> ahead_{};
 };
 
-/// A name that is a file's everywhere, and one machine's only.
-std::string file_of(const std::string& machine) {
+}  // namespace
+
+std::string page_of_machine(const std::string& machine) {
   std::string out;
   for (const char c : machine) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -251,8 +252,6 @@ std::string file_of(const std::string& machine) {
   if (out != machine) out += "-" + storage::sha256(machine).substr(0, 8);
   return out + ".html";
 }
-
-}  // namespace
 
 Quantity quantity_of_unit(const std::string& symbol) {
   for (const Quantity q : {Quantity::number,
@@ -387,7 +386,7 @@ reports::MachineHistory describe(const AssessedMachine& machine, const fs::path&
   for (const config::Event& e : machine.events)
     m.events.push_back({e.date, e.axis, e.kind, e.text});
   m.tables = tables_kept(machine);
-  m.due = due, m.why_due = why, m.file = file_of(named.name);
+  m.due = due, m.why_due = why, m.file = page_of_machine(named.name);
   const Describing describing(machine, out, due, today);
   for (const FollowedSeries& s : machine.followed) m.series.push_back(describing.of(s));
   for (const ShownSeries& s : machine.shown) m.series.push_back(describing.of(s));

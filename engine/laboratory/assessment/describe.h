@@ -18,6 +18,10 @@ Quantity quantity_of_unit(const std::string& symbol);
 /// From the printed unit to SI, so that `printed` gives the number back.
 double si(double shown, Quantity quantity);
 
+/// The page of a machine in OUT/machines: a name that is a file's everywhere, and one machine's
+/// only.
+std::string page_of_machine(const std::string& machine);
+
 /// Where the results of campaigns are, relative to the output folder: the report, else the folder's
 /// results.json.
 class Links {

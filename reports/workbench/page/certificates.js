@@ -108,6 +108,11 @@ const certificates = (() => {
       info.length ? el("details", {}, el("summary", {}, say("release.notes", {n: info.length})), el("ul", {}, ...info.map((f) => el("li", {}, `${keyOf(f)}: ${entries.visible(f.said || f.title)}`)))) : null,
       edit ? draftForm(one, act) : el("ul", {}, ...one.findings.filter((f) => f.severity === "attention").map((f) => el("li", {}, `${keyOf(f)}: ${entries.visible(f.said || f.title)}`))));
   }
+  /// The verdict on a file of the server, in words.
+  async function verdictOf(path) {
+    const file = await net.ask(path, {raw: true}), answer = await net.ask("/api/verify", {body: file, type: types.pdf});
+    return verdict({answer, state: "checked"});
+  }
   const results = () => el("ul", {class: "plain", id: "verified"}, ...verified.map(result));
-  return {drop, draft, results};
+  return {drop, draft, results, verdictOf};
 })();

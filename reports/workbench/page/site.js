@@ -4,8 +4,9 @@
     by("app").replaceChildren(el("main", {class: "lost"}, el("h1", {}, say("shell.title")), el("p", {role: "alert"}, say("net.no_token"))));
     return;
   }
-  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asking = false, again = false, stale = true, dismissed = "", shown = "", released = null, wanted = "";
-  const own = ["campaigns", "certificates", "entries"];
+  let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asking = false, again = false, stale = true, dismissed = "", shown = "", released = null;
+  const own = ["campaigns", "machines", "certificates", "entries"];
+  const isOwn = (name) => own.includes(name) || (name === "new" && (!state || state.edit)) || name.startsWith("campaign/");
   const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
   let pages = new Map(); // name: its text
   let links = []; // of the night's own pages, in its words
@@ -13,7 +14,7 @@
   // ---- where we are: stands in the address, as do the filters of the lines ----
   function view() {
     const to = new URLSearchParams(location.hash.slice(1)).get("to");
-    return to && (own.includes(to) || isPage(to)) ? to : state && !state.out ? "campaigns" : "index.html";
+    return to && (isOwn(to) || isPage(to)) ? to : state && (!state.out || !state.night.last) ? "campaigns" : "index.html";
   }
   const hrefOf = (name) => (name === "index.html" ? "#" + filters : "#to=" + encodeURIComponent(name));
   /// "../index.html" of "machines/S-1.html".
@@ -162,28 +163,24 @@
   }
 
   // ---- own pages ----
-  function campaignsView() {
-    const most = 200, list = el("ul", {class: "plain campaigns", id: "campaign-list"}), count = el("p", {class: "muted", role: "status"});
-    const show = () => {
-      const all = state.campaigns.filter((c) => c.toLowerCase().includes(wanted.toLowerCase()));
-      list.replaceChildren(...all.slice(0, most).map((c) => el("li", {}, el("b", {}, c), " ", ...campaignButtons(c, c))));
-      count.textContent = all.length > most ? say("site.first", {most, n: all.length}) : say("site.number", {n: all.length, all: state.campaigns.length});
-    };
-    const input = el("input", {type: "search", id: "campaign-filter", value: wanted, "data-key": "campaign-filter", oninput: () => {
-      wanted = input.value;
-      show();
-    }});
-    show();
-    return [el("h1", {tabindex: -1}, say("site.campaigns")), state.out ? null : el("p", {class: "note"}, say("site.no_out")),
-      state.edit && state.out ? el("section", {"aria-labelledby": "all-title"}, el("h2", {id: "all-title"}, say("run.all_title")), el("p", {class: "muted"}, say("run.all_what")),
-        el("p", {}, el("button", {type: "button", id: "run-all", "data-key": "run-all", disabled: state.running, onclick: () => runAgain("")}, say("run.all")))) : null,
-      el("section", {"aria-labelledby": "each-title"}, el("h2", {id: "each-title"}, say("site.each")), el("p", {}, el("label", {}, say("site.filter") + " ", input)), count, list)].filter(Boolean);
+  const tools = () => ({edit: state.edit, out: state.out, running: state.running, buttons: campaignButtons, fetchFile, runAll: () => runAgain(""), complain, drop: measure.drop, release, released, releasedNote});
+  /// A new campaign is shown, and evaluated at once where there is a place for its results.
+  async function created(answer) {
+    told(answer);
+    if (state.out) await act("run", {campaign: answer.campaign}, say("run.begun"));
+    location.hash = "#to=" + encodeURIComponent("campaign/" + answer.campaign);
   }
+  const releasedNote = () => el("p", {class: "note", id: "released", tabindex: -1, role: "status"}, released.approved ? say("release.approved") : say("release.issued", {number: released.number}), " ",
+    ...(released.files || []).flatMap((f) => [el("button", {type: "button", class: "link", "data-key": "issued-" + f, onclick: () => fetchFile(f)}, f.split("/").pop()), " "]),
+    released.verdict ? el("span", {id: "released-verdict", class: "block"}, say("release.verified", {verdict: released.verdict})) : null);
   async function release(body) {
     const answer = await net.ask("/api/release", {body});
     told(answer);
     if (!["issued", "approved"].includes(answer.state)) throw Object.assign(new Error(net.program(answer.why || answer.state)), {answer});
-    released = answer.state === "issued" ? {number: answer.number, files: answer.files.map((f) => f.split("/").slice(-2).join("/"))} : {approved: true};
+    released = answer.state === "issued" ? {folder: body.campaign, number: answer.number, files: answer.files.map((f) => f.split("/").slice(-2).join("/"))} : {folder: body.campaign, approved: true};
+    const pdf = (released.files || []).find((f) => f.endsWith(".pdf"));
+    // What was issued is verified as its recipient would verify it.
+    if (pdf) released.verdict = await certificates.verdictOf("/site/results/" + pdf.split("/").map(encodeURIComponent).join("/")).catch((e) => e.message);
     await refresh();
     if (by("released")) by("released").focus();
   }
@@ -193,8 +190,7 @@
     return [el("h1", {tabindex: -1}, say("site.certificates")),
       el("section", {"aria-labelledby": "verify-title"}, el("h2", {id: "verify-title"}, say("verify.title")), el("p", {class: "muted"}, say("verify.what")), certificates.drop(drawResults), certificates.results()),
       el("section", {"aria-labelledby": "drafts-title"}, el("h2", {id: "drafts-title"}, say("release.title", {n: drafts.length})),
-        released ? el("p", {class: "note", id: "released", tabindex: -1, role: "status"}, released.approved ? say("release.approved") : say("release.issued", {number: released.number}), " ",
-          ...(released.files || []).map((f) => el("button", {type: "button", class: "link", onclick: () => fetchFile(f)}, f.split("/").pop()))) : null,
+        released ? releasedNote() : null,
         drafts.length === 0 ? el("p", {}, say("release.none")) : el("p", {class: "muted"}, state.edit ? say("release.how") : say("site.read_only_release")),
         el("ul", {class: "plain"}, ...drafts.map((d) => certificates.draft(d, state.edit, fetchFile, release))))];
   }
@@ -206,8 +202,8 @@
   // ---- drawing ----
   function drawHead() {
     const n = state.night, r = state.run;
-    fill(by("nav"), ...[...(state.out && n.last ? links : []), ...own.map((name) => [name, say("site." + name)])].map(([to, label]) =>
-      el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to ? "page" : null}, label)));
+    fill(by("nav"), ...[...own.slice(0, 2).map((name) => [name, say("site." + name)]), ...(state.out && n.last ? links : []), ...own.slice(2).map((name) => [name, say("site." + name)])].map(([to, label]) =>
+      el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to || (to === "campaigns" && /^(new$|campaign\/)/.test(view())) ? "page" : null}, label)));
     const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.night, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.night}) : n.state === "planned" ? say("night.planned", {n: n.night}) : "";
     fill(by("night"), night_ ? el("p", {class: "note", id: "night-says"}, night_) : null);
     fill(by("rights"), state.edit ? null : el("p", {class: "muted", id: "read-only"}, say("site.read_only")));
@@ -247,7 +243,9 @@
   async function draw(moved = false) {
     const name = view();
     if (name === "index.html" && state.night.last === 0) return put([el("h1", {tabindex: -1}, say("site.morning")), el("p", {}, say("night.none"))], name, moved);
-    const content = name === "campaigns" ? campaignsView() : name === "certificates" ? await certificatesView() : name === "entries" ? await entriesView() : await night(name);
+    if (name === "new" && shown === "new" && !moved) return;
+    const content = name === "campaigns" ? await campaigns.list(tools()) : name === "machines" ? await campaigns.machines() : name === "new" ? measure.view({out: state.out, created}) :
+      name.startsWith("campaign/") ? await campaigns.one(name.slice("campaign/".length), tools()) : name === "certificates" ? await certificatesView() : name === "entries" ? await entriesView() : await night(name);
     if (name !== view()) return;
     put(content, name, moved);
   }
@@ -294,12 +292,12 @@
     el("header", {}, el("nav", {id: "nav", "aria-label": say("site.pages")}), el("p", {class: "muted", id: "beside"})),
     el("div", {id: "night", role: "status"}), el("div", {id: "run", role: "status"}), el("div", {id: "rights"}),
     el("main", {id: "main"}, el("h1", {}, say("site.reading"))),
-    el("footer", {id: "footer", hidden: true}, el("span", {id: "command-label"}, say("site.did")), " ", el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"})), ...box.places());
+    el("footer", {id: "footer", hidden: true}, el("details", {}, el("summary", {id: "command-label"}, say("site.did")), el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"}))), ...box.places());
   document.body.className = "site";
 
   let soon = 0, all = false;
   function event(e) {
-    all = all || e.type !== "run";
+    all = all || !["run", "campaigns"].includes(e.type);
     clearTimeout(soon);
     soon = setTimeout(() => {
       const fresh = all;

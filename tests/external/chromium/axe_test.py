@@ -123,13 +123,13 @@ class Axe(live_browser.LivePage):
             server = self.serve(site, "--out", str(out), "--edit")
             self.open(server)
             self.ready("index.html")
-            for name in (*pages, "campaigns", "entries", "certificates"):
+            for name in (*pages, "campaigns", "machines", "entries", "certificates"):
                 self.d.execute_script("location.hash = arguments[0]", "" if name == "index.html" else "#to=" + urllib.parse.quote(name, safe=""))
                 self.ready(name)
                 self.js("document.querySelectorAll('details').forEach((d) => d.open = true)")
                 self.judge(f"{name} served", language)
         self.assertGreater(kinds, 0, "pages of a model")
-        self.assertEqual(2 * len(LANGUAGES) * (5 + kinds + 8), self.seen)
+        self.assertEqual(2 * len(LANGUAGES) * (5 + kinds + 9), self.seen)
 
 
 if __name__ == "__main__":

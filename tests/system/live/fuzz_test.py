@@ -19,13 +19,15 @@ REQUESTS = int(os.environ.get("NONIO_FUZZ_REQUESTS", "700"))
 HEADERS = ("Content-Security-Policy: default-src 'none'", "X-Content-Type-Options: nosniff", "X-Frame-Options: DENY", "Referrer-Policy: no-referrer",
            "Cross-Origin-Resource-Policy: same-origin", "Cross-Origin-Opener-Policy: same-origin")
 CAMPAIGN = "/c/02-constant-reversal"
-GETS = ["/", "/morning.js", "/api/site/state", "/site/{}", "/site/machines/{}", "/site/results/{}/{}", "/c/{}/", "/c/{}/api/state"] + \
+GETS = ["/", "/morning.js", "/api/site/state", "/site/{}", "/site/machines/{}", "/site/results/{}/{}", "/c/{}/", "/c/{}/api/state",
+        "/api/campaigns?search={}&state={}&page={}&size={}", "/api/machines", "/api/records"] + \
     [CAMPAIGN + "/api/" + p for p in ("state", "parts/{}/fit", "parts/{}/explain", "parts/{}/series?x={}&y={}&x0={}&px={}", "parts/{}/readings?rows={}",
                                       "parts/{}/readings?from={}&count={}", "page/{}", "save")]
 POSTS = [CAMPAIGN + "/api/" + p for p in ("model", "undo", "redo", "name", "goto", "exclude", "include", "period", "cancel")] + ["/api/open", "/api/run/cancel"]
 VERBS = ["/api/ack", "/api/event", "/api/release"]
+FILES = ["/api/preview", "/api/campaigns"]
 KEYS = ["add", "drop", "model", "n", "name", "part", "rows", "why", "axis", "period_mm", "job", "campaign", "finding", "machine", "until", "by", "kind", "text",
-        "reasons", "as", "withdraw", "date", "value"]
+        "reasons", "as", "withdraw", "date", "value", "columns", "values", "axis.from", "campaign.date", "machine.maker"]
 
 
 class Fuzz(LiveTest):
@@ -65,6 +67,15 @@ class Fuzz(LiveTest):
         data = json.dumps({r.choice(KEYS): self.value() for _ in range(r.randrange(5))}).encode()
         return data[:r.randrange(len(data) + 1)] if kind == 2 else data
 
+    def file(self):
+        """A line of JSON and bytes, most of them as a page would send them."""
+        r = self.random
+        form = {"name": r.choice(["x.csv", "x.xlsx", self.text()]), "axis": r.choice(["X", "C", self.text()]), "columns": self.value(), "values": {r.choice(KEYS): self.value() for _ in range(4)}}
+        rows = b"run,direction,target_mm,deviation_um\n1,+,0,1\n1,-,0,2\n"
+        for _ in range(r.randrange(3)):
+            form.pop(r.choice(list(form)), None) if form else None
+        return json.dumps(form if r.random() < 0.9 else self.value()).encode("utf-8", "replace") + b"\n" + r.choice([rows, b"", b"PK\x03\x04" + bytes(r.randrange(256) for _ in range(40))])
+
     def place(self, path):
         r = self.random
         escape = lambda text: "".join(c if c.isalnum() or (r.random() < 0.1 and " " < c < "\x7f") else "".join(f"%{b:02X}" for b in c.encode("utf-8", "replace")) for c in text)
@@ -74,12 +85,12 @@ class Fuzz(LiveTest):
         """Bytes, and whether the head is as it should be."""
         r, s = self.random, self.server
         post = r.random() < 0.5
-        path = r.choice(VERBS) if r.random() < 0.03 else self.place(r.choice(POSTS if post else GETS))
-        post = post or path in VERBS
-        body = self.body() if post else b""
+        path = r.choice(VERBS + FILES) if r.random() < 0.03 else self.place(r.choice(POSTS if post else GETS))
+        post = post or path in VERBS + FILES
+        body = self.file() if path in FILES else self.body() if post else b""
         fields = [f"Host: 127.0.0.1:{s.port}", f"X-Nonio-Token: {s.token}"]
         if post:
-            fields += ["Content-Type: application/json", f"Content-Length: {len(body)}"]
+            fields += ["Content-Type: application/" + ("octet-stream" if path in FILES else "json"), f"Content-Length: {len(body)}"]
         head = "\r\n".join([f"{'POST' if post else 'GET'} {path} HTTP/1.1", *fields]).encode("utf-8", "replace") + b"\r\n\r\n"
         if r.random() < 0.35:  # spoiled, but for the empty line at its end
             head = bytearray(head[:-4])
@@ -126,6 +137,9 @@ class Fuzz(LiveTest):
             self.assertGreater(len(seen), 3, "nothing but refusals was tried")
             self.assertEqual(s.get("/api/site/state")["schema"], "nonio-live-site/1")
             self.assertNotIn("mistake", s.words())
+            # What was made is an ordinary campaign; nothing else was.
+            names = {p.name for p in self.small.iterdir()} - {"site.toml", "02-constant-reversal", "acknowledged.toml", "events.toml", "history.sqlite", "certificates.sqlite"}
+            self.assertEqual([], [n for n in names if not (self.small / n / "campaign.toml").is_file()])
 
     def test_bodies_have_a_limit_on_every_route(self):
         with Server(self.small, "--edit") as self.server:

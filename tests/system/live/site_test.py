@@ -45,7 +45,7 @@ class Sites(LiveTest):
             self.assertEqual({k: got[k] for k in wanted}, wanted)
             self.assertIn("nonio status --actions", got["command"])
             state = s.get("/api/site/state")
-            self.assertEqual(state["campaigns"], ["02-constant-reversal", "03-opposed-sinusoids"])
+            s.until("/api/campaigns", lambda a: [c["folder"] for c in a["campaigns"]] == ["02-constant-reversal", "03-opposed-sinusoids"], "listed")
             self.assertEqual(state["night"], {"state": "complete", "night": 1, "date": DATE, "last": 1, "last_date": DATE})
             pages = [p.relative_to(self.out) for p in (*self.out.glob("*.html"), *self.out.glob("machines/*.html"), self.out / "due.ics")]
             self.assertGreater(len(pages), 5)

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "live/site_campaigns.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "campaign/config/machines.h"
+#include "laboratory/assessment/describe.h"
+#include "live/campaign_form.h"
+#include "live/session.h"
+#include "platform/storage/files.h"
+#include "platform/storage/scratch_folder.h"
+
+namespace nonio::live {
+namespace fs = std::filesystem;
+using storage::Json;
+
+namespace {
+
+constexpr const char* of_file = "application/octet-stream";
+constexpr std::size_t most_dropped = 32 << 20;
+
+Answer answered(const Json& json) { return {200, "application/json", storage::dump_line(json)}; }
+
+Json to_json(const ListedCampaign& c) {
+  Json json = {{"folder", c.folder}, {"id", c.id}, {"state", c.state}};
+  for (const auto& [name, text] : {std::pair{"day", &c.day},
+                                   {"customer", &c.customer},
+                                   {"place", &c.place},
+                                   {"machine", &c.machine},
+                                   {"model", &c.model},
+                                   {"verdict", &c.verdict},
+                                   {"certificate", &c.certificate},
+                                   {"message", &c.message}})
+    if (!text->empty()) json[name] = *text;
+  json["draft"] = c.draft;
+  json["changed"] = c.changed;
+  json["files"] = c.files;
+  return json;
+}
+
+std::size_t number_of(const Request& request, const char* name, std::size_t otherwise) {
+  const auto text = request.query(name);
+  if (!text) return otherwise;
+  std::size_t number = 0;
+  const auto read = std::from_chars(text->data(), text->data() + text->size(), number);
+  return read.ec == std::errc() && read.ptr == text->data() + text->size() ? number : otherwise;
+}
+
+/// Those of the keys that begin with one of these, as an object.
+Json values_with(const ListedCampaign& c, std::initializer_list<const char*> beginnings) {
+  Json out = Json::object();
+  for (const auto& [key, text] : c.values)
+    if (std::any_of(beginnings.begin(), beginnings.end(),
+                    [&](const char* beginning) { return key.starts_with(beginning); }))
+      out[key] = text;
+  return out;
+}
+
+std::string value_of(const ListedCampaign& c, const std::string& key) {
+  const auto found = c.values.find(key);
+  return found == c.values.end() ? std::string() : found->second;
+}
+
+std::string joined(std::initializer_list<std::string> texts) {
+  std::string out;
+  for (const std::string& one : texts)
+    if (!one.empty()) out += (out.empty() ? "" : " ") + one;
+  return out;
+}
+
+}  // namespace
+
+SiteCampaigns::SiteCampaigns(fs::path site, fs::path out, Call call, std::function<void()> changed)
+    : site_(std::move(site)),
+      out_(std::move(out)),
+      call_(std::move(call)),
+      index_(site_, out_, std::move(changed)) {}
+
+std::vector<Route> SiteCampaigns::routes() {
+  return {{Method::get, "/api/campaigns"},
+          {Method::get, "/api/machines"},
+          {Method::get, "/api/records"},
+          {Method::post, "/api/preview", false, false, of_file, most_dropped},
+          {Method::post, "/api/campaigns", false, true, of_file, most_dropped}};
+}
+
+Answer SiteCampaigns::answer(const std::string& what, const Request& request) {
+  if (request.route.method == Method::post)
+    return what == "preview" ? preview(request) : create(request);
+  return what == "campaigns" ? list(request) : what == "machines" ? machines() : records();
+}
+
+Answer SiteCampaigns::list(const Request& request) const {
+  constexpr std::size_t most = 200;
+  CampaignQuery query{request.query("search").value_or(""), request.query("state").value_or("")};
+  query.page = number_of(request, "page", 0);
+  query.size = std::clamp<std::size_t>(number_of(request, "size", query.size), 1, most);
+  const CampaignPage page = index_.find(query);
+  Json all = Json::array();
+  for (const ListedCampaign& c : page.campaigns) all.push_back(to_json(c));
+  return answered({{"schema", "nonio-live-campaigns/1"},
+                   {"found", page.found},
+                   {"all", page.all},
+                   {"complete", page.complete},
+                   {"page", query.page},
+                   {"size", query.size},
+                   {"campaigns", std::move(all)}});
+}
+
+/// By name, each with its newest campaign.
+Answer SiteCampaigns::machines() const {
+  struct Machine {
+    Json json;
+    std::size_t campaigns = 0;
+  };
+  std::map<std::string, Machine> found;
+  index_.each([&](const ListedCampaign& c) {
+    if (c.machine.empty()) return;
+    Machine& m = found[c.machine];
+    if (m.campaigns++ > 0) return;
+    m.json = {{"machine", c.machine},   {"maker", value_of(c, "machine.maker")},
+              {"model", c.model},       {"serial", value_of(c, "machine.serial")},
+              {"customer", c.customer}, {"day", c.day},
+              {"state", c.state},       {"verdict", c.verdict}};
+  });
+  Json all = Json::array();
+  for (auto& [name, m] : found) {
+    m.json["campaigns"] = m.campaigns;
+    const std::string page = assessment::page_of_machine(name);
+    std::error_code error;
+    if (!out_.empty() && fs::is_regular_file(out_ / "machines" / page, error))
+      m.json["page"] = "machines/" + page;
+    all.push_back(std::move(m.json));
+  }
+  return answered({{"schema", "nonio-live-machines/1"}, {"machines", std::move(all)}});
+}
+
+/// Of each customer, machine, instrument and stated table the newest campaign.
+Answer SiteCampaigns::records() const {
+  Json customers = Json::array(), machines = Json::array(), instruments = Json::array(),
+       columns = Json::array();
+  std::set<std::string> seen;
+  const auto is_new = [&](const std::string& kind, const std::string& name) {
+    return !name.empty() && seen.insert(kind + name).second;
+  };
+  index_.each([&](const ListedCampaign& c) {
+    const std::string instrument =
+        joined({value_of(c, "instrument.maker"), value_of(c, "instrument.model"),
+                value_of(c, "instrument.serial")});
+    if (is_new("customer ", c.customer))
+      customers.push_back({{"name", c.customer}, {"values", values_with(c, {"campaign."})}});
+    if (is_new("machine ", c.machine))
+      machines.push_back(
+          {{"name", c.machine}, {"values", values_with(c, {"campaign.", "machine."})}});
+    if (is_new("instrument ", instrument))
+      instruments.push_back({{"name", instrument},
+                             {"values", values_with(c, {"instrument.", "environment.",
+                                                        "certificate.", "campaign.operator"})}});
+    std::string names;
+    for (const std::string& one : c.columns) names += one + "\n";
+    if (is_new("columns ", names)) columns.push_back(c.columns);
+  });
+  if (const auto records = config::read_machines(site_))
+    for (const config::RecordFile& file : *records) {
+      if (!file.record || !is_new("machine ", file.asset)) continue;
+      const config::MachineRecord& r = *file.record;
+      machines.push_back({{"name", r.asset},
+                          {"values",
+                           {{"machine.asset", r.asset},
+                            {"machine.maker", r.maker},
+                            {"machine.model", r.model},
+                            {"machine.serial", r.serial},
+                            {"machine.control", r.control}}}});
+    }
+  return answered({{"schema", "nonio-live-records/1"},
+                   {"customers", std::move(customers)},
+                   {"machines", std::move(machines)},
+                   {"instruments", std::move(instruments)},
+                   {"columns", std::move(columns)}});
+}
+
+/// `nonio check FILE --json` on a copy that is removed at once.
+Answer SiteCampaigns::preview(const Request& request) {
+  const auto file = dropped_file(request.body);
+  if (!file) return file.error();
+  auto columns = column_options(file->form);
+  if (!columns) return columns.error();
+  const storage::ScratchFolder folder("live");
+  if (folder.path().empty()) return refused(503, "no_scratch");
+  if (const auto kept = storage::publish(folder.path(), {{file->name, file->bytes}}); !kept)
+    return refusal(503, kept.error().message);
+  std::vector<std::string> arguments{"check", "--json"};
+  arguments.insert(arguments.end(), columns->begin(), columns->end());
+  arguments.push_back((folder.path() / file->name).string());
+  const ToolEnd end = call_(std::move(arguments));
+  const Json out = Json::parse(end.out, nullptr, false);
+  return out.is_object() ? answered(out) : refusal(422, end.errors);
+}
+
+/// A new empty folder of the site with this name, or the name with a number. Whoever makes the
+/// folder has it: another request gets the next number.
+tl::expected<std::string, Answer> SiteCampaigns::take_folder(const std::string& id) {
+  constexpr int most = 1000;
+  for (int n = 1; n <= most; ++n) {
+    const std::string name = n == 1 ? id : id + "-" + std::to_string(n);
+    std::error_code error;
+    if (fs::create_directory(site_ / name, error)) return name;
+    if (error)
+      return tl::unexpected(refusal(503, (site_ / name).string() + ": " + error.message()));
+  }
+  return tl::unexpected(refused(409, "folder_taken", {{"campaign", id}}));
+}
+
+/// `nonio new campaign`: nothing is left of a campaign that it refuses.
+Answer SiteCampaigns::create(const Request& request) {
+  const auto file = dropped_file(request.body);
+  if (!file) return file.error();
+  auto options = campaign_options(file->form);
+  if (!options) return options.error();
+  const storage::ScratchFolder scratch("live");
+  if (scratch.path().empty()) return refused(503, "no_scratch");
+  if (const auto kept = storage::publish(scratch.path(), {{file->name, file->bytes}}); !kept)
+    return refusal(503, kept.error().message);
+  const auto name = take_folder(proposed_id(file->form));
+  if (!name) return name.error();
+  std::vector<std::string> arguments{"new", "campaign", (site_ / *name).string(), "--json"};
+  arguments.insert(arguments.end(), options->begin(), options->end());
+  std::string command = "nonio";
+  for (const std::string& one : arguments)
+    if (one != "--json") command += " " + quoted_for_shell(one);
+  const std::string axis = file->form.value("axis", "");
+  command += " " + quoted_for_shell("--file=" + axis + "=" + file->name);
+  arguments.push_back("--file=" + axis + "=" + (scratch.path() / file->name).string());
+  const ToolEnd end = call_(std::move(arguments));
+  if (end.status != 0) {
+    std::error_code ignored;
+    fs::remove(site_ / *name, ignored);  // only while it is empty
+    return refusal(422, end.errors);
+  }
+  index_.look_at(*name);
+  return answered({{"campaign", *name}, {"command", command}});
+}
+
+}  // namespace nonio::live

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "live/campaign_index.h"
+#include "live/service.h"
+#include "live/tool.h"
+
+namespace nonio::live {
+
+/// The campaigns of a site on its page: lists, what is known for a form, a dropped file as it would
+/// be read, and a new campaign. Requests of several threads.
+class SiteCampaigns {
+ public:
+  /// `call` runs a verb of this program; `changed`: something of the lists is new.
+  using Call = std::function<ToolEnd(std::vector<std::string>)>;
+  SiteCampaigns(std::filesystem::path site, std::filesystem::path out, Call call,
+                std::function<void()> changed);
+
+  static std::vector<Route> routes();
+  /// `what`: the path after /api/.
+  Answer answer(const std::string& what, const Request& request);
+  CampaignIndex& index() { return index_; }
+
+ private:
+  Answer list(const Request& request) const;
+  Answer machines() const;
+  Answer records() const;
+  Answer preview(const Request& request);
+  Answer create(const Request& request);
+  tl::expected<std::string, Answer> take_folder(const std::string& id);
+
+  std::filesystem::path site_, out_;
+  Call call_;
+  CampaignIndex index_;
+};
+
+}  // namespace nonio::live

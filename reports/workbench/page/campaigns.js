@@ -1,0 +1,145 @@
+// ---- the campaigns of a site: a list with search and filter, its machines, and one campaign with its verdict and documents ----
+const campaigns = (() => {
+  const query = {search: "", state: "", page: 0}, size = 50;
+  const states = ["new", "failed", "attention", "ok", "does not conform", "cannot be decided", "conforms", "draft", "certificate"];
+  const wordOf = (state) => say("list.is_" + state.replace(/ /g, "_"));
+  const link = (key, text, onclick, more = {}) => el("button", {type: "button", class: "link", "data-key": key, onclick, ...more}, text);
+  const hrefOf = (folder) => "#to=" + encodeURIComponent("campaign/" + folder);
+  const nameOf = (c) => c.machine || c.model || c.id || c.folder;
+
+  /// State and verdict: in words, and by a mark that needs no colour.
+  const marks = {new: "\u25CB", failed: "\u2716", attention: "!", ok: "\u2714", "does not conform": "\u2716", conforms: "\u2714"};
+  function badge(state) {
+    return state ? el("span", {class: "badge " + state.replace(/ /g, "-")}, `${marks[state] || "?"} ${wordOf(state)}`) : null;
+  }
+  /// Files by what they are for: the report, the certificate or its draft, and the rest.
+  function documents(c, fetchFile) {
+    const id = c.id, get = (file) => () => fetchFile(`${id}/${file}`), first = [], rest = [];
+    for (const file of c.files) {
+      const word = file === "certificate.pdf" ? "list.certificate" : file === "certificate-draft.pdf" ? "list.draft" : /report.*\.pdf$/.test(file) ? "list.report" : null;
+      if (word) first.push(link(`get-${c.folder}-${file}`, say(word), get(file)));
+      else if (file !== "run.json") rest.push(el("li", {}, link(`get-${c.folder}-${file}`, file, get(file))));
+    }
+    return [...first, rest.length ? el("details", {}, el("summary", {}, say("list.files", {n: rest.length})), el("ul", {class: "plain"}, ...rest)) : null].filter(Boolean);
+  }
+  function row(c, {buttons, fetchFile}) {
+    return el("tr", {"data-folder": c.folder}, el("td", {class: "day"}, c.day || "\u2013"),
+      el("td", {}, el("a", {href: hrefOf(c.folder), "data-key": "one-" + c.folder}, entries.visible(nameOf(c))), c.machine && c.model ? el("span", {class: "muted block"}, entries.visible(c.model)) : null),
+      el("td", {}, entries.visible(c.customer || ""), el("span", {class: "muted block"}, entries.visible(c.id || c.folder))),
+      el("td", {}, badge(c.state), " ", badge(c.verdict), c.changed ? el("span", {class: "muted block"}, say("list.changed")) : null,
+        c.certificate ? el("span", {class: "muted block"}, say("list.number", {number: c.certificate})) : null,
+        c.message ? el("span", {class: "flag block"}, entries.visible(c.message)) : null),
+      el("td", {class: "files"}, ...documents(c, fetchFile)),
+      el("td", {}, el("div", {class: "acts"}, ...buttons(c.folder, c.folder))));
+  }
+  async function load() {
+    const p = new URLSearchParams({search: query.search, state: query.state, page: query.page, size});
+    return net.ask("/api/campaigns?" + p);
+  }
+  function table(answer, tools) {
+    if (answer.found === 0) return answer.complete ? [el("p", {id: "campaign-none"}, answer.all === 0 ? say("list.none") : say("list.no_such"))] : [];
+    const pages = Math.ceil(answer.found / size), from = answer.page * size + 1, turn = (by_) => () => {
+      query.page += by_;
+      tools.again();
+    };
+    return [el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.campaigns")}, el("table", {class: "lines campaigns-table"}, el("thead", {}, el("tr", {}, ...["day", "machine", "customer", "state", "documents", "actions"].map((w) => el("th", {scope: "col"}, say("list." + w))))),
+      el("tbody", {}, ...answer.campaigns.map((c) => row(c, tools))))),
+    pages > 1 ? el("p", {class: "pager"}, el("button", {type: "button", id: "page-before", "data-key": "page-before", disabled: query.page === 0, onclick: turn(-1)}, say("list.before")), " ",
+      say("list.range", {from, to: Math.min(from + size - 1, answer.found), n: answer.found}), " ",
+      el("button", {type: "button", id: "page-after", "data-key": "page-after", disabled: query.page + 1 >= pages, onclick: turn(1)}, say("list.after"))) : null];
+  }
+  const count = (answer) => (answer.complete ? say("site.number", {n: answer.found, all: answer.all}) : say("list.reading", {n: answer.all}));
+
+  /// tools: {edit, out, running, buttons(folder, key), fetchFile, runAll, complain, drop()}.
+  async function list(tools) {
+    const answer = await load();
+    if (query.page > 0 && answer.campaigns.length === 0) query.page = 0;
+    let wait = 0;
+    const again = async () => {
+      try {
+        const next = await load();
+        if (!by("campaign-list")) return;
+        fill(by("campaign-list"), ...table(next, {...tools, again}));
+        by("campaign-count").textContent = next.all === 0 && next.complete ? "" : count(next);
+      } catch (e) {
+        tools.complain(e);
+      }
+    };
+    const changed = (key, value) => {
+      query[key] = value;
+      query.page = 0;
+      clearTimeout(wait);
+      wait = setTimeout(again, key === "search" ? 200 : 0);
+    };
+    const search = el("input", {type: "search", id: "campaign-filter", "data-key": "campaign-filter", value: query.search, oninput: () => changed("search", search.value)});
+    const state = el("select", {id: "campaign-state", "data-key": "campaign-state", onchange: () => changed("state", state.value)},
+      el("option", {value: ""}, say("list.any")), ...states.map((s) => el("option", {value: s, selected: s === query.state}, wordOf(s))));
+    return [el("h1", {tabindex: -1}, say("site.campaigns")), tools.out ? null : el("p", {class: "note"}, say("site.no_out")),
+      answer.all === 0 && answer.complete && tools.edit ? el("section", {}, el("p", {}, say("list.begin")), tools.drop()) : null,
+      answer.all === 0 ? null : el("p", {class: "filters"}, tools.edit ? el("a", {class: "button strong", id: "new", href: "#to=new", "data-key": "new"}, say("new.short")) : null,
+        el("label", {}, say("list.search") + " ", search), el("label", {}, say("list.only") + " ", state),
+        tools.edit && tools.out ? el("button", {type: "button", id: "run-all", "data-key": "run-all", title: say("run.all_what"), disabled: tools.running, onclick: tools.runAll}, say("run.all")) : null),
+      el("p", {class: "muted", role: "status", id: "campaign-count"}, answer.all === 0 && answer.complete ? "" : count(answer)), el("div", {id: "campaign-list"}, ...table(answer, {...tools, again}).filter(Boolean))].filter(Boolean);
+  }
+
+  async function machines() {
+    const {machines: all} = await net.ask("/api/machines");
+    const columns = ["machine", "model", "customer", "last", "state", "number_of", "history"];
+    return [el("h1", {tabindex: -1}, say("site.machines")), all.length === 0 ? el("p", {}, say("list.no_machines")) :
+      el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.machines")}, el("table", {class: "lines machines-table"}, el("thead", {}, el("tr", {}, ...columns.map((w) => el("th", {scope: "col"}, say("list." + w))))),
+        el("tbody", {}, ...all.map((m) => {
+          return el("tr", {}, el("td", {}, link("machine-" + m.machine, entries.visible(m.machine), () => {
+            Object.assign(query, {search: m.machine, state: "", page: 0});
+            location.hash = "#to=campaigns";
+          })), el("td", {}, entries.visible(m.model)), el("td", {}, entries.visible(m.customer)), el("td", {class: "day"}, m.day || "\u2013"), el("td", {}, badge(m.state), " ", badge(m.verdict)),
+          el("td", {class: "number"}, m.campaigns), el("td", {}, m.page ? el("a", {href: "#to=" + encodeURIComponent(m.page), "data-key": "history-" + m.machine}, say("list.history")) : "\u2013"));
+        }))))];
+  }
+
+  // ---- one campaign ----
+  const json = async (id, file) => JSON.parse(await (await net.ask(`/site/results/${encodeURIComponent(id)}/${file}`, {raw: true})).text());
+  /// What was decided, each value with its U and its limit; and the values of a test of positioning that have no limit.
+  function decisions(results) {
+    const decided = new Map((results.conformity || []).map((d) => [[d.plugin, d.measurement, d.name].join("\n"), d])), rows = [];
+    for (const a of results.analyses || []) for (const [name, v] of Object.entries(a.values || {})) {
+      const d = decided.get([a.plugin, a.measurement, name].join("\n")), unit = shownUnit(v.unit || "");
+      if (!d && !(a.values.A && a.values.R && ["A", "B", "E", "R"].includes(name))) continue;
+      const number = finite(v.value) ? (finite(v.U) && v.U > 0 ? withU(v.value, v.U).join(" \u00B1 ") : short(v.value)) : "\u2013";
+      rows.push(el("tr", {}, el("th", {scope: "row"}, `${entries.visible(a.measurement)}: ${name}`), el("td", {class: "number"}, `${number} ${unit}`), el("td", {class: "number"}, d ? `${short(d.tolerance)} ${unit}` : "\u2013"), el("td", {}, d ? badge(d.decision) : "\u2013")));
+    }
+    return [decided.size === 0 ? el("p", {}, say("one.no_limits")) : null, rows.length === 0 ? null :
+      el("table", {id: "decisions"}, el("thead", {}, el("tr", {}, ...["value", "result", "limit", "decision"].map((w) => el("th", {scope: "col"}, say("one." + w))))), el("tbody", {}, ...rows))];
+  }
+  /// Keys of campaign.toml that a certificate lacks, by the names that the form has for them.
+  function missing(results) {
+    const keys = [];
+    for (const f of [...(results.findings || []), ...(results.tables || []).flatMap((t) => t.findings || []), ...(results.analyses || []).flatMap((a) => a.findings || [])])
+      if (f.id === "certificate.incomplete" && f.evidence && f.evidence.missing) keys.push(...f.evidence.missing.split(/, (?![^(]*\))/));
+    const names = new Set(keys.map((key) => fieldName(key.replace(/ \(.*/, ""))));
+    return names.size ? el("div", {class: "note", id: "missing"}, el("p", {}, say("one.missing")), el("ul", {}, ...[...names].map((n) => el("li", {}, n)))) : null;
+  }
+  function fieldName(key) {
+    const plain = key.replace(/^machine\.axes\.\w+\./, "axis.").replace(/[^A-Za-z0-9]/g, "_").toLowerCase();
+    return words["field." + plain] || say("one.other_key");
+  }
+  async function one(folder, tools) {
+    const {campaigns: found} = await net.ask("/api/campaigns?" + new URLSearchParams({search: folder, size: 200}));
+    const c = found.find((x) => x.folder === folder);
+    const back = el("p", {}, el("a", {href: "#to=campaigns", "data-key": "back-to-list"}, say("one.back")));
+    if (!c) return [el("h1", {tabindex: -1}, entries.visible(folder)), back, el("p", {}, say("list.no_such"))];
+    const has = c.files.includes("results.json");
+    const [results, record, drafts] = await Promise.all([has ? json(c.id, "results.json") : {}, has ? json(c.id, "run.json") : {}, c.draft ? net.ask("/api/drafts") : {drafts: []}]);
+    const draft = drafts.drafts.find((d) => d.folder === folder), findings = (record.findings || []).filter((f) => f.severity === "attention");
+    return [el("h1", {tabindex: -1}, `${entries.visible(nameOf(c))}${c.day ? ", " + c.day : ""}`), back,
+      el("p", {id: "one-state"}, badge(c.state), " ", badge(c.verdict), " ", entries.visible([c.customer, c.place].filter(Boolean).join(", "))),
+      c.message ? el("p", {class: "flag"}, entries.visible(c.message)) : null, c.changed ? el("p", {class: "note"}, say("list.changed")) : null,
+      el("div", {class: "acts wide"}, ...tools.buttons(folder, folder)),
+      has ? el("section", {"aria-labelledby": "verdict-title"}, el("h2", {id: "verdict-title"}, say("one.verdict")), ...decisions(results)) : el("p", {}, say("one.not_yet")),
+      findings.length ? el("section", {"aria-labelledby": "found-title"}, el("h2", {id: "found-title"}, say("one.found")), el("ul", {id: "found"}, ...findings.map((f) => el("li", {}, entries.visible((f.measurement ? f.measurement + ": " : "") + (f.said || f.title)))))) : null,
+      missing(results),
+      c.files.length ? el("section", {"aria-labelledby": "documents-title"}, el("h2", {id: "documents-title"}, say("list.documents")), el("div", {class: "acts wide"}, ...documents(c, tools.fetchFile))) : null,
+      tools.released && tools.released.folder === folder ? tools.releasedNote() : null,
+      draft ? el("section", {"aria-labelledby": "approve-title"}, el("h2", {id: "approve-title"}, say("one.approve")), el("ul", {class: "plain"}, certificates.draft(draft, tools.edit, tools.fetchFile, tools.release))) : null].filter(Boolean);
+  }
+  return {list, machines, one};
+})();
