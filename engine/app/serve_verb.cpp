@@ -10,7 +10,7 @@ namespace nonio::app {
 namespace {
 
 struct LiveOptions {
-  std::string folder, out, token_file;
+  std::string folder, out, token_file, user_header;
   std::vector<std::string> hosts;
   std::uint64_t port = 0;
   bool edit = false;
@@ -31,6 +31,9 @@ int live(const LiveOptions& options, const Common& common) {
   if (!options.out.empty()) wish.out = std::filesystem::absolute(options.out);
   wish.token_file = options.token_file;
   wish.hosts = options.hosts;
+  wish.user_header = options.user_header;
+  if (!wish.user_header.empty() && wish.hosts.empty())
+    return complain("--user-header is for a reverse proxy: expected --host NAME");
   wish.port = static_cast<std::uint16_t>(options.port);
   wish.edit = options.edit;
   wish.quiet = common.quiet;
@@ -62,6 +65,10 @@ Verb serve_verb(Common& common) {
                   "created if it does not exist, and only this user may be able to read it"}),
            {"--host", &options->hosts,
             "Name (NAME or NAME:PORT) by which a reverse proxy on this computer calls the page"},
+           {"--user-header", &options->user_header,
+            "Of a site: header in which that proxy states the account that is logged in; "
+            "SITE/users.toml "
+            "states what each may do"},
            within(0, 65535, {"--port", &options->port, "Fixed port; default: any free one"}),
            templates_argument(common)},
           common_arguments(common)),

@@ -160,6 +160,9 @@ void take_record(const fs::path& results, const std::string& manifest_sha256,
   c.certificate = record->certificate;
   c.draft = record->draft;
   for (const evaluation::RecordedFile& file : record->files) c.files.push_back(file.name);
+  for (const evaluation::KnownFinding& f : record->findings)
+    if (f.attention)
+      c.findings.push_back((f.measurement.empty() ? "" : f.measurement + ": ") + f.heading());
   if (!record->errors.empty()) c.message = record->errors.front().message;
   for (const auto& [name, digest] : record->inputs)
     if (name == config::manifest_name) c.changed = digest != manifest_sha256;
@@ -306,7 +309,8 @@ CampaignPage CampaignIndex::find(const CampaignQuery& query) const {
     const bool has_all = std::all_of(words.begin(), words.end(), [&](const std::string& word) {
       return c.words.find(word) != std::string::npos;
     });
-    if (has_all && fits(c, query.state)) found.push_back(&c);
+    const bool is_wanted = query.folder.empty() || c.folder == query.folder;
+    if (has_all && is_wanted && fits(c, query.state)) found.push_back(&c);
   }
   CampaignPage page{found.size(), seen_.size(), complete_, {}};
   const std::size_t size = std::max<std::size_t>(query.size, 1);

@@ -19,15 +19,16 @@ namespace nonio::live {
 /// One campaign: what campaign.toml, run.json and results.json state.
 struct ListedCampaign {
   std::string folder, id, day, customer, place;
-  std::string machine, model;          ///< the name of the history; empty: none
-  std::string state;                   ///< new, ok, attention, failed
-  std::string verdict;                 ///< the worst decision on a tolerance; empty: none
-  std::string certificate;             ///< its number
-  std::string message;                 ///< the first error
-  bool draft = false;                  ///< of a certificate that waits for its approval
-  bool changed = false;                ///< campaign.toml is another one than that of the results
-  std::vector<std::string> files{};    ///< of the results
-  std::vector<std::string> columns{};  ///< that a person stated of its files
+  std::string machine, model;           ///< the name of the history; empty: none
+  std::string state;                    ///< new, ok, attention, failed
+  std::string verdict;                  ///< the worst decision on a tolerance; empty: none
+  std::string certificate;              ///< its number
+  std::string message;                  ///< the first error
+  bool draft = false;                   ///< of a certificate that waits for its approval
+  bool changed = false;                 ///< campaign.toml is another one than that of the results
+  std::vector<std::string> files{};     ///< of the results
+  std::vector<std::string> findings{};  ///< that require a decision, in words
+  std::vector<std::string> columns{};   ///< that a person stated of its files
   /// What a form can take from it, by the keys of campaign.toml, units in the keys.
   std::map<std::string, std::string> values{};
   std::string words{};  ///< all that a search looks at, in small letters
@@ -35,6 +36,7 @@ struct ListedCampaign {
 
 struct CampaignQuery {
   std::string search{};  ///< words that all occur
+  std::string folder{};  ///< only this one; empty: any
   std::string state{};   ///< also a verdict, "draft" or "certificate"; empty: any
   std::size_t page = 0, size = 50;
 };

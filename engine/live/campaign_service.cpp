@@ -6,6 +6,7 @@
 #include "campaign/config/site_files.h"
 #include "campaign/config/template_files.h"
 #include "live/desk.h"
+#include "live/users.h"
 #include "nonio/workbench/page.h"
 
 namespace nonio::live {
@@ -94,6 +95,10 @@ Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish) {
     return fail("there is no " + std::string(config::manifest_name) + " in " + wish.name +
                 " or in a folder below it, and no " + config::site_name +
                 ": it is neither a campaign nor a site");
+  if (!wish.user_header.empty()) {
+    if (is_campaign) return fail("--user-header is for a site, and this is a campaign");
+    if (const auto users = read_users(wish.folder); !users) return fail(users.error());
+  }
   NONIO_TRY(auto shells, shells_of(wish));
   NONIO_TRY(auto launcher, Launcher::start({wish.folder, wish.plugin_folders, wish.template_folders,
                                             wish.own_plugins, wish.version}));

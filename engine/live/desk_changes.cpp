@@ -16,10 +16,6 @@ namespace {
 constexpr std::size_t most_added = 12;  // as `nonio model explain --auto`
 constexpr std::size_t longest_text = 2000;
 
-Answer json_answer(int status, const Json& json) {
-  return {status, "application/json", storage::dump_line(json)};
-}
-
 }  // namespace
 
 Answer Desk::post(const std::string& what, const Json& body, const Request& request) {

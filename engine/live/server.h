@@ -20,6 +20,7 @@ struct LiveWish {
   std::filesystem::path out;       ///< of a site: output folder of its runs; empty: none
   std::string token_file;          ///< empty: a new token each time
   std::vector<std::string> hosts;  ///< names by which a proxy calls it
+  std::string user_header;         ///< in which the proxy states who is logged in; empty: no users
   std::uint16_t port = 0;
   bool edit = false, quiet = false;
 };

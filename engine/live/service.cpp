@@ -57,6 +57,10 @@ Answer Sentences::spelled(Answer answer) const {
   return out;
 }
 
+Answer json_answer(int status, const storage::Json& json) {
+  return {status, "application/json", storage::dump_line(json)};
+}
+
 Answer refusal(int status, const std::string& words) {
   const storage::Json json = {{"error", words}, {"status", status}, {"lang", "en"}};
   return {status, "application/json", storage::dump_line(json)};

@@ -9,6 +9,7 @@
 
 #include "live/events.h"
 #include "live/guard.h"
+#include "platform/storage/json_values.h"
 
 /// Between HTTP and what a person does: requests that the guard let through, answers.
 namespace nonio::live {
@@ -37,6 +38,9 @@ Answer refused(int status, const std::string& name,
                std::vector<std::pair<std::string, std::string>> places = {});
 /// The same with a sentence that the caller has made.
 Answer refusal(int status, const std::string& words);
+
+/// A value as JSON.
+Answer json_answer(int status, const storage::Json& json);
 
 /// Sentences of the page in the language of the site, by their names.
 class Sentences {

@@ -22,8 +22,6 @@ namespace {
 constexpr const char* of_file = "application/octet-stream";
 constexpr std::size_t most_dropped = 32 << 20;
 
-Answer answered(const Json& json) { return {200, "application/json", storage::dump_line(json)}; }
-
 Json to_json(const ListedCampaign& c) {
   Json json = {{"folder", c.folder}, {"id", c.id}, {"state", c.state}};
   for (const auto& [name, text] : {std::pair{"day", &c.day},
@@ -38,6 +36,7 @@ Json to_json(const ListedCampaign& c) {
   json["draft"] = c.draft;
   json["changed"] = c.changed;
   json["files"] = c.files;
+  json["findings"] = c.findings;
   return json;
 }
 
@@ -95,19 +94,22 @@ Answer SiteCampaigns::answer(const std::string& what, const Request& request) {
 
 Answer SiteCampaigns::list(const Request& request) const {
   constexpr std::size_t most = 200;
-  CampaignQuery query{request.query("search").value_or(""), request.query("state").value_or("")};
+  CampaignQuery query;
+  query.search = request.query("search").value_or("");
+  query.folder = request.query("folder").value_or("");
+  query.state = request.query("state").value_or("");
   query.page = number_of(request, "page", 0);
   query.size = std::clamp<std::size_t>(number_of(request, "size", query.size), 1, most);
   const CampaignPage page = index_.find(query);
   Json all = Json::array();
   for (const ListedCampaign& c : page.campaigns) all.push_back(to_json(c));
-  return answered({{"schema", "nonio-live-campaigns/1"},
-                   {"found", page.found},
-                   {"all", page.all},
-                   {"complete", page.complete},
-                   {"page", query.page},
-                   {"size", query.size},
-                   {"campaigns", std::move(all)}});
+  return json_answer(200, {{"schema", "nonio-live-campaigns/1"},
+                           {"found", page.found},
+                           {"all", page.all},
+                           {"complete", page.complete},
+                           {"page", query.page},
+                           {"size", query.size},
+                           {"campaigns", std::move(all)}});
 }
 
 /// By name, each with its newest campaign.
@@ -135,7 +137,7 @@ Answer SiteCampaigns::machines() const {
       m.json["page"] = "machines/" + page;
     all.push_back(std::move(m.json));
   }
-  return answered({{"schema", "nonio-live-machines/1"}, {"machines", std::move(all)}});
+  return json_answer(200, {{"schema", "nonio-live-machines/1"}, {"machines", std::move(all)}});
 }
 
 /// Of each customer, machine, instrument and stated table the newest campaign.
@@ -175,11 +177,11 @@ Answer SiteCampaigns::records() const {
                             {"machine.serial", r.serial},
                             {"machine.control", r.control}}}});
     }
-  return answered({{"schema", "nonio-live-records/1"},
-                   {"customers", std::move(customers)},
-                   {"machines", std::move(machines)},
-                   {"instruments", std::move(instruments)},
-                   {"columns", std::move(columns)}});
+  return json_answer(200, {{"schema", "nonio-live-records/1"},
+                           {"customers", std::move(customers)},
+                           {"machines", std::move(machines)},
+                           {"instruments", std::move(instruments)},
+                           {"columns", std::move(columns)}});
 }
 
 /// `nonio check FILE --json` on a copy that is removed at once.
@@ -197,7 +199,7 @@ Answer SiteCampaigns::preview(const Request& request) {
   arguments.push_back((folder.path() / file->name).string());
   const ToolEnd end = call_(std::move(arguments));
   const Json out = Json::parse(end.out, nullptr, false);
-  return out.is_object() ? answered(out) : refusal(422, end.errors);
+  return out.is_object() ? json_answer(200, out) : refusal(422, end.errors);
 }
 
 /// A new empty folder of the site with this name, or the name with a number. Whoever makes the
@@ -241,7 +243,7 @@ Answer SiteCampaigns::create(const Request& request) {
     return refusal(422, end.errors);
   }
   index_.look_at(*name);
-  return answered({{"campaign", *name}, {"command", command}});
+  return json_answer(200, {{"campaign", *name}, {"command", command}});
 }
 
 }  // namespace nonio::live

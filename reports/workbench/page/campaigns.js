@@ -123,23 +123,23 @@ const campaigns = (() => {
     return words["field." + plain] || say("one.other_key");
   }
   async function one(folder, tools) {
-    const {campaigns: found} = await net.ask("/api/campaigns?" + new URLSearchParams({search: folder, size: 200}));
+    const {campaigns: found} = await net.ask("/api/campaigns?" + new URLSearchParams({folder}));
     const c = found.find((x) => x.folder === folder);
     const back = el("p", {}, el("a", {href: "#to=campaigns", "data-key": "back-to-list"}, say("one.back")));
     if (!c) return [el("h1", {tabindex: -1}, entries.visible(folder)), back, el("p", {}, say("list.no_such"))];
     const has = c.files.includes("results.json");
-    const [results, record, drafts] = await Promise.all([has ? json(c.id, "results.json") : {}, has ? json(c.id, "run.json") : {}, c.draft ? net.ask("/api/drafts") : {drafts: []}]);
-    const draft = drafts.drafts.find((d) => d.folder === folder), findings = (record.findings || []).filter((f) => f.severity === "attention");
+    const [results, drafts] = await Promise.all([has ? json(c.id, "results.json") : {}, c.draft ? net.ask("/api/drafts") : {drafts: []}]);
+    const draft = drafts.drafts.find((d) => d.folder === folder);
     return [el("h1", {tabindex: -1}, `${entries.visible(nameOf(c))}${c.day ? ", " + c.day : ""}`), back,
       el("p", {id: "one-state"}, badge(c.state), " ", badge(c.verdict), " ", entries.visible([c.customer, c.place].filter(Boolean).join(", "))),
       c.message ? el("p", {class: "flag"}, entries.visible(c.message)) : null, c.changed ? el("p", {class: "note"}, say("list.changed")) : null,
       el("div", {class: "acts wide"}, ...tools.buttons(folder, folder)),
       has ? el("section", {"aria-labelledby": "verdict-title"}, el("h2", {id: "verdict-title"}, say("one.verdict")), ...decisions(results)) : el("p", {}, say("one.not_yet")),
-      findings.length ? el("section", {"aria-labelledby": "found-title"}, el("h2", {id: "found-title"}, say("one.found")), el("ul", {id: "found"}, ...findings.map((f) => el("li", {}, entries.visible((f.measurement ? f.measurement + ": " : "") + (f.said || f.title)))))) : null,
+      c.findings.length ? el("section", {"aria-labelledby": "found-title"}, el("h2", {id: "found-title"}, say("one.found")), el("ul", {id: "found"}, ...c.findings.map((f) => el("li", {}, entries.visible(f))))) : null,
       missing(results),
       c.files.length ? el("section", {"aria-labelledby": "documents-title"}, el("h2", {id: "documents-title"}, say("list.documents")), el("div", {class: "acts wide"}, ...documents(c, tools.fetchFile))) : null,
       tools.released && tools.released.folder === folder ? tools.releasedNote() : null,
-      draft ? el("section", {"aria-labelledby": "approve-title"}, el("h2", {id: "approve-title"}, say("one.approve")), el("ul", {class: "plain"}, certificates.draft(draft, tools.edit, tools.fetchFile, tools.release))) : null].filter(Boolean);
+      draft ? el("section", {"aria-labelledby": "approve-title"}, el("h2", {id: "approve-title"}, say("one.approve")), el("ul", {class: "plain"}, certificates.draft(draft, tools.approve, tools.fetchFile, tools.release))) : null].filter(Boolean);
   }
   return {list, machines, one};
 })();

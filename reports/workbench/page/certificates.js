@@ -74,7 +74,7 @@ const certificates = (() => {
   function draftForm(draft, act) {
     const asking = draft.findings.filter((f) => f.severity === "attention");
     const given = new Map(asking.map((f) => [keyOf(f), el("input", {name: "reason", required: !f.reason, maxlength: 500, autocomplete: "off", value: f.reason || null, "data-finding": keyOf(f)})]));
-    const by_ = el("input", {name: "by", required: true, maxlength: 100, autocomplete: "off", value: entries.me(), id: "release-by-" + draft.campaign});
+    const by_ = el("input", {name: "by", required: true, maxlength: 100, autocomplete: "off", ...entries.mine(), id: "release-by-" + draft.campaign});
     const as = el("select", {name: "as", id: "release-as-" + draft.campaign}, ...["", "author", "authoriser"].map((value) => el("option", {value}, say("release.as_" + (value || "site")))));
     const problem = el("p", {class: "flag", role: "alert"}), go = el("button", {type: "submit", class: "strong", disabled: Boolean(draft.stale)}, say("release.do"));
     return el("form", {class: "release", onsubmit: async (event) => {

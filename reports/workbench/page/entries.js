@@ -7,8 +7,11 @@ const entries = (() => {
   /// Text of somebody else's file: what cannot be seen, or turns the direction of writing, is told by its number.
   const visible = (text) => text.replace(/[\u0000-\u001F\u007F-\u009F\u00AD\u061C\u180E\u200B-\u200F\u2028-\u202E\u2060-\u2069\uFEFF\uFFF9-\uFFFB]/g,
     (c) => (c === "\n" ? c : "\\u" + c.charCodeAt(0).toString(16).padStart(4, "0")));
-  const me = () => localStorage.getItem("nonio-by") || "";
-  const remember = (by_) => localStorage.setItem("nonio-by", by_);
+  let account = ""; // the name of the user that is logged in: all entries are made under it
+  const me = () => account || localStorage.getItem("nonio-by") || "";
+  const remember = (by_) => account || localStorage.setItem("nonio-by", by_);
+  const as = (name) => (account = name);
+  const mine = () => ({value: me(), readonly: account !== ""});
 
   function field(name, word, more = {}, note = null) {
     const input = el(more.options ? "select" : "input", {id: "field-" + name, name, autocomplete: "off", ...more, options: null},
@@ -34,7 +37,7 @@ const entries = (() => {
     const first = body.querySelector("input, select");
     if (first) first.focus();
   }
-  const who = () => field("by", "entry.by", {required: true, maxlength: 100, value: me()});
+  const who = () => field("by", "entry.by", {required: true, maxlength: 100, ...mine()});
 
   /// `line`: as `nonio status --actions --json` has it.
   function acknowledge(line, told, act) {
@@ -82,10 +85,10 @@ const entries = (() => {
       el("table", {}, el("thead", {}, el("tr", {}, ...head.columns.map((w) => el("th", {scope: "col"}, say(w))))), el("tbody", {}, ...rows)));
   }
   /// The page of the entries.
-  function show(acknowledged, events, edit, {withdrawOne, addEvent}) {
+  function show(acknowledged, events, edit, {withdrawOne, addEvent, audit}) {
     const cell = (text) => el("td", {}, visible(text || ""));
     return [el("h1", {tabindex: -1}, say("site.entries")),
-      el("p", {class: "muted"}, say("entry.when")),
+      el("p", {class: "muted"}, say("entry.when")), audit ? el("p", {}, el("button", {type: "button", id: "audit", "data-key": "audit", onclick: audit}, say("user.audit"))) : "",
       el("section", {"aria-labelledby": "known-title"}, el("h2", {id: "known-title"}, say("entry.acknowledged", {n: acknowledged.length})),
         acknowledged.length === 0 ? el("p", {}, say("entry.none")) : table({label: say("entry.acknowledged", {n: acknowledged.length}), columns: ["entry.until", "entry.machine", "entry.finding", "entry.why", "entry.who", "entry.do"].slice(0, edit ? 6 : 5)},
           acknowledged.map((a, k) => el("tr", {}, cell(a.until), cell([a.machine, a.axis].filter(Boolean).join(" ")), cell(a.finding), cell(a.why), cell(a.by),
@@ -95,5 +98,5 @@ const entries = (() => {
         events.length === 0 ? el("p", {}, say("entry.none")) : table({label: say("entry.events", {n: events.length}), columns: ["entry.date", "entry.machine", "entry.kind", "entry.text", "entry.who"]},
           [...events].reverse().slice(0, 200).map((e) => el("tr", {}, cell(e.date), cell([e.machine, e.axis].filter(Boolean).join(" ")), cell(say("event.kind_" + e.kind)), cell(e.text), cell(e.by)))))];
   }
-  return {acknowledge, withdraw, event, entryOf, show, visible, me, remember, field, table};
+  return {acknowledge, withdraw, event, entryOf, show, visible, as, me, mine, remember, field, table};
 })();

@@ -25,11 +25,14 @@
   }
 
   // ---- asking ----
+  let denied = false; // by name and role: the address is right
   function complain(e) {
+    denied = denied || e.status === 403;
     if (e instanceof net.Refused) box.alarm(e.message, " ", box.button("alarm-close", "dialog.close", {onclick: () => box.alarm("")}));
     else lost(0);
   }
   function lost(status) {
+    if (denied && status === 403) return;
     box.alarm(status === 403 ? say("net.other") : say("site.lost", {at: new Date().toLocaleTimeString(language)}));
     document.body.classList.add("lost");
   }
@@ -70,6 +73,7 @@
     const next = await net.ask("/api/site/state");
     if (state && next.engine !== state.engine) return location.reload();
     state = next;
+    if (state.user) entries.as(state.user.name);
     if (stale) {
       stale = false;
       pages = new Map();
@@ -163,7 +167,7 @@
   }
 
   // ---- own pages ----
-  const tools = () => ({edit: state.edit, out: state.out, running: state.running, buttons: campaignButtons, fetchFile, runAll: () => runAgain(""), complain, drop: measure.drop, release, released, releasedNote});
+  const tools = () => ({edit: state.edit, approve: state.approve, out: state.out, running: state.running, buttons: campaignButtons, fetchFile, runAll: () => runAgain(""), complain, drop: measure.drop, release, released, releasedNote});
   /// A new campaign is shown, and evaluated at once where there is a place for its results.
   async function created(answer) {
     told(answer);
@@ -191,12 +195,12 @@
       el("section", {"aria-labelledby": "verify-title"}, el("h2", {id: "verify-title"}, say("verify.title")), el("p", {class: "muted"}, say("verify.what")), certificates.drop(drawResults), certificates.results()),
       el("section", {"aria-labelledby": "drafts-title"}, el("h2", {id: "drafts-title"}, say("release.title", {n: drafts.length})),
         released ? releasedNote() : null,
-        drafts.length === 0 ? el("p", {}, say("release.none")) : el("p", {class: "muted"}, state.edit ? say("release.how") : say("site.read_only_release")),
-        el("ul", {class: "plain"}, ...drafts.map((d) => certificates.draft(d, state.edit, fetchFile, release))))];
+        drafts.length === 0 ? el("p", {}, say("release.none")) : el("p", {class: "muted"}, state.approve ? say("release.how") : say("site.read_only_release")),
+        el("ul", {class: "plain"}, ...drafts.map((d) => certificates.draft(d, state.approve, fetchFile, release))))];
   }
   async function entriesView() {
     const {events} = await net.ask("/api/event");
-    return entries.show(known, events, state.edit, {withdrawOne: (entry) => entries.withdraw(entry, act), addEvent: () => entries.event("", "", machines(), act)});
+    return entries.show(known, events, state.edit, {withdrawOne: (entry) => entries.withdraw(entry, act), addEvent: () => entries.event("", "", machines(), act), audit: state.user && state.user.role === "administer" ? () => net.download("/api/audit", "audit.jsonl").catch(complain) : null});
   }
 
   // ---- drawing ----
@@ -206,7 +210,7 @@
       el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to || (to === "campaigns" && /^(new$|campaign\/)/.test(view())) ? "page" : null}, label)));
     const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.night, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.night}) : n.state === "planned" ? say("night.planned", {n: n.night}) : "";
     fill(by("night"), night_ ? el("p", {class: "note", id: "night-says"}, night_) : null);
-    fill(by("rights"), state.edit ? null : el("p", {class: "muted", id: "read-only"}, say("site.read_only")));
+    fill(by("rights"), state.user ? el("p", {class: "muted", id: "user"}, say("user.is", {name: entries.visible(state.user.name), role: say("user.may_" + state.user.role)})) : null, state.edit || state.user ? null : el("p", {class: "muted", id: "read-only"}, say("site.read_only")));
     drawRun(r);
   }
   const stages = ["begin", "survey", "campaigns", "history", "pages"];

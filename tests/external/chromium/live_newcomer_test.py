@@ -221,6 +221,35 @@ class Newcomer(live_browser.LivePage):
         self.assertEqual(["open-adjusted"], self.js("[...document.querySelectorAll('main button')].map((e) => e.dataset.key)"))
         self.looks_right("read-only")
 
+    def test_each_role_sees_what_it_may_do(self):
+        shutil.copytree(SOURCE / "samples/certificates/adjusted", self.site / "adjusted")
+        (self.site / "users.toml").write_text("format = 1\n" + "".join(f'[[user]]\naccount = "{role}"\nname = "{name}"\nrole = "{role}"\n' for role, name in
+                                              (("view", "V. Sample"), ("measure", "M. Sample"), ("approve", "B. Sample"), ("administer", "A. Sample"))))
+        subprocess.run([str(NONIO), "run", self.site, "--out", self.out, "--quiet"])
+        server = self.serve(self.site, "--out", str(self.out), "--edit", "--host", "nonio.example.org", "--user-header", "X-Remote-User")
+        self.d.execute_cdp_cmd("Network.enable", {})
+        self.addCleanup(self.d.execute_cdp_cmd, "Network.setExtraHTTPHeaders", {"headers": {}})
+        for role, may in (("view", (False, False, False)), ("measure", (True, False, False)), ("approve", (True, True, False)), ("administer", (True, True, True))):
+            self.d.execute_cdp_cmd("Network.setExtraHTTPHeaders", {"headers": {"X-Remote-User": role}})
+            self.d.get("about:blank")
+            self.d.get(server.address + "&to=campaigns")
+            self.ready("campaigns")
+            self.wait(lambda: self.has("[data-folder=adjusted]"))
+            begins = self.has("#new")
+            self.go("campaign%2Fadjusted", "campaign/adjusted")
+            approves = self.has(".draft form")
+            if approves:
+                self.assertTrue(self.js("document.querySelector('.draft form [name=by]').readOnly"), "under the own name only")
+                self.assertIn("Sample", self.js("document.querySelector('.draft form [name=by]').value"))
+            self.go("entries")
+            self.assertEqual(may, (begins, approves, self.has("#audit")), role)
+            self.assertIn(". Sample", self.text("user"))
+            self.looks_right("role-" + role)
+        self.d.execute_cdp_cmd("Network.setExtraHTTPHeaders", {"headers": {"X-Remote-User": "else"}})
+        self.d.get("about:blank")
+        self.d.get(server.address)
+        self.wait(lambda: "not a user" in (self.js("(document.getElementById('alarm') || {}).textContent") or ""), "a stranger is told so")
+
 
 if __name__ == "__main__":
     live_browser.main()

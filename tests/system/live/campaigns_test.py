@@ -117,6 +117,7 @@ class CampaignsOfASite(LiveTest):
             self.assertIn("message", every["c3"], "a broken manifest is listed with what is wrong")
             wanted = {f for f, c in every.items() if c.get("customer") == "Rossi" and c.get("machine") == "M 4"}
             self.assertEqual(wanted, {c["folder"] for c in s.get("/api/campaigns?size=200&search=rossi%20m%204")["campaigns"]} & {f for f, c in every.items() if c.get("machine") == "M 4"})
+            self.assertEqual(["c1"], [c["folder"] for c in s.get("/api/campaigns?folder=c1")["campaigns"]])
             self.assertEqual(0, s.get("/api/campaigns?state=failed")["found"])
             self.assertEqual(60, s.get("/api/campaigns?state=new")["found"])
             self.assertEqual(s.get("/api/campaigns?page=999999999")["found"], 60)

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// What people do on the page of a site: entries, approvals, verifications, runs.
+#include "live/site_service.h"
+#include "platform/storage/files.h"
+#include "platform/storage/scratch_folder.h"
+
+namespace nonio::live {
+using storage::Json;
+
+namespace {
+
+/// The members that a body has, as options.
+void add_options(std::vector<std::string>& arguments, const Json& body,
+                 std::initializer_list<const char*> names) {
+  for (const char* name : names)
+    if (body.contains(name))
+      arguments.push_back(verb_option(name, body.at(name).get<std::string>()));
+}
+
+}  // namespace
+
+Answer SiteService::acknowledge(const Json& body) {
+  std::vector<std::string> arguments{"machine", "ack", "--json"};
+  if (body.value("withdraw", false)) arguments.emplace_back("--withdraw");
+  add_options(
+      arguments, body,
+      {"finding", "machine", "axis", "quantity", "until", "value", "U", "by", "why", "date"});
+  // Without what it is about the verb would list.
+  if (!body.contains("finding")) return refused(400, "body_form", {{"path", "/api/ack"}});
+  arguments.push_back(wish_.folder.string());
+  return entered(arguments);
+}
+
+Answer SiteService::event(const Json& body) {
+  std::vector<std::string> arguments{"machine", "event", "--json"};
+  add_options(arguments, body, {"machine", "axis", "kind", "text", "date", "by"});
+  if (!body.contains("kind")) return refused(400, "body_form", {{"path", "/api/event"}});
+  arguments.push_back(wish_.folder.string());
+  return entered(arguments);
+}
+
+Answer SiteService::release(const Json& body) {
+  const auto folder = folder_of(body.at("campaign").get<std::string>());
+  if (!folder)
+    return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
+  std::vector<std::string> arguments{"certificate", "approve", "--json",
+                                     verb_option("by", body.at("by").get<std::string>())};
+  add_options(arguments, body, {"as"});
+  const Json reasons = body.value("reasons", Json::object());
+  for (const auto& [finding, why] : reasons.items())
+    arguments.push_back(verb_option("reason", finding + "=" + why.get<std::string>()));
+  arguments.push_back((wish_.folder / *folder).string());
+  Answer out = entered(with_places(std::move(arguments)));
+  campaigns_->index().look_at(*folder);
+  return out;
+}
+
+Answer SiteService::verify(const Request& request) {
+  const std::string type = request.head.first("Content-Type");
+  const std::string name = type.find("pdf") != std::string::npos   ? "certificate.pdf"
+                           : type.find("xml") != std::string::npos ? "certificate.xml"
+                                                                   : "certificate.json";
+  const storage::ScratchFolder folder("live");
+  if (folder.path().empty()) return refused(503, "no_scratch");
+  if (const auto kept = storage::publish(folder.path(), {{name, request.body}}); !kept)
+    return refusal(503, kept.error().message);
+  return of_verb(
+      with_places({"certificate", "verify", "--json", verb_option("site", wish_.folder.string()),
+                   (folder.path() / name).string()}));
+}
+
+/// One campaign of the previous run again; or what a run would do now, of all that has changed.
+Answer SiteService::run(const Json& body) {
+  if (wish_.out.empty()) return refused(409, "no_out");
+  std::vector<std::string> arguments{"run", verb_option("out", wish_.out.string())};
+  std::string id, of_one;
+  if (body.contains("campaign")) {
+    const auto folder = folder_of(body["campaign"].get<std::string>());
+    if (!folder)
+      return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
+    id = id_of(*folder);
+    of_one = *folder;
+    // The first run of a site is of all its campaigns.
+    if (news_->run().last != 0) arguments.push_back(verb_option("only", *folder));
+  }
+  arguments.push_back(wish_.folder.string());
+  const std::string command = command_line(arguments);
+  arguments.emplace_back("--json");
+  const auto begun = run_->begin(with_places(std::move(arguments)), command, id);
+  if (!begun) return refusal(503, begun.error().message);
+  if (!*begun) return refused(409, "run_at_work");
+  {
+    const std::lock_guard lock(mutex_);
+    run_folder_ = of_one;
+  }
+  tell("run");
+  return json_answer(202, {{"version", version_.load()}, {"command", command}});
+}
+
+}  // namespace nonio::live

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page of a site shows: verbs that print, pages of the run, files of results.
+#include "campaign/config/manifest.h"
+#include "campaign/evaluation/record.h"
+#include "live/site_service.h"
+#include "platform/storage/files.h"
+#include "platform/storage/pack.h"
+
+namespace nonio::live {
+namespace fs = std::filesystem;
+using storage::Json;
+
+ToolEnd SiteService::call(const std::vector<std::string>& arguments) {
+  const auto channel = launcher_.run(arguments);
+  if (!channel) return {-1, "", channel.error().message};
+  {
+    const std::lock_guard lock(mutex_);
+    if (over_) return {};
+    channels_.insert(channel->get());
+  }
+  ToolEnd end = hear_tool(*channel, [](const std::string&) {});
+  const std::lock_guard lock(mutex_);
+  channels_.erase(channel->get());
+  return end;
+}
+
+/// Plugins and templates as this server has them.
+std::vector<std::string> SiteService::with_places(std::vector<std::string> arguments) const {
+  for (const std::string& folder : wish_.plugin_paths)
+    arguments.push_back(verb_option("plugin-path", folder));
+  for (const std::string& folder : wish_.template_paths)
+    arguments.push_back(verb_option("templates", folder));
+  return arguments;
+}
+
+/// What the verb prints with --json, and the command that was called.
+Answer SiteService::of_verb(const std::vector<std::string>& arguments) {
+  const ToolEnd end = call(arguments);
+  Json out = Json::parse(end.out, nullptr, false);
+  if (!out.is_object()) {
+    out = {{"error", end.errors.empty() ? "it printed nothing" : end.errors},
+           {"status", 422},
+           {"lang", "en"}};
+    out["command"] = command_line(arguments);
+    return json_answer(422, out);
+  }
+  out["exit_status"] = end.status;
+  out["command"] = command_line(arguments);
+  if (!end.errors.empty()) out["words"] = end.errors;
+  return json_answer(end.status == 2 ? 422 : 200, out);
+}
+
+/// The same of what other pages should see at once.
+Answer SiteService::entered(const std::vector<std::string>& arguments) {
+  Answer out = of_verb(arguments);
+  if (news_) news_->look_now();
+  return out;
+}
+
+Answer SiteService::morning() {
+  if (wish_.out.empty()) return refused(409, "no_out");
+  return of_verb({"status", "--actions", "--json", verb_option("site", wish_.folder.string()),
+                  wish_.out.string()});
+}
+
+Answer SiteService::state(const User* user) {
+  const RunNow run = news_->run();
+  Json json = {{"schema", "nonio-live-site/1"},
+               {"version", version_.load()},
+               {"engine", wish_.version},
+               {"edit", wish_.edit && (user == nullptr || user->role >= Role::measure)},
+               {"approve", wish_.edit && (user == nullptr || user->role >= Role::approve)},
+               {"site", wish_.name},
+               {"out", wish_.out.string()},
+               {"campaigns", campaigns_->index().size()},
+               {"running", run_->is_running()},
+               {"night",
+                {{"state", run.state},
+                 {"night", run.number},
+                 {"date", run.date},
+                 {"last", run.last},
+                 {"last_date", run.last_date}}}};
+  if (user != nullptr)
+    json["user"] = {
+        {"account", user->account}, {"name", user->name}, {"role", to_text(user->role)}};
+  if (Json now = run_->now(); !now.is_null()) json["run"] = std::move(now);
+  return json_answer(200, json);
+}
+
+namespace {
+
+/// Of a folder only its plain files, by name.
+bool is_plain_file_in(const fs::path& folder, const std::string& name) {
+  if (storage::in_pack(folder))
+    return (storage::is_artifact_name(name) || name == evaluation::results_name) &&
+           storage::is_there(folder / name).value_or(false);
+  std::error_code failed;
+  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
+    std::error_code ignored;
+    if (it->path().filename() == name)
+      return fs::is_regular_file(it->symlink_status(ignored)) && !name.starts_with('.');
+  }
+  return false;
+}
+
+}  // namespace
+
+/// A page of the site by its name, as it would be now: only those that the run has written.
+Answer SiteService::page(const std::string& name) {
+  const bool below = name.starts_with("machines/");
+  const fs::path folder = below ? wish_.out / "machines" : wish_.out;
+  const std::string plain = below ? name.substr(name.find('/') + 1) : name;
+  if (wish_.out.empty() || !(plain.ends_with(".html") || plain == "due.ics") ||
+      !is_plain_file_in(folder, plain))
+    return refused(404, "no_page");
+  const ToolEnd end = call({"status", "--actions", verb_option("site", wish_.folder.string()),
+                            verb_option("page", name), wish_.out.string()});
+  if (end.status != 0) return refusal(422, end.errors);
+  // To be kept or shown by the page itself: its own script would run with this address.
+  return {200, "application/octet-stream", end.out, {}};
+}
+
+/// A file of the results of a campaign, to be kept.
+Answer SiteService::result(const std::string& campaign, const std::string& file) {
+  const fs::path folder = wish_.out.empty() || !config::is_campaign_id(campaign)
+                              ? fs::path()
+                              : storage::results_folder(wish_.out, campaign);
+  if (folder.empty() || !is_plain_file_in(folder, file)) return refused(404, "no_result");
+  const auto bytes = storage::read_file(folder / file);
+  if (!bytes) return refusal(422, bytes.error().message);
+  return {200, "application/octet-stream", *bytes, {}};
+}
+
+Answer SiteService::open(const std::string& campaign) {
+  const auto folder = folder_of(campaign);
+  if (!folder) return refused(404, "no_campaign", {{"campaign", campaign.substr(0, 200)}});
+  if (desk(*folder) == nullptr) return refused(503, "ends");
+  std::string path = "/c/";
+  for (const char c : *folder) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
+    char code[4];
+    std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned char>(c));
+    path += plain ? std::string(1, c) : code;
+  }
+  return json_answer(
+      200, {{"version", version_.load()},
+            {"path", path + "/"},
+            {"command", "nonio serve " + quoted_for_shell((wish_.folder / *folder).string())}});
+}
+
+}  // namespace nonio::live

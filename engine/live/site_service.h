@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "live/campaign_service.h"
+#include "live/desk.h"
+#include "live/launcher.h"
+#include "live/session.h"
+#include "live/site_campaigns.h"
+#include "live/site_news.h"
+#include "live/site_run.h"
+#include "live/tool.h"
+#include "live/users.h"
+
+namespace nonio::live {
+
+/// "--by=B. Sample": a value that begins with "-" stays a value.
+inline std::string verb_option(const std::string& name, const std::string& value) {
+  return "--" + name + "=" + value;
+}
+
+inline std::string command_line(const std::vector<std::string>& arguments) {
+  std::string out = "nonio";
+  for (const std::string& one : arguments) out += " " + quoted_for_shell(one);
+  return out;
+}
+
+/// The page of a site: verbs of this program, each as a terminal would call it; and the workbench of
+/// each campaign that is open.
+class SiteService : public Starting {
+ public:
+  SiteService(LiveWish wish, Launcher launcher, Shells shells)
+      : wish_(std::move(wish)), launcher_(std::move(launcher)), shells_(std::move(shells)) {
+    add_routes();
+  }
+  ~SiteService() override { close(); }
+
+  Expected<void> begin() override {
+    campaigns_ = std::make_unique<SiteCampaigns>(
+        wish_.folder, wish_.out,
+        [this](std::vector<std::string> arguments) {
+          for (const std::string& folder : wish_.plugin_paths)
+            arguments.push_back(verb_option("plugin-path", folder));
+          return call(arguments);
+        },
+        [this] { publish("campaigns"); });
+    run_ = std::make_unique<SiteRun>(launcher_, wish_.out, [this] {
+      if (!run_->is_running()) look_at_campaign();
+      publish("run");
+    });
+    news_ = std::make_unique<SiteNews>(wish_.folder, wish_.out,
+                                       [this](const std::string& what) { tell(what.c_str()); });
+    return {};
+  }
+  const std::vector<Route>& routes() const override { return routes_; }
+  const Sentences& sentences() const override { return shells_.sentences; }
+  Answer answer(const Request& request) override;
+  void close() override;
+
+ private:
+  void add_routes();
+  Answer answer_to(const Request& request, const User* user);
+  tl::expected<User, Answer> user_of(const Request& request) const;
+  Answer get(const std::string& path, const Request& request, const User* user);
+  Answer post(const std::string& what, const Request& request, const User* user);
+  Answer morning();
+  Answer page(const std::string& name);
+  Answer result(const std::string& campaign, const std::string& file);
+  Answer state(const User* user);
+  Answer events(const Request& request);
+  Answer open(const std::string& campaign);
+  Answer acknowledge(const storage::Json& body);
+  Answer event(const storage::Json& body);
+  Answer release(const storage::Json& body);
+  Answer verify(const Request& request);
+  Answer run(const storage::Json& body);
+  Answer of_verb(const std::vector<std::string>& arguments);
+  Answer entered(const std::vector<std::string>& arguments);
+  ToolEnd call(const std::vector<std::string>& arguments);
+  std::vector<std::string> with_places(std::vector<std::string> arguments) const;
+  std::optional<std::string> folder_of(const std::string& campaign) const;
+  bool is_campaign(const std::string& folder) const;
+  std::string id_of(const std::string& folder) const;
+  std::shared_ptr<Desk> desk(const std::string& campaign);
+  void tell(const char* what);
+  void publish(const char* what);
+  void look_at_campaign();
+
+  LiveWish wish_;
+  AuditLog audit_{wish_.folder};
+  Launcher launcher_;
+  Shells shells_;
+  std::vector<Route> routes_;
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<Desk>> desks_;
+  std::vector<std::string> order_;  ///< of the desks, the one used last behind
+  std::string run_folder_;          ///< of the campaign that was run last; empty: of all
+  Events events_;
+  std::atomic<std::uint64_t> version_ = 1;
+  std::set<int> channels_;  ///< of verbs at work
+  std::atomic<bool> over_ = false;
+  std::unique_ptr<SiteCampaigns> campaigns_;
+  std::unique_ptr<SiteRun> run_;
+  std::unique_ptr<SiteNews> news_;  ///< its thread uses all of the above
+};
+
+}  // namespace nonio::live
