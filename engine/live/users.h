@@ -29,7 +29,7 @@ struct User {
 inline constexpr const char* users_name = "users.toml";
 inline constexpr const char* audit_name = "audit.jsonl";
 
-/// All that is in the text, or the first mistake with its line. No account is there twice, and no
+/// All that is in the text, or the first mistake with its line. No account is given twice, and no
 /// two accounts have one name: two signatures are of two persons.
 Expected<std::vector<User>> parse_users(std::string_view text);
 Expected<std::vector<User>> read_users(const std::filesystem::path& site);

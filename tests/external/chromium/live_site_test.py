@@ -344,7 +344,7 @@ class SitePage(live_browser.LivePage):
             fcntl.flock(lock, fcntl.LOCK_EX)
             night = json.loads(text)
             state.write_text(json.dumps({**night, "state": "running", "night": 2, "last": night["end"]}))
-            self.wait(lambda: "Night 2 is running" in self.text("night"))
+            self.wait(lambda: "Run 2 is in progress" in self.text("night"))
             self.assertIn(DATE, self.text("night"))
             state.write_text(text)
         self.wait(lambda: self.text("night") == "", "it has ended")
