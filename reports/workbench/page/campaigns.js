@@ -105,7 +105,7 @@ const campaigns = (() => {
       const d = decided.get([a.plugin, a.measurement, name].join("\n")), unit = shownUnit(v.unit || "");
       if (!d && !(a.values.A && a.values.R && ["A", "B", "E", "R"].includes(name))) continue;
       const number = finite(v.value) ? (finite(v.U) && v.U > 0 ? withU(v.value, v.U).join(" \u00B1 ") : short(v.value)) : "\u2013";
-      rows.push(el("tr", {}, el("th", {scope: "row"}, `${entries.visible(a.measurement)}: ${name}`), el("td", {class: "number"}, `${number} ${unit}`), el("td", {class: "number"}, d ? `${short(d.tolerance)} ${unit}` : "\u2013"), el("td", {}, d ? badge(d.decision) : "\u2013")));
+      rows.push(el("tr", {}, el("th", {scope: "row"}, `${entries.visible(a.measurement)}: ${name}`), el("td", {class: "number"}, `${number} ${unit}`), el("td", {class: "number"}, d ? `${local(String(d.tolerance))} ${unit}` : "\u2013"), el("td", {}, d ? badge(d.decision) : "\u2013")));
     }
     return [decided.size === 0 ? el("p", {}, say("one.no_limits")) : null, rows.length === 0 ? null :
       el("table", {id: "decisions"}, el("thead", {}, el("tr", {}, ...["value", "result", "limit", "decision"].map((w) => el("th", {scope: "col"}, say("one." + w))))), el("tbody", {}, ...rows))];
