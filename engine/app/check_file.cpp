@@ -13,6 +13,7 @@
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/text.h"
 #include "platform/storage/files.h"
+#include "printable.h"
 
 namespace nonio::app {
 using Json = nlohmann::ordered_json;
@@ -104,9 +105,9 @@ class FileCheck {
 
   int report(const Expected<Read>& read, const std::optional<reading::StatedTable>& table) const {
     if (!common_.json) {
-      if (!read) return complain(name_ + ": " + text_of(read.error()), exit_failed);
+      if (!read) return complain(printable(name_) + ": " + text_of(read.error()), exit_failed);
       if (!common_.quiet)
-        std::cout << name_ << ": reader " << read->reader->info.name << ", "
+        std::cout << printable(name_) << ": reader " << read->reader->info.name << ", "
                   << read->readings.size() << " readings, " << read->readings.missing
                   << " not taken\n";
       return exit_done;

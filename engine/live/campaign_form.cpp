@@ -2,11 +2,15 @@
 #include "live/campaign_form.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
+#include "campaign/config/keys.h"
 #include "campaign/config/manifest.h"
+#include "live/users.h"
 #include "nonio/sdk/text.h"
 #include "platform/storage/files.h"
 
@@ -59,10 +63,31 @@ bool is_one_line(const std::string& text) {
 
 bool is_number(std::string& text) {
   std::replace(text.begin(), text.end(), ',', '.');
+  if (text.starts_with('+')) text.erase(0, 1);
   double value = 0.0;
   const char* const end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, value);
-  return read.ec == std::errc() && read.ptr == end && std::isfinite(value);
+  if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value)) return false;
+  std::array<char, 32> as_written_in_toml{};
+  const auto written = std::to_chars(as_written_in_toml.begin(), as_written_in_toml.end(), value);
+  text.assign(as_written_in_toml.begin(), written.ptr);
+  return true;
+}
+
+/// A file of Nonio's own, whatever the case of its letters, or a device of Windows.
+bool is_taken_name(std::string name) {
+  for (char& c : name)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
+  constexpr std::string_view own[] = {config::manifest_name, "model-history.jsonl",
+                                      "machine-record.json", users_name, audit_name};
+  const auto is_name = [&](std::string_view one) { return one == name; };
+  if (std::any_of(std::begin(own), std::end(own), is_name) ||
+      std::any_of(std::begin(config::reserved_names), std::end(config::reserved_names), is_name))
+    return true;
+  const std::string stem = name.substr(0, name.find('.'));
+  const bool numbered = stem.size() == 4 && (stem.starts_with("com") || stem.starts_with("lpt")) &&
+                        stem[3] >= '0' && stem[3] <= '9';
+  return numbered || stem == "con" || stem == "prn" || stem == "aux" || stem == "nul";
 }
 
 bool is_date(const std::string& text) {
@@ -108,6 +133,7 @@ class FormOptions {
 
   tl::expected<std::vector<std::string>, Answer> all() {
     if (!is_axis(axis_)) refuse("axis");
+    if (text_of(values_, "campaign.date").empty()) refuse("campaign.date");
     for (const Field& field : fields) {
       std::string text = text_of(values_, field.key);
       if (text.empty()) continue;
@@ -186,7 +212,7 @@ tl::expected<DroppedFile, Answer> dropped_file(const std::string& body) {
   out.name = text_of(out.form, "name");
   constexpr std::string_view not_on_windows = "\\/:*?\"<>|";
   const bool plain = storage::is_artifact_name(out.name) && is_one_line(out.name) &&
-                     out.name.size() <= longest_file_name && out.name != config::manifest_name &&
+                     out.name.size() <= longest_file_name && !is_taken_name(out.name) &&
                      out.name.find_first_of(not_on_windows) == out.name.npos &&
                      out.name.back() != '.' && out.name.back() != ' ';
   if (!plain) return tl::unexpected(refused(422, "file_name"));

@@ -52,6 +52,12 @@ void Desk::close() {
   events_.close();
 }
 
+bool Desk::has_unsaved() const {
+  const std::lock_guard lock(mutex_);
+  const Trial& trial = session_.trial();
+  return trial.model != session_.saved() || !trial.excluded.empty() || !trial.period_mm.empty();
+}
+
 std::vector<Route> Desk::routes(const std::string& base) {
   std::vector<Route> out;
   for (const char* path :
@@ -68,7 +74,7 @@ std::vector<Route> Desk::routes(const std::string& base) {
 
 Answer Desk::answer(const std::string& what, const std::string& part, const Request& request) {
   if (request.route.method == Method::post) {
-    const Json body = Json::parse(request.body.empty() ? "{}" : request.body, nullptr, false);
+    const Json body = storage::parse_once(request.body.empty() ? "{}" : request.body);
     if (!body.is_object()) return refused(400, "no_object");
     try {
       return post(what, body, request);

@@ -67,6 +67,8 @@ class Desk {
 
   /// `what`: the path behind "/api/", names replaced: "state", "parts/{part}/fit".
   Answer answer(const std::string& what, const std::string& part, const Request& request);
+  /// Whether the model or the readings differ from what was saved.
+  bool has_unsaved() const;
   void close();
 
   static std::vector<Route> routes(const std::string& base);

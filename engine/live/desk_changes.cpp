@@ -181,7 +181,7 @@ Answer Desk::save(const Request& request) {
     out.body = storage::dump_line(more);
     return out;
   }
-  const Json body = Json::parse(request.body.empty() ? "{}" : request.body);
+  const Json body = storage::parse_once(request.body.empty() ? "{}" : request.body);
   const std::string shown_command = command();
   Json wish = save_request("save");
   wish["why"] = body.value("why", "").substr(0, longest_text);

@@ -66,7 +66,7 @@ Expected<process::Handle> Launcher::run(const std::vector<std::string>& argument
 
 Expected<process::Handle> Launcher::ask(const storage::Json& what) {
   const std::lock_guard lock(*mutex_);
-  if (!process::write_text(channel_.get(), what.dump()))
+  if (!process::write_text(channel_.get(), storage::dump_line(what)))
     return fail("the process that starts others has ended; start nonio serve again");
   auto answer = process::receive_descriptors(channel_.get());
   if (!answer) return fail("the process that starts others has ended; start nonio serve again");

@@ -210,7 +210,8 @@ tl::expected<std::string, Answer> SiteCampaigns::take_folder(const std::string& 
     const std::string name = n == 1 ? id : id + "-" + std::to_string(n);
     std::error_code error;
     if (fs::create_directory(site_ / name, error)) return name;
-    if (error)
+    std::error_code ignored;
+    if (error && !fs::exists(fs::symlink_status(site_ / name, ignored)))
       return tl::unexpected(refusal(503, (site_ / name).string() + ": " + error.message()));
   }
   return tl::unexpected(refused(409, "folder_taken", {{"campaign", id}}));

@@ -125,7 +125,10 @@ Answer SiteService::result(const std::string& campaign, const std::string& file)
   const fs::path folder = wish_.out.empty() || !config::is_campaign_id(campaign)
                               ? fs::path()
                               : storage::results_folder(wish_.out, campaign);
-  if (folder.empty() || !is_plain_file_in(folder, file)) return refused(404, "no_result");
+  std::error_code error;
+  if (folder.empty() || fs::is_symlink(fs::symlink_status(folder, error)) ||
+      !is_plain_file_in(folder, file))
+    return refused(404, "no_result");
   const auto bytes = storage::read_file(folder / file);
   if (!bytes) return refusal(422, bytes.error().message);
   return {200, "application/octet-stream", *bytes, {}};

@@ -9,6 +9,7 @@
 
 #include "campaign/config/manifest.h"
 #include "campaign/evaluation/record.h"
+#include "nonio/sdk/text.h"
 #include "platform/storage/files.h"
 #include "platform/storage/pack.h"
 
@@ -19,12 +20,15 @@ using storage::Json;
 namespace {
 
 constexpr const char* of_json = "application/json";
-constexpr std::size_t most_desks = 4;
+/// Campaigns that are kept open; more only while they have changes that were not saved.
+constexpr std::size_t most_desks = 4, most_unsaved = 32;
 
 /// What a request needs: the least role.
 Role needed(const Route& route) {
   if (route.path == "/api/audit") return Role::administer;
   if (route.path == "/api/release") return Role::approve;
+  // All who look at a campaign see one model.
+  if (route.method == Method::post && route.path.starts_with("/c/")) return Role::measure;
   return route.writes ? Role::measure : Role::view;
 }
 
@@ -88,9 +92,10 @@ std::optional<std::string> SiteService::folder_of(const std::string& campaign) c
 
 /// Whether a folder below the site, and not above or beyond a link, has a manifest.
 bool SiteService::is_campaign(const std::string& folder) const {
+  if (folder.empty() || folder.ends_with('/') || !is_utf8(folder)) return false;
   if (campaigns_->index().has(folder)) return true;
   const auto path = storage::path_inside(wish_.folder, folder);
-  if (folder.empty() || !path || fs::path(folder).lexically_normal() != folder) return false;
+  if (!path || fs::path(folder).lexically_normal() != folder) return false;
   std::error_code error;
   return fs::is_regular_file(*path / config::manifest_name, error);
 }
@@ -107,11 +112,15 @@ std::shared_ptr<Desk> SiteService::desk(const std::string& campaign) {
   std::erase(order_, campaign);
   if (!desks_.contains(campaign)) {
     if (!is_campaign(campaign)) return nullptr;
-    if (order_.size() == most_desks) {
-      desks_[order_.front()]->close();
-      desks_.erase(order_.front());
-      order_.erase(order_.begin());
+    const auto idle = std::find_if(order_.begin(), order_.end(), [this](const std::string& one) {
+      return !desks_[one]->has_unsaved();
+    });
+    if (order_.size() >= most_desks && idle != order_.end()) {
+      desks_[*idle]->close();
+      desks_.erase(*idle);
+      order_.erase(idle);
     }
+    if (order_.size() >= most_unsaved) return nullptr;
     desks_[campaign] = std::make_shared<Desk>(launcher_, wish_.folder / campaign,
                                               (fs::path(wish_.name) / campaign).string(),
                                               wish_.edit, wish_.version);
@@ -141,20 +150,27 @@ Answer SiteService::answer(const Request& request) {
   Json entry = {{"account", user->account},
                 {"name", user->name},
                 {"request", request.head.target.substr(0, request.head.target.find('?'))}};
+  const Json body = storage::parse_once(request.body);
+  const auto add = [&entry](const Json& from, std::initializer_list<const char*> names) {
+    for (const char* name : names)
+      if (from.is_object() && from.contains(name)) entry[name] = from[name];
+  };
+  add(body, {"machine", "finding", "why", "text", "reasons"});
+  if (path != "/api/ack" && path != "/api/event") add(body, {"campaign"});
   // Before it is done: what could not be recorded is not done.
   entry["state"] = may ? "begins" : "refused";
   if (!audit_.write(entry)) return refused(503, "audit");
   if (!may) return refused(403, "role", {{"role", to_text(user->role)}});
   Answer out = answer_to(request, &*user);
   const Json said = Json::parse(out.body, nullptr, false);
-  entry["state"] = out.status < 300 ? "done" : "failed";
+  const std::string result = said.is_object() && said.contains("state") && said["state"].is_string()
+                                 ? said["state"].get<std::string>()
+                                 : "";
+  entry["state"] = out.status < 300 && result != "lacking" ? "done" : "failed";
+  if (!result.empty()) entry["result"] = result;
   if (said.is_object())
-    for (const char* name : {"campaign", "number", "state", "error"})
-      if (said.contains(name) && said[name].is_string())
-        entry[std::string(name) == "state" ? "result" : name] = said[name];
-  if (const Json body = Json::parse(request.body, nullptr, false); body.is_object())
-    for (const char* name : {"campaign", "machine", "finding", "why", "text", "reasons"})
-      if (body.contains(name)) entry[name] = body[name];
+    for (const char* name : {"campaign", "number", "error"})
+      if (said.contains(name) && said[name].is_string()) entry[name] = said[name];
   if (!audit_.write(entry)) return refused(503, "audit");
   return out;
 }
@@ -198,7 +214,7 @@ Answer SiteService::get(const std::string& path, const Request& request, const U
 
 Answer SiteService::post(const std::string& what, const Request& request, const User* user) {
   if (what == "verify") return verify(request);
-  Json body = Json::parse(request.body.empty() ? "{}" : request.body, nullptr, false);
+  Json body = storage::parse_once(request.body.empty() ? "{}" : request.body);
   if (!body.is_object()) return refused(400, "no_object");
   // A user enters and approves under their own name.
   if (user != nullptr && (what == "ack" || what == "event" || what == "release"))

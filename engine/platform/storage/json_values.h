@@ -17,23 +17,27 @@ namespace nonio::storage {
 /// Keys stay in the order in which they are written.
 using Json = nlohmann::ordered_json;
 
-/// Discarded where it is no JSON, and where an object has a key twice: one program reads the first,
-/// another one the last.
+/// Discarded where it is no JSON; where an object has a key twice: one program reads the first,
+/// another one the last; and where it is nested so deeply that a copy could exhaust the stack.
 inline Json parse_once(std::string_view text) {
+  constexpr int deepest = 64;
   std::vector<std::set<std::string>> open;
-  bool twice = false;
+  bool wrong = false;
   Json json = Json::parse(
       text,
-      [&](int, Json::parse_event_t event, Json& value) {
+      [&](int depth, Json::parse_event_t event, Json& value) {
+        if (depth > deepest) wrong = true;
+        if (wrong) return false;
         if (event == Json::parse_event_t::object_start) open.emplace_back();
         if (event == Json::parse_event_t::object_end) open.pop_back();
         if (event == Json::parse_event_t::key &&
             !open.back().insert(value.get<std::string>()).second)
-          twice = true;
-        return true;
+          wrong = true;
+        return !wrong;
       },
       false);
-  return twice ? Json(Json::value_t::discarded) : json;
+  if (wrong) return Json(Json::value_t::discarded);
+  return json;
 }
 
 /// Indented by one, so that a diff of two runs is readable. Text that is not UTF-8 (a file name, a

@@ -184,21 +184,38 @@ class CampaignsOfASite(LiveTest):
             for expect, more in ((422, {"values": {"campaign.date": "20.11.2026"}}), (422, {"values": {"instrument.U_fixed_um": "1\n[run]"}}), (422, {"values": {"instrument.U_fixed_um": "nan"}}),
                                  (422, {"values": {"machine.maker": "a\nb"}}), (422, {"values": {"machine.maker": "x" * 501}}), (422, {"axis": "../X"}), (422, {"axis": ""}), (422, {"columns": "Lauf"}),
                                  (422, {"columns": ["a\nb"]}), (422, {"data": b""}), (422, {"data": b"no readings"}), (422, {"data": b"run,direction,target_mm,deviation_um\n1,+,0,abc\n"}),
-                                 (422, {"values": {"axis.from": "600", "axis.to": "0"}}), (422, {"values": {"axis.from": "1", "axis.to": ""}})):
+                                 (422, {"values": {"axis.from": "600", "axis.to": "0"}}), (422, {"values": {"axis.from": "1", "axis.to": ""}}),
+                                 (422, {"values": {"campaign.date": ""}})):
                 self.create(s, **{"data": good, "expect": expect, **more})
-            for name in ("../x.csv", "a/b.csv", "..", ".x.csv", "", "campaign.toml", "run.json", "a\\b.csv", "x.csv\n", "con?.csv", "x" * 200 + ".csv", "x.csv.", "/etc/passwd"):
+            for name in ("../x.csv", "a/b.csv", "..", ".x.csv", "", "campaign.toml", "run.json", "a\\b.csv", "x.csv\n", "con?.csv", "x" * 200 + ".csv", "x.csv.", "/etc/passwd",
+                         "site.toml", "Campaign.TOML", "model-history.jsonl", "users.toml", "audit.jsonl", "con.csv", "LPT1.csv"):
                 self.create(s, good, 422, name=name)
                 self.send(s, "/api/preview", {"name": name}, good, 422)
             self.send(s, "/api/campaigns", [], good, 400)
             self.assertEqual([], self.folders())
             self.assertEqual({"site"}, {p.name for p in self.site.parent.iterdir()} - {"out"})
             self.assertEqual(["site.toml"], sorted(p.name for p in self.site.iterdir()))
+            # Nested so deeply that a copy would end the server.
+            deep = b'{"name":"x.csv","v":' + b"[" * 200000 + b"]" * 200000 + b"}"
+            for path in ("/api/preview", "/api/campaigns"):
+                self.assertEqual(400, s.request("POST", path, deep + b"\nabc", {"Content-Type": "application/octet-stream"})[0])
+            for path in ("/api/release", "/api/run", "/api/ack"):
+                self.assertEqual(400, s.request("POST", path, deep, {"Content-Type": "application/json"})[0])
+            self.assertIn(s.request("GET", "/c/bad%FF/api/state")[0], (400, 404))
             # Texts stay texts.
             hostile = '"]\n[run]\noutputs = []'.replace("\n", " ") + " \\ <script>"
             made = self.create(s, good, values={"campaign.customer": hostile, "machine.maker": "--help", "campaign.customer_address": "--set=x=y"})
             manifest = tomllib.loads((self.site / made["campaign"] / "campaign.toml").read_text())
             self.assertEqual((hostile, "--help", "--set=x=y"), (manifest["campaign"]["customer"], manifest["machine"]["maker"], manifest["campaign"]["customer_address"]))
             self.assertNotIn("run", manifest)
+            # As people write numbers.
+            made = self.create(s, good, values={"campaign.date": "2026-11-25", "instrument.U_fixed_um": "+,5", "instrument.U_per_m_um": "007."})
+            manifest = tomllib.loads((self.site / made["campaign"] / "campaign.toml").read_text())
+            self.assertEqual((0.5, 7), (manifest["instrument"]["U_fixed_um"], manifest["instrument"]["U_per_m_um"]))
+            # What has the name of its folder already, and is none, is left alone.
+            (self.site / (made["campaign"].replace("25", "26"))).write_text("a file")
+            again = self.create(s, good, values={"campaign.date": "2026-11-26"})
+            self.assertTrue(again["campaign"].endswith("-2"), again)
 
     def test_who_may_not_gets_nothing(self):
         body = json.dumps({"name": "x.csv", "axis": "X", "values": VALUES}).encode() + b"\n" + text_of(readings()).encode()

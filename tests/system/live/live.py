@@ -113,10 +113,10 @@ class Server:
         return self.until("/api/state", lambda s: s.get("bench") == "open", "open")
 
     def fit(self, part):
-        return self.until(f"/api/parts/{urllib.parse.quote(part)}/fit", lambda a: a.get("status") != 409, "fitted")
+        return self.until(f"/api/parts/{urllib.parse.quote(part, safe='')}/fit", lambda a: a.get("status") != 409, "fitted")
 
     def explained(self, part):
-        return self.until(f"/api/parts/{urllib.parse.quote(part)}/explain", lambda a: a.get("status") != 409, "explained")
+        return self.until(f"/api/parts/{urllib.parse.quote(part, safe='')}/explain", lambda a: a.get("status") != 409, "explained")
 
     def stream(self, since=0):
         return Stream(self, since)

@@ -45,7 +45,8 @@ class Users(LiveTest):
         requests = [("GET", "/api/site/state", None, None, "view", (200,)), ("GET", "/api/campaigns", None, None, "view", (200,)), ("GET", "/api/records", None, None, "view", (200,)),
                     ("POST", "/api/preview", self.campaign(), file, "view", (200,)), ("POST", "/api/campaigns", self.campaign(), file, "measure", (200,)),
                     ("POST", "/api/event", event, None, "measure", (200,)), ("POST", "/api/run", {"campaign": "none"}, None, "measure", (404,)),
-                    ("POST", "/api/release", {"campaign": "none", "by": "Person approve"}, None, "approve", (404,)), ("GET", "/api/audit", None, None, "administer", (200,))]
+                    ("POST", "/api/release", {"campaign": "none", "by": "Person approve"}, None, "approve", (404,)), ("GET", "/api/audit", None, None, "administer", (200,)),
+                    ("POST", "/c/none/api/exclude", {}, None, "measure", (404,)), ("POST", "/c/none/api/model", {}, None, "measure", (404,))]
         with self.serve("--edit") as s:
             for role in ROLES:
                 for method, path, body, headers, least, allowed in requests:
@@ -61,9 +62,11 @@ class Users(LiveTest):
             self.assertNotIn("Somebody Else", text, "entries have the name of the user")
             for role in ROLES[1:]:
                 self.assertIn(f"Person {role}", text)
+            self.ask(s, "POST", "/api/event", "measure-1", {**event, "campaign": "never-touched"})
+            self.assertTrue(all("campaign" not in e and e["machine"] == "M 1" for e in self.log() if e["request"] == "/api/event" and e["state"] != "refused"))
             log = self.log()
             self.assertEqual({"view-1", "measure-1", "approve-1", "administer-1"}, {e["account"] for e in log})
-            self.assertEqual(5, sum(e["state"] == "refused" for e in log if e["account"] == "view-1"))
+            self.assertEqual(7, sum(e["state"] == "refused" for e in log if e["account"] == "view-1"))
             done = [e for e in log if e["request"] == "/api/campaigns" and e["state"] == "done"]
             self.assertEqual(sorted(p.parent.name for p in self.site.glob("*/campaign.toml")), sorted(e["campaign"] for e in done))
             exported = self.ask(s, "GET", "/api/audit", "administer-1")[1].decode()
