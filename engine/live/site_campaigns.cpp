@@ -51,10 +51,10 @@ std::size_t number_of(const Request& request, const char* name, std::size_t othe
 /// Those of the keys that begin with one of these, as an object.
 Json values_with(const ListedCampaign& c, std::initializer_list<const char*> beginnings) {
   Json out = Json::object();
-  for (const auto& [key, text] : c.values)
+  for (const auto& value : c.values)
     if (std::any_of(beginnings.begin(), beginnings.end(),
-                    [&](const char* beginning) { return key.starts_with(beginning); }))
-      out[key] = text;
+                    [&](const char* beginning) { return value.first.starts_with(beginning); }))
+      out[value.first] = value.second;
   return out;
 }
 

@@ -38,7 +38,7 @@ Expected<std::vector<User>> read_users(const std::filesystem::path& site);
 /// refused. Lines are only ever added.
 class AuditLog {
  public:
-  explicit AuditLog(std::filesystem::path site) : file_(std::move(site) / audit_name) {}
+  explicit AuditLog(const std::filesystem::path& site) : file_(site / audit_name) {}
   /// With the time, UTC. An error: nothing may be done that would leave no trace.
   Expected<void> write(storage::Json entry);
   /// Empty if there is none.
