@@ -126,7 +126,7 @@ const campaigns = (() => {
     const {campaigns: found} = await net.ask("/api/campaigns?" + new URLSearchParams({folder}));
     const c = found.find((x) => x.folder === folder);
     const back = el("p", {}, el("a", {href: "#to=campaigns", "data-key": "back-to-list"}, say("one.back")));
-    if (!c) return [el("h1", {tabindex: -1}, entries.visible(folder)), back, el("p", {}, say("list.no_such"))];
+    if (!c) return [el("h1", {tabindex: -1}, entries.visible(folder)), back, el("p", {}, say("one.no_such"))];
     const has = c.files.includes("results.json");
     const [results, drafts] = await Promise.all([has ? json(c.id, "results.json") : {}, c.draft ? net.ask("/api/drafts") : {drafts: []}]);
     const draft = drafts.drafts.find((d) => d.folder === folder);
