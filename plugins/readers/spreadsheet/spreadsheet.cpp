@@ -2,6 +2,7 @@
 #include "spreadsheet.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "csv.h"
 #include "header.h"
@@ -14,14 +15,20 @@ namespace {
 
 using Row = std::vector<std::string>;
 
+/// The text of a cell in one line: people break long names of columns.
+std::string in_one_line(std::string cell) {
+  for (char& c : cell)
+    if (c == '\t' || c == '\n' || c == '\r') c = ' ';
+  return cell;
+}
+
 /// A row as a line of a file with tabs and at least `width` fields: blank cells at the end of a row
 /// are not in the sheet.
 std::string line_of(const Row& row, std::size_t width = 0) {
   std::string out;
   for (std::size_t k = 0; k < std::max(row.size(), width); ++k) {
     if (k > 0) out += '\t';
-    if (k >= row.size()) continue;
-    for (const char c : row[k]) out += c == '\t' || c == '\n' || c == '\r' ? ' ' : c;
+    if (k < row.size()) out += in_one_line(row[k]);
   }
   return out;
 }
@@ -41,8 +48,11 @@ struct Wanted {
 /// Whether a row has the names of columns.
 bool is_header(const Row& row, const Wanted& wanted) {
   if (is_blank(row)) return false;
-  if (!wanted.stated.empty())
-    return wanted.stated.all_in(std::vector<std::string_view>(row.begin(), row.end()));
+  if (!wanted.stated.empty()) {
+    Row names;
+    std::transform(row.begin(), row.end(), std::back_inserter(names), in_one_line);
+    return wanted.stated.all_in(std::vector<std::string_view>(names.begin(), names.end()));
+  }
   const Method* const method = wanted.method;
   if (method == nullptr || method->columns.empty()) return csv::recognises(line_of(row) + "\n");
   return std::any_of(row.begin(), row.end(), [&](const std::string& cell) {
@@ -117,9 +127,10 @@ Expected<std::vector<Row>> first_rows(std::string_view bytes, std::size_t most) 
   const auto& rows = longest->rows();
   const auto first = std::max_element(
       rows.begin(), rows.end(), [&](const Row& a, const Row& b) { return cells(a) < cells(b); });
-  return std::vector<Row>(first, rows.end() - first > static_cast<std::ptrdiff_t>(most)
-                                     ? first + static_cast<std::ptrdiff_t>(most)
-                                     : rows.end());
+  std::vector<Row> out;
+  for (auto row = first; row != rows.end() && out.size() < most; ++row)
+    std::transform(row->begin(), row->end(), std::back_inserter(out.emplace_back()), in_one_line);
+  return out;
 }
 
 bool recognises(std::string_view head) { return head.starts_with("PK\x03\x04"); }

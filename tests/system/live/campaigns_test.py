@@ -147,7 +147,8 @@ class CampaignsOfASite(LiveTest):
         rows = readings(names, more=more)
         columns = [f"{a} = {b}" for a, b in zip(names, KNOWN)] + ["Bemerkung = ignore"]
         path = self.site.parent / "x.xlsx"
-        sheets.xlsx(path, {"Notes": [["Messung Halle 2"]], "Data": [["Messung Halle 2"], []] + rows})
+        broken = [[name.replace("Soll ", "Soll\n") for name in rows[0]], *rows[1:]]  # as people break long names
+        sheets.xlsx(path, {"Notes": [["Messung Halle 2"]], "Data": [["Messung Halle 2"], []] + broken})
         with self.serve("--edit") as s:
             for name, data in (("x.csv", text_of(rows, ";", ",").encode()), ("x.xlsx", path.read_bytes())):
                 unknown = self.send(s, "/api/preview", {"name": name}, data)
