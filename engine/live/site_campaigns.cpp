@@ -184,19 +184,42 @@ Answer SiteCampaigns::records() const {
                            {"columns", std::move(columns)}});
 }
 
-/// `nonio check FILE --json` on a copy that is removed at once.
-Answer SiteCampaigns::preview(const Request& request) {
-  const auto file = dropped_file(request.body);
+namespace {
+
+/// A file that was dropped with its form, as a copy that is removed at the end.
+struct Taken {
+  DroppedFile dropped;
+  std::vector<std::string> options;
+  storage::ScratchFolder folder{"live"};
+  std::string path() const { return (folder.path() / dropped.name).string(); }
+};
+
+/// Put into `taken`; an answer where it is refused.
+std::optional<Answer> take(const Request& request, decltype(column_options)& options_of,
+                           Taken& taken) {
+  auto file = dropped_file(request.body);
   if (!file) return file.error();
-  auto columns = column_options(file->form);
-  if (!columns) return columns.error();
-  const storage::ScratchFolder folder("live");
-  if (folder.path().empty()) return refused(503, "no_scratch");
-  if (const auto kept = storage::publish(folder.path(), {{file->name, file->bytes}}); !kept)
+  taken.dropped = *std::move(file);
+  auto options = options_of(taken.dropped.form);
+  if (!options) return options.error();
+  taken.options = *std::move(options);
+  if (taken.folder.path().empty()) return refused(503, "no_scratch");
+  if (const auto kept =
+          storage::publish(taken.folder.path(), {{taken.dropped.name, taken.dropped.bytes}});
+      !kept)
     return refusal(503, kept.error().message);
+  return std::nullopt;
+}
+
+}  // namespace
+
+/// `nonio check FILE --json` on the copy.
+Answer SiteCampaigns::preview(const Request& request) {
+  Taken taken;
+  if (auto refusal = take(request, column_options, taken)) return *std::move(refusal);
   std::vector<std::string> arguments{"check", "--json"};
-  arguments.insert(arguments.end(), columns->begin(), columns->end());
-  arguments.push_back((folder.path() / file->name).string());
+  arguments.insert(arguments.end(), taken.options.begin(), taken.options.end());
+  arguments.push_back(taken.path());
   const ToolEnd end = call_(std::move(arguments));
   const Json out = Json::parse(end.out, nullptr, false);
   return out.is_object() ? json_answer(200, out) : refusal(422, end.errors);
@@ -219,24 +242,19 @@ tl::expected<std::string, Answer> SiteCampaigns::take_folder(const std::string& 
 
 /// `nonio new campaign`: nothing is left of a campaign that it refuses.
 Answer SiteCampaigns::create(const Request& request) {
-  const auto file = dropped_file(request.body);
-  if (!file) return file.error();
-  auto options = campaign_options(file->form);
-  if (!options) return options.error();
-  const storage::ScratchFolder scratch("live");
-  if (scratch.path().empty()) return refused(503, "no_scratch");
-  if (const auto kept = storage::publish(scratch.path(), {{file->name, file->bytes}}); !kept)
-    return refusal(503, kept.error().message);
-  const auto name = take_folder(proposed_id(file->form));
+  Taken taken;
+  if (auto refusal = take(request, campaign_options, taken)) return *std::move(refusal);
+  const Json& form = taken.dropped.form;
+  const auto name = take_folder(proposed_id(form));
   if (!name) return name.error();
   std::vector<std::string> arguments{"new", "campaign", (site_ / *name).string(), "--json"};
-  arguments.insert(arguments.end(), options->begin(), options->end());
+  arguments.insert(arguments.end(), taken.options.begin(), taken.options.end());
   std::string command = "nonio";
   for (const std::string& one : arguments)
     if (one != "--json") command += " " + quoted_for_shell(one);
-  const std::string axis = file->form.value("axis", "");
-  command += " " + quoted_for_shell("--file=" + axis + "=" + file->name);
-  arguments.push_back("--file=" + axis + "=" + (scratch.path() / file->name).string());
+  const std::string axis = form.value("axis", "");
+  command += " " + quoted_for_shell("--file=" + axis + "=" + taken.dropped.name);
+  arguments.push_back("--file=" + axis + "=" + taken.path());
   const ToolEnd end = call_(std::move(arguments));
   if (end.status != 0) {
     std::error_code ignored;

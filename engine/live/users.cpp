@@ -19,37 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// As users_file() declares them.
 constexpr std::array roles{"view", "measure", "approve", "administer"};
-
-tl::unexpected<Error> wrong(const toml::node& node, std::string message) {
-  return fail(Error{std::move(message), users_name, node.source().begin.line});
-}
-
-Expected<User> user_of(const toml::table& table) {
-  User user;
-  std::string role;
-  for (const auto& [key, node] : table) {
-    const std::string name(key.str());
-    std::string* const to = name == "account" ? &user.account
-                            : name == "name"  ? &user.name
-                            : name == "role"  ? &role
-                                              : nullptr;
-    if (to == nullptr)
-      return wrong(node, "unknown key " + name + "; expected account, name and role");
-    const auto text = node.value<std::string>();
-    if (!text || text->empty()) return wrong(node, name + ": expected a text");
-    *to = *text;
-  }
-  if (user.account.empty() || user.name.empty() || role.empty())
-    return wrong(table, "expected account, name and role of a [[user]]");
-  const auto* const known =
-      std::find_if(roles.begin(), roles.end(), [&](const char* one) { return role == one; });
-  if (known == roles.end())
-    return wrong(table,
-                 "role: expected view, measure, approve or administer, found \"" + role + "\"");
-  user.role = static_cast<Role>(known - roles.begin());
-  return user;
-}
 
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
@@ -65,23 +36,25 @@ std::string utc_now() {
 const char* to_text(Role role) { return roles[static_cast<std::size_t>(role)]; }
 
 Expected<std::vector<User>> parse_users(std::string_view text) {
-  NONIO_TRY(const auto root, config::parse_toml(text, users_name));
+  const std::string file = users_name;
+  NONIO_TRY(const auto root, config::parse_toml(text, file));
+  std::vector<Error> errors;
+  config::TableReader top(root, config::users_file(), file, errors);
+  top.integer("format");
   std::vector<User> out;
-  for (const auto& [key, node] : root) {
-    if (key.str() == "format" && node.value<std::int64_t>() == 1) continue;
-    const toml::array* const all = key.str() == "user" ? node.as_array() : nullptr;
-    if (all == nullptr) return wrong(node, "expected format = 1 and [[user]]");
-    for (const toml::node& one : *all) {
-      const toml::table* const table = one.as_table();
-      if (table == nullptr) return wrong(one, "expected [[user]]");
-      NONIO_TRY(auto user, user_of(*table));
-      for (const User& other : out)
-        if (other.account == user.account || other.name == user.name)
-          return wrong(*table, "account and name of each [[user]] have to be its own, found \"" +
-                                   user.account + "\", \"" + user.name + "\" again");
-      out.push_back(std::move(user));
-    }
+  for (config::TableReader& reader : top.tables("user")) {
+    User user{reader.text("account"), reader.text("name")};
+    const std::string role = reader.text("role");
+    user.role = static_cast<Role>(std::find(roles.begin(), roles.end(), role) - roles.begin());
+    for (const User& other : out)
+      if (other.account == user.account || other.name == user.name)
+        reader.error("account", "account and name of each [[user]] have to be its own, found \"" +
+                                    user.account + "\", \"" + user.name + "\" again");
+    reader.finish();
+    out.push_back(std::move(user));
   }
+  top.finish();
+  if (!errors.empty()) return fail(errors.front());
   if (out.empty()) return fail(Error{"expected at least one [[user]]", users_name});
   return out;
 }

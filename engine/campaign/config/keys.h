@@ -96,6 +96,8 @@ const Key& machine_file();
 const Key& events_file();
 const Key& acknowledged_file();
 const Key& forgotten_file();
+/// SITE/users.toml: accounts of the page of a site.
+const Key& users_file();
 /// causes/*.toml of the templates and of a site.
 const Key& causes_file();
 /// What a specification of `nonio model simulate` has besides campaign.toml.

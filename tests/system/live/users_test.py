@@ -40,7 +40,7 @@ class Users(LiveTest):
 
     def test_each_role_does_what_it_may(self):
         file = {"Content-Type": "application/octet-stream"}
-        event = {"machine": "M 1", "kind": "other", "text": "seen", "by": "Somebody Else", "date": "2026-01-01"}
+        event = {"machine": "M 1", "kind": "other", "text": "seen", "by": "Another Person", "date": "2026-01-01"}
         # What a request needs, and its status where it is allowed.
         requests = [("GET", "/api/site/state", None, None, "view", (200,)), ("GET", "/api/campaigns", None, None, "view", (200,)), ("GET", "/api/records", None, None, "view", (200,)),
                     ("POST", "/api/preview", self.campaign(), file, "view", (200,)), ("POST", "/api/campaigns", self.campaign(), file, "measure", (200,)),
@@ -59,7 +59,7 @@ class Users(LiveTest):
                 self.assertEqual((role, f"Person {role}", role != "view", role in ("approve", "administer")), (state["user"]["role"], state["user"]["name"], state["edit"], state["approve"]))
             self.assertEqual(3, len(list(self.site.glob("*/campaign.toml"))))
             text = (self.site / "events.toml").read_text()
-            self.assertNotIn("Somebody Else", text, "entries have the name of the user")
+            self.assertNotIn("Another Person", text, "entries have the name of the user")
             for role in ROLES[1:]:
                 self.assertIn(f"Person {role}", text)
             self.ask(s, "POST", "/api/event", "measure-1", {**event, "campaign": "never-touched"})
@@ -74,7 +74,7 @@ class Users(LiveTest):
 
     def test_who_is_no_user_gets_nothing(self):
         with self.serve("--edit") as s:
-            for account in (None, "", "nobody", "approve-1 ", "Approve-1", "Person approve"):
+            for account in (None, "", "stranger", "approve-1 ", "Approve-1", "Person approve"):
                 for method, path in (("GET", "/api/site/state"), ("GET", "/api/campaigns"), ("GET", "/api/audit"), ("POST", "/api/run"), ("GET", "/c/x/api/state")):
                     status, answer = self.ask(s, method, path, account, {} if method == "POST" else None)
                     if account == "approve-1 " and status != 403:  # blanks around a value belong to no value (RFC 9110)

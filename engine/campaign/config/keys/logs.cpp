@@ -127,8 +127,39 @@ constexpr Key forgotten_toml = {
     .help = "Campaigns and other files of a site that were removed on purpose.",
     .keys = forgotten_file_keys};
 
+constexpr Choice roles[] = {{"view"}, {"measure"}, {"approve"}, {"administer"}};
+constexpr Key user_keys[] = {
+    {.name = "account",
+     .holds = text,
+     .help = "Account as the reverse proxy states it.",
+     .required = true},
+    {.name = "name",
+     .holds = text,
+     .help = "Name of the person, as documents print it.",
+     .required = true},
+    {.name = "role",
+     .holds = text,
+     .help = "What the person may do; each role may do what those before it may.",
+     .required = true,
+     .choices = roles},
+};
+
+constexpr Key users_file_keys[] = {
+    format_key,
+    {.name = "user",
+     .holds = tables,
+     .help = "Users of the page of a site, [[user]].",
+     .keys = user_keys},
+};
+
+constexpr Key users_toml = {.name = "users.toml",
+                            .holds = table,
+                            .help = "Who may do what on the page of a site.",
+                            .keys = users_file_keys};
+
 }  // namespace declared
 
+const Key& users_file() { return declared::users_toml; }
 const Key& events_file() { return declared::events_toml; }
 const Key& acknowledged_file() { return declared::acknowledged_toml; }
 const Key& forgotten_file() { return declared::forgotten_toml; }
