@@ -2,8 +2,9 @@
 """real.py NONIO                       what `explain` says of the real readings in bench/real, held against what a
                                        person sees in them (bench/real/wanted.toml)
 real.py NONIO --hidden COUNT [--seed SEED]    an effect hidden in their scatter: whole passes, less the mean of each
-                                       target from each side, are drawn again; how often it is named
-real.py NONIO --complete COUNT [--seed SEED]  the same without an effect: how often the verdict is `nothing`, or says that passes differ
+                                       target from each side, in another order; how often it is named
+real.py NONIO --complete COUNT [--seed SEED]  the same without an effect: how often the verdict is `nothing`, or says that passes
+                                       differ; alarms found, and printed as their rate
 
 Wilson's 95 % intervals. Status 1 where a set is not read as wanted."""
 import argparse
@@ -135,9 +136,10 @@ def campaign(real, rng, hidden, size):
     """Rows in the order of the cycle, with times."""
     low, high = real.targets[0], real.targets[-1]
     rows = []
+    order = {way: rng.sample(real.passes[way], real.runs) for way in real.ways}  # no machine repeats a pass to the digit
     for run in range(1, real.runs + 1):
         for way in real.ways:
-            drawn = dict(zip(real.targets, rng.choice(real.passes[way])))
+            drawn = dict(zip(real.targets, order[way][run - 1]))
             for target in real.targets if way == "+" else reversed(real.targets):
                 rows.append([run, way, target, drawn[target]])
     if hidden:
@@ -179,7 +181,7 @@ def true_words(said):
 
 def story(nonio, count, seed, hide):
     sets = [Real(name) for name in SETS]
-    tallies, verdicts = collections.defaultdict(list), collections.Counter()
+    tallies, verdicts, printed = collections.defaultdict(list), collections.Counter(), []
     with tempfile.TemporaryDirectory() as scratch:
         for s in range(seed, seed + count):
             rng = random.Random(s)
@@ -192,11 +194,14 @@ def story(nonio, count, seed, hide):
             right = truth in names or bool(names) and truth in first["aliases"]
             wrong = [n for n in names if n != truth] if not right else [n for n in names[1:] if n != truth]
             verdicts[said["verdict"]["kind"]] += 1
+            printed.append(said["false_alarm_rate"])
             for key in ("all", real.name, hidden or "-"):
                 tallies[key].append((right if hide else true_words(said), bool(wrong)))
             if wrong:
                 print(f"  seed {s}: {real.name}, hidden {truth}, named {', '.join(names)}", file=sys.stderr)
     print(f"seeds {seed} .. {seed + count - 1}; verdicts {dict(verdicts)}")
+    if not hide:
+        print(f"  alarms found {share(count - verdicts['nothing'], count)}, printed {100 * statistics.fmean(printed):.1f} %")
     for key, all_of in tallies.items():
         print(f"  {key:30} {'named' if hide else 'true'} {share(sum(r for r, _ in all_of), len(all_of))}   "
               f"wrong names {share(sum(w for _, w in all_of), len(all_of))}")

@@ -30,7 +30,9 @@ class Explain {
       : options_(options), common_(common) {}
 
   int run() {
-    auto opened = open_campaign(options_.folder, common_, reading::TemplatesFor::terminal);
+    auto opened = open_campaign(options_.folder, common_,
+                                options_.library ? reading::TemplatesFor::terminal_with_library
+                                                 : reading::TemplatesFor::terminal);
     if (!opened) return opened.error();
     open_ = std::move(*opened);
     words_.emplace(words_for(open_, common_));

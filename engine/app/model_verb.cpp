@@ -52,7 +52,7 @@ std::string refusal(const OpenCampaign& open, const std::string& effect, const s
 }
 
 int change(const ModelOptions& options, const Common& common, bool add) {
-  auto opened = open_campaign(options.folder, common, reading::TemplatesFor::terminal);
+  auto opened = open_campaign(options.folder, common, reading::TemplatesFor::terminal_with_library);
   if (!opened) return opened.error();
   OpenCampaign& open = *opened;
   std::string effect = modelling::entry_of(options.effect).text();

@@ -123,7 +123,7 @@ void put_noise(storage::Json& json, const model::Fit& fit, Quantity q) {
     storage::put(one, "neighbours_p", noise.p, Quantity::probability);
   storage::put(one, "neighbours_used", noise.neighbours, Quantity::number);
   if (noise.zero != model::Noise::Zero::steady)
-    storage::put(one, "zero_s", noise.zero_found * fit.s, q);
+    storage::put(one, "zero_s", noise.zero_found * fit.s_noise, q);
   if (noise.digit > 0.0) storage::put(one, "last_digit", noise.digit, q);
   if (noise.stretch) {
     const Quantity at = q == Quantity::deviation ? Quantity::length : Quantity::angle;

@@ -288,6 +288,11 @@ Finding verdict_finding(const model::Explanation& e, const PartModel& part) {
     f.id += "-without-floor";
   if (v.kind == Kind::nothing && part.part.kind == model::Part::Kind::course && e.comparison.floor)
     f.id += "-over-time";  // its noise floor is that of successive readings
+  if (const model::Fit& fit = e.comparison.fit; v.kind == Kind::nothing && e.comparison.floor &&
+                                                fit.noise.zero == model::Noise::Zero::of_pass) {
+    f.id += "-of-passes";
+    f.evidence.push_back({"zero", fit.noise.zero_found * fit.s_noise, q});
+  }
   if (v.below_scatter) f.id = "verdict.unknown-below-scatter";
   if (v.kind == Kind::unknown && !e.certain.empty()) {
     f.id = "verdict.certain";
@@ -506,7 +511,7 @@ std::vector<std::string> ModelWords::noise(const model::Fit& fit, const PartMode
     out.push_back(says(noise.zero == Zero::walks    ? "noise.walks"
                        : noise.zero == Zero::of_run ? "noise.of-run"
                                                     : "noise.of-pass",
-                       {{"s", noise.zero_found * fit.s, q}}, {}));
+                       {{"s", noise.zero_found * fit.s_noise, q}}, {}));
   std::string open;
   for (const model::Parameter& p : fit.parameters)
     if (noise.zero_open && !p.shape && !std::isfinite(p.u))

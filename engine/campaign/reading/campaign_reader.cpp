@@ -190,11 +190,9 @@ bool names_a_cause(const ReadCampaign& out) {
   });
 }
 
-/// Reading the library costs more than the rest of a campaign: a run of a site, which writes documents,
-/// reads it only for a model that names one of its causes.
+/// Reading the library costs more than the rest of a campaign.
 void add_library(const Context& context, ReadCampaign& out) {
-  const bool for_documents = !context.templates.files.empty();
-  if (for_documents && !names_a_cause(out)) return;
+  if (!context.every_cause && !names_a_cause(out)) return;
   auto causes = config::causes_in(context.templates);
   if (!causes) {
     for (Error& e : causes.error()) report_in(out, std::move(e));

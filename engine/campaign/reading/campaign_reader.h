@@ -47,8 +47,8 @@ struct Workplace {
 };
 
 /// What `open_workplace` reads of the templates: fonts and words of other languages take a third of
-/// the time of a short command.
-enum class TemplatesFor { documents, terminal };
+/// the time of a short command, and the library of causes a tenth.
+enum class TemplatesFor { documents, terminal, terminal_with_library };
 
 /// Plugins, templates and the site.toml of the nearest folder above the campaign that has one.
 Expected<std::unique_ptr<Workplace>> open_workplace(

@@ -22,6 +22,7 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   auto place = std::make_unique<Workplace>();
   Context& context = place->context;
   context.version = version;
+  context.every_cause = what != TemplatesFor::terminal;
   const fs::path site = config::site_of(campaign);
   auto read = config::read_site(site, context.site_sha256);
   if (!read) return fail(read.error().front());
@@ -41,7 +42,7 @@ Expected<std::unique_ptr<Workplace>> open_workplace(const fs::path& campaign,
   // After the process for the plugins was forked: it would copy each page of them when it frees them.
   NONIO_TRY(const auto folders, config::with_site_templates(template_folders, site));
   std::vector<std::string> below;
-  if (what == TemplatesFor::terminal) below = config::words_in(context.site.language);
+  if (what != TemplatesFor::documents) below = config::words_in(context.site.language);
   NONIO_TRY(auto templates,
             config::read_templates(folders, context.templates_sha256, nullptr, {}, below));
   context.templates = std::move(templates);

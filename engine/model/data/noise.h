@@ -37,8 +37,10 @@ Noise with_zero(const Observations& o, const std::vector<Term>& terms,
 /// n ln(squares/n) + ln|V| of a model together with a zero that is not steady, minimised over its
 /// size: `Workbench::State::criterion` without its price.
 struct Unsteady {
-  double walks = std::numeric_limits<double>::infinity();   ///< a zero that walks, row by row
-  double of_run = std::numeric_limits<double>::infinity();  ///< each run has its own
+  double walks = std::numeric_limits<double>::infinity();    ///< a zero that walks, row by row
+  double of_run = std::numeric_limits<double>::infinity();   ///< each run has its own
+  double of_pass = std::numeric_limits<double>::infinity();  ///< each run in one direction
+  double size_of_pass = 0.0;                                 ///< of the latter, over s
   double least() const { return std::min(walks, of_run); }
 };
 /// `model` holds the model's columns; rows in their order, of weight 0 are left out.

@@ -262,13 +262,14 @@ Unsteady walk_with(const Observations& o, const std::vector<double>& weight, Noi
   columns << model, Eigen::Map<const VectorXd>(o.deviation.data(), model.rows());
   noise.zero = Noise::Zero::steady;
   const double none = Whitening(o, weight, noise).log_det();
+  double size_of_least = 0.0;
   const auto least_of = [&](Noise::Zero zero, const std::vector<double>& sizes) {
     double least = std::numeric_limits<double>::infinity();
     noise.zero = zero;
     for (const double size : sizes) {
       noise.zero_size = size;
       const double value = deviance(o, weight, noise, columns) - none;
-      least = std::min(least, value);
+      if (value < least) least = value, size_of_least = size;
       if (value > least + beyond_minimum) break;
     }
     return least;
@@ -280,6 +281,11 @@ Unsteady walk_with(const Observations& o, const std::vector<double>& weight, Noi
   if (std::any_of(o.run.begin(), o.run.end(),
                   [&](std::uint32_t run) { return run != o.run.front(); }))
     out.of_run = least_of(Noise::Zero::of_run, {0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8});
+  if (noise.pass.empty()) return out;
+  std::vector<double> sizes;
+  for (int k = 0; k <= 14; ++k) sizes.push_back(0.2 * std::pow(2.0, 0.5 * k));
+  out.of_pass = least_of(Noise::Zero::of_pass, sizes);
+  out.size_of_pass = size_of_least;
   return out;
 }
 

@@ -33,16 +33,8 @@ class PassZeros {
   bool shows(const std::string& effect) const;
 
  private:
-  struct Offset {
-    double value = 0.0, way = 0.0;
-    std::uint32_t side = 0;
-  };
-  std::vector<Offset> offsets() const;
-  bool unordered() const;
-  void centre(const std::vector<Offset>& of, VectorXd& values) const;
-  double degrees() const;
   Noise with_passes() const;
-  double share_of_passes(const std::string& effect) const;
+  double share_of(const std::string& effect) const;
 
   const Finding& f_;
   bool unordered_ = false;

@@ -32,6 +32,8 @@ constexpr double certain_share = 0.06;
 constexpr double certain_evidence = 50.0;
 // docs/dev/constants.md, M9.
 constexpr double most_of_one_target = 0.3;
+// docs/dev/constants.md, M9.
+constexpr double most_of_one_pass = 0.5;
 // Effects with less evidence are not compared with a zero that is not steady:
 // sizes that are printed as the smallest would be lost.
 // docs/dev/constants.md, M29.
@@ -64,13 +66,16 @@ class Judge {
     for (const Place& place : f_.of_model.places)
       if (place.p < place_p) out_.fails.push_back(place);
     const double least = least_serious(f_.of_best.floor);
-    const std::vector<Place> left = Judge::serious(f_.of_best.places, least);
+    // Where the search took zeros of passes for noise, names and places are tested next to them.
+    const bool searched = f_.noise.zero == Noise::Zero::of_pass;
+    std::vector<Place> left = Judge::serious(f_.of_best.places, least);
     // What zeros of passes that scatter leave too is no reason for a verdict, but one for doubt.
     std::vector<Place> serious =
         passes_.scatter()
             ? Judge::serious(passes_.places(f_.of_best.fit.residual, f_.of_best.floor, least),
                              least)
             : left;
+    if (searched) left = serious;
     const Noise::Zero zero = unsteady_zero();
     const bool walks = zero != Noise::Zero::steady;
     if (contradictory(zero)) {
@@ -81,10 +86,10 @@ class Judge {
     find_cancelling();
     list_certain(left, walks);
     if (auto place = of_targets(); place && serious.empty()) serious.push_back(std::move(*place));
-    const bool of_passes =
-        passes_.scatter() && !out_.together.empty() && !passes_.shows(out_.together.front());
-    if (!out_.together.empty() && !walks && !of_passes && !cancels(out_.together.front()) &&
-        !with_cancelling(out_.together.front()) &&
+    const bool of_passes = passes_.scatter() && !searched && !out_.together.empty() &&
+                           !passes_.shows(out_.together.front());
+    if (!out_.together.empty() && !walks && !of_passes && !of_one_pass(out_.together.front()) &&
+        !cancels(out_.together.front()) && !with_cancelling(out_.together.front()) &&
         !in_doubt(out_.together.front(), left, unexplained_share)) {
       v.kind = Verdict::Kind::missing;
       v.effect = out_.together.front();
@@ -171,7 +176,7 @@ class Judge {
   /// The zero that is not steady, if the model with it, or with it in place of the first effect, is
   /// a better explanation than the best set of effects.
   Noise::Zero unsteady_zero() const {
-    if (out_.together.empty()) return Noise::Zero::steady;
+    if (out_.together.empty() || f_.noise.zero != Noise::Zero::steady) return Noise::Zero::steady;
     const Noise::Zero instead = better_zero(f_.of_model.fit.terms, f_.start);
     if (instead != Noise::Zero::steady) return instead;
     const std::string& name = out_.together.front();
@@ -341,8 +346,8 @@ class Judge {
                                   [&](const Candidate& k) { return k.term.name() == name; });
       if (c->within < certain_evidence || !c->aliases.empty() || cancels(name)) continue;
       if (in_doubt(name, serious, certain_share)) continue;
-      if (of_one_target(name) || (walks && !walk_with(name)) ||
-          (passes_.scatter() && !passes_.shows(name)))
+      if (of_one_target(name) || of_one_pass(name) || (walks && !walk_with(name)) ||
+          (passes_.scatter() && f_.noise.zero == Noise::Zero::steady && !passes_.shows(name)))
         continue;
       out_.certain.push_back(name);
     }
@@ -350,13 +355,24 @@ class Judge {
 
   /// Whether the readings of one target are most of its evidence: then it is that target.
   bool of_one_target(const std::string& name) const {
+    return share_of_one(name, f_.repeats.target, f_.repeats.targets) > most_of_one_target;
+  }
+
+  /// Where passes have zeros of their own: whether one pass is most of its evidence.
+  bool of_one_pass(const std::string& name) const {
+    return f_.noise.zero == Noise::Zero::of_pass &&
+           share_of_one(name, f_.repeats.pass, f_.repeats.passes) > most_of_one_pass;
+  }
+
+  /// Of the evidence of an effect, that of the group of readings which has most of it.
+  double share_of_one(const std::string& name, const std::vector<std::uint32_t>& group,
+                      std::size_t groups) const {
     const VectorXd without = f_.residual(f_.bench->without(f_.best, f_.index_of(name)));
     const VectorXd explained = without - f_.residual(f_.best);
-    std::vector<double> share(f_.repeats.targets, 0.0);
+    std::vector<double> share(groups, 0.0);
     for (Index i = 0; i < without.size(); ++i)
-      share[f_.repeats.target[static_cast<std::size_t>(i)]] += explained(i) * without(i);
-    return *std::max_element(share.begin(), share.end()) >
-           most_of_one_target * explained.dot(without);
+      share[group[static_cast<std::size_t>(i)]] += explained(i) * without(i);
+    return *std::max_element(share.begin(), share.end()) / explained.dot(without);
   }
 
   /// Where something that predicts so much for each reading works.

@@ -234,7 +234,8 @@ std::vector<char> searched_in(const std::vector<Term>& terms) {
 
 Expected<Fit> with_its_zero(const Observations& o, Fit fitted, const std::vector<char>& searched) {
   const Noise noise = with_zero(o, fitted.terms, fitted.weight, fitted.noise);
-  if (noise.zero == fitted.noise.zero && noise.neighbours == fitted.noise.neighbours) return fitted;
+  if (noise.zero == Noise::Zero::steady && noise.neighbours == fitted.noise.neighbours)
+    return fitted;
   auto again = fit_at(o, fitted.terms, searched, fitted.weight, noise);
   if (!again) return fitted;
   return again;

@@ -445,7 +445,7 @@ void fill_covariance(Fit& out, const Observations& o, Design design, const Solut
         open[static_cast<std::size_t>(k)] = known(k, k) < 0.5 * cofactor(k, k);
     }
   }
-  const double s_of_u = s_for_uncertainty(out, o, s);
+  const double s_of_u = out.s_noise = s_for_uncertainty(out, o, s);
   add_interpolation(cofactor, plain_cofactor, o, out.terms, design, s, white, s_of_u);
   std::vector<StatedShape> stated;
   for (const auto& [parameter, t] : stated_at) {

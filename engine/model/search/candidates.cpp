@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "data/pass_zeros.h"
 #include "fit/compare.h"
 #include "nonio/math/distributions.h"
 
@@ -35,7 +36,8 @@ class Sizes {
       const auto columns = f.bench->columns().middleCols(block.first, block.count);
       const double hidden =
           math::transposed_product(basis, columns).squaredNorm() / columns.squaredNorm();
-      shown_.push_back({std::max(1.0 - hidden, 1e-12), wanted(block),
+      const auto [seen, dof] = next_to_zeros(block);
+      shown_.push_back({std::max((1.0 - hidden) * seen, 1e-12), wanted(block, dof),
                         static_cast<double>(Workbench::unknowns_of(block))});
     }
     // Shapes that these readings hardly show (a jump before the last reading) are not counted.
@@ -61,7 +63,8 @@ class Sizes {
   /// Mean of what is found, by what is there, of an effect as large as this one is found to be.
   double bias(const Workbench::Block& block) const {
     const double fall = f_.bench->without(f_.best, effect_).squares - f_.best.squares;
-    const double a = std::sqrt(std::max(fall, 0.0)) / s_, over = a - wanted(block);
+    const double a = std::sqrt(std::max(fall, 0.0)) / s_;
+    const double over = a - wanted(block, next_to_zeros(block).dof);
     if (!(a > 0.0)) return 1.0;
     const double density = std::exp(-over * over / 2.0) / std::sqrt(2.0 * std::numbers::pi);
     return 1.0 + density / normal_below(over) / a;
@@ -72,19 +75,40 @@ class Sizes {
     double visible, wanted, unknowns;
   };
 
+  struct NextToZeros {
+    double seen, dof;
+  };
+  /// What zeros of passes leave to be seen of the squares of a block, and the degrees of freedom.
+  NextToZeros next_to_zeros(const Workbench::Block& block) const {
+    if (f_.noise.zero == Noise::Zero::steady) return {1.0, dof_};
+    Term term = f_.terms[effect_];
+    term.shape = block.shape;
+    const auto columns = f_.columns_of({term});
+    if (!columns) return {1.0, dof_};
+    MatrixXd white = f_.bench->white()(*columns);
+    f_.bench->white().take_out_zeros(white);
+    MatrixXd plain = f_.bench->root_weight().asDiagonal() * *columns;
+    take_out_zeros(f_.part.table, f_.bench->root_weight(), plain);
+    const double all = plain.squaredNorm();
+    return {all > 0.0 ? std::min(white.squaredNorm() / all, 1.0) : 1.0,
+            share_of_passes(f_.repeats, *columns) < 0.5
+                ? dof_
+                : std::max(degrees_of_passes(f_.repeats), 1.0)};
+  }
+
   /// Square root of the least fall that gives a name: by evidence, by chance, by size.
-  double wanted(const Workbench::Block& block) const {
+  double wanted(const Workbench::Block& block, double dof) const {
     const double n = f_.bench->readings();
     const auto k = static_cast<double>(Workbench::unknowns_of(block));
     const double price = f_.bench->price(block);
-    if (price == price_ && k == unknowns_) return wanted_;
-    price_ = price, unknowns_ = k;
+    if (price == price_ && k == unknowns_ && dof == of_dof_) return wanted_;
+    price_ = price, unknowns_ = k, of_dof_ = dof;
     const double by_evidence = dof_ * std::expm1(price / n);
     const double one_test = -std::expm1(std::log1p(-named_below) / f_.chance.trials);
     double low = 0.0, high = 1e4;
     for (int step = 0; step < 40; ++step) {
       const double F = (low + high) / 2.0;
-      (math::f_upper(F, k, dof_) > one_test ? low : high) = F;
+      (math::f_upper(F, k, dof) > one_test ? low : high) = F;
     }
     wanted_ = std::sqrt(std::max({by_evidence, high * k, least_rms * least_rms * n}));
     return wanted_;
@@ -94,7 +118,7 @@ class Sizes {
   std::size_t effect_;
   double s_, dof_;
   std::vector<Shown> shown_;
-  mutable double price_ = -1.0, unknowns_ = 0.0, wanted_ = 0.0;  // of the last requested block
+  mutable double price_ = -1.0, unknowns_ = 0.0, of_dof_ = 0.0, wanted_ = 0.0;  // the last
 };
 
 class CandidateOf {
@@ -118,7 +142,7 @@ class CandidateOf {
       for (const std::size_t b : f_.best.blocks)
         if (f_.bench->effect_of(b) == e) block = b;
       c.within = f_.bench->settled(f_.bench->without(f_.best, e)).criterion - f_.best.criterion;
-      c.p = f_.chance.corrected(p_of(*f_.bench, f_.best, e));
+      c.p = f_.chance.corrected(f_.p_of(e));
       c.aliases = aliases_of(e);
     } else {
       score_outsider(e, c);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "data/noise.h"
+#include "data/pass_zeros.h"
 #include "fit/compare.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/statistics.h"
@@ -36,6 +37,8 @@ class Finder {
       alone_ = true;
       if (auto searched = search(); !searched) return fail(searched.error());
     }
+    for (int round = 0; round < 4 && passes_scatter(); ++round)
+      if (auto searched = search(); !searched) return fail(searched.error());
     f_.chance = measure_chance(
         *f_.bench, f_.best,
         shuffled(*f_.bench, f_.best, f_.residual(f_.best), f_.repeats.pass, f_.seed));
@@ -49,6 +52,10 @@ class Finder {
     f_.weight = weights_without(f_.part.table.size(), f_.suspects);
     f_.noise = noise_of(f_.part, f_.repeats, f_.weight);
     if (alone_) f_.noise.in_repeats = f_.noise.neighbours = 0.0;
+    if (of_pass_ > 0.0) {
+      f_.noise.zero = Noise::Zero::of_pass;
+      f_.noise.zero_size = f_.noise.zero_found = of_pass_;
+    }
     f_.bench.emplace(f_.part.table, f_.terms, f_.weight, f_.repeats.target, f_.in_model, &made_,
                      f_.noise, scatter());
     NONIO_TRY(auto start, best_start());
@@ -90,6 +97,36 @@ class Finder {
     const double walk =
         walk_with(o, f_.weight, alone, *model).least() + f_.start.price + f_.price_of_zero();
     return walk < alike;
+  }
+
+  /// Passes whose zeros differ by chance, in any order: whether the model, or the best explanation so
+  /// far, with such zeros explains more than all that was found without them, and as much as a zero
+  /// that walks. Then they are noise, as large as the best explanation leaves them, until their size
+  /// stays.
+  bool passes_scatter() {
+    constexpr double same_size = 1.2;  // docs/dev/constants.md, M48
+    if (of_pass_ == 0.0 && !(zeros_left(f_.start).unordered() &&
+                             zeros_left(f_.best).p_of_differences(scatter()) < named_below))
+      return false;
+    const Unsteady of_best = f_.walk_with(terms_of_state(f_.best));
+    if (of_pass_ == 0.0) {
+      const Unsteady of_model = f_.walk_with(terms_of_state(f_.start));
+      const double zero = f_.price_of_zero();
+      const double with_passes =
+          std::min(of_model.of_pass + f_.start.price, of_best.of_pass + f_.best.price) + zero;
+      const double otherwise =
+          std::min(of_model.least() + f_.start.price, of_best.least() + f_.best.price) + zero;
+      if (!(with_passes < std::min(f_.best.criterion, otherwise + alias_evidence))) return false;
+    }
+    if (!(of_best.size_of_pass > same_size * of_pass_)) return false;
+    of_pass_ = of_best.size_of_pass;
+    return true;
+  }
+
+  ZerosOfPasses zeros_left(const State& state) const {
+    const auto fitted =
+        fit_near(f_.part.table, terms_of_state(state), flags(state, false), f_.weight);
+    return {f_.part, f_.repeats, f_.weight, fitted ? fitted->residual : f_.part.table.deviation};
   }
 
   /// Each effect of the best explanation alone with the model: others must not fit the remainder
@@ -320,7 +357,7 @@ class Finder {
       for (const std::size_t b : f_.best.blocks) {
         const std::size_t e = f_.bench->effect_of(b);
         if (e < f_.in_model) continue;
-        const double p = f_.chance.corrected(p_of(*f_.bench, f_.best, e));
+        const double p = f_.chance.corrected(f_.p_of(e));
         const double fall = f_.bench->without(f_.best, e).squares - f_.best.squares;
         const bool small = std::sqrt(fall / f_.bench->readings()) < least_rms * s;
         if ((p >= named_below || small) && p >= largest_p) {
@@ -353,7 +390,8 @@ class Finder {
   }
 
   Finding f_;
-  bool alone_ = false;  ///< readings are taken for independent
+  bool alone_ = false;    ///< readings are taken for independent
+  double of_pass_ = 0.0;  ///< size of the zeros of passes over s, where these are noise
   const std::vector<Term>& model_;
   Workbench::Made made_;
 };
@@ -368,6 +406,22 @@ std::size_t Finding::index_of(const std::string& name) const {
 
 double Finding::dof(const State& state) const {
   return bench->readings() - static_cast<double>(bench->zeros() + state.parameters);
+}
+
+double Finding::p_of(std::size_t effect) const {
+  const double p = model::p_of(*bench, best, effect);
+  if (noise.zero != Noise::Zero::of_pass) return p;
+  const auto block = std::find_if(best.blocks.begin(), best.blocks.end(),
+                                  [&](std::size_t b) { return bench->effect_of(b) == effect; });
+  Term term = terms[effect];
+  term.shape = bench->blocks()[*block].shape;
+  const auto columns = columns_of({term});
+  if (!columns || share_of_passes(repeats, *columns) < 0.5) return p;
+  const Workbench::State rest = bench->without(best, effect);
+  const auto k = static_cast<double>(best.parameters - rest.parameters);
+  const double s2 = best.squares / std::max(dof(best), 1.0);
+  return std::max(p, math::f_upper((rest.squares - best.squares) / k / s2, k,
+                                   std::max(degrees_of_passes(repeats), 1.0)));
 }
 
 double Finding::left() const { return std::sqrt(best.squares / std::max(dof(best), 1.0)); }

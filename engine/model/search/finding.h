@@ -39,6 +39,9 @@ struct Finding {
 
   std::size_t index_of(const std::string& name) const;
   double dof(const Workbench::State& state) const;
+  /// Of an effect of the best explanation, as p_of of a state; where zeros of passes are noise, what is
+  /// nearly the same all through a pass has no more evidence than there are passes.
+  double p_of(std::size_t effect) const;
   /// Standard deviation that the best explanation leaves.
   double left() const;
   /// Of these terms together.

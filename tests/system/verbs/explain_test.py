@@ -58,6 +58,23 @@ class Explain(VerbTest):
         self.assertNotEqual(answer["verdict"]["kind"], "nothing")
         self.assertEqual(answer["verdict"].get("suspects_share", 0), 0)
 
+    def test_a_cause_of_the_library_is_named_and_added(self):
+        """The reversal of a screw clamped at both ends, largest in the middle: no effect of the catalogue has this shape."""
+        rows = readings(runs=5, seed=random.SystemRandom().randrange(2**31)).splitlines()
+        targets = [float(row.split(",")[2]) for row in rows[1:]]
+        low, high = min(targets), max(targets)
+        for i, row in enumerate(rows):
+            run, way, target, value, *more = row.split(",")
+            if i > 0:
+                z = (2 * float(target) - low - high) / (high - low)
+                value = f"{float(value) + (1 if way == '+' else -1) * 12 * (1 - z * z):.3f}"
+            rows[i] = ",".join([run, way, target, value, *more])
+        self.campaign(manifest(["backlash:X"]), x="\n".join(rows) + "\n")
+        named = self.explain("--library")["verdict"]
+        self.assertEqual((named["kind"], named["effect"]), ("missing", "parabolic-reversal:X"), named)
+        self.nonio("model", "add", self.folder, named["effect"])
+        self.assertEqual(self.explain()["verdict"]["kind"], "nothing")
+
     def test_the_predicted_error_is_the_one_obtained(self):
         """Also where shapes of the model and of the candidate are searched: each depends on the others."""
         seed = random.SystemRandom().randrange(2**31)

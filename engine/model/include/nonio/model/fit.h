@@ -103,6 +103,7 @@ struct Fit {
   std::vector<std::size_t> lost{};
   double rms = 0.0;            ///< of the weighted residuals, m or rad
   double s = 0.0;              ///< standard deviation of a reading, from residuals and redundancy
+  double s_noise = 0.0;        ///< the same without what the zeros of `noise` add
   std::size_t redundancy = 0;  ///< readings less unknowns
   Noise noise{};               ///< as the weights and u have it
 };
