@@ -112,7 +112,7 @@ MatrixXd of_groups(const std::vector<std::uint32_t>& group) {
   for (const std::uint32_t g : group) number.try_emplace(g, 0);
   Index next = 0;
   for (auto& [g, k] : number) k = next++;
-  const Index together = (next + most - 1) / most;
+  const Index together = std::max<Index>(1, (next + most - 1) / most);
   MatrixXd out = MatrixXd::Zero(static_cast<Index>(group.size()), (next + together - 1) / together);
   for (std::size_t i = 0; i < group.size(); ++i)
     out(static_cast<Index>(i), number[group[i]] / together) = 1.0;

@@ -3,6 +3,7 @@
 
 #include "finding.h"
 #include "fit/compare.h"
+#include "nonio/model/explain.h"
 
 namespace nonio::model {
 
