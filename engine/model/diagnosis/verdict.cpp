@@ -481,16 +481,17 @@ class Judge {
     std::rotate(told.begin(), at, at + 1);
   }
 
-  /// What the best explanation leaves, without zeros of runs if there are such.
-  std::vector<double> without_runs(Noise::Zero zero) const {
+  /// What the best explanation leaves, without zeros of runs or passes if there are such.
+  std::vector<double> without_zeros(Noise::Zero zero) const {
     std::vector<double> e = f_.of_best.fit.residual;
-    const std::vector<std::uint32_t>& run = f_.part.table.run;
-    if (zero != Noise::Zero::of_run) return e;
+    const bool of_pass = f_.noise.zero == Noise::Zero::of_pass;
+    if (zero != Noise::Zero::of_run && !of_pass) return e;
+    const std::vector<std::uint32_t>& group = of_pass ? f_.repeats.pass : f_.part.table.run;
     std::map<std::uint32_t, std::pair<double, double>> sum;
     for (std::size_t i = 0; i < e.size(); ++i)
-      sum[run[i]].first += f_.weight[i] * e[i], sum[run[i]].second += f_.weight[i];
+      sum[group[i]].first += f_.weight[i] * e[i], sum[group[i]].second += f_.weight[i];
     for (std::size_t i = 0; i < e.size(); ++i)
-      if (const auto& [of_run, n] = sum[run[i]]; n > 0.0) e[i] -= of_run / n;
+      if (const auto& [of_group, n] = sum[group[i]]; n > 0.0) e[i] -= of_group / n;
     return e;
   }
 
@@ -501,7 +502,7 @@ class Judge {
       return true;
     }
     return too_many(f_.suspects.size(), f_.part.table.size()) ||
-           two_valued(f_.repeats, without_runs(zero), f_.weight, f_.noise.digit);
+           two_valued(f_.repeats, without_zeros(zero), f_.weight, f_.noise.digit);
   }
 
   /// The verdict's effect leads the list, also where one with more evidence is in doubt.
