@@ -28,18 +28,22 @@ Json to_json(const RegisterEntry& e) {
   };
   add("released_by", e.released_by);
   add("released_account", e.released_account);
+  add("released_user", e.released_user);
   add("withdrawn_by", e.withdrawn_by);
   add("withdrawn_account", e.withdrawn_account);
   if (!e.signer.empty()) json["signer"] = {{"subject", e.signer}, {"sha256", e.signer_sha256}};
   return json;
 }
 
-/// "  released by B. Sample (account lab@room-3)": the name as it was stated, the account as the
-/// operating system knows it.
-std::string person_text(const char* what, const std::string& by, const std::string& account) {
+/// "  released by B. Sample (user sample, account lab@room-3)": the name as it was stated, the user
+/// of users.toml whose password was given, the account as the operating system knows it.
+std::string person_text(const char* what, const std::string& by, const std::string& account,
+                        const std::string& user = {}) {
   if (by.empty() && account.empty()) return {};
   return std::string("  ") + what + (by.empty() ? "" : " by " + by) +
-         (account.empty() ? "" : " (account " + account + ")");
+         (account.empty()
+              ? ""
+              : " (" + (user.empty() ? "" : "user " + user + ", ") + "account " + account + ")");
 }
 
 void print(const RegisterEntry& e) {
@@ -47,7 +51,7 @@ void print(const RegisterEntry& e) {
   if (!e.replaced_by.empty())
     std::cout << (e.state == "amended" ? " by " : ", replaced by ") << e.replaced_by;
   std::cout << "  " << e.campaign << "  " << e.date << (e.reason.empty() ? "" : "  " + e.reason)
-            << person_text("released", e.released_by, e.released_account)
+            << person_text("released", e.released_by, e.released_account, e.released_user)
             << person_text("withdrawn", e.withdrawn_by, e.withdrawn_account) << "\n";
 }
 

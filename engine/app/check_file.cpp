@@ -22,7 +22,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t most_rows = 6, most_points = 20'000;
-constexpr const char* any_axis[] = {"X", "Y", "Z", "A", "B", "C"};
 
 /// What was made of the file.
 struct Read {
@@ -33,8 +32,11 @@ struct Read {
 
 class FileCheck {
  public:
-  FileCheck(const fs::path& file, const std::vector<std::string>& columns, const Common& common)
-      : name_(file.filename().string()), columns_(columns), common_(common) {}
+  FileCheck(const fs::path& file, const FileWish& wish, const Common& common)
+      : name_(file.filename().string()), columns_(wish.columns), common_(common) {
+    // Another one than that of the wish, or of the name, is tried where the file is not of it.
+    if (!wish.axis.empty()) axes_.insert(axes_.begin(), wish.axis);
+  }
 
   int run(const fs::path& file) {
     plugins_.load(common_.plugin_folders());
@@ -43,8 +45,11 @@ class FileCheck {
     const auto converted = utf8_of_utf16(*bytes);
     if (!converted) return report(fail(converted.error()), {});
     const std::string& text = *converted ? **converted : *bytes;
-    const auto table = reading::stated_table(plugins_, text, most_rows);
-    return report(read(text, table), table);
+    std::optional<reading::StatedTable> table;
+    if (!columns_.empty()) table = reading::stated_table(plugins_, text, most_rows);
+    const auto got = read(text, table);
+    if (!got && !table) table = reading::stated_table(plugins_, text, most_rows);
+    return report(got, table);
   }
 
  private:
@@ -70,16 +75,23 @@ class FileCheck {
     const auto options = config::settle_options(reader->info, {}, stated);
     if (!options) return fail(options.error().front());
     Error first;
-    for (const char* axis : any_axis) {
+    bool was_linear = false, was_rotary = false;
+    for (const std::string& axis : axes_) {
       Campaign campaign;
-      campaign.machine.axes.push_back({.name = axis, .rotary = axis[0] < 'X'});
+      campaign.machine.axes.push_back({.name = axis, .rotary = axis[0] < 'D'});
       Measurement m;
       m.id = m.axis = axis;
       m.kind = "axis";
       m.file = name_;
       auto got = reading::checked_read(*reader, {bytes, campaign, m, *options, {}, nullptr});
       if (got) return Read{reader, axis, std::move(*got)};
-      if (first.message.empty()) first = got.error();
+      const Error& error = got.error();
+      if (first.message.empty()) first = error;
+      (campaign.machine.axes.front().rotary ? was_rotary : was_linear) = true;
+      // What does not depend on the axis is wrong with each of them.
+      if (was_linear && was_rotary && error.line != 0 && error.line == first.line &&
+          error.message == first.message)
+        break;
     }
     return fail(std::move(first));
   }
@@ -137,6 +149,7 @@ class FileCheck {
   }
 
   std::string name_;
+  std::vector<std::string> axes_{"X", "A", "Y", "Z", "B", "C"};
   const std::vector<std::string>& columns_;
   const Common& common_;
   loader::Plugins plugins_{};
@@ -144,9 +157,8 @@ class FileCheck {
 
 }  // namespace
 
-int check_file(const fs::path& file, const std::vector<std::string>& columns,
-               const Common& common) {
-  return FileCheck(file, columns, common).run(file);
+int check_file(const fs::path& file, const FileWish& wish, const Common& common) {
+  return FileCheck(file, wish, common).run(file);
 }
 
 }  // namespace nonio::app

@@ -23,7 +23,7 @@ namespace {
 
 struct CheckWish {
   std::string folder;
-  std::vector<std::string> columns;
+  FileWish file{};
   bool only_templates = false;
 };
 
@@ -143,9 +143,11 @@ Verb check_verb(Common& common) {
           {existing(Argument::Takes::path,
                     {"SITE|CAMPAIGN|FILE", &wish->folder,
                      "Folder of a site or of one campaign; or a file with readings of one axis"}),
-           {"--column", &wish->columns,
+           {"--column", &wish->file.columns,
             "For a FILE with other names of columns: \"NAME = KNOWN\" such as \"Soll mm = "
-            "target_mm\"; may be given several times"},
+            "target_mm\", or \"#3 = target_mm\" for the third one; may be given several times"},
+           {"--axis", &wish->file.axis,
+            "For a FILE: axis that its readings probably are of; it is tried first"},
            {"--only-templates", &wish->only_templates,
             "Check the templates of reports and certificates instead: layouts, the texts of every "
             "language and their placeholders, missing characters. Without SITE: those that are "
@@ -164,8 +166,9 @@ Verb check_verb(Common& common) {
         if (wish->folder.empty()) return complain("expected the folder of a site or campaign");
         std::error_code error;
         if (fs::is_regular_file(wish->folder, error))
-          return check_file(wish->folder, wish->columns, common);
-        if (!wish->columns.empty()) return complain("--column is for a file of readings");
+          return check_file(wish->folder, wish->file, common);
+        if (!wish->file.columns.empty() || !wish->file.axis.empty())
+          return complain("--column and --axis are for a file of readings");
         return Check(common).run(wish->folder);
       }};
 }

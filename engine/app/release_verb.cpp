@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "batch/release/release.h"
+#include "password_input.h"
 #include "progress.h"
 #include "verbs.h"
 
@@ -17,9 +18,10 @@ namespace fs = std::filesystem;
 namespace {
 
 struct ReleaseVerbWish {
-  std::string folder, by, role, out;
+  std::string folder, by, user, role, out;
   std::vector<std::string> reasons;
   bool list = false;
+  const std::string& person() const { return by.empty() ? user : by; }
 };
 
 std::string reason_of(const WaitingDraft& draft, const evaluation::KnownFinding& finding) {
@@ -115,7 +117,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
       return exit_failed;
     case State::approved:
       if (!common.json)
-        std::cout << done.draft->campaign << " approved by " << wish.by
+        std::cout << done.draft->campaign << " approved by " << wish.person()
                   << "; an authoriser releases it with nonio certificate approve " << wish.folder
                   << " --by NAME --as authoriser\n";
       return exit_done;
@@ -126,7 +128,7 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
   }
   if (!common.json) {
     std::cout << done.entry.number << " issued for " << done.draft->campaign << ", released by "
-              << wish.by << "\n";
+              << wish.person() << "\n";
     for (const fs::path& f : done.files) std::cout << "  " << f.string() << "\n";
   }
   if (!done.why.empty())
@@ -136,13 +138,19 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
 
 int release(const ReleaseVerbWish& wish, const Common& common) {
   if (wish.list) return list_drafts(wish, common);
-  if (wish.by.empty()) return complain("--by NAME is missing: who releases it? Or --list");
-  batch::ReleaseRequest wanted{wish.folder, wish.by, wish.role, {}, wish.out};
+  if (wish.by.empty() && wish.user.empty())
+    return complain("--by NAME or --user ACCOUNT is missing: who releases it? Or --list");
+  batch::ReleaseRequest wanted{wish.folder, wish.by, wish.role, {}, wish.out, wish.user};
   for (const std::string& given : wish.reasons) {
     const std::size_t equals = given.find('=');
     if (equals == std::string::npos || equals == 0)
       return complain("--reason wants FINDING=TEXT, found \"" + given + "\"");
     wanted.reasons[given.substr(0, equals)] = given.substr(equals + 1);
+  }
+  if (!wish.user.empty()) {
+    auto password = read_password(wish.user);
+    if (!password) return complain(text_of(password.error()));
+    wanted.password = *std::move(password);
   }
   batch::RunOptions base;
   base.jobs = 1;
@@ -168,6 +176,12 @@ Verb approve_verb(Common& common) {
            {"--by", &wanted->by,
             "Name of the person who releases it, printed on the certificate. It is a statement, "
             "not an authentication; the register also keeps the account (user@host)"},
+           {"--user", &wanted->user,
+            "Instead of --by: account of SITE/users.toml with the role approve; its name is "
+            "printed. "
+            "Its password is read from the terminal, or from a line of standard input; the "
+            "register "
+            "keeps the account, and two of them are two persons"},
            one_of({"author", "authoriser"},
                   {"--as", &wanted->role,
                    "author: approves the draft; an authoriser then releases it. Default: author if "

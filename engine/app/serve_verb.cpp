@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
+#include <iostream>
 #include <memory>
 
+#include "certificates/password.h"
 #include "live/server.h"
+#include "password_input.h"
 #include "verbs.h"
 
 namespace nonio::app {
@@ -13,10 +16,21 @@ struct LiveOptions {
   std::string folder, out, token_file, user_header;
   std::vector<std::string> hosts;
   std::uint64_t port = 0;
-  bool edit = false;
+  bool edit = false, hash_password = false;
 };
 
+/// The line for users.toml.
+int print_hash() {
+  const auto password = read_password("the user");
+  if (!password) return complain(text_of(password.error()));
+  const auto hash = certificates::password_hash(*password);
+  if (!hash) return complain(text_of(hash.error()));
+  std::cout << "password = \"" << *hash << "\"\n";
+  return exit_done;
+}
+
 int live(const LiveOptions& options, const Common& common) {
+  if (options.hash_password) return print_hash();
   live::LiveWish wish;
   std::error_code error;
   wish.folder = std::filesystem::canonical(options.folder, error);
@@ -67,8 +81,12 @@ Verb serve_verb(Common& common) {
             "Name (NAME or NAME:PORT) by which a reverse proxy on this computer calls the page"},
            {"--user-header", &options->user_header,
             "Of a site: header in which that proxy states the account that is logged in; "
-            "SITE/users.toml "
-            "states what each may do"},
+            "SITE/users.toml states what each may do. Without it, a site with this file requires a "
+            "sign-in with the passwords of the file"},
+           {"--hash-password", &options->hash_password,
+            "Serve nothing: read a password from the terminal or a line of standard input, and "
+            "print "
+            "its line for users.toml"},
            within(0, 65535, {"--port", &options->port, "Fixed port; default: any free one"}),
            templates_argument(common)},
           common_arguments(common)),

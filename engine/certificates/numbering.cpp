@@ -312,10 +312,12 @@ Expected<evaluation::Certificate> Numbers::find_or_draw(const evaluation::Evalua
 namespace {
 
 storage::Json approval_json(const Approval& approval) {
-  return {{"by", approval.by},
-          {"role", approval.role},
-          {"at", approval.at.empty() ? utc_now() : approval.at},
-          {"reasons", approval.reasons}};
+  storage::Json json = {{"by", approval.by},
+                        {"role", approval.role},
+                        {"at", approval.at.empty() ? utc_now() : approval.at},
+                        {"reasons", approval.reasons}};
+  if (!approval.user.empty()) json["user"] = approval.user;
+  return json;
 }
 
 }  // namespace

@@ -195,7 +195,8 @@ Expected<void> Register::note_persons(std::vector<RegisterEntry>& entries) {
     if (const storage::Json& released =
             says.is_object() && says.contains("released") ? says["released"] : says;
         issued && released.is_object() && released.contains("released"))
-      e.released_by = text(released["released"], "by");
+      e.released_by = text(released["released"], "by"),
+      e.released_user = text(released["released"], "user");
   }
   return database_->take_error();
 }

@@ -29,6 +29,8 @@ struct RegisterEntry {
   std::string released_by{}, withdrawn_by{};
   /// Under which accounts of the operating system, "user@host"; empty before version 2026-12.
   std::string released_account{}, withdrawn_account{};
+  /// Account of users.toml whose password was given; empty: the name is a statement.
+  std::string released_user{};
   /// Of the certificate with which it was signed; empty before version 2026-12.
   std::string signer{}, signer_sha256{};
   bool in_force() const { return state == "issued"; }
@@ -40,6 +42,7 @@ struct Approval {
   std::string at{};                            ///< UTC
   std::map<std::string, std::string> reasons;  ///< why a finding is accepted, by `finding_key`
   std::string account{};  ///< of the operating system; empty before version 2026-12
+  std::string user{};     ///< of users.toml, whose password was given; empty: none was
 };
 
 /// What a run has made for a campaign and no person has released yet.

@@ -9,8 +9,10 @@ namespace nonio::certificates {
 namespace {
 
 storage::Json draft_json(const Approval& a) {
-  return {
+  storage::Json json = {
       {"by", a.by}, {"role", a.role}, {"at", a.at}, {"reasons", a.reasons}, {"account", a.account}};
+  if (!a.user.empty()) json["user"] = a.user;
+  return json;
 }
 
 storage::Json draft_json(const WaitingDraft& d) {
@@ -48,8 +50,8 @@ WaitingDraft draft_of(const std::string& campaign, const storage::Json& json) {
         {f.at("measurement"), f.at("id"), f.at("title"), f.at("attention"), f.value("said", "")});
   if (json.contains("author")) {
     const storage::Json& a = json["author"];
-    d.author =
-        Approval{a.at("by"), a.at("role"), a.at("at"), a.at("reasons"), a.value("account", "")};
+    d.author = Approval{a.at("by"),      a.at("role"),           a.at("at"),
+                        a.at("reasons"), a.value("account", ""), a.value("user", "")};
   }
   return d;
 }
@@ -171,9 +173,10 @@ Expected<std::optional<Approval>> Register::approval_of(const std::string& numbe
   if (!says.is_object() || !says.contains("released") || !says["released"].contains("released"))
     return std::nullopt;
   const storage::Json& one = says["released"]["released"];
-  return Approval{one.value("by", ""), one.value("role", ""), one.value("at", ""),
-                  one.value("reasons", std::map<std::string, std::string>{}),
-                  says.value("account", "")};
+  return Approval{
+      one.value("by", ""),       one.value("role", ""),
+      one.value("at", ""),       one.value("reasons", std::map<std::string, std::string>{}),
+      says.value("account", ""), one.value("user", "")};
 }
 
 Expected<std::string> Register::first_of(const std::string& number) {

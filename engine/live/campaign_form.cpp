@@ -10,7 +10,8 @@
 
 #include "campaign/config/keys.h"
 #include "campaign/config/manifest.h"
-#include "live/users.h"
+#include "certificates/users.h"
+#include "live/audit_log.h"
 #include "nonio/sdk/text.h"
 #include "platform/storage/files.h"
 
@@ -79,7 +80,7 @@ bool is_taken_name(std::string name) {
   for (char& c : name)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
   constexpr std::string_view own[] = {config::manifest_name, "model-history.jsonl",
-                                      "machine-record.json", users_name, audit_name};
+                                      "machine-record.json", certificates::users_name, audit_name};
   const auto is_name = [&](std::string_view one) { return one == name; };
   if (std::any_of(std::begin(own), std::end(own), is_name) ||
       std::any_of(std::begin(config::reserved_names), std::end(config::reserved_names), is_name))
@@ -221,8 +222,11 @@ tl::expected<DroppedFile, Answer> dropped_file(const std::string& body) {
   return out;
 }
 
-tl::expected<std::vector<std::string>, Answer> column_options(const Json& form) {
-  return FormOptions(form).columns();
+tl::expected<std::vector<std::string>, Answer> file_options(const Json& form) {
+  auto out = FormOptions(form).columns();
+  const std::string axis = text_of(form, "axis");
+  if (out && is_axis(axis)) out->push_back("--axis=" + axis);
+  return out;
 }
 
 tl::expected<std::vector<std::string>, Answer> campaign_options(const Json& form) {

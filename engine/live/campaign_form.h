@@ -19,8 +19,8 @@ struct DroppedFile {
 /// An error is the refusal: no form, or a name that no file of a campaign may have.
 tl::expected<DroppedFile, Answer> dropped_file(const std::string& body);
 
-/// --column=... of the form's member `columns`.
-tl::expected<std::vector<std::string>, Answer> column_options(const storage::Json& form);
+/// --column=... of the form's member `columns`, and --axis of `axis`.
+tl::expected<std::vector<std::string>, Answer> file_options(const storage::Json& form);
 
 /// What the form states, as options; an error is the refusal of a value that has another form than
 /// its key requires.

@@ -5,9 +5,10 @@
 
 #include "campaign/config/site_files.h"
 #include "campaign/config/template_files.h"
+#include "certificates/users.h"
 #include "live/desk.h"
-#include "live/users.h"
 #include "nonio/workbench/page.h"
+#include "platform/storage/files.h"
 
 namespace nonio::live {
 namespace fs = std::filesystem;
@@ -66,7 +67,22 @@ Expected<Shells> shells_of(const LiveWish& wish) {
   NONIO_TRY(auto campaign, workbench::shell_html(templates, language, workbench::Shell::campaign));
   NONIO_TRY(auto of_site, workbench::shell_html(templates, language, workbench::Shell::site));
   return Shells{std::move(campaign), std::move(of_site),
-                Sentences(workbench::words(templates, language))};
+                Sentences(workbench::words(templates, language)), settings->limits.seconds};
+}
+
+/// Whether the site has users who sign in here, and not at a proxy.
+Expected<bool> requires_sign_in(const LiveWish& wish) {
+  NONIO_TRY(const auto there, storage::is_there(wish.folder / certificates::users_name));
+  if (!there && wish.user_header.empty()) return false;
+  NONIO_TRY(const auto users, certificates::read_users(wish.folder));
+  if (!wish.user_header.empty()) return false;
+  if (std::none_of(users.begin(), users.end(),
+                   [](const certificates::User& user) { return !user.password.empty(); }))
+    return fail(
+        Error{"no user has a password: expected a line of nonio serve SITE --hash-password, "
+              "or --user-header of a proxy",
+              certificates::users_name});
+  return true;
 }
 
 }  // namespace
@@ -95,14 +111,18 @@ Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish) {
     return fail("there is no " + std::string(config::manifest_name) + " in " + wish.name +
                 " or in a folder below it, and no " + config::site_name +
                 ": it is neither a campaign nor a site");
-  if (!wish.user_header.empty()) {
-    if (is_campaign) return fail("--user-header is for a site, and this is a campaign");
-    if (const auto users = read_users(wish.folder); !users) return fail(users.error());
+  if (!wish.user_header.empty() && is_campaign)
+    return fail("--user-header is for a site, and this is a campaign");
+  LiveWish settled = wish;
+  if (!is_campaign) {
+    auto signs_in = requires_sign_in(wish);
+    if (!signs_in) return fail(signs_in.error());
+    settled.sign_in = *signs_in;
   }
   NONIO_TRY(auto shells, shells_of(wish));
   NONIO_TRY(auto launcher, Launcher::start({wish.folder, wish.plugin_folders, wish.template_folders,
                                             wish.own_plugins, wish.version}));
-  if (!is_campaign) return site_service(wish, std::move(launcher), std::move(shells));
+  if (!is_campaign) return site_service(settled, std::move(launcher), std::move(shells));
   return std::make_unique<CampaignService>(wish, std::move(launcher), std::move(shells));
 }
 

@@ -23,6 +23,7 @@ std::vector<std::string> campaigns_in(const std::filesystem::path& site);
 struct Shells {
   std::string campaign, site;
   Sentences sentences;
+  double seconds = 0.0;  ///< that a verb may take: site.toml, [limits]
 };
 
 /// Of a site: its worklist, and the workbench of each of its campaigns.

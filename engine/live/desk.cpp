@@ -83,7 +83,7 @@ Answer Desk::answer(const std::string& what, const std::string& part, const Requ
     }
   }
   if (what == "events") return events(request);
-  if (what == "state") return state();
+  if (what == "state") return state(request.may_write);
   if (what == "save") return difference();
   if (what == "report") return document("report", "");
   {
@@ -147,7 +147,7 @@ std::string Desk::command() const {
   return change.empty() ? "nonio model compare " + quoted_for_shell(name_) : change;
 }
 
-Answer Desk::state() {
+Answer Desk::state(bool may_write) {
   const std::lock_guard lock(mutex_);
   Json excluded = Json::array();
   for (const Excluded& e : session_.trial().excluded)
@@ -160,7 +160,7 @@ Answer Desk::state() {
   Json json = {{"schema", "nonio-live/1"},
                {"version", session_.version()},
                {"engine", engine_},
-               {"edit", edit_},
+               {"edit", edit_ && may_write},
                {"language", campaign_.value("language", "en")},
                {"bench", bench_state_},
                {"bench_error", bench_error_}};

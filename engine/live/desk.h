@@ -82,7 +82,7 @@ class Desk {
   };
 
   // answers to GET
-  Answer state();
+  Answer state(bool may_write);
   Answer fit(const std::string& part, const Request& request, bool picture);
   Answer explain(const std::string& part, bool fingerprints);
   Answer asked(const std::string& kind, const std::string& part, const Request& request);

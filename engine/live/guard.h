@@ -32,6 +32,7 @@ struct Post {
   std::vector<std::string> hosts{};  ///< of --host: "nonio.example.org", "nonio.example.org:8443"
   bool ipv6 = false;                 ///< [::1] is bound
   bool edit = false;
+  bool sign_in = false;  ///< requests have a session, which the service checks, and no token
 };
 
 /// Nothing of the head may be larger.

@@ -27,7 +27,7 @@ bool launch(const BenchWish& common, const storage::Json& what, int to_server) {
     (*ends)[0] = process::Handle();
     if (what.contains("arguments"))
       run_tool(own_program, what["arguments"].get<std::vector<std::string>>(),
-               std::move((*ends)[1]));
+               what.value("input", ""), what.value("seconds", 0.0), std::move((*ends)[1]));
     BenchWish wish = common;
     wish.folder = what.at("campaign").get<std::string>();
     run_bench(wish, std::move((*ends)[1]));
@@ -60,8 +60,9 @@ Expected<process::Handle> Launcher::open(const std::filesystem::path& campaign) 
   return ask({{"campaign", campaign.string()}});
 }
 
-Expected<process::Handle> Launcher::run(const std::vector<std::string>& arguments) {
-  return ask({{"arguments", arguments}});
+Expected<process::Handle> Launcher::run(const std::vector<std::string>& arguments, double seconds,
+                                        const std::string& input) {
+  return ask({{"arguments", arguments}, {"seconds", seconds}, {"input", input}});
 }
 
 Expected<process::Handle> Launcher::ask(const storage::Json& what) {

@@ -17,8 +17,9 @@ class Launcher {
 
   /// A new bench process for this campaign: the channel to it.
   Expected<process::Handle> open(const std::filesystem::path& campaign);
-  /// This program with other arguments (tool.h): the channel to it.
-  Expected<process::Handle> run(const std::vector<std::string>& arguments);
+  /// This program with other arguments (tool.h): the channel to it. `input`: a line that it reads.
+  Expected<process::Handle> run(const std::vector<std::string>& arguments, double seconds,
+                                const std::string& input = {});
 
  private:
   Expected<process::Handle> ask(const storage::Json& what);

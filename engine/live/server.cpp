@@ -13,7 +13,6 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/random.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -38,6 +37,7 @@
 
 #include "live/campaign_service.h"
 #include "live/guard.h"
+#include "live/random_token.h"
 #include "nonio/sdk/error.h"
 #include "platform/process/channel.h"
 #include "platform/storage/late_library.h"
@@ -150,34 +150,19 @@ void Front::serve(const std::function<void(process::Handle, int)>& take,
   }
 }
 
-constexpr std::size_t digits = 32;
-
 Expected<std::string> read_token(const std::string& file, int fd) {
   struct stat s {};
   if (::fstat(fd, &s) != 0) return fail(file + ": " + std::strerror(errno));
   if (!S_ISREG(s.st_mode) || s.st_uid != ::geteuid() || (s.st_mode & (S_IRWXG | S_IRWXO)) != 0)
     return fail(file + ": expected a file of this user that no other user can read (chmod 600)");
-  std::array<char, digits + 2> bytes{};
+  std::array<char, token_digits + 2> bytes{};
   const ssize_t n = ::read(fd, bytes.data(), bytes.size());
   std::string token(bytes.data(), n > 0 ? static_cast<std::size_t>(n) : 0);
   if (token.ends_with('\n')) token.pop_back();
-  if (token.size() != digits || token.find_first_not_of("0123456789abcdef") != std::string::npos)
+  if (token.size() != token_digits ||
+      token.find_first_not_of("0123456789abcdef") != std::string::npos)
     return fail(file +
                 ": expected a token of 32 hexadecimal digits (delete the file for a new one)");
-  return token;
-}
-
-/// 128 bits of the kernel's as 32 hexadecimal digits.
-Expected<std::string> new_token() {
-  std::array<unsigned char, digits / 2> bits{};
-  if (::getrandom(bits.data(), bits.size(), 0) != static_cast<ssize_t>(bits.size()))
-    return fail(std::string("no random numbers: ") + std::strerror(errno));
-  std::string token;
-  for (const unsigned char byte : bits) {
-    constexpr const char* hex = "0123456789abcdef";
-    token += hex[byte >> 4];
-    token += hex[byte & 15];
-  }
   return token;
 }
 
@@ -187,7 +172,7 @@ Expected<std::string> token_in(const std::string& file) {
   const process::Handle old(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   if (old) return read_token(file, old.get());
   if (errno != ENOENT) return fail(file + ": " + std::strerror(errno));
-  auto token = new_token();
+  auto token = random_token();
   if (!token) return token;
   const process::Handle made(
       ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
@@ -281,7 +266,8 @@ class Handler : public net::HTTPRequestHandler {
     std::ostream& out = response.send();
     out << ":\n\n" << std::flush;
     auto last = std::chrono::steady_clock::now();
-    while (out.good() && !answer.stream->closed() && !house_.over) {
+    while (out.good() && !answer.stream->closed() && !house_.over &&
+           (!answer.may_go_on || answer.may_go_on())) {
       const auto events = answer.stream->wait(std::chrono::seconds(1));
       const auto now = std::chrono::steady_clock::now();
       if (events.empty() && now - last < heartbeat) continue;
@@ -442,12 +428,17 @@ sigset_t block_signals() {
 }
 
 Expected<void> serve_here(const LiveWish& wish) {
-  NONIO_TRY(auto token, wish.token_file.empty() ? new_token() : token_in(wish.token_file));
   NONIO_TRY(auto front, Front::open(wish.port));
   auto service = service_of(wish);  // makes processes: before the first thread
   if (!service) return fail(service.error());
+  std::string token;  // none where people sign in
+  if (!(*service)->signs_in()) {
+    auto made = wish.token_file.empty() ? random_token() : token_in(wish.token_file);
+    if (!made) return fail(made.error());
+    token = *std::move(made);
+  }
   const sigset_t ends = block_signals();
-  const Post post{front.port(), token, wish.hosts, false, wish.edit};
+  const Post post{front.port(), token, wish.hosts, false, wish.edit, (*service)->signs_in()};
   if (auto begun = (*service)->begin(); !begun) return fail(begun.error());
   House house{post, **service};
   {
@@ -457,10 +448,11 @@ Expected<void> serve_here(const LiveWish& wish) {
           [&](process::Handle socket, int refused) { pool.take(std::move(socket), refused); },
           [&] { return house.over.load(); });
     });
-    std::cout << address_of(post) << "#t=" << token << std::endl;
+    std::cout << address_of(post) << (token.empty() ? "" : "#t=" + token) << std::endl;
     if (!wish.quiet)
-      std::cerr << "nonio live: open the address above in a browser on this computer; it is the "
-                   "key, do not pass it on. End with Ctrl-C.\n";
+      std::cerr << "nonio live: open the address above in a browser on this computer"
+                << (token.empty() ? "" : "; it is the key, do not pass it on")
+                << ". End with Ctrl-C.\n";
     int signal = 0;
     ::sigwait(&ends, &signal);
     house.over = true;

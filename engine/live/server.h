@@ -20,9 +20,10 @@ struct LiveWish {
   std::filesystem::path out;       ///< of a site: output folder of its runs; empty: none
   std::string token_file;          ///< empty: a new token each time
   std::vector<std::string> hosts;  ///< names by which a proxy calls it
-  std::string user_header;         ///< in which the proxy states who is logged in; empty: no users
+  std::string user_header;         ///< in which the proxy states who is logged in; empty: none does
   std::uint16_t port = 0;
   bool edit = false, quiet = false;
+  bool sign_in = false;  ///< of a site with users.toml and no such header: decided by service_of
 };
 
 /// Serves the page until SIGINT or SIGTERM. Prints one line, the address with the token. An error

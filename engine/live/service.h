@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -19,6 +20,7 @@ struct Request {
   const Route& route;
   const std::vector<std::string>& names;  ///< what stands for the names in the route's path
   std::string body;
+  bool may_write = true;  ///< the user's role allows it
 
   /// A value of the query; none if it is missing.
   std::optional<std::string> query(std::string_view name) const;
@@ -31,6 +33,7 @@ struct Answer {
   Said said{};                         ///< why it is refused; `body`: more members, or nothing
   std::shared_ptr<Listener> stream{};  ///< instead of a body: events until one side ends
   Events* events = nullptr;            ///< of the stream
+  std::function<bool()> may_go_on{};   ///< asked once a second: the stream ends with its user
 };
 
 /// {"error": sentence, "id": name, "status": status}; `name` without "refused." in front.
@@ -62,6 +65,8 @@ class Service {
   virtual Answer answer(const Request& request) = 0;
   /// For what is refused.
   virtual const Sentences& sentences() const = 0;
+  /// Requests have a session in place of the token.
+  virtual bool signs_in() const { return false; }
   /// All streams end; nothing is begun any more.
   virtual void close() = 0;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What people do on the page of a site: entries, approvals, verifications, runs.
+#include "certificates/person_name.h"
 #include "live/site_service.h"
 #include "platform/storage/files.h"
 #include "platform/storage/scratch_folder.h"
@@ -39,18 +40,83 @@ Answer SiteService::event(const Json& body) {
   return entered(arguments);
 }
 
-Answer SiteService::release(const Json& body) {
+namespace {
+
+constexpr std::size_t longest_account = 200;
+
+/// Of the page over TLS, which a proxy adds.
+bool is_by_proxy(const Head& head) {
+  const std::string host = head.first("Host");
+  return !host.starts_with("127.0.0.1") && !host.starts_with("localhost");
+}
+
+/// Blanks around a name, and capital letters of it, are not what a person confirms.
+bool is_same_name(const std::string& one, const std::string& other) {
+  return certificates::likeness_of(one) == certificates::likeness_of(other);
+}
+
+}  // namespace
+
+Answer SiteService::begin_session(const Request& request) {
+  const Json body = storage::parse_once(request.body);
+  const auto text = [&](const char* name) {
+    return body.is_object() && body.contains(name) && body[name].is_string()
+               ? body[name].get<std::string>()
+               : std::string();
+  };
+  const std::string account = text("account");
+  if (account.empty() || account.size() > longest_account)
+    return refused(400, "body_form", {{"path", "/api/sign-in"}});
+  const auto users = certificates::read_users(wish_.folder);
+  if (!users) return refused(503, "users");
+  const auto user = certificates::user_with(*users, account);
+  const auto checked = sign_in_.check(account, text("password"), user);
+  if (checked.wait_s > 0)
+    return refused(429, "wait", {{"seconds", std::to_string(checked.wait_s)}});
+  if (!audit_.write({{"account", account},
+                     {"request", "/api/sign-in"},
+                     {"state", checked.fits ? "done" : "refused"}}))
+    return refused(503, "audit");
+  if (!checked.fits) return refused(403, "password");
+  const auto cookie = sign_in_.begin(*user, is_by_proxy(request.head));
+  if (!cookie) return refusal(503, cookie.error().message);
+  Answer out = json_answer(200, {{"version", version_.load()}});
+  out.headers.emplace_back("Set-Cookie", *cookie);
+  return out;
+}
+
+Answer SiteService::end_session(const Request& request) {
+  Answer out = json_answer(200, {{"version", version_.load()}});
+  out.headers.emplace_back("Set-Cookie", sign_in_.end(request.head));
+  return out;
+}
+
+/// A person who has a password gives it again, and the verb takes the name from users.toml; who is
+/// logged in at a proxy and has none types their name.
+Answer SiteService::release(const Json& body, const User* user) {
   const auto folder = folder_of(body.at("campaign").get<std::string>());
   if (!folder)
     return refused(404, "no_campaign", {{"campaign", body["campaign"].get<std::string>()}});
-  std::vector<std::string> arguments{"certificate", "approve", "--json",
-                                     verb_option("by", body.at("by").get<std::string>())};
+  std::vector<std::string> arguments{"certificate", "approve", "--json"};
+  std::string password;
+  if (user != nullptr && !user->password.empty()) {
+    password = body.value("password", "");
+    const auto checked = sign_in_.check(user->account, password, *user);
+    if (checked.wait_s > 0)
+      return refused(429, "wait", {{"seconds", std::to_string(checked.wait_s)}});
+    if (!checked.fits) return refused(403, "password");
+    arguments.push_back(verb_option("user", user->account));
+  } else {
+    if (user != nullptr && !is_same_name(body.value("confirmed", ""), user->name))
+      return refused(403, "name");
+    arguments.push_back(verb_option("by", body.at("by").get<std::string>()));
+  }
   add_options(arguments, body, {"as"});
   const Json reasons = body.value("reasons", Json::object());
   for (const auto& [finding, why] : reasons.items())
     arguments.push_back(verb_option("reason", finding + "=" + why.get<std::string>()));
   arguments.push_back((wish_.folder / *folder).string());
-  Answer out = entered(with_places(std::move(arguments)));
+  Answer out = entered(with_places(std::move(arguments)), password);
   campaigns_->index().look_at(*folder);
   return out;
 }

@@ -195,7 +195,7 @@ struct Taken {
 };
 
 /// Put into `taken`; an answer where it is refused.
-std::optional<Answer> take(const Request& request, decltype(column_options)& options_of,
+std::optional<Answer> take(const Request& request, decltype(file_options)& options_of,
                            Taken& taken) {
   auto file = dropped_file(request.body);
   if (!file) return file.error();
@@ -216,7 +216,7 @@ std::optional<Answer> take(const Request& request, decltype(column_options)& opt
 /// `nonio check FILE --json` on the copy.
 Answer SiteCampaigns::preview(const Request& request) {
   Taken taken;
-  if (auto refusal = take(request, column_options, taken)) return *std::move(refusal);
+  if (auto refusal = take(request, file_options, taken)) return *std::move(refusal);
   std::vector<std::string> arguments{"check", "--json"};
   arguments.insert(arguments.end(), taken.options.begin(), taken.options.end());
   arguments.push_back(taken.path());

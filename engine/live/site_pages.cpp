@@ -10,8 +10,8 @@ namespace nonio::live {
 namespace fs = std::filesystem;
 using storage::Json;
 
-ToolEnd SiteService::call(const std::vector<std::string>& arguments) {
-  const auto channel = launcher_.run(arguments);
+ToolEnd SiteService::call(const std::vector<std::string>& arguments, const std::string& input) {
+  const auto channel = launcher_.run(arguments, shells_.seconds, input);
   if (!channel) return {-1, "", channel.error().message};
   {
     const std::lock_guard lock(mutex_);
@@ -34,8 +34,8 @@ std::vector<std::string> SiteService::with_places(std::vector<std::string> argum
 }
 
 /// What the verb prints with --json, and the command that was called.
-Answer SiteService::of_verb(const std::vector<std::string>& arguments) {
-  const ToolEnd end = call(arguments);
+Answer SiteService::of_verb(const std::vector<std::string>& arguments, const std::string& input) {
+  const ToolEnd end = call(arguments, input);
   Json out = Json::parse(end.out, nullptr, false);
   if (!out.is_object()) {
     out = {{"error", end.errors.empty() ? "it printed nothing" : end.errors},
@@ -51,8 +51,8 @@ Answer SiteService::of_verb(const std::vector<std::string>& arguments) {
 }
 
 /// The same of what other pages should see at once.
-Answer SiteService::entered(const std::vector<std::string>& arguments) {
-  Answer out = of_verb(arguments);
+Answer SiteService::entered(const std::vector<std::string>& arguments, const std::string& input) {
+  Answer out = of_verb(arguments, input);
   if (news_) news_->look_now();
   return out;
 }
@@ -65,24 +65,29 @@ Answer SiteService::morning() {
 
 Answer SiteService::state(const User* user) {
   const RunNow run = news_->run();
-  Json json = {{"schema", "nonio-live-site/1"},
-               {"version", version_.load()},
-               {"engine", wish_.version},
-               {"edit", wish_.edit && (user == nullptr || user->role >= Role::measure)},
-               {"approve", wish_.edit && (user == nullptr || user->role >= Role::approve)},
-               {"site", wish_.name},
-               {"out", wish_.out.string()},
-               {"campaigns", campaigns_->index().size()},
-               {"running", run_->is_running()},
-               {"night",
-                {{"state", run.state},
-                 {"night", run.number},
-                 {"date", run.date},
-                 {"last", run.last},
-                 {"last_date", run.last_date}}}};
+  Json json = {
+      {"schema", "nonio-live-site/1"},
+      {"version", version_.load()},
+      {"engine", wish_.version},
+      {"edit", wish_.edit && (user == nullptr || user->role >= certificates::Role::measure)},
+      {"approve", wish_.edit && (user == nullptr || user->role >= certificates::Role::approve)},
+      {"site", wish_.name},
+      {"out", wish_.out.string()},
+      {"campaigns", campaigns_->index().size()},
+      {"running", run_->is_running()},
+      {"night",
+       {{"state", run.state},
+        {"night", run.number},
+        {"date", run.date},
+        {"last", run.last},
+        {"last_date", run.last_date}}}};
   if (user != nullptr)
-    json["user"] = {
-        {"account", user->account}, {"name", user->name}, {"role", to_text(user->role)}};
+    json["user"] = {{"account", user->account},
+                    {"name", user->name},
+                    {"role", certificates::to_text(user->role)},
+                    // How an approval is confirmed.
+                    {"confirms", user->password.empty() ? "name" : "password"},
+                    {"signs_out", wish_.sign_in}};
   if (Json now = run_->now(); !now.is_null()) json["run"] = std::move(now);
   return json_answer(200, json);
 }

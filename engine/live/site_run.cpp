@@ -27,6 +27,9 @@ ResultsNow results_now(const std::filesystem::path& out, const std::string& id) 
 
 namespace {
 
+/// Each campaign of a run has its own limit; this ends one that hangs.
+constexpr double longest_run_s = 24.0 * 3600.0;
+
 /// Of `all` those that `other` has not.
 Json only_in(const std::vector<std::string>& all, const std::vector<std::string>& other) {
   Json out = Json::array();
@@ -49,7 +52,7 @@ Expected<bool> SiteRun::begin(const std::vector<std::string>& arguments, const s
                               const std::string& id) {
   std::unique_lock lock(mutex_);
   if (running_ || over_) return false;
-  NONIO_TRY(auto channel, launcher_.run(arguments));
+  NONIO_TRY(auto channel, launcher_.run(arguments, longest_run_s));
   if (thread_.joinable()) thread_.join();  // it has reported its end
   running_ = true;
   cancelled_ = false;

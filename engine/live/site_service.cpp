@@ -15,6 +15,7 @@
 
 namespace nonio::live {
 namespace fs = std::filesystem;
+using certificates::Role;
 using storage::Json;
 
 namespace {
@@ -47,6 +48,10 @@ void SiteService::add_routes() {
                      most_certificate});
   for (const char* path : {"/api/ack", "/api/event", "/api/release", "/api/run", "/api/run/cancel"})
     routes_.push_back({Method::post, path, false, true, of_json});
+  if (wish_.sign_in) {
+    routes_.push_back({Method::post, "/api/sign-in", true, false, of_json});
+    routes_.push_back({Method::post, "/api/sign-out", false, false, of_json});
+  }
   for (Route& route : SiteCampaigns::routes()) routes_.push_back(std::move(route));
   for (Route& route : Desk::routes("/c/{campaign}")) routes_.push_back(std::move(route));
 }
@@ -129,26 +134,45 @@ std::shared_ptr<Desk> SiteService::desk(const std::string& campaign) {
   return desks_[campaign];
 }
 
-/// Whom the proxy states; the file is read each time, so that what it states applies at once.
-tl::expected<User, Answer> SiteService::user_of(const Request& request) const {
-  const auto users = read_users(wish_.folder);
+/// Whom the proxy states or the session has; the file is read each time, so that what it states
+/// applies at once.
+tl::expected<certificates::User, Answer> SiteService::user_of(const Head& head) {
+  const auto users = certificates::read_users(wish_.folder);
   if (!users) return tl::unexpected(refused(503, "users"));
-  const auto accounts = request.head.all(wish_.user_header);
-  for (const User& user : *users)
-    if (accounts.size() == 1 && user.account == accounts.front()) return user;
-  return tl::unexpected(refused(403, "no_user"));
+  if (wish_.sign_in) {
+    auto user = sign_in_.user_of(head, *users);
+    if (!user) return tl::unexpected(refused(403, "signed_out"));
+    return *std::move(user);
+  }
+  const auto accounts = head.all(wish_.user_header);
+  auto user =
+      accounts.size() == 1 ? certificates::user_with(*users, accounts.front()) : std::nullopt;
+  if (!user) return tl::unexpected(refused(403, "no_user"));
+  return *std::move(user);
 }
 
 Answer SiteService::answer(const Request& request) {
   const std::string& path = request.route.path;
+  if (path == "/api/sign-in") return begin_session(request);
   if (request.route.open) return shell_file(request, path == "/" ? shells_.site : shells_.campaign);
-  if (wish_.user_header.empty()) return answer_to(request, nullptr);
-  const auto user = user_of(request);
+  if (wish_.user_header.empty() && !wish_.sign_in) return answer_to(request, nullptr);
+  const auto user = user_of(request.head);
   if (!user) return user.error();
+  if (path == "/api/sign-out") return end_session(request);
   const bool may = user->role >= needed(request.route);
-  if (!request.route.writes && may) return answer_to(request, &*user);
-  Json entry = {{"account", user->account},
-                {"name", user->name},
+  if (request.route.writes || !may) return recorded(request, *user, may);
+  Request of_user = request;
+  of_user.may_write = user->role >= Role::measure;
+  Answer out = answer_to(of_user, &*user);
+  if (out.stream) out.may_go_on = [this, head = request.head] { return user_of(head).has_value(); };
+  return out;
+}
+
+/// What may change something, with its lines in the log.
+Answer SiteService::recorded(const Request& request, const User& user, bool may) {
+  const std::string& path = request.route.path;
+  Json entry = {{"account", user.account},
+                {"name", user.name},
                 {"request", request.head.target.substr(0, request.head.target.find('?'))}};
   const Json body = storage::parse_once(request.body);
   const auto add = [&entry](const Json& from, std::initializer_list<const char*> names) {
@@ -160,14 +184,15 @@ Answer SiteService::answer(const Request& request) {
   // Before it is done: what could not be recorded is not done.
   entry["state"] = may ? "begins" : "refused";
   if (!audit_.write(entry)) return refused(503, "audit");
-  if (!may) return refused(403, "role", {{"role", to_text(user->role)}});
-  Answer out = answer_to(request, &*user);
+  if (!may) return refused(403, "role", {{"role", certificates::to_text(user.role)}});
+  Answer out = answer_to(request, &user);
   const Json said = Json::parse(out.body, nullptr, false);
   const std::string result = said.is_object() && said.contains("state") && said["state"].is_string()
                                  ? said["state"].get<std::string>()
                                  : "";
   entry["state"] = out.status < 300 && result != "lacking" ? "done" : "failed";
   if (!result.empty()) entry["result"] = result;
+  if (!out.said.name.empty()) entry["error"] = out.said.name;
   if (said.is_object())
     for (const char* name : {"campaign", "number", "error"})
       if (said.contains(name) && said[name].is_string()) entry[name] = said[name];
@@ -223,7 +248,7 @@ Answer SiteService::post(const std::string& what, const Request& request, const 
     if (what == "open") return open(body.at("campaign").get<std::string>());
     if (what == "ack") return acknowledge(body);
     if (what == "event") return event(body);
-    if (what == "release") return release(body);
+    if (what == "release") return release(body, user);
     if (what == "run") return run(body);
     if (!run_->cancel()) return refused(409, "no_run");
     return json_answer(202, {{"version", version_.load()}});

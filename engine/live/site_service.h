@@ -10,15 +10,17 @@
 #include <string>
 #include <vector>
 
+#include "certificates/users.h"
+#include "live/audit_log.h"
 #include "live/campaign_service.h"
 #include "live/desk.h"
 #include "live/launcher.h"
 #include "live/session.h"
+#include "live/sign_in.h"
 #include "live/site_campaigns.h"
 #include "live/site_news.h"
 #include "live/site_run.h"
 #include "live/tool.h"
-#include "live/users.h"
 
 namespace nonio::live {
 
@@ -62,13 +64,18 @@ class SiteService : public Starting {
   }
   const std::vector<Route>& routes() const override { return routes_; }
   const Sentences& sentences() const override { return shells_.sentences; }
+  bool signs_in() const override { return wish_.sign_in; }
   Answer answer(const Request& request) override;
   void close() override;
 
  private:
   void add_routes();
+  using User = certificates::User;
   Answer answer_to(const Request& request, const User* user);
-  tl::expected<User, Answer> user_of(const Request& request) const;
+  Answer recorded(const Request& request, const User& user, bool may);
+  tl::expected<User, Answer> user_of(const Head& head);
+  Answer begin_session(const Request& request);
+  Answer end_session(const Request& request);
   Answer get(const std::string& path, const Request& request, const User* user);
   Answer post(const std::string& what, const Request& request, const User* user);
   Answer morning();
@@ -79,12 +86,12 @@ class SiteService : public Starting {
   Answer open(const std::string& campaign);
   Answer acknowledge(const storage::Json& body);
   Answer event(const storage::Json& body);
-  Answer release(const storage::Json& body);
+  Answer release(const storage::Json& body, const User* user);
   Answer verify(const Request& request);
   Answer run(const storage::Json& body);
-  Answer of_verb(const std::vector<std::string>& arguments);
-  Answer entered(const std::vector<std::string>& arguments);
-  ToolEnd call(const std::vector<std::string>& arguments);
+  Answer of_verb(const std::vector<std::string>& arguments, const std::string& input = {});
+  Answer entered(const std::vector<std::string>& arguments, const std::string& input = {});
+  ToolEnd call(const std::vector<std::string>& arguments, const std::string& input = {});
   std::vector<std::string> with_places(std::vector<std::string> arguments) const;
   std::optional<std::string> folder_of(const std::string& campaign) const;
   bool is_campaign(const std::string& folder) const;
@@ -96,6 +103,7 @@ class SiteService : public Starting {
 
   LiveWish wish_;
   AuditLog audit_{wish_.folder};
+  SignIn sign_in_;
   Launcher launcher_;
   Shells shells_;
   std::vector<Route> routes_;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 
 #include "platform/process/child.h"
@@ -20,7 +21,7 @@ namespace {
 
 /// A message begins with it or its opposite.
 constexpr bool is_line = true;
-constexpr std::size_t most_printed = 64 << 20, most_errors = 1 << 16;
+constexpr std::size_t most_input = 4096, most_printed = 64 << 20, most_errors = 1 << 16;
 
 /// False at the end.
 bool take_from(int fd, std::string& into) {
@@ -30,6 +31,14 @@ bool take_from(int fd, std::string& into) {
   if (n <= 0) return false;
   into.append(bytes.data(), static_cast<std::size_t>(n));
   return true;
+}
+
+int exit_status_of(const process::Child& child) {
+  int status = 0;
+  while (::waitpid(child.pid(), &status, 0) < 0 && errno == EINTR)
+    ;
+  constexpr int by_signal = 255;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : by_signal;
 }
 
 /// Whole lines of `text` from `sent` on.
@@ -42,10 +51,19 @@ void tell_lines(const std::string& text, std::size_t& sent, int channel) {
 }  // namespace
 
 void run_tool(const std::string& program, const std::vector<std::string>& arguments,
-              process::Handle channel) {
+              const std::string& input, double seconds, process::Handle channel) {
   int out[2], errors[2];
   if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(errors, O_CLOEXEC) != 0) ::_exit(1);
   process::Child::Program own{{program}, process::present_environment(), -1, out[1], errors[1]};
+  int in[2] = {-1, -1};
+  if (const std::string line = input + "\n"; !input.empty()) {
+    // A pipe takes 4096 bytes at once.
+    if (line.size() > most_input || ::pipe2(in, O_CLOEXEC) != 0 ||
+        ::write(in[1], line.data(), line.size()) != static_cast<ssize_t>(line.size()))
+      ::_exit(1);
+    ::close(in[1]);
+    own.input = in[0];
+  }
   own.command.insert(own.command.end(), arguments.begin(), arguments.end());
   auto child = process::Child::start(own);
   if (!child) ::_exit(1);
@@ -57,8 +75,22 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
   std::size_t sent_printed = 0, sent = 0;
   std::array<pollfd, 3> all{
       {{out[0], POLLIN, 0}, {errors[0], POLLIN, 0}, {channel.get(), POLLIN, 0}}};
+  using Clock = std::chrono::steady_clock;
+  // It is asked to end first, so that what it has done so far stays whole.
+  constexpr std::chrono::seconds patience(10);
+  auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                     std::chrono::duration<double>(seconds));
+  bool overdue = false;
+  constexpr int tick_ms = 1000;
   while (all[0].fd >= 0 || all[1].fd >= 0) {
-    if (::poll(all.data(), all.size(), -1) < 0) continue;
+    const int ready = ::poll(all.data(), all.size(), tick_ms);
+    if (Clock::now() > deadline) {
+      ::kill(child->pid(), SIGTERM);
+      if (overdue) break;
+      overdue = true;
+      deadline = Clock::now() + patience;
+    }
+    if (ready <= 0) continue;
     std::string word;
     const bool asked = all[2].revents == POLLIN && process::read_text(channel.get(), word);
     if (asked) ::kill(child->pid(), SIGTERM);
@@ -71,13 +103,14 @@ void run_tool(const std::string& program, const std::vector<std::string>& argume
     if (tells) tell_lines(printed, sent_printed, channel.get());
     tell_lines(said, sent, channel.get());
   }
-  int status = 0;
-  while (::waitpid(child->pid(), &status, 0) < 0 && errno == EINTR)
-    ;
+  const int status = overdue ? -1 : exit_status_of(*child);
+  if (overdue) {
+    child->end();
+    said += "no answer within " + std::to_string(static_cast<int>(seconds)) +
+            " s (site.toml, [limits] seconds)\n";
+  }
   said.erase(0, said.size() - std::min(said.size(), most_errors));
-  process::write_text(
-      channel.get(),
-      storage::pack(!is_line, WIFEXITED(status) ? WEXITSTATUS(status) : 255, printed, said));
+  process::write_text(channel.get(), storage::pack(!is_line, status, printed, said));
   ::_exit(0);
 }
 

@@ -20,8 +20,10 @@ struct ToolEnd {
 /// In a process of one thread: starts the program with these arguments, sends each line of its
 /// errors (and each event of a run) over the channel, and at the end its exit. It terminates the
 /// program (SIGTERM) when the other side requests it, and ends it if the other side has ended.
+/// `input`: a line for its standard input; empty: it has none. After `seconds` it is terminated, and
+/// its exit status is -1.
 [[noreturn]] void run_tool(const std::string& program, const std::vector<std::string>& arguments,
-                           process::Handle channel);
+                           const std::string& input, double seconds, process::Handle channel);
 
 /// The other side: until its end.
 ToolEnd hear_tool(const process::Handle& channel,

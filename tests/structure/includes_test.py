@@ -59,7 +59,7 @@ HOMES = {
     "openssl/": {"engine/pdf", "engine/sign", "engine/platform/storage"}, "xmlsec/": {"engine/sign"},
     "libxml/": {"engine/sign"}, "utf8proc": {"reports"}, "CLI/": {"engine/app"},
     "pybind11/": {"engine/python"},
-    "xlsxwriter": {"engine/platform/storage"}, "nlohmann": ENGINE | {"engine/app"},
+    "argon2": {"engine/certificates"}, "xlsxwriter": {"engine/platform/storage"}, "nlohmann": ENGINE | {"engine/app"},
     "Eigen": {"engine/math", "engine/model", "plugins/analyses", "plugins/effects"},
     "math/eigen/": {"engine/laboratory/statistics"}, "tl/": {"engine/sdk"}, "sqlite3": {"engine/platform/storage"}, "libpq": {"engine/platform/storage"},
 }

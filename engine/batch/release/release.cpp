@@ -12,8 +12,10 @@
 #include "campaign/evaluation/record.h"
 #include "certificates/certificate_list.h"
 #include "certificates/journal.h"
+#include "certificates/password.h"
 #include "certificates/person_name.h"
 #include "certificates/register_place.h"
+#include "certificates/users.h"
 #include "nonio/sdk/statement.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
@@ -93,8 +95,8 @@ Expected<std::map<std::string, std::string>> reasons_for(const certificates::Wai
 
 class Releaser {
  public:
-  Releaser(const ReleaseRequest& request, const RunOptions& base, const RunEvents& events)
-      : request_(request), options_(base), events_(events) {}
+  Releaser(ReleaseRequest request, const RunOptions& base, const RunEvents& events)
+      : request_(std::move(request)), options_(base), events_(events) {}
 
   Released run() {
     if (auto well = open_campaign(); !well) return refuse(well.error().message);
@@ -103,8 +105,11 @@ class Releaser {
     const certificates::WaitingDraft& draft = *out_.draft;
     auto reasons = reasons_for(draft, request_);
     if (!reasons) return refuse(reasons.error().message);
-    const certificates::Approval approval{request_.by, role_, certificates::utc_now(),
-                                          std::move(*reasons)};
+    const certificates::Approval approval{.by = request_.by,
+                                          .role = role_,
+                                          .at = certificates::utc_now(),
+                                          .reasons = std::move(*reasons),
+                                          .user = request_.user};
     for (const evaluation::KnownFinding& f : draft.findings) {
       const auto has = [&](const certificates::Approval& a) {
         return a.reasons.contains(certificates::finding_key(f));
@@ -127,7 +132,27 @@ class Releaser {
     return std::move(out_);
   }
 
+  /// The name of the user whose password was given.
+  Expected<void> identify() {
+    if (request_.user.empty()) return {};
+    if (!request_.by.empty()) return fail("--by and --user: expected one of them");
+    NONIO_TRY(const auto users, certificates::read_users(options_.site));
+    const auto user = certificates::user_with(users, request_.user);
+    const bool fits =
+        certificates::fits_password(request_.password, user ? user->password : std::string());
+    request_.password.clear();
+    if (!fits)
+      return fail("--user " + request_.user + ": not a user of users.toml, or another password");
+    if (user->role < certificates::Role::approve)
+      return fail("--user " + request_.user + ": the role " + certificates::to_text(user->role) +
+                  " of users.toml does not allow to approve");
+    request_.by = user->name;
+    return {};
+  }
+
   Expected<void> open_campaign() {
+    options_.site = config::site_of(request_.campaign);
+    if (auto well = identify(); !well) return well;
     if (const std::string mistake = mistake_in(request_); !mistake.empty()) return fail(mistake);
     auto text = storage::read_file(request_.campaign / config::manifest_name);
     if (!text) return fail(text.error().message + ": it is not the folder of a campaign");
@@ -137,7 +162,6 @@ class Releaser {
       return fail(e.file + ":" + std::to_string(e.line) + ": " + e.message);
     }
     id_ = manifest->campaign.id;
-    options_.site = config::site_of(request_.campaign);
     const auto numbering = certificates::numbering_of(options_.site);
     if (!numbering) return fail("site.toml: " + numbering.error().message);
     numbering_ = *numbering;
@@ -189,10 +213,13 @@ class Releaser {
       if (certificates::likeness_of(by_author->by) == certificates::likeness_of(request_.by))
         return fail("two_persons = true in site.toml: " + by_author->by +
                     " is the author; expected another person as authoriser");
-      // A name is typed by whoever sits there: two persons are two accounts.
-      if (by_author->account == certificates::own_account())
+      // A name is typed by whoever sits there: two persons are two passwords or two accounts.
+      const bool two_users = !by_author->user.empty() && !request_.user.empty();
+      if (two_users ? by_author->user == request_.user
+                    : by_author->account == certificates::own_account())
         return fail("two_persons = true in site.toml: the author approved it under this account, " +
-                    by_author->account + "; the authoriser needs an account of their own");
+                    (two_users ? by_author->user : by_author->account) +
+                    "; the authoriser needs an account of their own");
     }
     return {};
   }
@@ -280,7 +307,7 @@ class Releaser {
     return std::move(out_);
   }
 
-  const ReleaseRequest& request_;
+  ReleaseRequest request_;
   RunOptions options_;
   const RunEvents& events_;
   config::Numbering numbering_;

@@ -14,10 +14,13 @@ namespace nonio::batch {
 /// Arguments of `nonio certificate approve`.
 struct ReleaseRequest {
   std::filesystem::path campaign;  ///< its folder
-  std::string by;                  ///< a person's name, as it is printed
+  std::string by;                  ///< a person's name, as it is printed; empty with `user`
   std::string role;                ///< author, authoriser; empty: what the site requires
   std::map<std::string, std::string> reasons;  ///< by finding_key or by the finding's id
   std::filesystem::path out;                   ///< of the run; empty: where it was
+  /// Of users.toml, whose name is taken then; the password shows that it is that person. Empty: `by`
+  /// is a statement.
+  std::string user{}, password{};
 };
 
 struct Released {

@@ -75,6 +75,8 @@ const certificates = (() => {
     const asking = draft.findings.filter((f) => f.severity === "attention");
     const given = new Map(asking.map((f) => [keyOf(f), el("input", {name: "reason", required: !f.reason, maxlength: 500, autocomplete: "off", value: f.reason || null, "data-finding": keyOf(f)})]));
     const by_ = el("input", {name: "by", required: true, maxlength: 100, autocomplete: "off", ...entries.mine(), id: "release-by-" + draft.campaign});
+    const password = entries.confirms() === "password" ? el("input", {type: "password", name: "password", required: true, maxlength: 200, autocomplete: "current-password", id: "release-password-" + draft.campaign}) : null;
+    const confirmed = entries.confirms() === "name" ? el("input", {name: "confirmed", required: true, maxlength: 100, autocomplete: "off", id: "release-name-" + draft.campaign}) : null;
     const as = el("select", {name: "as", id: "release-as-" + draft.campaign}, ...["", "author", "authoriser"].map((value) => el("option", {value}, say("release.as_" + (value || "site")))));
     const problem = el("p", {class: "flag", role: "alert"}), go = el("button", {type: "submit", class: "strong", disabled: Boolean(draft.stale)}, say("release.do"));
     return el("form", {class: "release", onsubmit: async (event) => {
@@ -86,16 +88,20 @@ const certificates = (() => {
       entries.remember(by_.value.trim());
       const body = {campaign: draft.folder, by: by_.value.trim(), reasons};
       if (as.value) body.as = as.value;
+      if (password) body.password = password.value;
+      if (confirmed) body.confirmed = confirmed.value;
       try {
         await act(body);
       } catch (e) {
         const a = e.answer || {};
+        if (password) password.value = "";
         problem.textContent = a.without_reason ? say("release.lacking", {findings: a.without_reason.join("; ")}) : e.message;
         go.disabled = Boolean(draft.stale);
       }
     }}, asking.length ? el("p", {}, say("release.reasons")) : null,
     ...asking.map((f) => el("label", {class: "wide"}, el("span", {}, el("b", {}, entries.visible(f.said || f.title)), " ", el("span", {class: "muted"}, keyOf(f))), given.get(keyOf(f)))),
     el("label", {class: "wide"}, el("span", {}, say("release.by")), by_), el("label", {class: "wide"}, el("span", {}, say("release.as")), as),
+    password ? el("label", {class: "wide"}, el("span", {}, say("release.password")), password) : null, confirmed ? el("label", {class: "wide"}, el("span", {}, say("release.confirm", {name: entries.visible(entries.me())})), confirmed) : null,
     el("p", {class: "muted"}, say("release.what")), problem, el("div", {class: "buttons"}, go));
   }
   /// One draft; with `act` it can be released.

@@ -10,7 +10,9 @@ const entries = (() => {
   let account = ""; // the name of the user that is logged in: all entries are made under it
   const me = () => account || localStorage.getItem("nonio-by") || "";
   const remember = (by_) => account || localStorage.setItem("nonio-by", by_);
-  const as = (name) => (account = name);
+  let confirming = ""; // how an approval is confirmed: by the password, or by the name
+  const as = (name, confirms) => ([account, confirming] = [name, confirms]);
+  const confirms = () => confirming;
   const mine = () => ({value: me(), readonly: account !== ""});
 
   function field(name, word, more = {}, note = null) {
@@ -98,5 +100,5 @@ const entries = (() => {
         events.length === 0 ? el("p", {}, say("entry.none")) : table({label: say("entry.events", {n: events.length}), columns: ["entry.date", "entry.machine", "entry.kind", "entry.text", "entry.who"]},
           [...events].reverse().slice(0, 200).map((e) => el("tr", {}, cell(e.date), cell([e.machine, e.axis].filter(Boolean).join(" ")), cell(say("event.kind_" + e.kind)), cell(e.text), cell(e.by)))))];
   }
-  return {acknowledge, withdraw, event, entryOf, show, visible, as, me, mine, remember, field, table};
+  return {acknowledge, withdraw, event, entryOf, show, visible, as, confirms, me, mine, remember, field, table};
 })();

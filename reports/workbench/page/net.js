@@ -1,4 +1,5 @@
-// ---- the server: every request has the token, which never stands in an address or a cookie ----
+// ---- the server: every request has the token, which never stands in an address or a cookie; or a session, where people
+// sign in ----
 const net = (() => {
   const at = /(?:^|[#&])t=([0-9a-f]{32})(?:&|$)/.exec(location.hash);
   if (at) {
@@ -51,7 +52,11 @@ const net = (() => {
     } catch (e) {
       answer = {error: text.slice(0, 500)};
     }
-    if (!response.ok) throw new Refused(response.status, answer);
+    if (!response.ok) {
+      // A campaign of a site: its first page has the sign-in.
+      if (answer.id === "signed_out" && base !== "") location.href = "/";
+      throw new Refused(response.status, answer);
+    }
     Object.defineProperty(answer, "etag", {value: response.headers.get("ETag")});
     return answer;
   }

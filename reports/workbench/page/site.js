@@ -1,9 +1,5 @@
 // ---- the page of a site: the morning that the last night has written, and what people do about it ----
 (() => {
-  if (!net.hasToken()) {
-    by("app").replaceChildren(el("main", {class: "lost"}, el("h1", {}, say("shell.title")), el("p", {role: "alert"}, say("net.no_token"))));
-    return;
-  }
   let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asking = false, again = false, stale = true, dismissed = "", shown = "", released = null;
   const own = ["campaigns", "machines", "certificates", "entries"];
   const isOwn = (name) => own.includes(name) || (name === "new" && (!state || state.edit)) || name.startsWith("campaign/");
@@ -26,13 +22,43 @@
 
   // ---- asking ----
   let denied = false; // by name and role: the address is right
+  /// In place of all else.
+  function only(name, ...content) {
+    by("app").replaceChildren(el("main", {class: "lost"}, ...content));
+    document.body.dataset.ready = name;
+  }
+  function signIn() {
+    if (by("sign-in")) return;
+    const account = el("input", {name: "account", required: true, maxlength: 100, autocomplete: "username", id: "sign-in-account"});
+    const password = el("input", {type: "password", name: "password", required: true, maxlength: 200, autocomplete: "current-password", id: "sign-in-password"});
+    const problem = el("p", {class: "flag", role: "alert"}), go = el("button", {type: "submit", class: "strong", id: "sign-in-go"}, say("user.sign_in"));
+    only("sign-in", el("h1", {}, say("user.sign_in")), el("form", {id: "sign-in", onsubmit: async (event) => {
+      event.preventDefault();
+      go.disabled = true;
+      problem.textContent = "";
+      try {
+        await net.ask("/api/sign-in", {body: {account: account.value, password: password.value}});
+        location.reload();
+      } catch (e) {
+        problem.textContent = e.message || String(e);
+        password.value = "";
+        go.disabled = false;
+      }
+    }}, el("label", {class: "wide"}, el("span", {}, say("user.account")), account), el("label", {class: "wide"}, el("span", {}, say("user.password")), password), problem, el("div", {class: "buttons"}, go)));
+    account.focus();
+  }
   function complain(e) {
+    const id = e.answer && e.answer.id;
+    if (id === "signed_out") return signIn();
+    if (id === "token" && !net.hasToken()) return only("no-token", el("h1", {}, say("shell.title")), el("p", {role: "alert"}, say("net.no_token")));
     denied = denied || e.status === 403;
     if (e instanceof net.Refused) box.alarm(e.message, " ", box.button("alarm-close", "dialog.close", {onclick: () => box.alarm("")}));
     else lost(0);
   }
   function lost(status) {
-    if (denied && status === 403) return;
+    if (!by("main") || (denied && status === 403)) return;
+    // A session may have ended, or a user was removed.
+    if (status === 403 && (!state || state.user)) return void refresh().catch(complain);
     box.alarm(status === 403 ? say("net.other") : say("site.lost", {at: new Date().toLocaleTimeString(language)}));
     document.body.classList.add("lost");
   }
@@ -73,7 +99,7 @@
     const next = await net.ask("/api/site/state");
     if (state && next.engine !== state.engine) return location.reload();
     state = next;
-    if (state.user) entries.as(state.user.name);
+    if (state.user) entries.as(state.user.name, state.user.confirms);
     if (stale) {
       stale = false;
       pages = new Map();
@@ -210,7 +236,7 @@
       el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to || (to === "campaigns" && /^(new$|campaign\/)/.test(view())) ? "page" : null}, label)));
     const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.night, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.night}) : n.state === "planned" ? say("night.planned", {n: n.night}) : "";
     fill(by("night"), night_ ? el("p", {class: "note", id: "night-says"}, night_) : null);
-    fill(by("rights"), state.user ? el("p", {class: "muted", id: "user"}, say("user.is", {name: entries.visible(state.user.name), role: say("user.may_" + state.user.role)})) : null, state.edit || state.user ? null : el("p", {class: "muted", id: "read-only"}, say("site.read_only")));
+    fill(by("rights"), state.user ? el("p", {class: "muted", id: "user"}, say("user.is", {name: entries.visible(state.user.name), role: say("user.may_" + state.user.role)}), " ", state.user.signs_out ? el("button", {type: "button", class: "link", id: "sign-out", "data-key": "sign-out", onclick: () => net.ask("/api/sign-out", {body: {}}).then(() => location.reload()).catch(complain)}, say("user.sign_out")) : null) : null, state.edit || state.user ? null : el("p", {class: "muted", id: "read-only"}, say("site.read_only")));
     drawRun(r);
   }
   const stages = ["begin", "survey", "campaigns", "history", "pages"];

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What goes wrong in the processes that calculate costs one answer: a plugin that crashes, one that never ends, a process
 that is killed; a newer request cancels an older one."""
+import json
 import os
 import pathlib
 import signal
@@ -59,6 +60,14 @@ class Crashes(LiveTest):
             bad = s.fit("Z")
             self.assertEqual(bad["status"], 422)
             self.assertIn("within 2 s", bad["error"])
+
+    def test_what_the_server_starts_has_a_limit_of_time(self):
+        (self.site / "site.toml").write_text("[limits]\nseconds = 2\n")
+        with Server(self.site, "--plugin-path", PLUGINS / "hangs") as s:
+            status, _, answer = s.request("POST", "/api/preview", json.dumps({"name": "x.csv"}) + "\nHANGS\n", {"Content-Type": "application/octet-stream"})
+            self.assertEqual(422, status, answer)
+            self.assertIn("within 2 s", json.loads(answer)["error"])
+            self.assertEqual([], [pid for pid, parent in s.pids() if b"check" in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes()], "it has ended")
 
     def test_the_bench_process_is_made_anew(self):
         with Server(self.campaign(CAMPAIGN)) as s:

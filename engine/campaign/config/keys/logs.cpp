@@ -131,7 +131,7 @@ constexpr Choice roles[] = {{"view"}, {"measure"}, {"approve"}, {"administer"}};
 constexpr Key user_keys[] = {
     {.name = "account",
      .holds = text,
-     .help = "Account as the reverse proxy states it.",
+     .help = "Account, as the reverse proxy states it or the person types it.",
      .required = true},
     {.name = "name",
      .holds = text,
@@ -142,6 +142,11 @@ constexpr Key user_keys[] = {
      .help = "What the person may do; each role may do what those before it may.",
      .required = true,
      .choices = roles},
+    {.name = "password",
+     .holds = text,
+     .help = "Hash of the password, as `nonio serve SITE --hash-password` prints it.",
+     .may_be_secret = true,
+     .text = {.letters = "a-zA-Z0-9$=,+/"}},
 };
 
 constexpr Key users_file_keys[] = {
