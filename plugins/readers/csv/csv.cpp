@@ -455,7 +455,8 @@ Option columns_declared() {
   return {
       std::string(columns_option), std::vector<std::string>(), "",
       "Columns with other names: \"NAME = KNOWN\" for each, such as \"Soll mm = target_mm\", or "
-      "\"NAME = ignore\". Rows above the one that has them are not read. Kinds axis, "
+      "\"NAME = ignore\". A column without a name, or with one that occurs twice, has its number: "
+      "\"#3 = target_mm\". Rows above the one that has them are not read. Kinds axis, "
       "straightness, angle and diagonal"};
 }
 

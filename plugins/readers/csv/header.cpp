@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <optional>
 
 #include "nonio/sdk/fields.h"
@@ -125,6 +126,18 @@ tl::unexpected<Error> twice(const std::string& before, std::string_view name) {
 
 }  // namespace
 
+namespace {
+
+/// 3 of "#3"; 0 if it is another text.
+std::size_t column_number(std::string_view text) {
+  std::size_t number = 0;
+  if (!text.starts_with('#') || text.size() < 2 || text[1] == '0') return 0;
+  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? number : 0;
+}
+
+}  // namespace
+
 bool Header::has(Role role) const {
   return std::find(roles.begin(), roles.end(), role) != roles.end();
 }
@@ -139,41 +152,56 @@ Expected<StatedColumns> StatedColumns::of(const std::vector<std::string>& entrie
     if (name.empty() || (known != ignore && find(known) == nullptr)) {
       std::string list;
       for (const Known& k : known_columns) list += std::string(k.name) + ", ";
-      return fail("option columns: expected entries such as \"Soll mm = target_mm\", with one of " +
-                  list + "ignore; found " + shown(entry));
+      return fail(
+          "option columns: expected entries such as \"Soll mm = target_mm\" or \"#3 = "
+          "target_mm\", with one of " +
+          list + "ignore; found " + shown(entry));
     }
-    out.names_.emplace_back(name, known);
+    out.names_.push_back({std::string(name), column_number(name), std::string(known)});
   }
   return out;
 }
 
-std::string_view StatedColumns::known(std::string_view name) const {
-  const auto it = std::find_if(names_.begin(), names_.end(),
-                               [&](const auto& one) { return one.first == trimmed(name); });
-  return it == names_.end() ? name : std::string_view(it->second);
+std::string_view StatedColumns::known(std::string_view name, std::size_t index) const {
+  for (const Stated& one : names_)
+    if (one.number == index + 1) return one.known;
+  for (const Stated& one : names_)
+    if (one.number == 0 && one.name == trimmed(name)) return one.known;
+  return name;
 }
 
 bool StatedColumns::all_in(const std::vector<std::string_view>& row) const {
-  return std::all_of(names_.begin(), names_.end(), [&](const auto& one) {
+  const bool has_name =
+      std::any_of(names_.begin(), names_.end(), [](const Stated& one) { return one.number == 0; });
+  return std::all_of(names_.begin(), names_.end(), [&](const Stated& one) {
+    // The last names of a row may be blank; its other names show which row it is.
+    if (one.number != 0) return has_name || one.number <= row.size();
     return std::any_of(row.begin(), row.end(),
-                       [&](std::string_view name) { return trimmed(name) == one.first; });
+                       [&](std::string_view name) { return trimmed(name) == one.name; });
   });
+}
+
+std::size_t StatedColumns::last_number() const {
+  std::size_t last = 0;
+  for (const Stated& one : names_) last = std::max(last, one.number);
+  return last;
 }
 
 std::string StatedColumns::list() const {
   std::string out;
-  for (const auto& [name, known] : names_) out += (out.empty() ? "" : ", ") + shown(name);
+  for (const Stated& one : names_) out += (out.empty() ? "" : ", ") + shown(one.name);
   return out;
 }
 
 std::size_t known_names(std::string_view row, char separator, const StatedColumns& stated) {
   std::vector<std::string_view> names;
   if (!split(row, separator, names)) return 0;
-  return static_cast<std::size_t>(
-      std::count_if(names.begin(), names.end(), [&](std::string_view name) {
-        const std::string_view known = stated.known(name);
-        return known == ignore || find(known) != nullptr;
-      }));
+  std::size_t known_ones = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string_view known = stated.known(names[i], i);
+    known_ones += known == ignore || find(known) != nullptr ? 1 : 0;
+  }
+  return known_ones;
 }
 
 char find_separator(std::string_view row, const StatedColumns& stated) {
@@ -190,13 +218,22 @@ Expected<Header> parse_header(std::string_view row, const Expectation& e,
   std::vector<std::string_view> names;
   if (!split(row, header.separator, names))
     return fail("header row: unterminated quoted field, or text after the closing quote");
+  if (const std::size_t last = stated.last_number(); last > names.size())
+    return fail("option columns: \"#" + std::to_string(last) + "\" is stated, and the row has " +
+                std::to_string(names.size()) + " columns");
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (!stated.empty() && stated.known(names[i]) == ignore) {
+    // By numbers alone the first readings would pass for the names.
+    if (stated.last_number() != 0 && parse_number(names[i], true).kind == Field::Kind::taken)
+      return fail(
+          "option columns: expected a row with the names of the columns, which may be "
+          "blank, found the number " +
+          shown(names[i]));
+    if (!stated.empty() && stated.known(names[i], i) == ignore) {
       header.roles.push_back(Role::ignored);
       header.names.emplace_back(trimmed(names[i]));
       continue;
     }
-    const Known* column = find(stated.known(names[i]));
+    const Known* column = find(stated.known(names[i], i));
     if (column == nullptr && is_channel(names[i])) {
       const std::string name(names[i]);
       if (std::find(header.names.begin(), header.names.end(), name) != header.names.end())

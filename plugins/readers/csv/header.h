@@ -33,22 +33,29 @@ struct ChannelEnding {
 inline constexpr ChannelEnding channel_endings[] = {
     {"_c", "degC"}, {"_rpm", "rpm"}, {"_pct", "%"}, {"_kw", "kW"}, {"_a", "A"}};
 
-/// What a person stated of columns with other names (option `columns`): the name in the file and
-/// the known name, "ignore" for none.
+/// What a person stated of columns with other names (option `columns`): the name in the file, or
+/// "#3" for the third column, and the known name, "ignore" for none.
 class StatedColumns {
  public:
   /// Of entries such as "Soll mm = target_mm". An error if one has another form.
   static Expected<StatedColumns> of(const std::vector<std::string>& entries);
   bool empty() const { return names_.empty(); }
-  /// The known name; the same name where nothing is stated of it.
-  std::string_view known(std::string_view name) const;
-  /// Whether the row has all the names that are stated.
+  /// The known name of column `index`, from 0; the same name where nothing is stated of it.
+  std::string_view known(std::string_view name, std::size_t index) const;
+  /// Whether the row has all the names and numbers that are stated.
   bool all_in(const std::vector<std::string_view>& row) const;
+  /// The largest number of a column; 0: all are stated by name.
+  std::size_t last_number() const;
   /// The names as a list, for messages.
   std::string list() const;
 
  private:
-  std::vector<std::pair<std::string, std::string>> names_{};
+  struct Stated {
+    std::string name;        ///< as it is stated, "#3" too
+    std::size_t number = 0;  ///< of the column, from 1; 0: by its name
+    std::string known;
+  };
+  std::vector<Stated> names_{};
 };
 
 /// What the file is expected to hold.

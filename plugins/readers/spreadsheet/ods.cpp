@@ -32,7 +32,7 @@ std::string duration_text(const std::string& iso) {
 
 class OdsReader {
  public:
-  explicit OdsReader(Book& book) : book_(book) {}
+  OdsReader(Book& book, std::size_t most_rows) : book_(book), most_rows_(most_rows) {}
 
   Expected<void> take(const Node& node) {
     if (node.kind == Node::Kind::text) {
@@ -42,7 +42,9 @@ class OdsReader {
     const bool begins = node.kind == Node::Kind::begins;
     if (node.name == "annotation") in_note_ = begins;
     if (node.name == "table" && begins) {
-      book_.sheets.emplace_back().name = node.attribute("table:name");
+      Sheet& sheet = book_.sheets.emplace_back();
+      sheet.name = node.attribute("table:name");
+      sheet.most_rows = most_rows_;
       row_ = 0;
     }
     if (book_.sheets.empty()) return {};
@@ -82,7 +84,7 @@ class OdsReader {
                               : value_.empty() ? text_
                                                : value_;
     if (!value.empty())
-      for (std::size_t r = 0; r < rows_; ++r)
+      for (std::size_t r = 0; r < rows_ && row_ + r < most_rows_; ++r)
         for (std::size_t c = 0; c < columns_; ++c)
           if (auto put = book_.sheets.back().put(row_ + r, column_ + c, value); !put) return put;
     column_ += columns_;
@@ -90,6 +92,7 @@ class OdsReader {
   }
 
   Book& book_;
+  std::size_t most_rows_;
   std::size_t row_ = 0, rows_ = 1, column_ = 0, columns_ = 1;
   std::string type_, value_, text_;
   bool in_text_ = false, in_note_ = false;
@@ -101,11 +104,11 @@ bool is_ods(std::string_view archive) {
   return archive.substr(0, 200).find(type_of_ods) != archive.npos;
 }
 
-Expected<Book> read_ods(std::string_view archive) {
+Expected<Book> read_ods(std::string_view archive, std::size_t most_rows) {
   NONIO_TRY(const auto xml, member(archive, "content.xml"));
   if (!xml) return fail("the file is no ODS spreadsheet: it has no content.xml");
   Book book;
-  OdsReader reader(book);
+  OdsReader reader(book, most_rows);
   const auto read = read_xml(*xml, [&](const Node& node) { return reader.take(node); });
   if (!read) return fail(read.error());
   if (book.sheets.empty()) return fail("the spreadsheet has no sheet");

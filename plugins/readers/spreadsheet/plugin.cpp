@@ -9,7 +9,7 @@ namespace nonio::spreadsheet_reader {
 NONIO_PLUGIN(registry) {
   Reader r;
   r.info = {"spreadsheet",
-            "1.1",
+            "1.2",
             "Excel workbooks (XLSX) and OpenDocument spreadsheets (ODS) with the columns of csv",
             {{"sheet", std::string(), "",
               "The sheet with the readings. Default: the only one with known column names."},

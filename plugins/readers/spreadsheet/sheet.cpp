@@ -8,7 +8,7 @@
 namespace nonio::spreadsheet {
 
 Expected<void> Sheet::put(std::size_t row, std::size_t column, std::string text) {
-  if (text.empty()) return {};
+  if (text.empty() || row >= most_rows) return {};
   if (column >= most_columns || row >= most_cells || (cells_ += text.size() / 64 + 1) > most_cells)
     return fail("sheet \"" + name + "\": expected up to 1000 columns and 20 million cells");
   if (rows_.size() <= row) rows_.resize(row + 1);

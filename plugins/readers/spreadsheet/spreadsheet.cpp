@@ -114,7 +114,10 @@ Expected<Table> chosen(const Book& book, const ReadInput& input) {
 }  // namespace
 
 Expected<std::vector<Row>> first_rows(std::string_view bytes, std::size_t most) {
-  const auto book = is_ods(bytes) ? read_ods(bytes) : read_xlsx(bytes);
+  // Titles above a table are few.
+  constexpr std::size_t titles = 200;
+  const auto book =
+      is_ods(bytes) ? read_ods(bytes, titles + most) : read_xlsx(bytes, titles + most);
   if (!book) return fail(book.error());
   // The fullest sheet, from its widest row on: above it are titles.
   const auto longest = std::max_element(
@@ -141,7 +144,10 @@ Expected<Observations> read(const ReadInput& input) {
   NONIO_TRY(const Table table, chosen(*book, input));
   const auto& rows = table.sheet->rows();
   std::string text;  // one line for each row, so that errors name rows of the sheet
-  const std::size_t width = rows[table.first].size();
+  std::size_t width = rows[table.first].size();
+  // The last columns may have no names: they are stated by their numbers.
+  if (!input.options.texts(csv::columns_option).empty())
+    for (std::size_t r = table.first; r < table.after; ++r) width = std::max(width, rows[r].size());
   for (std::size_t r = 0; r < table.after; ++r)
     text += (r < table.first ? "#" : line_of(rows[r], width)) + "\n";
   const ReadInput as_csv{.bytes = text,

@@ -150,6 +150,8 @@ struct Common {
 class SheetReader {
  public:
   SheetReader(Sheet& sheet, const Common& common) : sheet_(sheet), common_(common) {}
+  /// The one that is read, from 1.
+  std::size_t row() const { return row_; }
 
   Expected<void> take(const Node& node) {
     if (node.kind == Node::Kind::text) {
@@ -216,7 +218,7 @@ class SheetReader {
 
 }  // namespace
 
-Expected<Book> read_xlsx(std::string_view archive) {
+Expected<Book> read_xlsx(std::string_view archive, std::size_t most_rows) {
   Common common;
   NONIO_TRY(const auto listed, listed_sheets(archive, common.from_1904));
   NONIO_TRY(const auto files, targets(archive));
@@ -230,8 +232,11 @@ Expected<Book> read_xlsx(std::string_view archive) {
     if (!xml) continue;  // a chart sheet without cells
     Sheet sheet;
     sheet.name = one.name;
+    sheet.most_rows = most_rows;
     SheetReader reader(sheet, common);
-    const auto read = read_xml(*xml, [&](const Node& node) { return reader.take(node); });
+    const auto read = read_xml(
+        *xml, [&](const Node& node) { return reader.take(node); },
+        [&] { return reader.row() > most_rows; });
     if (!read) return fail(read.error());
     book.sheets.push_back(std::move(sheet));
   }

@@ -67,7 +67,8 @@ class Handlers {
 }  // namespace
 
 Expected<void> read_xml(std::string_view xml,
-                        const std::function<Expected<void>(const Node&)>& take) {
+                        const std::function<Expected<void>(const Node&)>& take,
+                        const std::function<bool()>& enough) {
   const std::unique_ptr<std::remove_pointer_t<XML_Parser>, decltype(&XML_ParserFree)> parser(
       XML_ParserCreate(nullptr), &XML_ParserFree);
   if (!parser) return fail("the XML of the spreadsheet cannot be read");
@@ -78,6 +79,7 @@ Expected<void> read_xml(std::string_view xml,
     const auto status =
         XML_Parse(parser.get(), now.data(), static_cast<int>(now.size()), last ? 1 : 0);
     if (handlers.error()) return fail(*handlers.error());
+    if (enough()) return {};
     if (status != XML_STATUS_OK)
       return fail("the XML of the spreadsheet is damaged (" +
                   std::string(XML_ErrorString(XML_GetErrorCode(parser.get()))) + ")");

@@ -21,7 +21,9 @@ struct Node {
 
 /// Calls `take` for each node until it returns an error. Entities are not resolved and nothing else is
 /// opened; a document type is an error.
-Expected<void> read_xml(std::string_view xml,
-                        const std::function<Expected<void>(const Node&)>& take);
+/// `enough`: asked now and then whether the rest is not needed.
+Expected<void> read_xml(
+    std::string_view xml, const std::function<Expected<void>(const Node&)>& take,
+    const std::function<bool()>& enough = [] { return false; });
 
 }  // namespace nonio::spreadsheet

@@ -24,11 +24,11 @@ const measure = (() => {
     problem = "";
     draw();
     try {
-      preview = await net.ask("/api/preview", {body: body({name: file.name, columns}), type: "application/octet-stream"});
+      preview = await net.ask("/api/preview", {body: body({name: file.name, columns, axis: fromName().axis}), type: "application/octet-stream"});
       if (!records) records = await net.ask("/api/records");
       // The same names as in an earlier file mean the same.
-      const header = preview.rows ? preview.rows[0].map((c) => c.trim()) : [];
-      const earlier = columns.length === 0 && preview.error && records.columns.find((list) => list.every((one) => header.includes(one.slice(0, one.lastIndexOf("=")).trim())));
+      const header = keysOf(preview.rows ? preview.rows[0].map((c) => c.trim()) : []);
+      const earlier = columns.length === 0 && preview.error && records.columns.find((list) => list.every((one) => header.includes(nameIn(one))));
       if (earlier) {
         columns = [...earlier];
         return read();
@@ -97,12 +97,15 @@ const measure = (() => {
   }
 
   // ---- columns that were not recognised ----
-  const stated = (name) => {
-    const one = columns.find((c) => c.slice(0, c.lastIndexOf("=")).trim() === name);
+  const nameIn = (one) => one.slice(0, one.lastIndexOf("=")).trim();
+  /// How a column is stated: by its name, or by its number where it has none of its own.
+  const keysOf = (names) => names.map((n, k) => (n !== "" && !/^#\d+$/.test(n) && names.indexOf(n) === names.lastIndexOf(n) ? n : `#${k + 1}`));
+  const stated = (key, name) => {
+    const one = columns.find((c) => nameIn(c) === key);
     return one ? one.slice(one.lastIndexOf("=") + 1).trim() : all.includes(name) ? name : "";
   };
   function mapping() {
-    const [head, ...rest] = preview.rows, names = head.map((n) => n.trim());
+    const [head, ...rest] = preview.rows, names = head.map((n) => n.trim()), keys = keysOf(names);
     const choose = () => {
       const selects = [...document.querySelectorAll("#new-columns select")];
       columns = selects.map((s) => `${s.dataset.column} = ${s.value || "ignore"}`);
@@ -112,7 +115,7 @@ const measure = (() => {
     };
     return el("section", {id: "new-columns", "aria-labelledby": "columns-title"}, el("h2", {id: "columns-title"}, say("new.columns")), el("p", {}, say("new.columns_what")),
       el("div", {class: "scroll", role: "group", tabindex: 0, "aria-labelledby": "columns-title"}, el("table", {}, el("thead", {}, el("tr", {}, ...names.map((n) => el("th", {scope: "col"}, entries.visible(n)))),
-        el("tr", {}, ...names.map((n, k) => el("td", {}, n === "" ? null : el("select", {"data-column": n, "data-key": "column-" + k, "aria-label": say("new.column_is", {name: n}), onchange: choose}, el("option", {value: ""}, say("new.choose")), ...all.map((a) => el("option", {value: a, selected: a === stated(n)}, say("column.of_" + a)))))))),
+        el("tr", {}, ...names.map((n, k) => el("td", {}, el("select", {"data-column": keys[k], "data-key": "column-" + k, "aria-label": say("new.column_is", {name: n || k + 1}), onchange: choose}, el("option", {value: ""}, say("new.choose")), ...all.map((a) => el("option", {value: a, selected: a === stated(keys[k], n)}, say("column.of_" + a)))))))),
       el("tbody", {}, ...rest.map((r) => el("tr", {}, ...names.map((n, k) => el("td", {}, entries.visible(r[k] || ""))))))))); 
   }
 

@@ -190,6 +190,13 @@ class Newcomer(live_browser.LivePage):
         self.go("new")
         self.drop(later)
         self.wait(lambda: self.has("#new-plot"), "the next file with these names needs nothing")
+        twice = self.folder / "twice.xlsx"
+        sheets.xlsx(twice, {"Messung": readings(SEED, ("Lauf", "Richtung", "Wert", "Wert"))})
+        self.drop(twice)
+        self.wait(lambda: self.has("[data-column='#4']"), "columns with equal names have numbers")
+        for k, meaning in enumerate(("run", "direction", "target_mm", "deviation_um")):
+            self.d.find_element(By.CSS_SELECTOR, f"[data-key=column-{k}] option[value={meaning}]").click()
+        self.wait(lambda: self.has("#new-plot"), "read as stated")
         self.no_complaints()
 
     def test_a_refusal_keeps_what_was_stated(self):

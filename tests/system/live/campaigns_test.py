@@ -170,6 +170,35 @@ class CampaignsOfASite(LiveTest):
             said = nonio("check", self.site.parent / "x.csv", *[a for c in wrong for a in ("--column", c)], expect=1)
             self.assertIn("x.csv", said.stderr)
 
+    def test_columns_without_a_name_of_their_own_have_a_number(self):
+        names = ["Lauf", "Richtung", "Wert", "Wert"]
+        rows = [[*row, "" if k == 0 else "ok"] for k, row in enumerate(readings(names))]
+        by_name = ["Lauf = run", "Richtung = direction", "#3 = target_mm", "#4 = deviation_um", "#5 = ignore"]
+        by_number = [f"#{k + 1} = {known}" for k, known in enumerate([*KNOWN, "ignore"])]
+        path = self.site.parent / "x.xlsx"
+        sheets.xlsx(path, {"Data": [["Halle 2"], []] + rows})
+        csv = text_of(rows, ";", ",").encode()
+        with self.serve("--edit") as s:
+            for name, data in (("x.csv", csv), ("x.xlsx", path.read_bytes())):
+                for columns in (by_name, by_number) if name == "x.csv" else (by_name,):
+                    read = self.send(s, "/api/preview", {"name": name, "columns": columns}, data)
+                    self.assertEqual([row[3] for row in rows[1:]], read.get("points", read)["deviation"], f"{name} {columns}")
+                made = self.create(s, data, name=name, columns=by_name)
+                manifest = tomllib.loads((self.site / made["campaign"] / "campaign.toml").read_text())
+                self.assertEqual(by_name, manifest["options"][manifest["measurement"][0]["reader"]]["columns"])
+            # Readings never pass for names, and a number that is not there is no guess.
+            for columns, data in ((by_number, csv.split(b"\n", 1)[1]), (by_name[:2] + ["#3 = target_mm", "#9 = deviation_um"], csv), (by_name[:3] + ["#3 = deviation_um"], csv), (["#0 = run"], csv), (["#x = run"], csv)):
+                self.assertIn("error", self.send(s, "/api/preview", {"name": "x.csv", "columns": columns}, data), columns)
+
+    def test_the_axis_of_the_form_is_tried_first(self):
+        text = text_of(readings()).encode()
+        with self.serve() as s:
+            self.assertEqual("Z", self.send(s, "/api/preview", {"name": "x.csv", "axis": "Z"}, text)["axis"])
+            turned = self.send(s, "/api/preview", {"name": "c.csv", "axis": "Z"}, b"run,direction,target_deg,deviation_arcsec\n1,+,0,1.5\n1,-,0,0.5\n")
+            self.assertTrue(turned["rotary"], "the file is right where the form is not")
+            for axis in ("../X", "--json", "", 3, "X Y"):
+                self.assertIn("points", self.send(s, "/api/preview", {"name": "x.csv", "axis": axis}, text), axis)
+
     # ---- what may not be done ----
     def test_nothing_is_overwritten_and_nobody_waits_for_another(self):
         with self.serve("--edit") as s, concurrent.futures.ThreadPoolExecutor(8) as pool:
