@@ -84,6 +84,7 @@ std::map<std::string, std::string> values_of(const Campaign& c) {
   put(to, "instrument.serial", i.serial);
   put(to, "instrument.calibrated", i.calibrated);
   put(to, "instrument.certificate", i.certificate);
+  put(to, "instrument.valid_until", i.valid_until);
   put(to, "instrument.U_fixed_um", i.U_fixed, um);
   put(to, "instrument.U_per_m_um", i.U_per_length, um);
   const Environment& e = c.environment;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "campaign/config/machines.h"
+#include "campaign/reading/plausibility/traceability.h"
 #include "laboratory/assessment/describe.h"
 #include "live/campaign_form.h"
 #include "live/session.h"
@@ -70,6 +71,11 @@ std::string joined(std::initializer_list<std::string> texts) {
   return out;
 }
 
+std::string instrument_of(const ListedCampaign& c) {
+  return joined({value_of(c, "instrument.maker"), value_of(c, "instrument.model"),
+                 value_of(c, "instrument.serial")});
+}
+
 }  // namespace
 
 SiteCampaigns::SiteCampaigns(fs::path site, fs::path out, Call call, std::function<void()> changed)
@@ -81,6 +87,7 @@ SiteCampaigns::SiteCampaigns(fs::path site, fs::path out, Call call, std::functi
 std::vector<Route> SiteCampaigns::routes() {
   return {{Method::get, "/api/campaigns"},
           {Method::get, "/api/machines"},
+          {Method::get, "/api/instruments"},
           {Method::get, "/api/records"},
           {Method::post, "/api/preview", false, false, of_file, most_dropped},
           {Method::post, "/api/campaigns", false, true, of_file, most_dropped}};
@@ -89,7 +96,10 @@ std::vector<Route> SiteCampaigns::routes() {
 Answer SiteCampaigns::answer(const std::string& what, const Request& request) {
   if (request.route.method == Method::post)
     return what == "preview" ? preview(request) : create(request);
-  return what == "campaigns" ? list(request) : what == "machines" ? machines() : records();
+  return what == "campaigns"     ? list(request)
+         : what == "machines"    ? machines()
+         : what == "instruments" ? instruments()
+                                 : records();
 }
 
 Answer SiteCampaigns::list(const Request& request) const {
@@ -140,6 +150,39 @@ Answer SiteCampaigns::machines() const {
   return json_answer(200, {{"schema", "nonio-live-machines/1"}, {"machines", std::move(all)}});
 }
 
+/// By name, each with its newest calibration and the newest campaigns that used it.
+Answer SiteCampaigns::instruments() const {
+  struct Instrument {
+    Json json;
+    std::size_t campaigns = 0;
+  };
+  constexpr std::size_t most = 20;
+  std::map<std::string, Instrument> found;
+  index_.each([&](const ListedCampaign& c) {
+    const std::string name = instrument_of(c);
+    if (name.empty()) return;
+    Instrument& i = found[name];
+    const std::string calibrated = value_of(c, "instrument.calibrated");
+    if (i.campaigns == 0)
+      i.json = {{"name", name}, {"calibrated", ""}, {"campaigns", Json::array()}};
+    if (calibrated > i.json["calibrated"].get<std::string>()) {
+      i.json["calibrated"] = calibrated;
+      i.json["certificate"] = value_of(c, "instrument.certificate");
+      i.json["until"] = reading::last_valid_day(calibrated, value_of(c, "instrument.valid_until"));
+    }
+    if (i.campaigns++ < most)
+      i.json["campaigns"].push_back(
+          {{"folder", c.folder}, {"id", c.id}, {"day", c.day}, {"machine", c.machine}});
+  });
+  Json all = Json::array();
+  for (auto& [name, i] : found) {
+    i.json["number"] = i.campaigns;
+    all.push_back(std::move(i.json));
+  }
+  return json_answer(200,
+                     {{"schema", "nonio-live-instruments/1"}, {"instruments", std::move(all)}});
+}
+
 /// Of each customer, machine, instrument and stated table the newest campaign.
 Answer SiteCampaigns::records() const {
   Json customers = Json::array(), machines = Json::array(), instruments = Json::array(),
@@ -149,9 +192,7 @@ Answer SiteCampaigns::records() const {
     return !name.empty() && seen.insert(kind + name).second;
   };
   index_.each([&](const ListedCampaign& c) {
-    const std::string instrument =
-        joined({value_of(c, "instrument.maker"), value_of(c, "instrument.model"),
-                value_of(c, "instrument.serial")});
+    const std::string instrument = instrument_of(c);
     if (is_new("customer ", c.customer))
       customers.push_back({{"name", c.customer}, {"values", values_with(c, {"campaign."})}});
     if (is_new("machine ", c.machine))

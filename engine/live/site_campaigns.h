@@ -28,6 +28,7 @@ class SiteCampaigns {
  private:
   Answer list(const Request& request) const;
   Answer machines() const;
+  Answer instruments() const;
   Answer records() const;
   Answer preview(const Request& request);
   Answer create(const Request& request);

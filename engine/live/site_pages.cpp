@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page of a site shows: verbs that print, pages of the run, files of results.
 #include "campaign/config/manifest.h"
+#include "campaign/config/site_files.h"
 #include "campaign/evaluation/record.h"
 #include "live/site_service.h"
 #include "platform/storage/files.h"
@@ -89,6 +90,50 @@ Answer SiteService::state(const User* user) {
                     {"confirms", user->password.empty() ? "name" : "password"},
                     {"signs_out", wish_.sign_in}};
   if (Json now = run_->now(); !now.is_null()) json["run"] = std::move(now);
+  return json_answer(200, json);
+}
+
+/// What a person may want to know of site.toml and users.toml, without secrets.
+Answer SiteService::settings(const User* user) const {
+  std::string digest;
+  const auto site = config::read_site(wish_.folder, digest);
+  if (!site) return refusal(422, site.error().front().message);
+  const Laboratory& lab = site->laboratory;
+  const auto list = [](const std::optional<std::vector<std::string>>& all) {
+    return all ? Json(*all) : Json(nullptr);  // null: all that apply
+  };
+  Json json = {{"schema", "nonio-live-settings/1"},
+               {"laboratory",
+                {{"name", lab.name},
+                 {"address", lab.address},
+                 {"country", lab.country},
+                 {"accreditation", lab.accreditation},
+                 {"authoriser", lab.authoriser},
+                 {"contact", lab.contact}}},
+               {"certificate",
+                {{"languages", site->certificate.languages},
+                 {"numbering", site->numbering.pattern},
+                 {"procedure", site->certificate.procedure},
+                 {"decision_rule", site->certificate.decision_rule},
+                 {"two_persons", site->numbering.two_persons},
+                 {"automatic", site->numbering.automatic},
+                 {"signs", site->signing.has_value()},
+                 {"time_stamp", site->signing ? site->signing->time_stamp : ""}}},
+               {"run",
+                {{"language", site->language},
+                 {"analyses", list(site->run.analyses)},
+                 {"outputs", list(site->run.outputs)},
+                 {"seconds", site->limits.seconds},
+                 {"mail", site->mail ? Json(site->mail->to) : Json::array()}}}};
+  if (user != nullptr && user->role == certificates::Role::administer) {
+    const auto users = certificates::read_users(wish_.folder);
+    if (!users) return refused(503, "users");
+    for (const User& one : *users)
+      json["users"].push_back({{"account", one.account},
+                               {"name", one.name},
+                               {"role", certificates::to_text(one.role)},
+                               {"password", !one.password.empty()}});
+  }
   return json_answer(200, json);
 }
 

@@ -82,6 +82,7 @@ class SiteService : public Starting {
   Answer page(const std::string& name);
   Answer result(const std::string& campaign, const std::string& file);
   Answer state(const User* user);
+  Answer settings(const User* user) const;
   Answer events(const Request& request);
   Answer open(const std::string& campaign);
   Answer acknowledge(const storage::Json& body);

@@ -70,6 +70,10 @@ std::string short_number(const Page& page, double value, Quantity q) {
   return out;
 }
 
+std::string interval_text(const Page& page, const std::string& months) {
+  return months.empty() ? "" : page.words.get("site.every_months", {{"count", months}});
+}
+
 std::string proposal_text(const Page& page, const IntervalProposal& proposal) {
   if (proposal.method.empty()) return {};
   const std::string why =

@@ -42,6 +42,8 @@ inline std::string from_root(const Page& page, const std::string& link) {
 std::string value_text(const Page&, double value, std::optional<double> u, Quantity);
 /// "6 months. Why.", or why there is none; empty where none is required.
 std::string proposal_text(const Page&, const IntervalProposal&);
+/// "every 6 months"; empty without months.
+std::string interval_text(const Page&, const std::string& months);
 /// How the values of a comparison of machines are printed.
 FollowedNumbers numbers_of(const Page&, const ModelComparison&);
 /// Whether the value of a line is printed: that of a scatter is a logarithm, and its sentence states

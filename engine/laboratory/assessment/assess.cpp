@@ -25,9 +25,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// When a machine is measured again, and by which rule.
+/// When a machine is measured again, and by which interval.
 struct Due {
-  std::string day, why;
+  std::string day, why;  ///< `why`: months
 };
 
 std::optional<int> months_of_rule(const std::string& machine, const store::StoredLogs& logs) {
@@ -41,7 +41,7 @@ Due due_of(const AssessedMachine& m, const store::StoredLogs& logs) {
   // It is unknown when a campaign without a machine is measured again.
   if (!months || m.stored.campaigns.empty() || m.state.machine.name.empty()) return {};
   return {months_later(m.stored.campaigns.back().day, *months),
-          "[[due]] months = " + std::to_string(*months)};
+          std::to_string(*months)};
 }
 
 std::string page_of(const fs::path& out, const reports::MachineHistory& machine) {
@@ -237,7 +237,7 @@ class Assessment::State {
     }
     for (const auto& [machine, months] : logs_.due)
       if (!machine.empty() && !names.contains(machine))
-        unknown_.push_back(machine + " (site.toml [[due]])");
+        unknown_.push_back(machine + " (site.toml)");
   }
 
   void put_unknown(const std::string& machine, const char* file, std::uint64_t line) {

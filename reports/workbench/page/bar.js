@@ -49,6 +49,14 @@ const bar = (() => {
     return out.join(" ");
   }
 
+  /// The errors of a part as lines with the noise floor: `most` is the whole length.
+  function errors(part, most, unit, over_time) {
+    const floor = {s: field(part, "noise_floor"), u: field(part, "noise_floor_u")};
+    const cv = field(part, "cv_rms") === undefined ? field(part.model, "cv_rms") : field(part, "cv_rms");
+    return [line("rms", say("bar.rms"), field(part, "rms"), most, floor, unit), finite(cv) ? line("left-out", say(over_time ? "bar.left_out_over_time" : "bar.left_out"), cv, most, floor, unit) : null,
+      el("p", {class: "muted"}, finite(floor.s) ? say(over_time ? "bar.floor_over_time" : "bar.floor", {s: withU(floor.s, floor.u)[0], U: withU(floor.s, floor.u)[1] || "\u2013", unit}) : say("bar.no_floor"))].filter(Boolean);
+  }
+
   /// One bar a step that was taken on this page: a button that goes there.
   function trail(state, shown, most, floor, go) {
     const steps = state.steps.map((step) => {
@@ -86,15 +94,11 @@ const bar = (() => {
     verdict.className = "verdict " + (kind || "");
     if (verdict.textContent !== sentence) verdict.textContent = sentence;
     for (const id of ["now", "effects-list"]) by(id).classList.toggle("old", Boolean(shown.fitIsOld));
-    if (part) {
-      const rms = field(part, "rms"), cv = field(part, "cv_rms") === undefined ? field(part.model, "cv_rms") : field(part, "cv_rms");
-      fill(by("now"), line("rms", say("bar.rms"), rms, most, floor, unit), finite(cv) ? line("left-out", say(overTime(shown) ? "bar.left_out_over_time" : "bar.left_out"), cv, most, floor, unit) : null,
-        el("p", {class: "muted"}, finite(floor.s) ? say(overTime(shown) ? "bar.floor_over_time" : "bar.floor", {s: withU(floor.s, floor.u)[0], U: withU(floor.s, floor.u)[1] || "\u2013", unit}) : say("bar.no_floor")));
-    }
+    if (part) fill(by("now"), ...errors(part, most, unit, overTime(shown)));
     const step = state.steps.find((s) => s.n === state.at) || {name: ""};
     const field_ = el("input", {id: "step-name", "data-key": "step-name", value: step.name || "", maxlength: 60, autocomplete: "off", onchange: (e) => name(state.at, e.target.value)});
     fill(by("trail"), trail(state, shown, most, floor, go), el("label", {class: "naming"}, say("trail.name") + " ", field_));
     by("limits").textContent = shown.hideVerdict ? "" : limitsOf(shown);
   }
-  return {draw, verdictOf};
+  return {draw, errors, verdictOf};
 })();

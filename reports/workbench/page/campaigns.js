@@ -96,6 +96,26 @@ const campaigns = (() => {
         }))))];
   }
 
+  /// Instruments with their last calibration: the nearest end first, so that what is over is seen at once.
+  async function instruments(history) {
+    const {instruments: all} = await net.ask("/api/instruments"), now = new Date().toISOString().slice(0, 10);
+    const sorted = all.sort((a, b) => ((a.until || "9999") < (b.until || "9999") ? -1 : 1));
+    return [el("h1", {tabindex: -1}, say("site.instruments")), all.length === 0 ? el("p", {}, say("list.no_instruments")) :
+      el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.instruments")}, el("table", {class: "lines machines-table", id: "instrument-list"}, el("thead", {}, el("tr", {}, ...["instrument", "calibrated", "its_certificate", "until", "used_by"].map((w) => el("th", {scope: "col"}, say("list." + w))))),
+        el("tbody", {}, ...sorted.map((i) => el("tr", {}, el("td", {}, entries.visible(i.name)), el("td", {class: "day"}, i.calibrated || "\u2013"), el("td", {}, entries.visible(i.certificate || "\u2013")),
+          el("td", {class: "day"}, !i.until ? "\u2013" : i.until < now ? el("span", {class: "badge failed"}, `\u2716 ${say("list.expired", {day: i.until})}`) : i.until),
+          el("td", {}, el("details", {}, el("summary", {}, say("list.campaigns", {n: i.number})), el("ul", {class: "plain"}, ...i.campaigns.map((c) => el("li", {}, c.day || "\u2013", " ", el("a", {href: hrefOf(c.folder)}, entries.visible(c.machine || c.id || c.folder)))))))))))), el("p", {class: "muted"}, say("list.until_what")), history ? el("p", {}, el("a", {href: "#to=instruments.html"}, say("list.history"))) : null].filter(Boolean);
+  }
+
+  /// What the site states of itself, to be read.
+  async function settings() {
+    const all = await net.ask("/api/settings");
+    const shownAs = (name, v) => (v === null ? say("set.all") : v === true ? say("set.yes") : v === false ? say("set.no") : Array.isArray(v) ? v.join(", ") : name === "seconds" ? `${v} s` : name === "numbering" ? String(v).replace("{year}", "2026").replace(/\{number(?::(\d+))?\}/, (all_, digits) => "1".padStart(Number(digits || 1), "0")) : String(v)) || "\u2013";
+    return [el("h1", {tabindex: -1}, say("site.settings")), el("p", {class: "muted"}, say("set.what")), ...["laboratory", "certificate", "run"].map((part) => el("section", {"aria-labelledby": "set-" + part}, el("h2", {id: "set-" + part}, say("set.of_" + part)),
+      el("dl", {class: "settings"}, ...Object.entries(all[part]).flatMap(([name, v]) => [el("dt", {}, say("set." + `${part}_${name}`)), el("dd", {}, entries.visible(shownAs(name, v)))])))),
+    all.users ? el("section", {"aria-labelledby": "set-users"}, el("h2", {id: "set-users"}, say("set.of_users")), entries.table({label: say("set.of_users"), columns: ["user.account", "set.name", "set.role", "set.password"]}, all.users.map((u) => el("tr", {}, el("th", {scope: "row"}, entries.visible(u.account)), el("td", {}, entries.visible(u.name)), el("td", {}, say("user.may_" + u.role)), el("td", {}, shownAs("", u.password)))))) : null].filter(Boolean);
+  }
+
   // ---- one campaign ----
   const json = async (id, file) => JSON.parse(await (await net.ask(`/site/results/${encodeURIComponent(id)}/${file}`, {raw: true})).text());
   /// What was decided, each value with its U and its limit; and the values of a test of positioning that have no limit.
@@ -125,21 +145,21 @@ const campaigns = (() => {
   async function one(folder, tools) {
     const {campaigns: found} = await net.ask("/api/campaigns?" + new URLSearchParams({folder}));
     const c = found.find((x) => x.folder === folder);
-    const back = el("p", {}, el("a", {href: "#to=campaigns", "data-key": "back-to-list"}, say("one.back")));
-    if (!c) return [el("h1", {tabindex: -1}, entries.visible(folder)), back, el("p", {}, say("one.no_such"))];
+    const back = el("a", {href: "#to=campaigns", "data-key": "back-to-list"}, say("one.back"));
+    if (!c) return [el("h1", {tabindex: -1}, entries.visible(folder)), el("p", {}, back), el("p", {}, say("one.no_such"))];
     const has = c.files.includes("results.json");
     const [results, drafts] = await Promise.all([has ? json(c.id, "results.json") : {}, c.draft ? net.ask("/api/drafts") : {drafts: []}]);
     const draft = drafts.drafts.find((d) => d.folder === folder);
-    return [el("h1", {tabindex: -1}, `${entries.visible(nameOf(c))}${c.day ? ", " + c.day : ""}`), back,
+    return [el("h1", {tabindex: -1}, `${entries.visible(nameOf(c))}${c.day ? ", " + c.day : ""}`),
       el("p", {id: "one-state"}, badge(c.state), " ", badge(c.verdict), " ", entries.visible([c.customer, c.place].filter(Boolean).join(", "))),
       c.message ? el("p", {class: "flag"}, entries.visible(c.message)) : null, c.changed ? el("p", {class: "note"}, say("list.changed")) : null,
-      el("div", {class: "acts wide"}, ...tools.buttons(folder, folder)),
-      has ? el("section", {"aria-labelledby": "verdict-title"}, el("h2", {id: "verdict-title"}, say("one.verdict")), ...decisions(results)) : el("p", {}, say("one.not_yet")),
+      el("div", {class: "acts wide"}, back, ...tools.buttons(folder, folder)),
+      el("div", {class: "answer"}, fitted.places(folder), has ? el("section", {id: "verdict-of", "aria-labelledby": "verdict-title"}, el("h2", {id: "verdict-title"}, say("one.verdict")), ...decisions(results)) : el("p", {}, say("one.not_yet"))),
       c.findings.length ? el("section", {"aria-labelledby": "found-title"}, el("h2", {id: "found-title"}, say("one.found")), el("ul", {id: "found"}, ...c.findings.map((f) => el("li", {}, entries.visible(f))))) : null,
       missing(results),
       c.files.length ? el("section", {"aria-labelledby": "documents-title"}, el("h2", {id: "documents-title"}, say("list.documents")), el("div", {class: "acts wide"}, ...documents(c, tools.fetchFile))) : null,
       tools.released && tools.released.folder === folder ? tools.releasedNote() : null,
       draft ? el("section", {"aria-labelledby": "approve-title"}, el("h2", {id: "approve-title"}, say("one.approve")), el("ul", {class: "plain"}, certificates.draft(draft, tools.approve, tools.fetchFile, tools.release))) : null].filter(Boolean);
   }
-  return {list, machines, one};
+  return {list, machines, instruments, settings, one};
 })();

@@ -171,7 +171,7 @@ const effects = (() => {
       el("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": say("more.title")}, el("table", {}, el("thead", {}, el("tr", {}, el("td"), el("th", {scope: "col", class: "number"}, say("more.now")),
         ...all.map((one) => el("th", {scope: "col", class: "number"}, `${say("more.is_" + one.plan.replace(/-/g, "_"))} (+${one.readings})`)))),
       el("tbody", {}, ...parameters.map(u), ...all[0].evidence.map(evidence)))),
-      /^nonio model compare /.test(state.command) ? el("p", {class: "muted"}, say("command.label") + " ", el("code", {}, state.command.replace("nonio model compare", "nonio model explain") + " --what-if")) : null);
+      /^nonio model compare /.test(state.command) ? el("details", {class: "muted"}, el("summary", {}, say("site.did")), el("code", {}, state.command.replace("nonio model compare", "nonio model explain") + " --what-if")) : null);
   }
   return {drawList, drawAbout, drawWhatIf, drawNext, groups, fingerprint};
 })();

@@ -1,7 +1,7 @@
 // ---- the page of a site: the morning that the last night has written, and what people do about it ----
 (() => {
   let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asking = false, again = false, stale = true, dismissed = "", shown = "", released = null;
-  const own = ["campaigns", "machines", "certificates", "entries"];
+  const own = ["campaigns", "machines", "instruments", "certificates", "entries", "settings"];
   const isOwn = (name) => own.includes(name) || (name === "new" && (!state || state.edit)) || name.startsWith("campaign/");
   const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
   let pages = new Map(); // name: its text
@@ -232,7 +232,9 @@
   // ---- drawing ----
   function drawHead() {
     const n = state.night, r = state.run;
-    fill(by("nav"), ...[...own.slice(0, 2).map((name) => [name, say("site." + name)]), ...(state.out && n.last ? links : []), ...own.slice(2).map((name) => [name, say("site." + name)])].map(([to, label]) =>
+    const named = own.map((name) => [name, say("site." + name)]);
+    // The page of the night about instruments is reached from the own one.
+    fill(by("nav"), ...[...named.slice(0, 3), ...(state.out && n.last ? links.filter(([to]) => to !== "instruments.html") : []), ...named.slice(3)].map(([to, label]) =>
       el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to || (to === "campaigns" && /^(new$|campaign\/)/.test(view())) ? "page" : null}, label)));
     const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.night, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.night}) : n.state === "planned" ? say("night.planned", {n: n.night}) : "";
     fill(by("night"), night_ ? el("p", {class: "note", id: "night-says"}, night_) : null);
@@ -274,7 +276,7 @@
     const name = view();
     if (name === "index.html" && state.night.last === 0) return put([el("h1", {tabindex: -1}, say("site.morning")), el("p", {}, say("night.none"))], name, moved);
     if (name === "new" && shown === "new" && !moved) return;
-    const content = name === "campaigns" ? await campaigns.list(tools()) : name === "machines" ? await campaigns.machines() : name === "new" ? measure.view({out: state.out, created}) :
+    const content = name === "campaigns" ? await campaigns.list(tools()) : name === "machines" ? await campaigns.machines() : name === "instruments" ? await campaigns.instruments(links.some(([to]) => to === "instruments.html")) : name === "settings" ? await campaigns.settings() : name === "new" ? measure.view({out: state.out, created}) :
       name.startsWith("campaign/") ? await campaigns.one(name.slice("campaign/".length), tools()) : name === "certificates" ? await certificatesView() : name === "entries" ? await entriesView() : await night(name);
     if (name !== view()) return;
     put(content, name, moved);
@@ -297,6 +299,7 @@
     drawn = same;
     main.replaceChildren(...next.childNodes);
     nonioLines(main, {signal: gone.signal});
+    fitted.draw().catch(() => null);
     drawHead();
     document.title = `${main.querySelector("h1").textContent} \u2013 ${state.site} \u2013 Nonio`;
     if (moved) main.querySelector("h1").focus();
@@ -322,7 +325,7 @@
     el("header", {}, el("nav", {id: "nav", "aria-label": say("site.pages")}), el("p", {class: "muted", id: "beside"})),
     el("div", {id: "night", role: "status"}), el("div", {id: "run", role: "status"}), el("div", {id: "rights"}),
     el("main", {id: "main"}, el("h1", {}, say("site.reading"))),
-    el("footer", {id: "footer", hidden: true}, el("details", {}, el("summary", {id: "command-label"}, say("site.did")), el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"}))), ...box.places());
+    el("footer", {id: "footer", hidden: true}, el("details", {}, el("summary", {id: "command-label"}, say("site.did")), el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"}))), el("div", {id: "tip", hidden: true}), ...box.places());
   document.body.className = "site";
 
   let soon = 0, all = false;

@@ -58,8 +58,8 @@ const view = (() => {
           middle(),
           el("div", {class: "right", role: "group", tabindex: 0, "aria-labelledby": "about-title next-title"}, section("about", "about.title", el("div", {id: "about-what"})),
             section("next", "next.title", el("div", {id: "next-what"}), el("div", {id: "what-if"}))))),
-      el("footer", {}, el("span", {id: "command-label"}, say("command.label")), el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"}),
-        button("copy", "command.copy"), el("span", {id: "read-at", class: "muted"})),
+      el("footer", {}, el("details", {}, el("summary", {id: "command-label"}, say("site.did")), el("code", {id: "command", tabindex: 0, "aria-labelledby": "command-label"}),
+        button("copy", "command.copy")), el("span", {id: "read-at", class: "muted"})),
       el("div", {id: "tip", hidden: true}), ...box.places());
     document.body.className = "workbench";
   }

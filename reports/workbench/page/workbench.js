@@ -1,9 +1,5 @@
 // ---- the page of a campaign: the server holds the state, this page shows it and asks for changes ----
 (() => {
-  if (!net.hasToken()) {
-    by("app").replaceChildren(el("main", {class: "lost"}, el("h1", {}, say("shell.title")), el("p", {role: "alert"}, say("net.no_token"))));
-    return;
-  }
   view.build();
   let state = null, busy = 0, job = null, again = false, asking = false;
   /// What is shown: one part, its fit, what explain says of it.
@@ -37,6 +33,8 @@
     }
   }
   function complain(e) {
+    if (e.answer && e.answer.id === "token" && !net.hasToken())
+      return by("app").replaceChildren(el("main", {class: "lost"}, el("h1", {}, say("shell.title")), el("p", {role: "alert"}, say("net.no_token"))));
     fresh = true;
     draw();
     fresh = false;
@@ -283,7 +281,7 @@
     const rms = el("tr", {}, el("th", {scope: "row"}, "RMS"), cell(predicted, "rms_before"), cell(predicted, "rms"));
     const compareIt = /^nonio model compare /.test(state.command) ? state.command : `${state.command} && nonio model compare ${quoted(state.campaign.folder)}`;
     return el("div", {id: "after-table"}, el("table", {}, el("caption", {}, say("table.title", {unit: shown.unit})), el("thead", {}, el("tr", {}, el("td"), el("th", {scope: "col", class: "number"}, say("table.before")), el("th", {scope: "col", class: "number"}, say("table.after")))), el("tbody", {}, ...rows, rms)),
-      el("p", {class: "muted"}, say(predicted.tests.length ? "table.what" : "table.what_space", {effects: predicted.takes.join(", ")})), el("p", {class: "muted"}, say("command.label") + " ", el("code", {}, compareIt)));
+      el("p", {class: "muted"}, say(predicted.tests.length ? "table.what" : "table.what_space", {effects: predicted.takes.join(", ")})), el("details", {class: "muted"}, el("summary", {}, say("site.did")), el("code", {}, compareIt)));
   }
   const quoted = (word) => (/^[\w\-./:=,+@%]+$/.test(word) ? word : "'" + word.replace(/'/g, "'\\''") + "'");
   function drawDrawn() {

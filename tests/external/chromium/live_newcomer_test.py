@@ -93,6 +93,7 @@ class Newcomer(live_browser.LivePage):
             self.size(width, height)
             self.wait(lambda: self.js("innerWidth") == width)
             self.wait(lambda: self.js("document.documentElement.scrollWidth") <= width, f"{name} at {width} px")
+            self.wait(lambda: self.js("[...document.querySelectorAll('#picture-fit svg')].every((s) => !s.clientWidth || Math.abs(s.viewBox.baseVal.width - s.clientWidth) < 2)"), "the picture is drawn for this width")
             self.assertEqual([], self.js(HINDRANCES), f"{name} at {width} px")
             self.picture(name)
         self.size(1280, 720)

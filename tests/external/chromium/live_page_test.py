@@ -115,7 +115,7 @@ class Page(live_browser.CampaignPage):
         self.js("document.querySelector('#picture-2 svg').focus()")
         self.press(Keys.END)
         self.wait(lambda: "x.csv" in self.text("said"))
-        self.assertEqual(8, self.js("document.querySelectorAll('.chosen').length - document.querySelectorAll('.effect.chosen').length"), "marked in all pictures that have it")
+        self.assertEqual(10, self.js("document.querySelectorAll('.chosen').length - document.querySelectorAll('.effect.chosen').length"), "marked in all pictures that have it")
         self.press(Keys.ENTER)
         self.wait(lambda: self.js("document.getElementById('dialog').open"))
         self.assertIn("x.csv", self.text("dialog"))
@@ -248,7 +248,7 @@ class Page(live_browser.CampaignPage):
         self.tick("zero-drift:X")
         self.click("save")
         self.wait(lambda: self.js("document.getElementById('dialog').open"))
-        self.assertIn("--edit", self.text("dialog"))
+        self.assertIn("may not write", self.text("dialog"))
         self.assertFalse(self.d.find_element(By.ID, "save-write").is_enabled())
 
     def test_a_server_that_ends_and_comes_back_is_told(self):
@@ -350,6 +350,7 @@ class Page(live_browser.CampaignPage):
         self.assertIn(b"%%EOF", report.read_bytes()[-10:])
         origin = self.js("location.origin")
         self.d.execute_cdp_cmd("Browser.grantPermissions", {"origin": origin, "permissions": ["clipboardReadWrite", "clipboardSanitizedWrite"]})
+        self.click("command-label")
         self.click("copy")
         command = self.text("command")
         self.assertEqual("nonio model add missing-effect zero-drift:X", command)

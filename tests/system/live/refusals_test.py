@@ -173,7 +173,7 @@ class Refusals(unittest.TestCase):
         before = (SAMPLES / "02-constant-reversal/campaign.toml").read_bytes()
         self.server.post("/api/model", {"add": "backlash:Z"})
         answer = self.server.post("/api/save", expect=403, headers={"If-Match": f'"{state["campaign"]["manifest_sha256"]}"'})
-        self.assertIn("--edit", answer["error"])
+        self.assertEqual("read_only", answer["id"])
         self.assertEqual((SAMPLES / "02-constant-reversal/campaign.toml").read_bytes(), before)
         self.server.post("/api/undo")
 

@@ -60,7 +60,7 @@ class Sites(LiveTest):
 
     def test_without_an_output_folder_it_says_so(self):
         with Server(self.small) as s:
-            self.assertIn("--out", s.get("/api/site", expect=409)["error"])
+            self.assertEqual("no_out", s.get("/api/site", expect=409)["id"])
             self.assertEqual(s.get("/api/site/state")["night"]["state"], "none")
             self.assertEqual(s.request("GET", "/site/index.html")[0], 404)
             self.assertEqual(s.request("GET", "/site/results/02-constant-reversal/results.json")[0], 404)
@@ -105,7 +105,7 @@ class Sites(LiveTest):
         event = {"machine": "S-0102", "axis": "Z", "kind": "crash", "text": "--help; $(rm -rf /) 'hit'", "date": "2026-11-01", "by": "-x"}
         with Server(self.small) as s:
             for path, body in (("event", event), ("ack", {}), ("run", {}), ("run/cancel", {}), ("release", {"campaign": "c", "by": "x"})):
-                self.assertIn("--edit", s.post("/api/" + path, body, expect=403)["error"])
+                self.assertEqual("read_only", s.post("/api/" + path, body, expect=403)["id"])
             self.assertEqual(s.get("/api/event")["events"], [])
             self.assertEqual(s.get("/api/ack")["acknowledged"], [])
         self.assertFalse((self.small / "events.toml").exists())

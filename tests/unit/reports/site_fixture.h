@@ -53,7 +53,7 @@ inline MachineHistory made_machine(const std::string& id) {
   MachineHistory m{id,       "Sample Machines", "VM 3", id, "Rossi & Figli <S.p.A.>",
                    "Padova", "siemens-840d",    {},     {}, {}};
   m.file = id + ".html";
-  m.due = "2026-01-14", m.why_due = "every 12 months";
+  m.due = "2026-01-14", m.why_due = "12";
   m.proposal = {.months = 6,
                 .method = "control-chart",
                 .axis = "X",

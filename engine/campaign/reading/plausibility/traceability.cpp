@@ -57,6 +57,11 @@ void calibration(const Calibrated& one, const std::string& first, const std::str
 
 }  // namespace
 
+std::string last_valid_day(const std::string& calibrated, const std::string& valid_until) {
+  return !valid_until.empty() || calibrated.empty() ? valid_until
+                                                    : later(calibrated, unstated_validity);
+}
+
 bool is_expired_calibration(std::string_view id) {
   return id == "traceability.calibration-expired" || id == "traceability.calibrated-long-ago";
 }

@@ -15,6 +15,9 @@ namespace nonio::reading {
 /// Validity in years of a calibration whose last day is not stated.
 inline constexpr int unstated_validity = 2;
 
+/// The last day on which a calibration holds; empty if its day is not stated.
+std::string last_valid_day(const std::string& calibrated, const std::string& valid_until);
+
 /// Instruments that were calibrated after the measurement, or whose calibration held no longer; an
 /// item that came after it was measured. Any of them stops a certificate; an expired calibration
 /// unless the person who releases it states a reason.

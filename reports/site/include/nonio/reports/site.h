@@ -103,7 +103,7 @@ struct MachineHistory {
   /// does not state what was active; kind "unknown". `rms` 0: no table explains more than half of it.
   std::vector<TableLoaded> tables_unstated{};
   std::vector<TableKept> tables{};  ///< the last one of each axis, where it can be determined
-  std::string due{}, why_due{};     ///< next calibration; which rule states that
+  std::string due{}, why_due{};     ///< next calibration; months that the site states
   IntervalProposal proposal{};      ///< of an interval
   std::string file{};               ///< name of its page, without the folder
 };
