@@ -34,7 +34,7 @@ pack(dev libnonio-dev)
 if(TARGET nonio_python)
   pack(python python3-nonio)
 endif()
-install(FILES ${parts}/nonio.service ${parts}/nonio.timer DESTINATION lib/systemd/system COMPONENT nonio EXCLUDE_FROM_ALL)
+install(FILES ${parts}/nonio.service ${parts}/nonio.timer ${parts}/nonio-serve.service DESTINATION lib/systemd/system COMPONENT nonio EXCLUDE_FROM_ALL)
 install(FILES ${parts}/nonio.default DESTINATION /etc/default RENAME nonio COMPONENT nonio EXCLUDE_FROM_ALL)
 install(FILES ${parts}/Containerfile DESTINATION share/doc/nonio/examples COMPONENT nonio EXCLUDE_FROM_ALL)
 

@@ -193,8 +193,13 @@ std::vector<std::string> words_of(const std::string& text) {
 
 }  // namespace
 
-CampaignIndex::CampaignIndex(fs::path site, fs::path out, std::function<void()> changed)
-    : site_(std::move(site)), out_(std::move(out)), changed_(std::move(changed)) {
+CampaignIndex::CampaignIndex(fs::path site, fs::path out, std::function<void()> changed,
+                             std::function<bool()> is_watched, std::chrono::duration<double> pause)
+    : site_(std::move(site)),
+      out_(std::move(out)),
+      changed_(std::move(changed)),
+      is_watched_(std::move(is_watched)),
+      pause_(pause) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -259,6 +264,15 @@ void CampaignIndex::look_soon() {
   wake_.notify_all();
 }
 
+void CampaignIndex::look_if_old() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::chrono::steady_clock::now() - last_look_ < pause_) return;
+    soon_ = true;
+  }
+  wake_.notify_all();
+}
+
 bool CampaignIndex::look_at_all() {
   bool is_new = false;
   const auto folders = campaigns_in(site_);
@@ -285,19 +299,21 @@ bool CampaignIndex::look_at_all() {
 
 void CampaignIndex::run() {
   using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::duration<double> shortest(5.0);
   constexpr double share = 20.0;  // of the time it waits for
-  std::chrono::duration<double> pause = shortest;
+  std::chrono::duration<double> pause = pause_;
   while (true) {
     {
       std::unique_lock lock(mutex_);
       wake_.wait_for(lock, pause, [&] { return over_ || soon_; });
       if (over_) return;
+      if (!soon_ && !is_watched_()) continue;
       soon_ = false;
     }
     const auto began = Clock::now();
     if (look_at_all()) changed_();
-    pause = std::max(shortest, share * std::chrono::duration<double>(Clock::now() - began));
+    const std::lock_guard lock(mutex_);
+    last_look_ = Clock::now();
+    pause = std::max(pause_, share * std::chrono::duration<double>(last_look_ - began));
   }
 }
 

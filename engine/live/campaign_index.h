@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -52,9 +53,11 @@ struct CampaignPage {
 /// seconds, an answer from memory milliseconds.
 class CampaignIndex {
  public:
-  /// `changed`: the campaigns are others, or their results are.
+  /// `changed`: the campaigns are others, or their results are. `is_watched`: a page is open; while
+  /// none is, files are left alone. `pause`: between two looks, at least.
   CampaignIndex(std::filesystem::path site, std::filesystem::path out,
-                std::function<void()> changed);
+                std::function<void()> changed, std::function<bool()> is_watched,
+                std::chrono::duration<double> pause = std::chrono::seconds(5));
   CampaignIndex(const CampaignIndex&) = delete;
   CampaignIndex& operator=(const CampaignIndex&) = delete;
   ~CampaignIndex();
@@ -69,6 +72,8 @@ class CampaignIndex {
   void look_at(const std::string& folder);
   /// Something has changed: all are looked at soon.
   void look_soon();
+  /// Somebody asks: what may be old is looked at soon.
+  void look_if_old();
 
  private:
   struct Seen {
@@ -84,6 +89,9 @@ class CampaignIndex {
 
   std::filesystem::path site_, out_;
   std::function<void()> changed_;
+  std::function<bool()> is_watched_;
+  std::chrono::duration<double> pause_;
+  std::chrono::steady_clock::time_point last_look_{};
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::map<std::string, Seen> seen_{};  ///< by folder

@@ -78,11 +78,12 @@ std::string instrument_of(const ListedCampaign& c) {
 
 }  // namespace
 
-SiteCampaigns::SiteCampaigns(fs::path site, fs::path out, Call call, std::function<void()> changed)
+SiteCampaigns::SiteCampaigns(fs::path site, fs::path out, Call call, std::function<void()> changed,
+                             std::function<bool()> is_watched)
     : site_(std::move(site)),
       out_(std::move(out)),
       call_(std::move(call)),
-      index_(site_, out_, std::move(changed)) {}
+      index_(site_, out_, std::move(changed), std::move(is_watched)) {}
 
 std::vector<Route> SiteCampaigns::routes() {
   return {{Method::get, "/api/campaigns"},
@@ -94,6 +95,7 @@ std::vector<Route> SiteCampaigns::routes() {
 }
 
 Answer SiteCampaigns::answer(const std::string& what, const Request& request) {
+  index_.look_if_old();
   if (request.route.method == Method::post)
     return what == "preview" ? preview(request) : create(request);
   return what == "campaigns"     ? list(request)

@@ -15,10 +15,11 @@ namespace nonio::live {
 /// be read, and a new campaign. Requests of several threads.
 class SiteCampaigns {
  public:
-  /// `call` runs a verb of this program; `changed`: something of the lists is new.
+  /// `call` runs a verb of this program; `changed`: something of the lists is new; `is_watched`: a
+  /// page is open.
   using Call = std::function<ToolEnd(std::vector<std::string>)>;
   SiteCampaigns(std::filesystem::path site, std::filesystem::path out, Call call,
-                std::function<void()> changed);
+                std::function<void()> changed, std::function<bool()> is_watched);
 
   static std::vector<Route> routes();
   /// `what`: the path after /api/.

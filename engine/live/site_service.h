@@ -53,7 +53,7 @@ class SiteService : public Starting {
             arguments.push_back(verb_option("plugin-path", folder));
           return call(arguments);
         },
-        [this] { publish("campaigns"); });
+        [this] { publish("campaigns"); }, [this] { return events_.listeners() > 0; });
     run_ = std::make_unique<SiteRun>(launcher_, wish_.out, [this] {
       if (!run_->is_running()) look_at_campaign();
       publish("run");

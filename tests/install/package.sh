@@ -123,9 +123,10 @@ grep -q '100% tests passed' "$work/said.log" || fail "no test of the plugin ran"
 step "nonio plugin new controller, built and tested"
 
 # The service with all that it is not allowed, under a systemd of its own.
-units=(/usr/lib/systemd/system/nonio.service /usr/lib/systemd/system/nonio.timer)
+units=(/usr/lib/systemd/system/nonio.service /usr/lib/systemd/system/nonio.timer /usr/lib/systemd/system/nonio-serve.service)
 quietly in_root "$work/workshop" systemd-analyze verify --man=no "${units[@]}"
 [ ! -s "$work/said.log" ] || { cat "$work/said.log"; fail "systemd-analyze verify"; }
+quietly in_root "$work/workshop" systemd-analyze security --offline=true --threshold=20 --no-pager "${units[2]}"
 quietly in_root "$work/workshop" systemd-analyze security --offline=true --threshold=20 --no-pager "${units[0]}"
 exposed=$(grep -o 'level for.*' "$work/said.log" | grep -o '[0-9]\.[0-9]')
 in_root "$work/workshop" sh -euc "cp -r $examples/site /srv/nonio/site; rm -r /srv/nonio/out; install -d -o nonio /srv/nonio/out"

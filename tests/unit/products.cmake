@@ -5,7 +5,7 @@ add_executable(test_engine
   platform/storage/files_test.cpp
   campaign/config/causes_test.cpp campaign/config/formula_test.cpp campaign/config/keys_test.cpp campaign/config/machines_test.cpp campaign/config/manifest_test.cpp campaign/config/schema_test.cpp
   campaign/config/secrets_test.cpp campaign/config/site_logs_test.cpp campaign/config/upgrade_test.cpp campaign/config/words_test.cpp
-  live/difference_test.cpp live/events_test.cpp live/guard_test.cpp live/session_test.cpp
+  live/campaign_index_test.cpp live/difference_test.cpp live/events_test.cpp live/guard_test.cpp live/session_test.cpp
   campaign/modelling/model_edit_test.cpp
   campaign/evaluation/decision_test.cpp campaign/evaluation/record_test.cpp
   campaign/loader/plugins_test.cpp campaign/reading/long_series_test.cpp campaign/reading/turned_test.cpp
@@ -13,7 +13,7 @@ add_executable(test_engine
   laboratory/assessment/changes_test.cpp laboratory/assessment/curves_test.cpp laboratory/assessment/fits_test.cpp laboratory/assessment/kept_test.cpp
   laboratory/assessment/history_so_far_test.cpp laboratory/assessment/lines_test.cpp laboratory/assessment/proposals_test.cpp laboratory/assessment/series_test.cpp laboratory/assessment/site_tables_test.cpp laboratory/assessment/targets_test.cpp
   certificates/recomputed_test.cpp certificates/register_file_test.cpp certificates/register_processes_test.cpp
-  certificates/register_test.cpp
+  certificates/register_test.cpp certificates/users_test.cpp
   simulation/simulate_test.cpp)
 target_compile_definitions(test_engine PRIVATE NONIO_WORDS="${PROJECT_SOURCE_DIR}/templates/words"
   NONIO_TEST_PLUGINS="${CMAKE_BINARY_DIR}/${NONIO_PLUGIN_SUBDIR}")

@@ -102,8 +102,8 @@ const campaigns = (() => {
     const sorted = all.sort((a, b) => ((a.until || "9999") < (b.until || "9999") ? -1 : 1));
     return [el("h1", {tabindex: -1}, say("site.instruments")), all.length === 0 ? el("p", {}, say("list.no_instruments")) :
       el("div", {class: "scroll", role: "group", tabindex: 0, "aria-label": say("site.instruments")}, el("table", {class: "lines machines-table", id: "instrument-list"}, el("thead", {}, el("tr", {}, ...["instrument", "calibrated", "its_certificate", "until", "used_by"].map((w) => el("th", {scope: "col"}, say("list." + w))))),
-        el("tbody", {}, ...sorted.map((i) => el("tr", {}, el("td", {}, entries.visible(i.name)), el("td", {class: "day"}, i.calibrated || "\u2013"), el("td", {}, entries.visible(i.certificate || "\u2013")),
-          el("td", {class: "day"}, !i.until ? "\u2013" : i.until < now ? el("span", {class: "badge failed"}, `\u2716 ${say("list.expired", {day: i.until})}`) : i.until),
+        el("tbody", {}, ...sorted.map((i) => el("tr", {}, el("td", {}, entries.visible(i.name)), el("td", {class: "day", "data-label": say("list.calibrated")}, i.calibrated || "\u2013"), el("td", {"data-label": say("list.its_certificate")}, entries.visible(i.certificate || "\u2013")),
+          el("td", {class: "day", "data-label": say("list.until")}, !i.until ? "\u2013" : i.until < now ? el("span", {class: "badge failed"}, `\u2716 ${say("list.expired", {day: i.until})}`) : i.until),
           el("td", {}, el("details", {}, el("summary", {}, say("list.campaigns", {n: i.number})), el("ul", {class: "plain"}, ...i.campaigns.map((c) => el("li", {}, c.day || "\u2013", " ", el("a", {href: hrefOf(c.folder)}, entries.visible(c.machine || c.id || c.folder)))))))))))), el("p", {class: "muted"}, say("list.until_what")), history ? el("p", {}, el("a", {href: "#to=instruments.html"}, say("list.history"))) : null].filter(Boolean);
   }
 

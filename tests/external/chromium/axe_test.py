@@ -123,7 +123,7 @@ class Axe(live_browser.LivePage):
             server = self.serve(site, "--out", str(out), "--edit")
             self.open(server)
             self.ready("index.html")
-            for name in (*pages, "campaigns", "machines", "entries", "certificates"):
+            for name in (*pages, "campaigns", "machines", "instruments", "settings", "entries", "certificates"):
                 self.d.execute_script("location.hash = arguments[0]", "" if name == "index.html" else "#to=" + urllib.parse.quote(name, safe=""))
                 self.ready(name)
                 self.js("document.querySelectorAll('details').forEach((d) => d.open = true)")

@@ -9,6 +9,7 @@ import random
 import shutil
 import subprocess
 import sys
+import time
 import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
@@ -257,6 +258,52 @@ class Newcomer(live_browser.LivePage):
         self.d.get("about:blank")
         self.d.get(server.address)
         self.wait(lambda: "not a user" in (self.js("(document.getElementById('alarm') || {}).textContent") or ""), "a stranger is told so")
+
+    def test_people_sign_in_and_approve_with_their_password(self):
+        password = "the password of a person"
+        shutil.copytree(SOURCE / "samples/certificates/adjusted", self.site / "adjusted")
+        line = subprocess.run([str(NONIO), "serve", self.site, "--hash-password"], input=password + "\n", capture_output=True, text=True, check=True).stdout
+        (self.site / "users.toml").write_text(f'format = 1\n[[user]]\naccount = "sample"\nname = "B. Sample"\nrole = "approve"\n{line}')
+        subprocess.run([str(NONIO), "run", self.site, "--out", self.out, "--quiet"])
+        server = self.serve(self.site, "--out", str(self.out), "--edit")
+        self.d.get("about:blank")
+        self.d.get(server.address + "#to=campaign%2Fadjusted")
+        self.ready("sign-in")
+        self.looks_right("sign-in")
+        for given, right in (("a wrong password", False), (password, True)):
+            for box, text in (("account", "sample"), ("password", given)):
+                self.d.find_element(By.ID, "sign-in-" + box).clear()
+                self.d.find_element(By.ID, "sign-in-" + box).send_keys(text)
+            self.click("sign-in-go")
+            if not right:
+                self.wait(lambda: "wrong" in self.js("document.querySelector('#sign-in [role=alert]').textContent"), "it is refused")
+                time.sleep(1.1)  # the delay that the next one has to wait for
+        self.ready("campaign/adjusted")
+        self.wait(lambda: self.has("#fitted[data-ready]"), "the picture")
+        bar = self.js("document.querySelector('#fitted-errors').getBoundingClientRect().bottom")
+        self.assertLess(bar, 720, "model, remainder and error with its noise floor are seen without scrolling")
+        self.assertEqual((2, True), (len(self.d.find_elements(By.CSS_SELECTOR, "#fitted-errors .error-line")), self.has("#fitted-errors .floor-mark")))
+        self.assertFalse(self.js("document.cookie.includes('nonio')"), "no script reads the session")
+        for box in self.d.find_elements(By.CSS_SELECTOR, ".draft form [name=reason]"):
+            box.send_keys("as found")
+        self.looks_right("approve")
+        self.d.find_element(By.CSS_SELECTOR, ".draft form [name=password]").send_keys(password)
+        self.press_on(".draft form [type=submit]")
+        self.wait(lambda: self.has("#released-verdict"), "issued and verified")
+        self.assertIn("VALID", self.text("released-verdict"))
+        for name in ("instruments", "settings"):
+            self.go(name)
+            self.looks_right(name)
+        # A campaign's own page has the session, too.
+        self.go("campaign%2Fadjusted", "campaign/adjusted")
+        self.press_on("[data-key=open-adjusted]")
+        self.wait(lambda: (self.js("document.body.dataset.ready") or "") in ("fitted", "explained"), "the workbench")
+        self.click("back")
+        self.wait(lambda: self.has("#sign-out"))
+        self.click("sign-out")
+        self.ready("sign-in")
+        self.d.get(server.address + "c/adjusted/")
+        self.ready("sign-in")
 
 
 if __name__ == "__main__":

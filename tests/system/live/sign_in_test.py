@@ -167,6 +167,31 @@ class SignIn(LiveTest):
                 pass  # until its end; the time limit of the connection fails the test
             connection.close()
 
+    def test_the_second_save_of_two_people_is_refused(self):
+        manifest = self.site / "adjusted/campaign.toml"
+        save = lambda person, sha: person.ask("POST", "/c/adjusted/api/save", {"why": "seen"}, {"If-Match": f'"{sha}"'})
+        with self.serve() as s:
+            people = Person(s, "bianchi"), Person(s, "sample")
+            state = lambda person: person.ask("GET", "/c/adjusted/api/state")[1]
+            deadline = time.monotonic() + WAIT
+            while any(state(p).get("bench") != "open" for p in people) and time.monotonic() < deadline:
+                time.sleep(0.05)
+            read = [state(p)["campaign"]["manifest_sha256"] for p in people]
+            before = state(people[0])["model"]
+            self.assertEqual(200, people[0].ask("POST", "/c/adjusted/api/model", {"add": "scale:X"})[0])
+            self.assertEqual(200, save(people[0], read[0])[0])
+            kept = manifest.read_bytes()
+            self.assertEqual(200, people[1].ask("POST", "/c/adjusted/api/model", {"add": "backlash:X"})[0])
+            status, answer = save(people[1], read[1])
+            self.assertEqual((412, "changed", sorted([*before, "scale:X", "backlash:X"]), sorted([*before, "scale:X"])), (status, answer["id"], sorted(answer["yours"]), sorted(answer["on_disk"])))
+            self.assertEqual(kept, manifest.read_bytes(), "nothing of the first is lost")
+            self.assertEqual(200, save(people[1], state(people[1])["campaign"]["manifest_sha256"])[0], "once it was read")
+            # Who may only look changes nothing, and the page says so.
+            viewer = Person(s, "view-1")
+            self.assertFalse(state(viewer)["edit"])
+            self.assertTrue(state(people[0])["edit"])
+            self.assertEqual((403, "role"), (lambda r: (r[0], r[1]["id"]))(save(viewer, state(viewer)["campaign"]["manifest_sha256"])))
+
     def test_two_persons_are_two_accounts(self):
         subprocess.run([self.site / "make-key.sh"], check=True, capture_output=True)
         settings = (self.site / "site.toml").read_text().replace('authoriser = "B. Sample"', 'authoriser = "B. Sample; A. Bianchi"').replace("[certificate]", "[certificate]\ntwo_persons = true")
