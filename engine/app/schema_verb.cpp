@@ -57,7 +57,8 @@ Verb schema_verb(Common& common) {
                     schema_of("machine", schema::machine_schema, common),
                     schema_of("events", schema::events_schema, common),
                     schema_of("acknowledged", schema::acknowledged_schema, common),
-                    schema_of("forgotten", schema::forgotten_schema, common)}};
+                    schema_of("forgotten", schema::forgotten_schema, common),
+                    schema_of("users", schema::users_schema, common)}};
 }
 
 }  // namespace nonio::app

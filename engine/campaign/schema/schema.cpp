@@ -592,4 +592,8 @@ std::string forgotten_schema(const loader::Plugins& plugins) {
   return SchemaWriter(plugins).write(config::forgotten_file());
 }
 
+std::string users_schema(const loader::Plugins& plugins) {
+  return SchemaWriter(plugins).write(config::users_file());
+}
+
 }  // namespace nonio::schema

@@ -7,6 +7,7 @@
 #include "campaign/config/machines.h"
 #include "campaign/config/manifest.h"
 #include "campaign/config/site_logs.h"
+#include "certificates/users.h"
 #include "methods.h"
 #include "platform/storage/files.h"
 
@@ -29,6 +30,10 @@ std::string verdict_of(const std::string& file, const std::string& text) {
   if (file == "acknowledged")
     return verdict(config::parse_acknowledged(text, config::acknowledged_name));
   if (file == "forgotten") return verdict(config::parse_forgotten(text, config::forgotten_name));
+  if (file == "users") {
+    const auto read = nonio::certificates::parse_users(text);
+    return read ? "ok" : std::to_string(read.error().line) + ": " + read.error().message;
+  }
   return {};
 }
 

@@ -39,6 +39,7 @@ ONLY_PROGRAM = [
     (r"certificate\.register|database\.(register|schema)", "one register, apart from the history"),
     (r".*\b(travel|range|grid)", "the smaller number first"),
     (r"asset", "the name of the file"),
+    (r"user(\.0\.password)?", "a user at least; the whole form of a hash"),
     (r"taken(\..*)?", "the smaller number first"),
     (r"axes\.\w+\.(state\.\d+\.)?(since|number)", "the day of table and backlash; no number twice"),
 ]

@@ -70,6 +70,7 @@ LOGS = {
     "acknowledged": {"acknowledged": [{"date": DAY, "finding": "F", "machine": "S-1", "axis": "X", "quantity": "Q",
                                        "until": DAY, "value": 1.5, "U": 0.5, "by": "B", "why": "W"}],
                      "withdrawn": [{"date": DAY, "finding": "F", "machine": "S-1", "axis": "X", "quantity": "Q", "by": "B", "why": "W"}]},
+    "users": {"user": [{"account": "a", "name": "N", "role": "approve", "password": "$argon2id$v=19$m=65536,t=2,p=1$c29tZXNhbHQ$CTFhFdXPJO1aFaMaO6Mm5c8y7cJHAph8ArZWb2GRPPc"}]},
     "forgotten": {"forgotten": [{"date": DAY, "campaign": "c", "by": "B", "why": "W"}]},
 }
 

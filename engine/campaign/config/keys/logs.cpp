@@ -146,7 +146,7 @@ constexpr Key user_keys[] = {
      .holds = text,
      .help = "Hash of the password, as `nonio serve SITE --hash-password` prints it.",
      .may_be_secret = true,
-     .text = {.letters = "a-zA-Z0-9$=,+/"}},
+     .text = {.letters = "a-zA-Z0-9$=,+/", .begins = "$argon2id$v=19$m="}},
 };
 
 constexpr Key users_file_keys[] = {
