@@ -142,8 +142,14 @@ Expected<toml::table> parse_toml(std::string_view text, const std::string& file)
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& e) {
+    const std::string complaint(e.description());
+    // Windows' editors call their old code page ANSI.
     return fail(
-        Error{"not valid TOML: " + std::string(e.description()), file, e.source().begin.line});
+        Error{complaint.find("utf-8") == complaint.npos
+                  ? "not valid TOML: " + complaint
+                  : "not valid TOML: the file is not UTF-8; save it with the encoding UTF-8, "
+                    "not ANSI",
+              file, e.source().begin.line});
   }
 }
 
