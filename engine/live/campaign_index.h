@@ -72,7 +72,7 @@ class CampaignIndex {
   void look_at(const std::string& folder);
   /// Something has changed: all are looked at soon.
   void look_soon();
-  /// Somebody asks: what may be old is looked at soon.
+  /// For a request: what may be old is looked at soon.
   void look_if_old();
 
  private:
