@@ -71,7 +71,8 @@ Expected<std::string> due_page(const Page& page) {
     View& machine = open->add("machine");
     machine.set("due", with_whole_days(m->due)).set("link", "machines/" + m->file);
     machine.set("id", m->id).set("customer", m->customer).set("place", m->place);
-    machine.set("why", interval_text(page, m->why_due)).set("proposal", proposal_text(page, m->proposal));
+    machine.set("why", interval_text(page, m->why_due))
+        .set("proposal", proposal_text(page, m->proposal));
   }
   return written(page, "due", view);
 }

@@ -23,7 +23,9 @@ void add_identity(View& view, const Page& page, const MachineHistory& m) {
   add("customer", m.customer);
   add("place", m.place);
   add("control", m.control);
-  add("next_due", m.due.empty() || m.why_due.empty() ? m.due : m.due + " (" + interval_text(page, m.why_due) + ")");
+  add("next_due", m.due.empty() || m.why_due.empty()
+                      ? m.due
+                      : m.due + " (" + interval_text(page, m.why_due) + ")");
   add("proposal", proposal_text(page, m.proposal));
 }
 

@@ -40,8 +40,7 @@ Due due_of(const AssessedMachine& m, const store::StoredLogs& logs) {
   const auto months = months_of_rule(m.state.machine.name, logs);
   // It is unknown when a campaign without a machine is measured again.
   if (!months || m.stored.campaigns.empty() || m.state.machine.name.empty()) return {};
-  return {months_later(m.stored.campaigns.back().day, *months),
-          std::to_string(*months)};
+  return {months_later(m.stored.campaigns.back().day, *months), std::to_string(*months)};
 }
 
 std::string page_of(const fs::path& out, const reports::MachineHistory& machine) {
