@@ -31,7 +31,7 @@ class Server:
         if not self.line:
             self.process.wait(30)
             raise AssertionError("no address: " + self.words())
-        self.address, self.token = self.line.strip().split("#t=")
+        self.address, _, self.token = self.line.strip().partition("#t=")  # no token where people sign in
         self.port = int(self.address.rsplit(":", 1)[1].strip("/"))
 
     def __enter__(self):

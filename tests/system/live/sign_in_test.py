@@ -48,16 +48,6 @@ class Person:
         return (status, fields, answer) if all_ else (status, answer)
 
 
-class Serving(Server):
-    def __init__(self, folder, *args):
-        self.process = None
-        try:
-            super().__init__(folder, *args)
-        except ValueError:  # the address has no token
-            self.address, self.token = self.line.strip(), ""
-            self.port = int(self.address.rsplit(":", 1)[1].strip("/"))
-
-
 class SignIn(LiveTest):
     def setUp(self):
         super().setUp()
@@ -70,7 +60,7 @@ class SignIn(LiveTest):
         (self.site / "users.toml").write_text(users(*accounts))
 
     def serve(self):
-        return Serving(self.site, "--out", self.out, "--edit", "--host", "nonio.example.org")
+        return Server(self.site, "--out", self.out, "--edit", "--host", "nonio.example.org")
 
     def log(self):
         return [json.loads(line) for line in (self.site / "audit.jsonl").read_text().splitlines()]
