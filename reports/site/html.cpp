@@ -194,7 +194,7 @@ std::string line_text(const Templates& templates, std::string_view language, con
   // The size of a change: of a scatter a factor.
   for (const auto& [number, key] : {std::pair{"size", "site.size"}, {"factor", "site.factor"}})
     if (std::any_of(finding.evidence.begin(), finding.evidence.end(),
-                    [&](const Number& n) { return n.name == number; }))
+                    [wanted = number](const Number& n) { return n.name == wanted; }))
       finding.texts.emplace_back("change",
                                  filled(words(templates, language, key), finding, language));
   return finding_text(templates, language, finding, part);
