@@ -50,17 +50,19 @@ static void print_shape(const char* name, const std::optional<tables::TableShape
   std::cout << "\n";
 }
 
-void print_difference(const tables::TableDifference& d) {
+void print_difference(const tables::TableDifference& d, bool compared) {
   std::cout << "axis " << d.output;
   if (d.input.size() != 1 || d.input.front() != d.output) {
     std::cout << " by the position of";
     for (const std::string& in : d.input) std::cout << " " << in;
   }
-  std::cout << ": they differ by up to " << with_unit(d.largest, deviation_of(d.rotary)) << " (at "
-            << with_unit(d.at, position_of(d.rotary)) << "), range "
-            << with_unit(d.range, deviation_of(d.rotary)) << "\n";
+  if (compared)
+    std::cout << ": they differ by up to " << with_unit(d.largest, deviation_of(d.rotary))
+              << " (at " << with_unit(d.at, position_of(d.rotary)) << "), range "
+              << with_unit(d.range, deviation_of(d.rotary));
+  std::cout << "\n";
   print_shape("present", d.present, d.rotary);
-  print_shape("new    ", d.next, d.rotary);
+  if (compared) print_shape("new    ", d.next, d.rotary);
 }
 
 TableJson forecast_json(const tables::TableForecast& f) {

@@ -19,7 +19,8 @@ using Texts = std::map<std::string, std::string>;
 /// Numbers with the unit in their name: "largest_um".
 void put(TableJson& json, const std::string& name, double si, Quantity q);
 TableJson difference_json(const tables::TableDifference& d);
-void print_difference(const tables::TableDifference& d);
+/// `compared`: else of one file alone.
+void print_difference(const tables::TableDifference& d, bool compared = true);
 
 TableJson forecast_json(const tables::TableForecast& f);
 void print_forecast(const tables::TableForecast& f);

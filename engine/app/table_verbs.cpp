@@ -48,13 +48,13 @@ void number_axes(const std::vector<std::string>& names, Settings& options) {
 }
 
 int tell_differences(const std::string& control, const std::vector<tables::TableDifference>& all,
-                     const Common& common) {
+                     const Common& common, bool compared = true) {
   if (common.json) {
     Json json = {{"schema", "nonio-diff/1"}, {"control", control}, {"tables", Json::array()}};
     for (const auto& d : all) json["tables"].push_back(difference_json(d));
     print_json(json);
   } else {
-    for (const auto& d : all) print_difference(d);
+    for (const auto& d : all) print_difference(d, compared);
   }
   return exit_done;
 }
@@ -98,9 +98,48 @@ void join_unnamed(const Loaded& was, Loaded& will) {
   will.tables.front().input = was.tables.front().input;
 }
 
+/// --axis X=Y: X of the present table, Y of the new one. Both are axes of the control.
+struct AxisPairs {
+  std::vector<std::string> axes;
+  std::vector<std::pair<std::string, std::string>> pairs;
+
+  explicit AxisPairs(const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      const std::size_t equals = text.find('=');
+      axes.push_back(text.substr(0, equals));
+      if (equals == std::string::npos) continue;
+      axes.push_back(text.substr(equals + 1));
+      pairs.emplace_back(axes[axes.size() - 2], axes.back());
+    }
+  }
+
+  /// Only the tables of pairs by their own position, with the name of the pair.
+  Expected<void> join(std::vector<LoadedTable>& was, std::vector<LoadedTable>& will) const {
+    if (pairs.empty()) return {};
+    std::vector<LoadedTable> of[2];
+    for (const auto& [present, next] : pairs)
+      for (const auto& [axis, from, to] :
+           {std::tuple{present, &was, &of[0]}, std::tuple{next, &will, &of[1]}}) {
+        const auto it = std::find_if(from->begin(), from->end(), [&, &name = axis](const auto& t) {
+          return t.output == name && t.input == std::vector{name};
+        });
+        if (it == from->end())
+          return fail("--axis " + present + "=" + next + ": the " +
+                      (from == &was ? "present" : "new") + " table has none of axis " + axis);
+        to->push_back(*it);
+        to->back().output = present + "=" + next;
+        to->back().input = {to->back().output};
+      }
+    was = std::move(of[0]);
+    will = std::move(of[1]);
+    return {};
+  }
+};
+
 int diff(const TableWish& w, const Common& common) {
   const auto settings = settings_of(w.settings);
   if (!settings) return complain(settings.error().message);
+  const AxisPairs axes(w.axes);
   const auto is_folder = [](const std::string& path) {
     std::error_code error;
     return std::filesystem::is_directory(path, error);
@@ -110,17 +149,21 @@ int diff(const TableWish& w, const Common& common) {
   loader::Plugins plugins;
   plugins.load(common.plugin_folders());
   for (const std::string& conflict : plugins.conflicts()) return complain(conflict);
-  const Campaign campaign = machine_of(w.axes);
+  const Campaign campaign = machine_of(axes.axes);
   const auto options = [&](const Info& info) {
     auto settled = config::options_from(info, *settings);
-    if (settled) number_axes(w.axes, *settled);
+    if (settled) number_axes(axes.axes, *settled);
     return settled;
   };
-  const auto was = load(plugins, w.table, w.control, campaign, *settings, options);
+  auto was = load(plugins, w.table, w.control, campaign, *settings, options);
   if (!was) return complain(text_of(was.error()));
+  if (w.other.empty())
+    return tell_differences(was->control->info.name, tables::differences(was->tables, {}), common,
+                            false);
   auto will = load(plugins, w.other, was->control->info.name, campaign, *settings, options);
   if (!will) return complain(text_of(will.error()));
   join_unnamed(*was, *will);
+  if (auto ok = axes.join(was->tables, will->tables); !ok) return complain(ok.error().message);
   return tell_differences(was->control->info.name, tables::differences(was->tables, will->tables),
                           common);
 }
@@ -298,19 +341,19 @@ Verb diff_verb(Common& common) {
   using Takes = Argument::Takes;
   return {
       .name = "diff",
-      .summary = "Compares two tables of one control",
+      .summary = "Compares two tables of one control, or describes one",
       .arguments = joined(
           {required(takes(
                Takes::file,
                {"PRESENT", &w->table, "The present table of the control: FILE, or FILE,FILE,..."})),
-           required(takes(
-               Takes::file,
-               {"NEW", &w->other,
-                "The new table; or a campaign, whose tables of the measured axes are compared"}))},
+           takes(Takes::file, {"NEW", &w->other,
+                               "The new table; or a campaign, whose tables of the measured axes "
+                               "are compared; without it PRESENT alone is described"})},
           table_arguments(*w),
           {{"--axis", &w->axes,
-            "Name of an axis, in the order of the axis numbers; A, B and C are in deg; may be "
-            "given several times"}},
+            "Name of an axis, in the order of the axis numbers; A, B and C are in deg; X=Y "
+            "compares "
+            "X of PRESENT with Y of NEW; may be given several times"}},
           common_arguments(common)),
       .footer =
           "Both tables are read as the control reads them, whatever sign or increments the files "
@@ -318,7 +361,8 @@ Verb diff_verb(Common& common) {
           "table the largest entry, the largest step between neighbouring points and the largest "
           "slope. If a step or slope is much larger than in the present table, find out why before "
           "you load it.\n\nExit status: 0 compared; 2 a file cannot be read.",
-      .examples = {"nonio table diff backup/linuxcnc-X.comp out/c/linuxcnc-X.comp --axis X"},
+      .examples = {"nonio table diff backup/linuxcnc-X.comp out/c/linuxcnc-X.comp --axis X",
+                   "nonio table diff printer.cfg"},
       .run = [w, &common] { return diff(*w, common); }};
 }
 

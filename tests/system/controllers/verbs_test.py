@@ -103,6 +103,22 @@ class Tables(BenchTest):
             self.assertIn(words, error)
         self.assertIn("controller pmac: a.pmc, line 1: axis 2: how many counts has the encoder?", self.nonio("diff", plain, plain, expect=2).stderr)
 
+    def test_a_table_alone_and_two_axes_of_one_kind(self):
+        saved = self.put("printer.cfg", "[printer]\n#*# <---- SAVE_CONFIG ---->\n#*# [skew_correction plate]\n#*# xy_skew = -0.00125\n")
+        found = self.json_of("diff", saved)
+        self.assertEqual([(t["output"], t["by"], t["present"]["largest_slope_um_per_m"]) for t in found["tables"]][0], ("X", ["Y"], 1250.0))
+        text = self.nonio("diff", saved).stdout
+        self.assertIn("adds up to 1250 um", text)
+        self.assertNotIn("differ", text)
+        self.assertNotIn("new", text)
+        both = self.put("both.pmc", "#1 DEFINE COMP 4,4000\n160 320 0 0\n#2 DEFINE COMP 4,4000\n160 352 0 0\n")
+        one = self.put("one.pmc", "#2 DEFINE COMP 4,4000\n160 352 0 0\n")
+        motors = ("--control", "pmac", "--set", "axes=X number=1 counts_per_mm=1000, Y number=2 counts_per_mm=1000")
+        for other, axes, wanted in ((both, "X=Y", ("X=Y", 2.0, 2.0, 20.0)), (one, "X=Y", ("X=Y", 2.0, 2.0, 20.0)), (both, "Y=X", ("Y=X", 2.0, 2.0, 22.0))):
+            (d,) = self.json_of("diff", both, other, "--axis", axes, *motors)["tables"]
+            self.assertEqual((d["output"], d["largest_um"], d["at_mm"], d["present"]["largest_um"]), wanted)
+        self.assertIn("the new table has none of axis X", self.nonio("diff", both, one, "--axis", "Y=X", *motors, expect=2).stderr)
+
     def test_tables_of_siemens_of_any_size_and_as_part_program(self):
         entries = [0.001 * (i % 9) for i in range(640)]
         encoder = "%_N_AX_EEC_INI\nCHANDATA(1)\n" + "".join(f"$AA_ENC_COMP[0,{i},X1]={v:g}\n" for i, v in enumerate(entries)) + (
