@@ -79,7 +79,6 @@ Expected<Map> map_of(const Settings& options, bool rotary) {
   const bool both = map.has(Role::value_plus) || map.has(Role::value_minus);
   if (!map.has(Role::target) && map.heading.empty()) return needs_one("target");
   if (!map.has(Role::value) && !both) return needs_one("value");
-  if (!map.has(Role::cycle)) return needs_one("cycle");
   if (map.has(Role::target) && !map.heading.empty())
     return fail(
         of_option("heading", "expected the target in a column or in a heading, found both"));
@@ -150,14 +149,20 @@ class TableReader {
     for (std::size_t k = 0; k < fields->size(); ++k)
       if (auto ok = field((*fields)[k], k, row); !ok) return ok;
     if (auto ok = same_target(row); !ok) return ok;
-    if (map_.has(Role::value)) rows_.push_back(row);
+    if (map_.has(Role::value)) take(row);
     for (const auto& [role, of_role, value] : {std::tuple{Role::value_plus, Way::plus, plus_},
                                                std::tuple{Role::value_minus, Way::minus, minus_}}) {
       if (!map_.has(role)) continue;
       row.way = of_role, row.value = value;
-      rows_.push_back(row);
+      take(row);
     }
     return {};
+  }
+
+  /// Without a column of runs: the n-th time that a target is reached from a side is its run n.
+  void take(Row row) {
+    if (!map_.has(Role::cycle)) row.cycle = ++visits_[{row.way, row.target}];
+    rows_.push_back(row);
   }
 
   /// "## Target position 15 mm, both directions": the number after the words of the option.
@@ -214,6 +219,7 @@ class TableReader {
   Numbers numbers_;
   std::map<std::uint32_t, Row> by_pos_;
   std::vector<Row> rows_;
+  std::map<std::pair<Way, double>, std::uint32_t> visits_;
   std::optional<double> heading_target_{};  ///< of the last heading, as in the file
   double plus_ = 0.0, minus_ = 0.0;         ///< of this row
 };
@@ -241,7 +247,7 @@ Expected<Observations> read_file(const ReadInput& input, const Axis& axis) {
                           "fall, found none; state + and - in place of forward and reverse"));
     const double target = row.target * map->target_unit;
     if (auto ok = runs.add({row.cycle, direction_of(row.way, listed), target,
-                            map->deviation(row.value * map->value_unit, target), row.line});
+                            map->deviation(row.value, target), row.line});
         !ok)
       return fail(ok.error());
   }

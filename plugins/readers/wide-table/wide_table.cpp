@@ -279,8 +279,9 @@ void note_means(const Map& map, const Table& table, bool rotary, Observations& o
   for (const auto& row : table.rows)
     for (std::size_t k = 0; k < row.size(); ++k)
       if (map.columns[k].role == Role::two_sigma && row[k] > largest) largest = row[k];
-  obs.notes.push_back(
-      {"wide.means", {{"largest", 0.5 * largest * map.value_unit, deviation_of(rotary)}}});
+  obs.notes.push_back({"wide.means",
+                       {{"largest", 0.5 * largest * std::fabs(map.factor) * map.value_unit,
+                         deviation_of(rotary)}}});
 }
 
 Expected<void> add_rows(const Map& map, const Table& table, int listed, Runs& runs) {
@@ -289,7 +290,7 @@ Expected<void> add_rows(const Map& map, const Table& table, int listed, Runs& ru
       const Column& c = map.columns[k];
       if (c.role != Role::reading && c.role != Role::mean) continue;
       const double target = table.targets[i] * map.target_unit;
-      const double deviation = map.deviation(table.rows[i][k] * map.value_unit, target);
+      const double deviation = map.deviation(table.rows[i][k], target);
       if (auto ok = runs.add({std::max(c.run, 1U), direction_of(c.way, listed), target, deviation,
                               table.lines[i]});
           !ok)

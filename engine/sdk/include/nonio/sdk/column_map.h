@@ -100,10 +100,12 @@ struct TableMap {
   double target_unit = 0.0, value_unit = 0.0;  ///< SI value of 1
   bool positions = false;                      ///< values are positions, else deviations
   double sign = 1.0;                           ///< of deviations
+  double factor = 1.0, offset = 0.0;           ///< of each value; the offset in SI
   std::vector<RowRange> tables;                ///< one at least, in the order of the file
 
-  /// Deviation of a value, both SI.
-  double deviation(double value, double target) const {
+  /// Deviation of a value as in the file from a target in SI.
+  double deviation(double read, double target) const {
+    const double value = factor * read * value_unit + offset;
     return positions ? value - target : sign * value;
   }
 };
@@ -122,6 +124,20 @@ inline std::vector<Option> table_map_options() {
        "",
        "What stands between the columns.",
        {"", ",", ";", "tab", "blank", "|"}},
+      {"factor",
+       1.0,
+       "",
+       "Each value is multiplied by it: -1 for a sensor that measures the other way round.",
+       {},
+       -1e6,
+       1e6},
+      {"offset",
+       0.0,
+       "",
+       "Added to each value after that, in value_unit: the position where the sensor shows 0.",
+       {},
+       -1e9,
+       1e9},
       {"first_line", std::int64_t{1}, "", "Line of the first row.", {}, 1.0, 4e9},
       {"last_line",
        std::int64_t{0},
@@ -188,6 +204,9 @@ inline Expected<TableMap> table_map_of(const Settings& options, bool rotary) {
                   "expected what the values are, \"actual - target\", \"target - actual\" or "
                   "\"positions\"; found \"" +
                       values + "\". A sign is not guessed"));
+  map.factor = options.number("factor", 1.0);
+  if (map.factor == 0.0) return fail(of_option("factor", "expected a number other than 0"));
+  map.offset = options.number("offset") * map.value_unit;
   auto tables = tables_of(options);
   if (!tables) return fail(tables.error());
   map.tables = std::move(*tables);
