@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <ostream>
 #include <tuple>
 
@@ -123,7 +124,7 @@ void print_places(std::ostream& out, const model::Comparison& c, const modelling
   const config::TerminalWords say = words.terminal();
   if (!c.fails()) return line(out, say("fails"), say("fails.nowhere"));
   out << "  " << say("fails") << "\n";
-  for (const model::Place& place : c.seats)
+  for (const model::Place& place : c.seats.empty() ? c.places : c.seats)
     out << "    " << padded(to_text(place.where) + modelling::on_line(place), 25)
         << wrapped(words.place(place, deviation), 29, sentence_width(STDOUT_FILENO)).substr(29);
 }
@@ -298,7 +299,10 @@ void print_comparison(std::ostream& out, const modelling::Compared& compared,
   print_head(out, part, words);
   line(out, "RMS", with_unit(c.fit.rms, q));
   line(out, say("left-out"), c.cv_rms ? with_unit(*c.cv_rms, q) : say("left-out.one-run"));
-  line(out, say("floor"), c.floor ? floor_text(*c.floor, q) : say("floor.unknown"));
+  const std::vector<std::uint32_t>& run = part.part.table.run;
+  const bool runs = std::adjacent_find(run.begin(), run.end(), std::not_equal_to<>()) != run.end();
+  line(out, say("floor"),
+       c.floor ? floor_text(*c.floor, q) : say(runs ? "floor.short-runs" : "floor.unknown"));
   if (c.largest != 0.0) line(out, say("largest"), largest_text(compared, campaign, say));
   line(out, say("redundancy"), std::to_string(c.fit.redundancy));
   if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))

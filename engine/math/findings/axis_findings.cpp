@@ -80,6 +80,23 @@ void reversal_findings(const AxisTest& test, std::vector<Finding>& findings,
             .done());
 }
 
+namespace {
+/// What all targets have in common drops out of E, A and M, which are ranges.
+void common_offset(const AxisTest& test, std::vector<Finding>& findings) {
+  double low = INFINITY, high = -INFINITY, sum = 0.0, n = 0.0;
+  for (std::size_t i = 0; i < test.targets.size(); ++i)
+    for (const auto& readings : {test.plus(i), test.minus(i)})
+      for (const double value : deviations(readings))
+        low = std::min(low, value), high = std::max(high, value), sum += value, n += 1.0;
+  const double offset = sum / n;
+  if (test.targets.size() < 2 || !(std::fabs(offset) > high - low)) return;
+  findings.push_back(FindingBuilder("deviation.offset", false, test.rotary)
+                         .deviation("offset", offset)
+                         .deviation("range", high - low)
+                         .done());
+}
+}  // namespace
+
 std::vector<Finding> axis_findings(const AxisTest& test, const Observations& o, const Axis* axis,
                                    double U_mean) {
   std::vector<Finding> findings;
@@ -88,6 +105,7 @@ std::vector<Finding> axis_findings(const AxisTest& test, const Observations& o, 
   scatter_findings(test, findings);
   turn_findings(test, findings);
   plan_findings(test, o, axis, findings);
+  common_offset(test, findings);
   return findings;
 }
 

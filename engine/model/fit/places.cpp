@@ -114,6 +114,7 @@ class Factors {
     const VectorXd d = map(r.d);
     position_ = part.kind == Part::Kind::axis ? VectorXd(map(r.p) / std::max(r.length / 2.0, 1e-12))
                                               : from_the_middle(part);
+    both_ways_ = d.minCoeff() < 0.0 && d.maxCoeff() > 0.0;
     add({{Factor::direction}, d, false});
     if (part.kind == Part::Kind::axis) {
       add_axis(part.axes.front(), r, d);
@@ -268,10 +269,12 @@ class Factors {
 
   void add(FactorColumns f) { all_.push_back(std::move(f)); }
   void pair(Factor a, Factor b, MatrixXd columns, bool repeated) {
+    if (a == Factor::direction && !both_ways_) return;
     all_.push_back({{a, b}, std::move(columns), repeated});
   }
   std::vector<FactorColumns> all_;
   MatrixXd position_;  // from -1 to 1
+  bool both_ways_ = true;
 };
 
 namespace {

@@ -130,6 +130,7 @@ class Judge {
         !long_enough())
       return std::move(out_);
     out_.given = true;
+    if (!out_.U_known) return std::move(out_);
     tell_points();
     tell_waves();
     tell_two_points();
@@ -141,6 +142,13 @@ class Judge {
   bool refuse(Finding f) {
     out_.findings.push_back(std::move(f));
     return false;
+  }
+  /// The circle through three points is exact. An arc of less than half a turn is only given with a
+  /// U that is small enough.
+  bool without_U(Finding f) {
+    out_.U_known = false;
+    out_.findings.push_back(std::move(f));
+    return out_.fit.gap <= half_turn;
   }
   double points() const { return static_cast<double>(out_.centres.size()); }
   double arc() const { return full_turn - out_.fit.gap; }
@@ -176,7 +184,7 @@ class Judge {
       return true;
     }
     if (!wish_.U_instrument)
-      return refuse(finding("rotary.sigma-needed", true, {count("points", points())}));
+      return without_U(finding("rotary.sigma-needed", true, {count("points", points())}));
     out_.sigma = 0.5 * *wish_.U_instrument;
     return true;
   }
@@ -216,8 +224,9 @@ class Judge {
     const RotaryFit& fit = out_.fit;
     out_.U_shear = 2.0 / std::numbers::sqrt3 * fit.shear_shift * wish_.linear_axes.value_or(0.0);
     if (fit.dof > 0 || wish_.linear_axes) return true;
-    return refuse(finding("rotary.three-points-squareness", true,
-                          {um("shift", fit.shear_shift * shear_unit), urad("shear", shear_unit)}));
+    return without_U(
+        finding("rotary.three-points-squareness", true,
+                {um("shift", fit.shear_shift * shear_unit), urad("shear", shear_unit)}));
   }
 
   double U_centre() const {
@@ -226,7 +235,7 @@ class Judge {
   double U_direction() const { return out_.k * out_.sigma * largest(out_.fit, 3); }
 
   bool long_enough() {
-    if (out_.fit.gap <= half_turn || U_centre() <= wish_.tolerance) return true;
+    if (!out_.U_known || out_.fit.gap <= half_turn || U_centre() <= wish_.tolerance) return true;
     return refuse(finding("rotary.short-arc", true,
                           {deg("arc", arc()), um("U", U_centre()), um("tolerance", wish_.tolerance),
                            count("points", points())}));

@@ -24,7 +24,8 @@ struct Wish {
 /// A fitted axis with its uncertainty, or the reason why there is none.
 struct Judged {
   std::vector<math::BallCentre> centres;
-  bool given = false;  ///< else refused, and the findings state why
+  bool given = false;   ///< else refused, and the findings state why
+  bool U_known = true;  ///< else three points without what their uncertainty follows from
   math::RotaryFit fit;
   double sigma = 0.0;             ///< standard uncertainty that the covariance is scaled with
   double dof = INFINITY;          ///< of sigma; infinite if it is stated

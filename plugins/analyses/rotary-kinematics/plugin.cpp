@@ -300,6 +300,19 @@ Evaluation of_two_axes(const Measurement& m, const std::string& other) {
   return out;
 }
 
+/// Of the circle through three points, whose U cannot be given.
+Evaluation without_U(Judged judged) {
+  Evaluation e;
+  e.findings = std::move(judged.findings);
+  for (std::size_t i = 0; i < 3; ++i)
+    e.values.push_back({std::string("centre_") + "xyz"[i], judged.fit.centre[i], Quantity::length});
+  e.values.push_back({"radius", judged.fit.radius, Quantity::length});
+  for (std::size_t i = 0; i < 3; ++i)
+    e.values.push_back(
+        {std::string("direction_") + "ijk"[i], judged.fit.direction[i], Quantity::number});
+  return e;
+}
+
 Expected<Evaluation> analyse(const AnalysisInput& in) {
   if (const std::string other = math::other_turning_axis(in.observations); !other.empty())
     return of_two_axes(in.measurement, other);
@@ -310,6 +323,7 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
     refused.findings = std::move(judged.findings);
     return refused;
   }
+  if (!judged.U_known) return without_U(std::move(judged));
   math::HeldLimits limits = math::limits_held(in.campaign, observations_of(in));
   math::ReadingModel model =
       coordinate_model(in.campaign, limits.environment, {&judged}, wish.linear_axes);

@@ -3,6 +3,10 @@
 // Squareness of two axes that were read against the two faces of one square.
 #include "nonio/math/square.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/plugin.h"
 
@@ -40,6 +44,38 @@ void judge_certificate(const AnalysisInput& in, const math::SquareLines& lines, 
   }
 }
 
+/// The same plane by the same square in other placements, or in other states of the machine: the
+/// first of them that gives a value reports all.
+void compare_placements(const AnalysisInput& in, const math::SquareLines& own, double U_square,
+                        Evaluation& out) {
+  std::vector<double> values;
+  double u = 0.0;
+  for (const math::SquareLines& s : math::squares_of(in.campaign)) {
+    if (s.square != own.square || s.first != own.first || s.second != own.second) continue;
+    const auto one = math::squareness_of(in.campaign, *in.all, s);
+    if (!one) continue;
+    if (values.empty() && s.all() != own.all()) return;
+    values.push_back(one->value);
+    u = std::max(u, one->u);
+  }
+  if (values.size() < 2) return;
+  const auto n = static_cast<double>(values.size());
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0.0;
+  for (const double v : values) squares += (v - mean) * (v - mean);
+  out.findings.push_back(
+      {.id = "square.placements",
+       .attention = *high - *low > std::max(4.0 * u, U_square),
+       .evidence = {{"count", n, Quantity::count},
+                    {"low", *low, Quantity::small_angle},
+                    {"high", *high, Quantity::small_angle},
+                    {"range", *high - *low, Quantity::small_angle},
+                    {"mean", mean, Quantity::small_angle},
+                    {"s", std::sqrt(squares / (n - 1.0)), Quantity::small_angle}},
+       .texts = {{"name", own.name}, {"square", own.square}}});
+}
+
 Expected<Evaluation> analyse(const AnalysisInput& in) {
   if (in.all == nullptr) return fail("expected the other measurements of the campaign, found none");
   const auto lines = led_by(in.campaign, in.measurement);
@@ -59,6 +95,10 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
   }
   e.findings = std::move(s->findings);
   if (!s->model.missing.empty()) e.findings.push_back(math::missing_finding(s->model.missing));
+  double U_square = 0.0;
+  for (const Square& square : in.campaign.squares)
+    if (square.name == lines->square) U_square = square.U.value_or(0.0);
+  compare_placements(in, *lines, U_square, e);
   const std::string name = lines->name + "_LSQ";
   e.notes.push_back({s->of_square ? "method.square-turned" : "method.square",
                      {},

@@ -115,6 +115,55 @@ class Field(unittest.TestCase):
         done = subprocess.run([NONIO, "model", "compare", campaign, "--json"], capture_output=True, text=True, check=True)
         self.assertAlmostEqual(json.loads(done.stdout)["parts"][0]["model"]["parameters"][0]["value"], scale["value"], places=6)
 
+    def test_an_offset_that_accuracy_does_not_contain_is_reported(self):
+        axis = '[machine.axes.X]\nkind = "linear"\n[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n'
+
+        def table(offset):
+            return "run,direction,target_mm,deviation_um\n" + "".join(
+                f"{run},{way},{40 * k},{offset + (k * k) % 7 + run}\n" for run in (1, 2) for way in "+-" for k in range(8))
+        for offset, reported in ((-310.0, True), (250.0, True), (-2.0, False)):
+            results = self.results(axis, {"x.csv": table(offset)})
+            found = [f for f in results["analyses"][0]["findings"] if f["id"] == "deviation.offset"]
+            self.assertEqual(bool(found), reported, offset)
+            if found:
+                values = [offset + (k * k) % 7 + run for run in (1, 2) for k in range(8)]
+                self.assertAlmostEqual(found[0]["evidence"]["offset_um"], sum(values) / len(values), places=6)
+
+    def test_placements_of_a_square_are_compared(self):
+        machine = ('[instrument]\nmaker = "m"\nmodel = "m"\nserial = "1"\nU_fixed_um = 1.0\n[machine.axes.X]\nkind = "linear"\n'
+                   '[machine.axes.Y]\nkind = "linear"\n[[square]]\nid = "s"\nerror_urad = 0.0\nU_urad = 20.0\n[run]\nanalyses = ["square"]\n')
+
+        def finding(slopes):
+            manifest, files = machine, {}
+            for k, slope in enumerate(slopes):
+                for axis, lateral, tilt in (("X", "Y", 30.0), ("Y", "X", slope - 30.0)):
+                    name = f"{axis.lower()}{k}.csv"
+                    manifest += (f'[[measurement]]\nid = "Q{axis} p{k}"\nkind = "straightness"\naxis = "{axis}"\nlateral = "{lateral}"\nsquare = "s"\n'
+                                 f'file = "{name}"\n')
+                    files[name] = "run,direction,target_mm,deviation_um\n" + "".join(f"1,+,{100 * i},{0.1 * tilt * i}\n" for i in range(4))
+            found = [f for a in self.results(manifest, files)["analyses"] for f in a["findings"] if f["id"] == "square.placements"]
+            self.assertLessEqual(len(found), 1)
+            return found[0] if found else None
+
+        far = finding((100.0, 140.0, 300.0))
+        self.assertEqual(far["severity"], "attention")
+        for name, wanted in (("low_urad", -300.0), ("high_urad", -100.0), ("mean_urad", -180.0), ("s_urad", 105.83005244), ("count", 3)):
+            self.assertAlmostEqual(far["evidence"][name], wanted, places=6)
+        self.assertEqual(finding((100.0, 110.0))["severity"], "info")
+        self.assertIsNone(finding((100.0,)))
+
+    def test_repeats_from_one_side_are_called_neither_absent_nor_a_direction(self):
+        campaign = self.folder / "probe"
+        campaign.mkdir()
+        (campaign / "campaign.toml").write_text(
+            HEAD + '[machine.axes.Y]\nkind = "linear"\n[[measurement]]\nid = "Y"\nkind = "axis"\naxis = "Y"\norder = "as-listed"\nfile = "y.csv"\n')
+        (campaign / "y.csv").write_text("run,direction,target_mm,deviation_um\n" + "".join(f"{k},+,52,{7 - 12 / k:.2f}\n" for k in range(1, 25)))
+        done = subprocess.run([NONIO, "model", "compare", campaign], capture_output=True, text=True, check=True).stdout
+        self.assertIn("each run has too few readings", done)
+        self.assertNotIn("no repeated readings", done)
+        self.assertNotIn("direction of approach", done)
+        self.assertIn("slowly with time", done)
+
 
 if __name__ == "__main__":
     unittest.main()

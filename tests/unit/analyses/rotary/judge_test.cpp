@@ -268,12 +268,28 @@ TEST(RotaryJudge, CentresThatAreNoCircleAreRefused) {
                  "rotary.not-a-circle");
 }
 
-TEST(RotaryJudge, ThreeCentresNeedAStatedSigmaAndSquareness) {
+TEST(RotaryJudge, ThreeCentresNeedAStatedSigmaAndSquarenessForU) {
   Table t;
   const auto three = noisy(t, full_turn(3), 2 * um);
-  expect_refused(Workshop().measured("C", three).last(), "rotary.sigma-needed");
-  expect_refused(Workshop().with("sigma_um", 2.0).measured("C", three).last(),
-                 "rotary.three-points-squareness");
+  for (const auto& [given, why] :
+       {std::pair{Workshop().measured("C", three).last(), "rotary.sigma-needed"},
+        std::pair{Workshop().with("sigma_um", 2.0).measured("C", three).last(),
+                  "rotary.three-points-squareness"}}) {
+    ASSERT_NE(found(given, why), nullptr) << ids(given);
+    ASSERT_EQ(given.values.size(), 7U);
+    for (const Value& v : given.values) EXPECT_FALSE(v.U || v.repeatability) << v.name;
+    EXPECT_NEAR(value(given, "radius")->value, t.radius, 8 * um);
+    // The circle through three points is exact: each of them has the same distance.
+    for (const auto& c : three) {
+      double squares = 0.0;
+      for (std::size_t i = 0; i < 3; ++i)
+        squares += std::pow(c.at[i] - value(given, std::string("centre_") + "xyz"[i])->value, 2);
+      EXPECT_NEAR(std::sqrt(squares), value(given, "radius")->value, 1e-12);
+    }
+  }
+  // On less than half a turn nothing shows whether U would be small enough.
+  expect_refused(Workshop().measured("C", noisy(t, arc(0, 50 * deg, 3), 2 * um)).last(),
+                 "rotary.sigma-needed");
   const Evaluation e =
       Workshop().with("sigma_um", 2.0).with("linear_axes_urad", 10.0).measured("C", three).last();
   ASSERT_NE(found(e, "rotary.three-points"), nullptr) << ids(e);
