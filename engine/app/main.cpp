@@ -145,7 +145,8 @@ std::vector<Verb> table_of_commands(Common& common, const Program& program) {
                     apart(group("table", "Compensation tables of controls",
                                 {controls_verb(common), diff_verb(common), predict_verb(common),
                                  insert_verb(common), probe_verb(common), session_verb(common)}))});
-  add("Program", {apart(plugin_verb(common)), help_verb(program)});
+  add("Program",
+      {apart(plugin_verb(common)), backup_verb(common), restore_verb(common), help_verb(program)});
   add("", {version_verb(common), completion_verb(program), apart(schema_verb(common)),
            upgrade_verb(common)});
   return all;

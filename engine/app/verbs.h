@@ -43,6 +43,8 @@ Verb plugin_verb(Common& common);
 Verb plugin_list_verb(Common& common);
 Verb schema_verb(Common& common);
 Verb upgrade_verb(Common& common);
+Verb backup_verb(Common& common);
+Verb restore_verb(Common& common);
 Verb version_verb(Common& common);
 /// What they print is made from the whole table; the program outlives the command.
 Verb help_verb(const Program& program);

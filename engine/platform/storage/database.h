@@ -94,6 +94,10 @@ class Database {
   std::string error_;
 };
 
+/// An SQLite file as it is at one moment, whatever other processes write meanwhile, in a new file.
+Expected<void> copy_database(const std::filesystem::path& from, const std::filesystem::path& to,
+                             double patience = Database::usual_patience);
+
 /// Whether another process kept the database to itself, or its server was away: the same may succeed
 /// later.
 bool is_locked(const Error& error);

@@ -344,6 +344,9 @@ std::string& temporary_suffix() {
 void take_own_names(const std::string& token) {
   temporary_suffix() = "." + token + std::string(leftover_suffix);
 }
+bool is_temporary_name(std::string_view name) {
+  return name.starts_with('.') && name.ends_with(leftover_suffix);
+}
 bool has_own_names() { return temporary_suffix() != leftover_suffix; }
 
 fs::path temporary_path(const fs::path& folder, const std::string& name) {

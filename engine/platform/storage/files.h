@@ -119,6 +119,9 @@ Expected<void> rename_temporaries(const std::filesystem::path& folder,
                                   const std::vector<std::string>& names,
                                   const std::function<bool(const std::string& name)>& is_ours = {});
 
+/// Whether a file of this name is being written, or was left half-written, by any process.
+bool is_temporary_name(std::string_view name);
+
 /// Removes files under temporary names whose names are known: the folder need not be listed.
 void remove_temporaries(const std::filesystem::path& folder, const std::vector<std::string>& names);
 

@@ -168,4 +168,36 @@ Expected<std::unique_ptr<Connection>> connect_sqlite(const std::filesystem::path
   return connection;
 }
 
+Expected<void> copy_database(const std::filesystem::path& from, const std::filesystem::path& to,
+                             double patience) {
+  struct Close {
+    void operator()(sqlite3* file) const { ::sqlite3_close_v2(file); }
+  };
+  const auto open = [](const std::filesystem::path& path, int flags) {
+    sqlite3* file = nullptr;
+    const int opened = ::sqlite3_open_v2(path.c_str(), &file, flags, nullptr);
+    return std::pair(std::unique_ptr<sqlite3, Close>(file), opened == SQLITE_OK);
+  };
+  const auto source = open(from, SQLITE_OPEN_READWRITE);
+  const auto copy = open(to, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  const auto wrong = [&](sqlite3* file) {
+    return fail(Error{std::string("the database cannot be copied: ") + ::sqlite3_errmsg(file),
+                      from.string()});
+  };
+  for (const auto* one : {&source, &copy})
+    if (!one->second) return wrong(one->first.get());
+  ::sqlite3_busy_timeout(source.first.get(), static_cast<int>(1000.0 * patience));
+  // A lock of its own: a step of the copy does not wait for one.
+  if (::sqlite3_exec(source.first.get(), "BEGIN; SELECT count(*) FROM sqlite_schema", nullptr,
+                     nullptr, nullptr) != SQLITE_OK)
+    return wrong(source.first.get());
+  sqlite3_backup* const backup =
+      ::sqlite3_backup_init(copy.first.get(), "main", source.first.get(), "main");
+  if (backup == nullptr) return wrong(copy.first.get());
+  const int step = ::sqlite3_backup_step(backup, -1);
+  const int finish = ::sqlite3_backup_finish(backup);
+  if (step != SQLITE_DONE || finish != SQLITE_OK) return wrong(copy.first.get());
+  return {};
+}
+
 }  // namespace nonio::storage

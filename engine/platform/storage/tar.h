@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "nonio/sdk/error.h"
+
+/// Archives in the format of tar (POSIX.1-2001: ustar, with pax headers where a name is long or a
+/// file large).
+namespace nonio::storage {
+
+struct TarEntry {
+  enum class Kind : char { file = '0', link = '2', folder = '5' };
+  std::string name;  ///< relative, without a slash at its end
+  Kind kind = Kind::file;
+  unsigned mode = 0;         ///< permissions
+  std::uint64_t size = 0;    ///< bytes of a file
+  std::int64_t changed = 0;  ///< seconds since 1970
+  std::string target{};      ///< of a link
+};
+
+class TarWriter {
+ public:
+  static Expected<TarWriter> create(const std::filesystem::path& path);
+  TarWriter(TarWriter&& other) noexcept;
+  TarWriter& operator=(TarWriter&&) = delete;
+  ~TarWriter();
+
+  /// `bytes` calls its argument with the parts of a file; an error if they are not `entry.size`.
+  using Parts = std::function<Expected<void>(const std::function<void(std::string_view)>& take)>;
+  Expected<void> add(const TarEntry& entry, const Parts& bytes = {});
+  std::int64_t position() const;
+  /// What was added since then is written again.
+  Expected<void> back_to(std::int64_t position);
+  /// All of it is on disk.
+  Expected<void> end();
+
+ private:
+  TarWriter(int fd, std::string name) : fd_(fd), name_(std::move(name)) {}
+  Expected<void> write(std::string_view bytes) const;
+  Expected<void> header(const TarEntry& entry, char type, const std::string& name) const;
+  int fd_;
+  std::string name_;
+};
+
+/// `begin` is called for each entry, and then `take` with the parts of its bytes. An error: it is not
+/// such an archive, it is cut short, or it contains something else than files, folders and links.
+struct TarReads {
+  std::function<Expected<void>(const TarEntry& entry)> begin;
+  std::function<Expected<void>(std::string_view part)> take;
+};
+Expected<void> read_tar(const std::filesystem::path& path, const TarReads& reads);
+
+}  // namespace nonio::storage
