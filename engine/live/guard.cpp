@@ -302,7 +302,11 @@ Verdict judge(const Head& head, const Post& post, const std::vector<Route>& rout
     return found;
   }
   // A client without the token does not learn which addresses exist.
-  const auto tokens = head.all("X-Nonio-Token");
+  std::vector<std::string> tokens = head.all("X-Nonio-Token");
+  constexpr std::string_view bearer = "Bearer ";  // of programs that collect metrics (RFC 6750)
+  if (tokens.empty())
+    for (const std::string& given : head.all("Authorization"))
+      if (given.starts_with(bearer)) tokens.push_back(given.substr(bearer.size()));
   if (!post.sign_in &&
       (tokens.size() != 1 || post.token.empty() || !same_secret(tokens.front(), post.token)))
     return denied(403, "token");

@@ -38,9 +38,10 @@ Role needed(const Route& route) {
 void SiteService::add_routes() {
   routes_ = shell_routes();
   routes_.push_back({Method::get, "/c/{campaign}/", true, false, ""});
-  for (const char* path : {"/api/site", "/api/site/state", "/api/settings", "/api/site/events",
-                           "/api/drafts", "/api/ack", "/api/event", "/api/audit", "/site/{page}",
-                           "/site/machines/{page}", "/site/results/{campaign}/{file}"})
+  for (const char* path :
+       {"/api/site", "/api/site/state", "/api/settings", "/api/site/events", "/api/drafts",
+        "/api/ack", "/api/event", "/api/audit", "/metrics", "/site/{page}", "/site/machines/{page}",
+        "/site/results/{campaign}/{file}"})
     routes_.push_back({Method::get, path, false, false, ""});
   routes_.push_back({Method::post, "/api/open", false, false, of_json});
   routes_.push_back({Method::post, "/api/verify", false, false,
@@ -222,6 +223,7 @@ Answer SiteService::answer_to(const Request& request, const User* user) {
 
 Answer SiteService::get(const std::string& path, const Request& request, const User* user) {
   if (path == "/api/site") return morning();
+  if (path == "/metrics") return metrics();
   if (path == "/api/site/state") return state(user);
   if (path == "/api/settings") return settings(user);
   if (path == "/api/audit") {

@@ -79,6 +79,7 @@ class SiteService : public Starting {
   Answer get(const std::string& path, const Request& request, const User* user);
   Answer post(const std::string& what, const Request& request, const User* user);
   Answer morning();
+  Answer metrics();
   Answer page(const std::string& name);
   Answer result(const std::string& campaign, const std::string& file);
   Answer state(const User* user);

@@ -10,7 +10,7 @@ import urllib.parse
 
 import unittest
 
-from live import LiveTest, ROOT, SAMPLES, Server, Stream, json_of, nonio
+from live import LiveTest, NONIO, ROOT, SAMPLES, Server, Stream, json_of, nonio
 
 DATE = "2026-11-23"
 
@@ -57,6 +57,28 @@ class Sites(LiveTest):
                 self.assertEqual(s.request("GET", f"/site/{name}")[0], 404, name)
             self.assertEqual(s.request("GET", "/site/index.html", token=False)[0], 403)
             self.assertEqual(s.request("GET", "/", token=False)[0], 200)
+
+    def test_metrics_of_the_last_run_for_programs_with_the_token(self):
+        with Server(self.small, "--out", self.out) as s:
+            self.assertEqual(s.request("GET", "/metrics")[0], 503)  # no run yet
+            self.night()
+            status, headers, body = s.request("GET", "/metrics", headers={"Authorization": f"Bearer {s.token}"}, token=False)
+            self.assertEqual((status, headers["Content-Type"]), (200, "application/openmetrics-text; version=1.0.0; charset=utf-8"))
+            same = subprocess.run([NONIO, "status", self.out, "--metrics"], capture_output=True, check=True).stdout
+
+            def without_age(text):
+                return [line for line in text.splitlines() if not line.startswith(b"nonio_last_run_age_seconds")]
+            self.assertEqual(without_age(body), without_age(same))
+            self.assertIn(b"nonio_campaigns{", body)
+            for headers in ({}, {"Authorization": "Bearer " + s.token[:-1] + "x"}, {"Authorization": "Basic " + s.token}, {"Authorization": s.token},
+                            {"Authorization": f"Bearer {s.token}", "X-Nonio-Token": "0" * 32}, {"Authorization": f"Bearer {s.token}", "Origin": "http://other"}):
+                self.assertEqual(s.request("GET", "/metrics", headers=headers, token=False)[0], 403, headers)
+            if shutil.which("promtool"):
+                subprocess.run(["promtool", "check", "metrics"], input=body, check=True)
+            else:
+                print("promtool is not installed: its check is skipped", flush=True)
+        with Server(self.small) as s:
+            self.assertIn("--out", s.get("/metrics", expect=409)["error"])
 
     def test_without_an_output_folder_it_says_so(self):
         with Server(self.small) as s:
