@@ -29,6 +29,7 @@
 #include "platform/storage/database.h"
 #include "platform/storage/disk.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 
 namespace nonio::batch {
 namespace fs = std::filesystem;
@@ -133,6 +134,41 @@ void write_mail(RunResult& run, const RunOptions& options, const RunEvents& even
   events.note(run.notes.back());
 }
 
+/// Lines that require action, each once: OUT/.nonio/webhook.json has the ids of those that were taken.
+/// A program that does not take them delays no result; the next run tries again.
+void post_news(RunResult& run, const RunOptions& options, const RunEvents& events,
+               const reading::Context& context) {
+  using storage::Json;
+  constexpr const char* name = "webhook.json";
+  const Json actions = Json::parse(run.actions, nullptr, false);
+  if (!context.site.webhook || !actions.is_array() || process::is_stop_requested()) return;
+  const std::filesystem::path folder = options.out / state_folder;
+  const auto before = storage::read_file(folder / name);
+  const Json taken = before ? Json::parse(*before, nullptr, false) : Json::array();
+  Json lines = Json::array(), ids = Json::array(), still = Json::array();
+  for (const Json& line : actions) {
+    const bool known = std::find(taken.begin(), taken.end(), line.at("id")) != taken.end();
+    (known ? still : lines).push_back(known ? line.at("id") : line);
+    ids.push_back(line.at("id"));
+  }
+  if (!lines.empty()) {
+    const Json body = {{"schema", "nonio-webhook/1"},
+                       {"run", run.run.number},
+                       {"date", run.run.date},
+                       {"lines", lines}};
+    if (const auto sent = send_webhook(*context.site.webhook, options.site, storage::dump(body));
+        !sent) {
+      run.notes.push_back("the webhook did not take " + std::to_string(lines.size()) +
+                          " lines, the next run sends them again: " + sent.error().message);
+      events.note(run.notes.back());
+      ids = still;
+    }
+  }
+  if (ids == taken) return;
+  if (auto kept = storage::publish(folder, {{name, storage::dump(ids)}}); !kept)
+    events.note(kept.error().message);
+}
+
 /// First what cannot be left lying; then what the register states; the summary last.
 Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEvents& events,
                          const SetUp& place, RunState& state) {
@@ -140,7 +176,10 @@ Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEve
   if (auto tidied = tidy_all(run, options.out, state.resumed); !tidied) return tidied;
   if (auto noted = note_certificates(run, options, context, state); !noted) return noted;
   const MorningPages morning = worklist_of(run, options, events, context);
-  if (!state.reopened) write_mail(run, options, events, context, morning);
+  if (!state.reopened) {
+    write_mail(run, options, events, context, morning);
+    post_news(run, options, events, context);
+  }
   const config::TerminalWords words(context.templates, context.site.language);
   if (auto written = write_summary(run, options.out, options.version, words, morning); !written)
     return written;

@@ -3,6 +3,9 @@
 
 #include <Poco/Base64Encoder.h>
 #include <Poco/Net/Context.h>
+#include <Poco/Net/HTTPRequest.h>
+#include <Poco/Net/HTTPResponse.h>
+#include <Poco/Net/HTTPSClientSession.h>
 #include <Poco/Net/MailMessage.h>
 #include <Poco/Net/MailRecipient.h>
 #include <Poco/Net/NetException.h>
@@ -10,6 +13,7 @@
 #include <Poco/Net/SSLManager.h>
 #include <Poco/Net/SecureSMTPClientSession.h>
 #include <Poco/Net/SecureStreamSocket.h>
+#include <Poco/URI.h>
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -18,12 +22,14 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <memory>
 #include <sstream>
 #include <utility>
 #include <vector>
 
 #include "campaign/config/secret_files.h"
 #include "platform/process/child.h"
+#include "platform/storage/digest.h"
 #include "platform/storage/late_library.h"
 
 namespace nonio::batch {
@@ -142,10 +148,10 @@ Expected<std::string> by_program(const config::Mail& mail, const net::MailMessag
   return std::string();
 }
 
-net::Context::Ptr context_of(const config::Mail& mail, const fs::path& site) {
+net::Context::Ptr context_of(const std::string& trust, const fs::path& site) {
   net::Context::Ptr context =
-      new net::Context(net::Context::TLS_CLIENT_USE, mail.trust.empty() ? "" : (site / mail.trust),
-                       net::Context::VERIFY_STRICT, 9, mail.trust.empty());
+      new net::Context(net::Context::TLS_CLIENT_USE, trust.empty() ? "" : (site / trust),
+                       net::Context::VERIFY_STRICT, 9, trust.empty());
   context->requireMinimumProtocol(net::Context::PROTO_TLSV1_2);
   context->enableExtendedCertificateVerification(true);  // the name of the server, too
   net::SSLManager::instance().initializeClient(nullptr, new net::RejectCertificateHandler(false),
@@ -183,7 +189,7 @@ void talk(const config::Mail& mail, const fs::path& site, const std::string& pas
           const net::MailMessage& message, const Poco::Timespan& patience) {
   const auto port = static_cast<Poco::UInt16>(mail.port);
   net::Context::Ptr context;
-  if (mail.tls != config::Mail::Tls::none) context = context_of(mail, site);
+  if (mail.tls != config::Mail::Tls::none) context = context_of(mail.trust, site);
   if (mail.tls == config::Mail::Tls::tls) {
     net::SecureStreamSocket socket(context);
     socket.setPeerHostName(mail.smtp);
@@ -243,8 +249,47 @@ Expected<std::string> deliver(const config::Mail& mail, const fs::path& site, co
                            : by_server(mail, site, message, seconds);
 }
 
+Expected<std::string> post(const config::Webhook& webhook, const fs::path& site,
+                           const std::string& body, double seconds) {
+  const std::string none;
+  NONIO_TRY(const auto secret,
+            config::read_password(
+                {webhook.secret_file, none, none, "the secret of the webhook", "webhook"}, site));
+  if (secret.empty()) return fail("the secret of the webhook is empty");
+  const WithoutPipeSignal hold;
+  try {
+    const Poco::URI address(webhook.url);
+    const std::unique_ptr<net::HTTPClientSession> session =
+        address.getScheme() == "https"
+            ? std::make_unique<net::HTTPSClientSession>(address.getHost(), address.getPort(),
+                                                        context_of(webhook.trust, site))
+            : std::make_unique<net::HTTPClientSession>(address.getHost(), address.getPort());
+    session->setTimeout(Poco::Timespan(static_cast<long>(seconds), 0));
+    std::string target = address.getPathAndQuery();
+    if (target.empty()) target = "/";
+    net::HTTPRequest request(net::HTTPRequest::HTTP_POST, target, net::HTTPMessage::HTTP_1_1);
+    request.setContentType("application/json");
+    request.setContentLength64(static_cast<Poco::Int64>(body.size()));
+    request.set("User-Agent", "nonio");
+    request.set("X-Nonio-Signature", "sha256=" + storage::hmac_sha256(secret, body));
+    session->sendRequest(request) << body << std::flush;
+    net::HTTPResponse response;
+    session->receiveResponse(response);
+    if (response.getStatus() / 100 != 2)
+      return fail(webhook.url + " answered " + std::to_string(response.getStatus()) + " " +
+                  one_line(response.getReason(), longest_answer));
+  } catch (const Poco::Exception& e) {
+    return fail(webhook.url + ": " + one_line(e.displayText(), longest_answer));
+  } catch (const std::exception& e) {
+    return fail(webhook.url + ": " + one_line(e.what(), longest_answer));
+  }
+  return std::string();
+}
+
 }  // namespace
 }  // namespace nonio::batch
 
+NONIO_EXPORTED const nonio::batch::PostTo nonio_post;
+const nonio::batch::PostTo nonio_post = nonio::batch::post;
 NONIO_EXPORTED const nonio::batch::Deliver nonio_deliver;
 const nonio::batch::Deliver nonio_deliver = nonio::batch::deliver;

@@ -24,6 +24,16 @@ bool is_reason_for_mail(const reports::WorkItem& line, config::Mail::On on);
 Expected<void> send_mail(const config::Mail& mail, const std::filesystem::path& site,
                          const Letter& letter, double seconds = 60.0);
 
+/// POSTs a body of JSON, with header `X-Nonio-Signature: sha256=HEX`, its HMAC by the secret. Any
+/// status but 2xx is an error. In a process of its own, as above; the secret appears in no error.
+Expected<void> send_webhook(const config::Webhook& webhook, const std::filesystem::path& site,
+                            const std::string& body, double seconds = 20.0);
+
+/// The same of `send_webhook`, as `nonio_post`.
+using PostTo = Expected<std::string> (*)(const config::Webhook& webhook,
+                                         const std::filesystem::path& site, const std::string& body,
+                                         double seconds);
+
 /// The way to the server or program, as `nonio_deliver` of a library that is loaded late
 /// (late_library.h). A server may take `seconds` (s).
 using Deliver = Expected<std::string> (*)(const config::Mail& mail,

@@ -31,4 +31,15 @@ Expected<void> send_mail(const config::Mail& mail, const std::filesystem::path& 
   return {};
 }
 
+Expected<void> send_webhook(const config::Webhook& webhook, const std::filesystem::path& site,
+                            const std::string& body, double seconds) {
+  const auto sent = read_apart<std::string>(
+      "the answer of the webhook", seconds, [&](process::SignsOfLife&) -> Expected<std::string> {
+        NONIO_TRY(const auto post, storage::exported_as<PostTo>("libnonio_mail.so", "nonio_post"));
+        return (*post)(webhook, site, body, seconds / 2);
+      });
+  if (!sent) return fail(sent.error());
+  return {};
+}
+
 }  // namespace nonio::batch

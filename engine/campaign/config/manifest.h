@@ -143,9 +143,17 @@ struct Mail {
   std::string password_file, password_env, password_credential;  ///< exactly one with `user`
 };
 
+/// `[webhook]` of site.toml: which program gets new lines of the worklist.
+struct Webhook {
+  std::string url;          ///< https, or http on this machine
+  std::string secret_file;  ///< what signs them
+  std::string trust;        ///< as of the mail
+};
+
 struct SiteFile {
   std::optional<Signing> signing;
   std::optional<Mail> mail{};
+  std::optional<Webhook> webhook{};
   CertificateTexts certificate;
   Numbering numbering;
   Laboratory laboratory;

@@ -26,6 +26,7 @@ std::vector<fs::path> secret_files(const SiteFile& file, const fs::path& site) {
   }
   if (file.database) add(file.database->password_file, {});
   if (file.mail) add(file.mail->password_file, file.mail->password_credential);
+  if (file.webhook) add(file.webhook->secret_file, {});
   return files;
 }
 

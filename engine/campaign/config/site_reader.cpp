@@ -70,6 +70,23 @@ Mail read_mail(TableReader& reader) {
   return m;
 }
 
+/// `[webhook]` of site.toml. Nothing leaves this machine readable.
+Webhook read_webhook(TableReader& reader) {
+  Webhook w{reader.text("url"), reader.text("secret_file"), reader.text("trust")};
+  const auto begins = [&](std::string_view host) {
+    const std::string from = "http://" + std::string(host);
+    return w.url.starts_with(from) &&
+           (w.url.size() == from.size() || w.url[from.size()] == ':' || w.url[from.size()] == '/');
+  };
+  if (!w.url.empty() && !w.url.starts_with("https://") && !begins("127.0.0.1") &&
+      !begins("localhost"))
+    reader.error("url",
+                 "expected an address that begins with https://, or with http://127.0.0.1; without "
+                 "encryption customers and machines would be readable on the way");
+  reader.finish();
+  return w;
+}
+
 constexpr double cmc_length = 1e-6, cmc_angle = 1.0 / arcsec_per_rad;
 
 /// Keys that exclude each other, and keys that need another one.
@@ -246,6 +263,7 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
     site.evaluation += "decision_rule = \"" + *rule + "\"\n";
   if (auto reader = top.table("signing")) site.signing = read_signing(*reader);
   if (auto reader = top.table("mail")) site.mail = read_mail(*reader);
+  if (auto reader = top.table("webhook")) site.webhook = read_webhook(*reader);
   if (auto reader = top.table("certificate")) {
     site.certificate = read_certificate(*reader);
     site.numbering = read_numbering(*reader);

@@ -2,6 +2,7 @@
 #include "platform/storage/digest.h"
 
 #include <openssl/evp.h>
+#include <openssl/hmac.h>
 
 #include <algorithm>
 #include <array>
@@ -43,14 +44,31 @@ void RunningDigest::add(std::string_view bytes) {
     throw std::bad_alloc();
 }
 
-std::string RunningDigest::hex() {
+namespace {
+using Digest = std::array<unsigned char, 32>;
+
+std::string hex_of(const Digest& digest) {
   constexpr std::string_view digits = "0123456789abcdef";
-  std::array<unsigned char, 32> digest{};
-  if (::EVP_DigestFinal_ex(state_->context.get(), digest.data(), nullptr) != 1)
-    throw std::bad_alloc();
   std::string text;
   for (const unsigned char byte : digest) text += {digits[byte >> 4U], digits[byte & 15U]};
   return text;
+}
+}  // namespace
+
+std::string RunningDigest::hex() {
+  Digest digest{};
+  if (::EVP_DigestFinal_ex(state_->context.get(), digest.data(), nullptr) != 1)
+    throw std::bad_alloc();
+  return hex_of(digest);
+}
+
+std::string hmac_sha256(std::string_view key, std::string_view bytes) {
+  Digest digest{};
+  const auto* const text = reinterpret_cast<const unsigned char*>(bytes.data());
+  if (::HMAC(method(), key.data(), static_cast<int>(key.size()), text, bytes.size(), digest.data(),
+             nullptr) == nullptr)
+    throw std::bad_alloc();
+  return hex_of(digest);
 }
 
 std::string sha256(std::string_view bytes) {

@@ -29,6 +29,8 @@ class RunningDigest {
 
 /// SHA-256 in lower-case hexadecimal.
 std::string sha256(std::string_view bytes);
+/// HMAC of SHA-256 (RFC 2104), the same way.
+std::string hmac_sha256(std::string_view key, std::string_view bytes);
 /// `after_each_part`: called while a long file is read, for who waits for signs of life.
 Expected<std::string> sha256_of_file(const std::filesystem::path& path,
                                      const std::function<void()>& after_each_part = {});

@@ -113,6 +113,7 @@ def site():
                     "time_stamp_roots": "t.pem", "revocation": "r.pem", "signer": "",
                     "signers": [{"who": "CN=A", "from": DAY, "until": DAY}], "time_stamp": "http://tsa.example/", "time_stamp_missing": "sign",
                     "time_stamp_seconds": 20},
+        "webhook": {"url": "https://lab.example/hook", "secret_file": "keys/hook", "trust": "keys/root.pem"},
         "mail": {"to": ["a@b.example"], "from": "c@d.example", "on": "out", "base_url": "https://lab.example/out", "sendmail": "", "smtp": "mail.example",
                  "tls": "tls", "port": 465, "trust": "t.pem", "user": "u", "password_file": "p", "password_env": "",
                  "password_credential": ""},

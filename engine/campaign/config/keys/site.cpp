@@ -326,6 +326,24 @@ constexpr Key mail_keys[] = {
     {"password_credential", text, "Credential of systemd with the password."},
 };
 
+constexpr Key webhook_keys[] = {
+    {.name = "url",
+     .holds = text,
+     .help = "Address that new lines of the worklist are sent to: https://, or http:// on this "
+             "machine.",
+     .required = true,
+     .wanted = "expected an address that begins with https://, or with http://127.0.0.1, found "
+               "\"{}\"",
+     .text = {.not_letters = " \t\r\n<>\"[]@", .longest = 500, .begins = "http"}},
+    {.name = "secret_file",
+     .holds = text,
+     .help = "File with the secret that signs each message.",
+     .required = true},
+    {"trust", text,
+     "PEM file with the roots that the server's certificate must come from; without it "
+     "those of the system."},
+};
+
 constexpr Choice terminal_languages[] = {{"de"}, {"en"}, {"it"}};
 constexpr Key site_file_keys[] = {
     format_key,
@@ -362,6 +380,10 @@ constexpr Key site_file_keys[] = {
      .holds = table,
      .help = "Mail of the nightly run, sent only when action is required.",
      .keys = mail_keys},
+    {.name = "webhook",
+     .holds = table,
+     .help = "Message to a program about new lines of the worklist.",
+     .keys = webhook_keys},
     {.name = "certificate",
      .holds = table,
      .help = "Content and numbering of certificates.",
