@@ -122,6 +122,10 @@ class TableReader {
       if (take_heading(line)) continue;
       if (number < map_.tables[table].first || content_of(line) != Content::fields) continue;
       if (auto error = not_text(line)) return fail(at_line(number, error->message));
+      if (table != table_) {
+        table_ = table, visits_.clear();
+        if (map_.heading.empty()) runs_before_ = runs_;  // else each target has a table
+      }
       if (auto ok = row(line, number, map_.tables[table].way); !ok) return fail(ok.error());
     }
     return std::move(rows_);
@@ -159,9 +163,13 @@ class TableReader {
     return {};
   }
 
-  /// Without a column of runs: the n-th time that a target is reached from a side is its run n.
+  /// Without a column of runs each table is one more run of its direction, or as many as it has
+  /// readings of one target.
   void take(Row row) {
-    if (!map_.has(Role::cycle)) row.cycle = ++visits_[{row.way, row.target}];
+    if (!map_.has(Role::cycle)) {
+      row.cycle = runs_before_[row.way] + ++visits_[{row.way, row.target}];
+      runs_[row.way] = std::max(runs_[row.way], row.cycle);
+    }
     rows_.push_back(row);
   }
 
@@ -219,9 +227,11 @@ class TableReader {
   Numbers numbers_;
   std::map<std::uint32_t, Row> by_pos_;
   std::vector<Row> rows_;
-  std::map<std::pair<Way, double>, std::uint32_t> visits_;
-  std::optional<double> heading_target_{};  ///< of the last heading, as in the file
-  double plus_ = 0.0, minus_ = 0.0;         ///< of this row
+  std::size_t table_ = 0;                                   ///< of the last row
+  std::map<Way, std::uint32_t> runs_{}, runs_before_{};     ///< of each way, and before this table
+  std::map<std::pair<Way, double>, std::uint32_t> visits_;  ///< in this table
+  std::optional<double> heading_target_{};                  ///< of the last heading, as in the file
+  double plus_ = 0.0, minus_ = 0.0;                         ///< of this row
 };
 
 /// How the first run that went forward lists its targets; 0 if it is not known.
