@@ -145,10 +145,9 @@ std::vector<Verb> table_of_commands(Common& common, const Program& program) {
                     apart(group("table", "Compensation tables of controls",
                                 {controls_verb(common), diff_verb(common), predict_verb(common),
                                  insert_verb(common), probe_verb(common), session_verb(common)}))});
-  add("Program",
-      {apart(plugin_verb(common)), backup_verb(common), restore_verb(common), help_verb(program)});
+  add("Program", {apart(plugin_verb(common)), help_verb(program)});
   add("", {version_verb(common), completion_verb(program), apart(schema_verb(common)),
-           upgrade_verb(common)});
+           upgrade_verb(common), backup_verb(common), restore_verb(common)});
   return all;
 }
 
@@ -173,7 +172,8 @@ int main(int argc, char** argv) try {
           "Nonio evaluates machine-tool calibration campaigns: results according to the standards, "
           "findings, reports, certificates and compensation tables.",
       .footer =
-          "Also: nonio version, nonio completion SHELL, nonio schema FILE, nonio upgrade SITE. "
+          "Also: nonio version, nonio completion SHELL, nonio schema FILE, nonio upgrade SITE, "
+          "nonio backup SITE FILE, nonio restore FILE FOLDER. "
           "`nonio help COMMAND` describes a command.\n\n"
           "Exit status: 0 done; 1 done, but some campaign or check failed; 2 usage or "
           "configuration error; 130 interrupted.",

@@ -64,16 +64,13 @@ class Backup {
       if (auto done = add_database(path); !done) return fail(done.error());
     for (const fs::path& path : folders_)
       if (auto done = add_folder(path); !done) return fail(done.error());
-    std::string digests;
-    for (const auto& [name, sha256] : digests_) digests += sha256 + "  " + name + "\n";
-    const TarEntry last{.name = backup_digests, .mode = 0644, .size = digests.size()};
+    const TarEntry last{.name = backup_digests, .mode = 0644, .size = digests_.size()};
     auto done = tar_.add(last, [&](const auto& take) -> Expected<void> {
-      take(digests);
+      take(digests_);
       return {};
     });
     if (done) done = tar_.end();
     if (!done) return fail(done.error());
-    summary_.files = digests_.size();
     return std::move(summary_);
   }
 
@@ -133,7 +130,8 @@ class Backup {
       });
     });
     if (!done) return done;
-    digests_[entry.name] = digest.hex();
+    digests_ += digest.hex() + "  " + entry.name + "\n";
+    ++summary_.files;
     summary_.bytes += entry.size;
     return {};
   }
@@ -184,7 +182,7 @@ class Backup {
         return done;
     const std::int64_t position = tar_.position();
     for (int attempt = 0; attempt < most; ++attempt) {
-      const auto digests = digests_;
+      const std::size_t listed = digests_.size();
       const BackupSummary summary = summary_;
       NONIO_TRY(const auto before, states_in(folder));
       Expected<void> done;
@@ -192,7 +190,7 @@ class Backup {
         if (done = add(path, path); !done) break;
       NONIO_TRY(const auto after, states_in(folder));
       if (before == after) return done;
-      digests_ = digests;
+      digests_.resize(listed);
       summary_ = summary;
       if (auto back = tar_.back_to(position); !back) return back;
       std::this_thread::sleep_for(pause);
@@ -204,7 +202,7 @@ class Backup {
   TarWriter& tar_;
   std::vector<fs::path> folders_{};
   std::set<fs::path> identities_{}, databases_{};
-  std::map<std::string, std::string> digests_{};
+  std::string digests_{};  ///< the list, as it is written
   BackupSummary summary_{};
 };
 
