@@ -1,4 +1,4 @@
-// ---- the server: every request has the token, which never stands in an address or a cookie; or a session, where people
+// ---- the server: every request has the token, which is never in an address or a cookie; or a session, where people
 // sign in ----
 const net = (() => {
   const at = /(?:^|[#&])t=([0-9a-f]{32})(?:&|$)/.exec(location.hash);

@@ -79,22 +79,22 @@ class SignIn(LiveTest):
             self.assertIn("users.toml", error)
             self.assertNotIn("secret password", error)
         (self.site / "users.toml").write_text('format = 1\n[[user]]\naccount = "a"\nname = "A"\nrole = "view"\n')
-        self.assertIn("--hash-password", nonio("serve", self.site, expect=2).stderr, "nobody could get in")
+        self.assertIn("--hash-password", nonio("serve", self.site, expect=2).stderr, "no person could sign in")
 
     def test_without_a_session_there_is_nothing(self):
         with self.serve() as s:
             self.assertNotIn("#", s.line)
-            nobody = Person(s)
+            stranger = Person(s)
             for method, path in (("GET", "/api/site/state"), ("GET", "/api/campaigns"), ("GET", "/api/audit"), ("GET", "/api/site/events"), ("GET", "/c/adjusted/api/state"), ("GET", "/site/index.html"),
                                  ("POST", "/api/run"), ("POST", "/api/release"), ("POST", "/api/open"), ("POST", "/api/sign-out")):
                 for cookie in (None, "nonio-00000000=" + "0" * 32, "nonio-00000000="):
-                    nobody.cookie = cookie
-                    self.assertEqual((403, "signed_out"), (lambda r: (r[0], r[1]["id"]))(nobody.ask(method, path, {} if method == "POST" else None)), path)
-            self.assertEqual(403, nobody.ask("POST", "/api/sign-in", {"account": "sample", "password": PASSWORDS["sample"]}, {"Origin": "http://evil.example"})[0], "not for another page")
-            self.assertEqual(403, nobody.ask("POST", "/api/sign-in", {"account": "sample", "password": PASSWORDS["sample"]}, {"Sec-Fetch-Site": "cross-site"})[0])
-            self.assertEqual(415, nobody.ask("POST", "/api/sign-in", "account=sample", {"Content-Type": "application/x-www-form-urlencoded"})[0])
+                    stranger.cookie = cookie
+                    self.assertEqual((403, "signed_out"), (lambda r: (r[0], r[1]["id"]))(stranger.ask(method, path, {} if method == "POST" else None)), path)
+            self.assertEqual(403, stranger.ask("POST", "/api/sign-in", {"account": "sample", "password": PASSWORDS["sample"]}, {"Origin": "http://evil.example"})[0], "not for another page")
+            self.assertEqual(403, stranger.ask("POST", "/api/sign-in", {"account": "sample", "password": PASSWORDS["sample"]}, {"Sec-Fetch-Site": "cross-site"})[0])
+            self.assertEqual(415, stranger.ask("POST", "/api/sign-in", "account=sample", {"Content-Type": "application/x-www-form-urlencoded"})[0])
             for body in ({}, [], {"account": "", "password": "x"}, {"account": 1}, {"account": "x" * 500, "password": "x"}):
-                self.assertEqual(400, nobody.ask("POST", "/api/sign-in", body)[0], body)
+                self.assertEqual(400, stranger.ask("POST", "/api/sign-in", body)[0], body)
 
     def test_a_session(self):
         with self.serve() as s:
@@ -131,15 +131,15 @@ class SignIn(LiveTest):
 
     def test_wrong_passwords_are_delayed(self):
         with self.serve() as s:
-            nobody = Person(s)
+            stranger = Person(s)
             right = {"account": "sample", "password": PASSWORDS["sample"]}
             for account in ("sample", "stranger"):
-                status, answer = nobody.ask("POST", "/api/sign-in", {"account": account, "password": "not this one"})
+                status, answer = stranger.ask("POST", "/api/sign-in", {"account": account, "password": "not this one"})
                 self.assertEqual((403, "password"), (status, answer["id"]), "whether there is such a user is not shown")
-                status, answer = nobody.ask("POST", "/api/sign-in", {**right, "account": account})
+                status, answer = stranger.ask("POST", "/api/sign-in", {**right, "account": account})
                 self.assertEqual((429, "wait"), (status, answer["id"]), "not even the right one is checked now")
             deadline = time.monotonic() + WAIT
-            while (answer := nobody.ask("POST", "/api/sign-in", right))[0] == 429 and time.monotonic() < deadline:
+            while (answer := stranger.ask("POST", "/api/sign-in", right))[0] == 429 and time.monotonic() < deadline:
                 time.sleep(0.2)
             self.assertEqual(200, answer[0], answer)
             self.assertEqual([("sample", "refused"), ("stranger", "refused"), ("sample", "done")], [(e["account"], e["state"]) for e in self.log()])
