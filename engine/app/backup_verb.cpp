@@ -57,12 +57,15 @@ Expected<Json> issued_since(const fs::path& site, const fs::path& out) {
     if (!text) continue;  // a folder of something else
     const Json results = Json::parse(*text, nullptr, false);
     if (!results.is_object() || !results.contains("certificate")) continue;
-    const Json& of = results["certificate"];
-    const std::string number = of.value("number", "");
+    const auto text_of = [&of = results["certificate"]](const char* name) {
+      return of.is_object() && of.contains(name) && of[name].is_string()
+                 ? of[name].get<std::string>()
+                 : std::string();
+    };
+    const std::string number = text_of("number");
     if (number.empty() || issued.contains(number)) continue;
-    since.push_back({{"number", number},
-                     {"date", of.value("date", "")},
-                     {"campaign", folder.filename().string()}});
+    since.push_back(
+        {{"number", number}, {"date", text_of("date")}, {"campaign", folder.filename().string()}});
   }
   return since;
 }

@@ -46,6 +46,8 @@ class Journal {
 /// Of the real user of this process, as the operating system knows him, and the host:
 /// "lab@measuring-room".
 std::string own_account();
+/// False in a user namespace of a person's own, where any number and name of an account can be chosen.
+bool is_own_account_certain();
 /// Now, as the journal writes it.
 std::string utc_now();
 

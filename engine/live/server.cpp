@@ -226,6 +226,7 @@ class Handler : public net::HTTPRequestHandler {
     }
     Request one{head, *verdict.route, verdict.names, ""};
     if (verdict.route->method == Method::post) {
+      if (auto no = house_.service.before_body(head, *verdict.route)) return *std::move(no);
       const std::size_t most = verdict.route->most;
       if (!read_body(request.stream(), most, one.body))
         return refused(413, "body_or_slow", {{"most", std::to_string(most)}});
@@ -237,8 +238,10 @@ class Handler : public net::HTTPRequestHandler {
   static bool read_body(std::istream& from, std::size_t most, std::string& body) {
     const auto deadline = std::chrono::steady_clock::now() + body_patience;
     std::array<char, 1 << 14> part;
-    while (from.good()) {
-      from.read(part.data(), part.size());
+    // What has come already: a sender of one byte a second must not hold a thread for longer.
+    while (from.peek() != std::istream::traits_type::eof()) {
+      const std::streamsize here = std::max<std::streamsize>(from.rdbuf()->in_avail(), 1);
+      from.read(part.data(), std::min(here, static_cast<std::streamsize>(part.size())));
       body.append(part.data(), static_cast<std::size_t>(from.gcount()));
       if (body.size() > most || std::chrono::steady_clock::now() > deadline) return false;
     }

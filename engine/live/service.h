@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -63,6 +64,8 @@ class Service {
   virtual ~Service() = default;
   virtual const std::vector<Route>& routes() const = 0;
   virtual Answer answer(const Request& request) = 0;
+  /// A refusal that needs no body: of whoever is not signed in.
+  virtual std::optional<Answer> before_body(const Head&, const Route&) { return std::nullopt; }
   /// For what is refused.
   virtual const Sentences& sentences() const = 0;
   /// Requests have a session in place of the token.

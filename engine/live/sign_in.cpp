@@ -39,9 +39,18 @@ std::string cookie_of(const Head& head, const std::string& name) {
 }  // namespace
 
 SignIn::Checked SignIn::check(const std::string& account, const std::string& password,
-                              const std::optional<User>& user) {
+                              const std::optional<User>& user, bool of_session) {
+  constexpr int most_waiting = 3;
+  struct Waiting {
+    std::atomic<int>& count;
+    const int before = count++;
+    ~Waiting() { --count; }
+  };
+  const Waiting waiting{waiting_};
+  if (waiting.before >= most_waiting) return {false, 1};
   const std::lock_guard lock(checking_);
-  Wrong& wrong = wrong_[place_of(account)];
+  Wrong& wrong = user ? wrong_[user->account + (of_session ? " in a session" : "")]
+                      : wrong_of_others_[place_of(account)];
   if (const auto left = wrong.until - Clock::now(); left > Clock::duration::zero())
     return {false, static_cast<int>(std::chrono::ceil<std::chrono::seconds>(left).count())};
   if (certificates::fits_password(password, user ? user->password : std::string())) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -27,10 +28,11 @@ class SignIn {
     bool fits = false;
     int wait_s = 0;  ///< not checked: wrong passwords came before, wait so long
   };
-  /// One after the other, so that guessing takes no more than one processor. After a wrong one the
-  /// account is not checked for 1, 2, 4 ... 60 s; whether it exists is not shown.
+  /// One after the other, so that guessing takes no more than one processor; few may wait for it. After a
+  /// wrong one the account is not checked for 1, 2, 4 ... 60 s; whether it exists is not shown.
+  /// `of_session`: of a person who is signed in, whom wrong passwords of others do not stop.
   Checked check(const std::string& account, const std::string& password,
-                const std::optional<certificates::User>& user);
+                const std::optional<certificates::User>& user, bool of_session = false);
 
   /// Value of Set-Cookie for a new session. `secure`: not over plain HTTP.
   Expected<std::string> begin(const certificates::User& user, bool secure);
@@ -54,7 +56,9 @@ class SignIn {
   std::mutex mutex_, checking_;
   std::string cookie_{};                       ///< its name; another one for each start of a server
   std::map<std::string, Session> sessions_{};  ///< by the SHA-256 of what the cookie has
-  std::array<Wrong, 256> wrong_{};             ///< by the first byte of the account's SHA-256
+  std::map<std::string, Wrong> wrong_{};       ///< by account, and by account in a session
+  std::array<Wrong, 256> wrong_of_others_{};   ///< of no user: by the account's SHA-256
+  std::atomic<int> waiting_ = 0;
 };
 
 }  // namespace nonio::live

@@ -47,6 +47,7 @@ constexpr std::size_t longest_account = 200;
 /// Of the page over TLS, which a proxy adds.
 bool is_by_proxy(const Head& head) {
   const std::string host = head.first("Host");
+  if (head.first("Origin").starts_with("https:")) return true;
   return !host.starts_with("127.0.0.1") && !host.starts_with("localhost");
 }
 
@@ -101,7 +102,7 @@ Answer SiteService::release(const Json& body, const User* user) {
   std::string password;
   if (user != nullptr && !user->password.empty()) {
     password = body.value("password", "");
-    const auto checked = sign_in_.check(user->account, password, *user);
+    const auto checked = sign_in_.check(user->account, password, *user, true);
     if (checked.wait_s > 0)
       return refused(429, "wait", {{"seconds", std::to_string(checked.wait_s)}});
     if (!checked.fits) return refused(403, "password");

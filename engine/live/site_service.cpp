@@ -50,7 +50,8 @@ void SiteService::add_routes() {
   for (const char* path : {"/api/ack", "/api/event", "/api/release", "/api/run", "/api/run/cancel"})
     routes_.push_back({Method::post, path, false, true, of_json});
   if (wish_.sign_in) {
-    routes_.push_back({Method::post, "/api/sign-in", true, false, of_json});
+    constexpr std::size_t most_of_sign_in = 4096;
+    routes_.push_back({Method::post, "/api/sign-in", true, false, of_json, most_of_sign_in});
     routes_.push_back({Method::post, "/api/sign-out", false, false, of_json});
   }
   for (Route& route : SiteCampaigns::routes()) routes_.push_back(std::move(route));
@@ -152,11 +153,23 @@ tl::expected<certificates::User, Answer> SiteService::user_of(const Head& head) 
   return *std::move(user);
 }
 
+std::optional<Answer> SiteService::before_body(const Head& head, const Route& route) {
+  if (route.open || (wish_.user_header.empty() && !wish_.sign_in)) return std::nullopt;
+  const auto user = user_of(head);
+  return user ? std::nullopt : std::optional(user.error());
+}
+
 Answer SiteService::answer(const Request& request) {
   const std::string& path = request.route.path;
   if (path == "/api/sign-in") return begin_session(request);
   if (request.route.open) return shell_file(request, path == "/" ? shells_.site : shells_.campaign);
-  if (wish_.user_header.empty() && !wish_.sign_in) return answer_to(request, nullptr);
+  if (wish_.user_header.empty() && !wish_.sign_in) {
+    std::error_code
+        error;  // a file that is new since the start has users who would not be asked for
+    return std::filesystem::exists(wish_.folder / certificates::users_name, error)
+               ? refused(503, "users_new")
+               : answer_to(request, nullptr);
+  }
   const auto user = user_of(request.head);
   if (!user) return user.error();
   if (path == "/api/sign-out") return end_session(request);
@@ -177,8 +190,12 @@ Answer SiteService::recorded(const Request& request, const User& user, bool may)
                 {"request", request.head.target.substr(0, request.head.target.find('?'))}};
   const Json body = storage::parse_once(request.body);
   const auto add = [&entry](const Json& from, std::initializer_list<const char*> names) {
+    constexpr std::size_t longest = 500;
     for (const char* name : names)
-      if (from.is_object() && from.contains(name)) entry[name] = from[name];
+      if (from.is_object() && from.contains(name) && storage::dump(from[name]).size() <= longest)
+        entry[name] = from[name];
+      else if (from.is_object() && from.contains(name))
+        entry[name] = "(longer than 500 bytes)";
   };
   add(body, {"machine", "finding", "why", "text", "reasons"});
   if (path != "/api/ack" && path != "/api/event") add(body, {"campaign"});

@@ -65,6 +65,7 @@ class SiteService : public Starting {
   const std::vector<Route>& routes() const override { return routes_; }
   const Sentences& sentences() const override { return shells_.sentences; }
   bool signs_in() const override { return wish_.sign_in; }
+  std::optional<Answer> before_body(const Head& head, const Route& route) override;
   Answer answer(const Request& request) override;
   void close() override;
 

@@ -134,7 +134,7 @@ class Releaser {
 
   /// The name of the user whose password was given.
   Expected<void> identify() {
-    if (request_.user.empty()) return {};
+    if (request_.user.empty()) return no_user_is_named();
     if (!request_.by.empty()) return fail("--by and --user: expected one of them");
     NONIO_TRY(const auto users, certificates::read_users(options_.site));
     const auto user = certificates::user_with(users, request_.user);
@@ -147,6 +147,19 @@ class Releaser {
       return fail("--user " + request_.user + ": the role " + certificates::to_text(user->role) +
                   " of users.toml does not allow to approve");
     request_.by = user->name;
+    return {};
+  }
+
+  /// Whoever has a password states it, and no other person their name.
+  Expected<void> no_user_is_named() const {
+    NONIO_TRY(const bool there, storage::is_there(options_.site / certificates::users_name));
+    if (!there) return {};
+    NONIO_TRY(const auto users, certificates::read_users(options_.site));
+    for (const certificates::User& user : users)
+      if (!user.password.empty() &&
+          certificates::likeness_of(user.name) == certificates::likeness_of(request_.by))
+        return fail("--by " + request_.by +
+                    ": this user of users.toml has a password; expected --user " + user.account);
     return {};
   }
 
@@ -215,8 +228,20 @@ class Releaser {
                     " is the author; expected another person as authoriser");
       // A name is typed by whoever sits there: two persons are two passwords or two accounts.
       const bool two_users = !by_author->user.empty() && !request_.user.empty();
+      if (by_author->user.empty() != request_.user.empty())
+        return fail(
+            "two_persons = true in site.toml: one of the two stated a password, the other only a "
+            "name; expected --user of both, or of none");
+      if (!two_users && !certificates::is_own_account_certain())
+        return fail(
+            "two_persons = true in site.toml: this process has user numbers of its own (a user "
+            "namespace), so that accounts are no proof; expected --user of both");
+      // The name of a computer is changed as easily as a name is typed.
+      const auto login = [](const std::string& account) {
+        return account.substr(0, account.find('@'));
+      };
       if (two_users ? by_author->user == request_.user
-                    : by_author->account == certificates::own_account())
+                    : login(by_author->account) == login(certificates::own_account()))
         return fail("two_persons = true in site.toml: the author approved it under this account, " +
                     (two_users ? by_author->user : by_author->account) +
                     "; the authoriser needs an account of their own");

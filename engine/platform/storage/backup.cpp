@@ -113,6 +113,10 @@ class Backup {
       std::error_code error;
       entry.kind = TarEntry::Kind::link;
       entry.target = fs::read_symlink(path, error).string();
+      // Its bytes are elsewhere.
+      if (const auto to = fs::weakly_canonical(path, error).lexically_relative(folder_);
+          !error && (to.empty() || *to.begin() == ".."))
+        summary_.left_out.push_back(entry.name);
       return error ? fail(Error{error.message(), path.string()}) : tar_.add(entry);
     }
     if (!S_ISREG(of.st_mode)) {
@@ -223,6 +227,7 @@ class Restore {
     auto done = read_tar(file_, {[&](const TarEntry& entry) { return begin(entry); },
                                  [&](std::string_view part) { return take(part); }});
     if (done) done = end_file();
+    if (done) done = below_no_link();
     if (done) done = compare();
     if (done && !into_.empty()) done = finish();
     if (!done) return fail(done.error());
@@ -238,6 +243,7 @@ class Restore {
     if (auto done = end_file(); !done) return done;
     if (!is_safe(entry.name)) return wrong("it has a name outside of its folder: " + entry.name);
     if (!names_.insert(entry.name).second) return wrong("it has " + entry.name + " twice");
+    if (entry.kind == TarEntry::Kind::link) links_.insert(entry.name);
     now_ = entry;
     if (entry.kind == TarEntry::Kind::file) digest_.emplace();
     if (entry.name == backup_digests || into_.empty()) return {};
@@ -286,6 +292,15 @@ class Restore {
     return well ? Expected<void>() : fail(error);
   }
 
+  /// Nothing is below a link: it would be written where the link leads.
+  Expected<void> below_no_link() const {
+    for (const std::string& name : names_)
+      for (fs::path above = fs::path(name).parent_path(); !links_.empty() && !above.empty();
+           above = above.parent_path())
+        if (links_.contains(above.string())) return wrong("it has a name below a link: " + name);
+    return {};
+  }
+
   Expected<void> compare() const {
     std::map<std::string, std::string> listed;
     for (std::size_t at = 0; at < list_.size();) {
@@ -329,7 +344,7 @@ class Restore {
   std::optional<RunningDigest> digest_{};
   int fd_ = -1;
   std::string list_{};
-  std::set<std::string> names_{};
+  std::set<std::string> names_{}, links_{};
   std::map<std::string, std::string> digests_{};
   std::vector<TarEntry> later_{};
   BackupSummary summary_{};
@@ -373,6 +388,8 @@ Expected<BackupSummary> restore_backup(const fs::path& file, const fs::path& fol
   if (!error && !fs::create_directory(temporary, error) && !error)
     return fail(Error{"exists already: another restore is running, or was interrupted; remove it",
                       temporary.string()});
+  // What the folder had is not known; a site may contain keys and passwords.
+  if (!error) fs::permissions(temporary, fs::perms::owner_all, error);
   if (error) return fail(Error{error.message(), temporary.string()});
   auto restored = Restore(file, temporary).read();
   if (restored) fs::rename(temporary, to, error);

@@ -157,6 +157,9 @@ Expected<StatedColumns> StatedColumns::of(const std::vector<std::string>& entrie
           "target_mm\", with one of " +
           list + "ignore; found " + shown(entry));
     }
+    if (std::any_of(out.names_.begin(), out.names_.end(),
+                    [&](const Stated& one) { return one.name == name; }))
+      return fail("option columns: \"" + std::string(name) + "\" is stated twice");
     out.names_.push_back({std::string(name), column_number(name), std::string(known)});
   }
   return out;

@@ -95,6 +95,38 @@ class SignIn(LiveTest):
             self.assertEqual(415, stranger.ask("POST", "/api/sign-in", "account=sample", {"Content-Type": "application/x-www-form-urlencoded"})[0])
             for body in ({}, [], {"account": "", "password": "x"}, {"account": 1}, {"account": "x" * 500, "password": "x"}):
                 self.assertEqual(400, stranger.ask("POST", "/api/sign-in", body)[0], body)
+            self.assertEqual(413, stranger.ask("POST", "/api/sign-in", {"account": "sample", "password": "x" * 5000})[0])
+            # Who is not signed in is refused before the body has come.
+            connection = http.client.HTTPConnection("127.0.0.1", s.port, timeout=WAIT)
+            connection.putrequest("POST", "/api/run", skip_host=True)
+            for name, value in (("Host", f"127.0.0.1:{s.port}"), ("Content-Type", "application/json"), ("Content-Length", "900000")):
+                connection.putheader(name, value)
+            connection.endheaders(b"{")
+            self.assertEqual(403, connection.getresponse().status)
+            connection.close()
+
+    def test_users_that_are_new_since_the_start_are_not_passed_over(self):
+        (self.site / "users.toml").unlink()
+        with self.serve() as s:
+            self.assertEqual(200, s.request("GET", "/api/site/state")[0])
+            self.users("sample")
+            status, _, body = s.request("GET", "/api/site/state")
+            self.assertEqual((503, "users_new"), (status, json.loads(body)["id"]))
+
+    def test_wrong_passwords_of_others_stop_no_approval(self):
+        with self.serve() as s:
+            signed_in, stranger = Person(s, "sample"), Person(s)
+            self.assertEqual(403, stranger.ask("POST", "/api/sign-in", {"account": "sample", "password": "not this one"})[0])
+            self.assertEqual(429, stranger.ask("POST", "/api/sign-in", {"account": "sample", "password": PASSWORDS["sample"]})[0])
+            status, answer = signed_in.ask("POST", "/api/release", {"campaign": "adjusted", "password": PASSWORDS["sample"]})
+            self.assertNotEqual(429, status, answer)
+
+    def test_a_refused_request_leaves_little_in_the_log(self):
+        with self.serve() as s:
+            person = Person(s, "view-1")
+            before = len((self.site / "audit.jsonl").read_text())
+            self.assertEqual(403, person.ask("POST", "/api/event", {"text": "x" * 100_000})[0])
+            self.assertLess(len((self.site / "audit.jsonl").read_text()) - before, 2000)
 
     def test_a_session(self):
         with self.serve() as s:
