@@ -118,6 +118,9 @@ Expected<std::unique_ptr<Starting>> service_of(const LiveWish& wish) {
     auto signs_in = requires_sign_in(wish);
     if (!signs_in) return fail(signs_in.error());
     settled.sign_in = *signs_in;
+    if (settled.sign_in && !wish.token_file.empty())
+      return fail(
+          "--token-file: people sign in at this site (users.toml), so that no token is used");
   }
   NONIO_TRY(auto shells, shells_of(wish));
   NONIO_TRY(auto launcher, Launcher::start({wish.folder, wish.plugin_folders, wish.template_folders,
