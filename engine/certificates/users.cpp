@@ -35,6 +35,8 @@ Expected<std::vector<User>> parse_users(std::string_view text) {
     user.password = reader.text("password");
     if (!user.password.empty() && !is_password_hash(user.password))
       reader.error("password", "expected a line that nonio serve SITE --hash-password has printed");
+    if (const std::string mistake = mistake_in_name(user.name); !mistake.empty())
+      reader.error("name", mistake);
     for (const User& other : out)
       if (other.account == user.account || likeness_of(other.name) == likeness_of(user.name))
         reader.error("account", "account and name of each [[user]] have to be its own, found \"" +

@@ -58,7 +58,7 @@ std::string one_line(std::string text, std::size_t longest) {
 std::string without(const std::string& secret, const std::string& text) {
   if (secret.empty()) return text;
   const bool there = text.find(secret) != std::string::npos;
-  return there ? "its answer holds the password, and is not shown" : text;
+  return there ? "its answer contains a secret that was sent, and is not shown" : text;
 }
 
 /// `=?UTF-8?B?...?=` in pieces, none of which cuts a character (RFC 2047).
@@ -277,7 +277,7 @@ Expected<std::string> post(const config::Webhook& webhook, const fs::path& site,
     session->receiveResponse(response);
     if (response.getStatus() / 100 != 2)
       return fail(webhook.url + " answered " + std::to_string(response.getStatus()) + " " +
-                  one_line(response.getReason(), longest_answer));
+                  one_line(without(secret, response.getReason()), longest_answer));
   } catch (const Poco::Exception& e) {
     return fail(webhook.url + ": " + one_line(e.displayText(), longest_answer));
   } catch (const std::exception& e) {

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <set>
 #include <thread>
@@ -58,8 +59,14 @@ class Backup {
   Expected<BackupSummary> write() {
     if (auto done = list(); !done) return fail(done.error());
     // The file that states how far the register has gone comes before the register itself.
-    for (const fs::path& path : identities_)
-      if (auto done = add(path, path); !done) return fail(done.error());
+    for (const fs::path& path : identities_) {
+      const auto state = [&] {
+        States one;
+        note_state(path, one);
+        return Expected<States>(std::move(one));
+      };
+      if (auto done = add_until_same(state, path); !done) return fail(done.error());
+    }
     for (const fs::path& path : databases_)
       if (auto done = add_database(path); !done) return fail(done.error());
     for (const fs::path& path : folders_)
@@ -154,17 +161,24 @@ class Backup {
     return add(path, copy);
   }
 
-  Expected<std::map<fs::path, FileState>> states_in(const fs::path& folder) const {
-    std::map<fs::path, FileState> states;
+  using States = std::map<fs::path, FileState>;
+
+  /// Of a file or a link, if it is there.
+  static void note_state(const fs::path& path, States& states) {
+    struct stat of {};
+    if (::lstat(path.c_str(), &of) == 0 && !S_ISDIR(of.st_mode))
+      states[path] = {static_cast<std::int64_t>(of.st_ino), of.st_size, of.st_mtim.tv_sec,
+                      of.st_mtim.tv_nsec, static_cast<std::int64_t>(of.st_mode)};
+  }
+
+  Expected<States> states_in(const fs::path& folder) const {
+    States states;
     std::error_code error;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
       const fs::path& path = it->path();
-      struct stat of {};
-      if (databases_.contains(path) || identities_.contains(path) || is_passing(path, databases_) ||
-          ::lstat(path.c_str(), &of) != 0 || S_ISDIR(of.st_mode))
-        continue;
-      states[path] = {static_cast<std::int64_t>(of.st_ino), of.st_size, of.st_mtim.tv_sec,
-                      of.st_mtim.tv_nsec, static_cast<std::int64_t>(of.st_mode)};
+      if (!databases_.contains(path) && !identities_.contains(path) &&
+          !is_passing(path, databases_))
+        note_state(path, states);
     }
     if (error && error != std::errc::no_such_file_or_directory)
       return fail(Error{error.message(), folder.string()});
@@ -173,8 +187,6 @@ class Backup {
 
   /// All of its files as they were at one moment.
   Expected<void> add_folder(const fs::path& folder) {
-    constexpr int most = 50;
-    constexpr std::chrono::milliseconds pause{100};
     struct stat of {};
     if (::lstat(folder.c_str(), &of) != 0) return {};  // removed since it was listed
     if (folder != folder_)
@@ -184,22 +196,30 @@ class Backup {
                                 .changed = static_cast<std::int64_t>(of.st_mtime)});
           !done)
         return done;
+    return add_until_same([&] { return states_in(folder); }, folder);
+  }
+
+  /// The files of `states`, written again while one of them changes.
+  Expected<void> add_until_same(const std::function<Expected<States>()>& states,
+                                const fs::path& of) {
+    constexpr int most = 50;
+    constexpr std::chrono::milliseconds pause{100};
     const std::int64_t position = tar_.position();
     for (int attempt = 0; attempt < most; ++attempt) {
       const std::size_t listed = digests_.size();
       const BackupSummary summary = summary_;
-      NONIO_TRY(const auto before, states_in(folder));
+      NONIO_TRY(const auto before, states());
       Expected<void> done;
       for (const auto& [path, state] : before)
         if (done = add(path, path); !done) break;
-      NONIO_TRY(const auto after, states_in(folder));
+      NONIO_TRY(const auto after, states());
       if (before == after) return done;
       digests_.resize(listed);
       summary_ = summary;
       if (auto back = tar_.back_to(position); !back) return back;
       std::this_thread::sleep_for(pause);
     }
-    return fail(Error{"the files change all the time", folder.string()});
+    return fail(Error{"the files change all the time", of.string()});
   }
 
   const fs::path folder_;
