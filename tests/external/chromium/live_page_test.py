@@ -422,8 +422,8 @@ class Page(live_browser.CampaignPage):
         self.no_complaints()
 
     def test_a_campaign_that_effects_do_not_explain_says_what_it_has(self):
-        self.open(self.serve(self.campaign(SOURCE / "samples/site/42-heat")), "none")
-        self.assertIn("Measured here: thermal drift", self.text("verdict"))
+        self.open(self.serve(self.campaign(SOURCE / "samples/site/43-spindle")), "none")
+        self.assertIn("Measured here: spindle", self.text("verdict"))
         self.assertFalse(self.d.find_element(By.ID, "suggest").is_displayed())
         self.assertTrue(self.d.find_element(By.ID, "report").is_displayed())
         self.no_complaints()
