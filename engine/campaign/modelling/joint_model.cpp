@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "campaign/modelling/model_json.h"
+#include "campaign/modelling/model_verdict.h"
 #include "nonio/math/distributions.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/json_values.h"

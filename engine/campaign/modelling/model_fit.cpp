@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "campaign/modelling/model_json.h"
+#include "campaign/modelling/model_verdict.h"
 #include "campaign/modelling/thermal_tests.h"
 #include "campaign/reading/names.h"
 #include "nonio/sdk/channels.h"

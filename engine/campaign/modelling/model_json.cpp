@@ -12,8 +12,6 @@ namespace nonio::modelling {
 
 namespace {
 
-constexpr double high_correlation = 0.9;
-
 /// Whether a person stated the shape, so that it was not searched.
 bool is_stated(const model::Parameter& p, const std::vector<model::Term>& terms) {
   return p.shape && std::any_of(terms.begin(), terms.end(), [&](const model::Term& t) {
@@ -452,95 +450,6 @@ void put_trouble(storage::Json& json, const std::vector<std::string>& warnings,
 }
 
 }  // namespace
-
-const char* to_text(model::Verdict::Kind kind) {
-  switch (kind) {
-    case model::Verdict::Kind::missing:
-      return "missing";
-    case model::Verdict::Kind::nothing:
-      return "nothing";
-    case model::Verdict::Kind::unknown:
-      return "unknown";
-    case model::Verdict::Kind::unrepeatable:
-      break;
-  }
-  return "unrepeatable";
-}
-
-bool is_ranked(const model::Candidate& c) {
-  return c.visible && std::isfinite(c.score) && (c.rms > 0.0 || !c.parameters.empty());
-}
-
-std::vector<Correlated> correlated(const model::Fit& fit) {
-  std::vector<Correlated> out;
-  for (std::size_t i = 0; i < fit.correlation.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (const double r = fit.correlation[i][j]; std::fabs(r) > high_correlation)
-        out.push_back({&fit.parameters[j], &fit.parameters[i], r});
-  return out;
-}
-
-namespace {
-
-std::size_t most_severe_of(const std::vector<PartVerdict>& parts) {
-  using Verdict = model::Verdict::Kind;
-  for (const Verdict kind : {Verdict::missing, Verdict::unrepeatable, Verdict::unknown})
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      if (parts[i].kind == to_text(kind)) return i;
-  return 0;
-}
-
-}  // namespace
-
-std::vector<PartVerdict> verdicts_of(const std::vector<Explained>& all) {
-  std::vector<PartVerdict> verdicts;
-  for (const Explained& e : all) {
-    const auto& part = e.part.part;
-    std::vector<std::string> certain;
-    for (const std::string& effect : e.explanation.certain)
-      certain.push_back(model::written_for(part, effect));
-    const std::string& effect = e.explanation.verdict.effect;
-    verdicts.push_back({to_text(e.explanation.verdict.kind),
-                        effect.empty() ? effect : model::written_for(part, effect), certain});
-  }
-  return verdicts;
-}
-
-std::size_t most_severe(const std::vector<Explained>& all) {
-  return most_severe_of(verdicts_of(all));
-}
-
-std::string next_effect(const std::vector<PartVerdict>& parts) {
-  using Verdict = model::Verdict::Kind;
-  if (parts.empty()) return {};
-  const PartVerdict& worst = parts[most_severe_of(parts)];
-  if (worst.kind == to_text(Verdict::missing)) return worst.effect;
-  if (worst.kind == to_text(Verdict::unknown) && !worst.certain.empty())
-    return worst.certain.front();
-  return {};
-}
-
-std::vector<std::string> next_effects(const std::vector<Explained>& all) {
-  if (all.empty()) return {};
-  const Explained& worst = all[most_severe(all)];
-  const model::Explanation& e = worst.explanation;
-  const model::Part::Kind kind = worst.part.part.kind;
-  const std::string next = next_effect(verdicts_of(all));
-  if (next.empty()) return {};
-  std::vector<std::string> out{next};
-  // Of a course the sensors of a set replace each other: it is added as a whole. A volume has many
-  // errors at once: the set where it leaves nothing, else what is significant.
-  std::vector<std::string> more;
-  if (kind == model::Part::Kind::course || (kind == model::Part::Kind::space && e.explains_all))
-    more = e.together;
-  else if (kind == model::Part::Kind::space)
-    more = e.certain;
-  for (const std::string& effect : more) {
-    std::string written = model::written_for(worst.part.part, effect);
-    if (written != next) out.push_back(std::move(written));
-  }
-  return out;
-}
 
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
                                      const ModelWords& words) {

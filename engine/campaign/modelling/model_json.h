@@ -2,23 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "campaign/modelling/model_change.h"
+#include "campaign/modelling/model_verdict.h"
 #include "campaign/modelling/model_words.h"
 
 namespace nonio::modelling {
-
-struct Explained {
-  PartModel part;
-  model::Explanation explanation;
-  std::optional<std::vector<model::Foresight>> what_if{};  ///< if it was requested
-};
-
-/// The part with the most severe verdict: missing, unrepeatable, unknown, nothing.
-std::size_t most_severe(const std::vector<Explained>& all);
 
 /// Sentences about values below their uncertainty and effects that nothing here measures.
 std::vector<std::string> warnings_of(const PartModel& part, const model::Fit& fit,
@@ -33,17 +24,6 @@ std::string part_json(const Compared& compared, const Campaign& campaign, const 
 std::string part_json(const Explained& explained, const Campaign& campaign,
                       const ModelWords& words);
 
-/// What belongs into the model beyond doubt, by the most severe verdict; "": nothing more. This is
-/// one step of `nonio model explain --auto`.
-struct PartVerdict {
-  std::string kind, effect;          ///< of the verdict of one part
-  std::vector<std::string> certain;  ///< most evidence first
-};
-std::vector<PartVerdict> verdicts_of(const std::vector<Explained>& all);
-std::string next_effect(const std::vector<PartVerdict>& parts);
-/// The effects that `--auto` adds next, as the manifest has them; empty: nothing more.
-std::vector<std::string> next_effects(const std::vector<Explained>& all);
-
 /// docs/json.md: nonio-compare/1, nonio-explain/1 and nonio-model/1. Where `all` is empty, `errors`
 /// state why; they and `warnings` are those of the campaign.
 std::string compare_json(const std::vector<Compared>& all, const Campaign& campaign,
@@ -57,17 +37,5 @@ std::string explain_json(const std::vector<Explained>& all, const Campaign& camp
                          const std::vector<std::string>& warnings,
                          const std::vector<Error>& errors);
 std::string change_json(const Change& change, const Campaign& campaign, const ModelWords& words);
-
-const char* to_text(model::Verdict::Kind kind);
-
-/// Pairs of parameters with |r| beyond 0.9.
-struct Correlated {
-  const model::Parameter *one, *other;
-  double r;
-};
-std::vector<Correlated> correlated(const model::Fit& fit);
-
-/// Candidates that have a score, best first; the others are what these readings cannot show.
-bool is_ranked(const model::Candidate& candidate);
 
 }  // namespace nonio::modelling

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "campaign/modelling/model_json.h"
+#include "campaign/modelling/model_verdict.h"
 #include "campaign/modelling/thermal_tests.h"
 #include "nonio/sdk/format.h"
 
