@@ -67,7 +67,10 @@ class Crashes(LiveTest):
             status, _, answer = s.request("POST", "/api/preview", json.dumps({"name": "x.csv"}) + "\nHANGS\n", {"Content-Type": "application/octet-stream"})
             self.assertEqual(422, status, answer)
             self.assertIn("within 2 s", json.loads(answer)["error"])
-            self.assertEqual([], [pid for pid, parent in s.pids() if b"check" in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes()], "it has ended")
+            deadline = time.monotonic() + 10  # the plugin's own process dies with its parent, a moment later
+            while s.programs("check"):
+                self.assertLess(time.monotonic(), deadline, "it goes on")
+                time.sleep(0.02)
 
     def test_the_bench_process_is_made_anew(self):
         with Server(self.campaign(CAMPAIGN)) as s:

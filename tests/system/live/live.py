@@ -138,6 +138,17 @@ class Server:
             grew = bool(more)
         return [(p, parents[p]) for p in sorted(found - {self.process.pid})]
 
+    def programs(self, word):
+        """Processes below the server whose command line contains `word`."""
+        found = []
+        for pid, _ in self.pids():
+            try:
+                if word.encode() in pathlib.Path(f"/proc/{pid}/cmdline").read_bytes():
+                    found.append(pid)
+            except OSError:
+                pass
+        return found
+
 
 class Stream:
     """An open event stream; a socket of its own."""
