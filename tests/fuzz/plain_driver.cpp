@@ -15,6 +15,7 @@
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+extern "C" [[gnu::weak]] int LLVMFuzzerInitialize(int* count, char*** arguments);
 
 namespace {
 
@@ -86,6 +87,7 @@ int main(int argc, char** argv) {
     std::cerr << "usage: " << argv[0] << " CORPUS [MUTATIONS [SEED]]\n";
     return 2;
   }
+  if (LLVMFuzzerInitialize != nullptr) LLVMFuzzerInitialize(&argc, &argv);
   const std::vector<std::string> corpus = read_corpus(argv[1]);
   if (corpus.empty()) {
     std::cerr << "no files in " << argv[1] << "\n";

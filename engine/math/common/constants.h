@@ -14,6 +14,7 @@ inline constexpr double rounding = 1e-10;     // m or rad: less than the scatter
 /// from one side.
 inline constexpr double of_full_range = std::numbers::inv_sqrt3 / 2.0,
                         of_limit = std::numbers::inv_sqrt3;
+inline constexpr double largest_coordinate = 1e6;  // m; beyond it a micrometre has no digits
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace nonio::math

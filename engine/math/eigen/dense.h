@@ -40,6 +40,8 @@ Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::Matrix
 Eigen::VectorXd transposed_times(const Eigen::MatrixXd& A, const Eigen::VectorXd& x);
 /// A B'
 Eigen::MatrixXd product_transposed(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+/// B' S B
+Eigen::MatrixXd quadratic_form(const Eigen::MatrixXd& S, const Eigen::MatrixXd& B);
 /// y - A x
 Eigen::VectorXd residual(const Eigen::VectorXd& y, const Eigen::MatrixXd& A,
                          const Eigen::VectorXd& x);
@@ -70,6 +72,8 @@ Eigen::MatrixXd whitened(const Eigen::LLT<Eigen::MatrixXd>& N, const Eigen::Matr
 /// The inverse by each decomposition: the solution for the unit matrix.
 Eigen::MatrixXd inverse(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
 Eigen::MatrixXd inverse(const Eigen::LDLT<Eigen::MatrixXd>& ldlt);
+/// Moore-Penrose, with the rank of the decomposition.
+Eigen::MatrixXd pseudo_inverse(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
 /// Of a square matrix, by elimination.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
 /// The inverse of an upper triangular matrix.

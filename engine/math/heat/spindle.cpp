@@ -6,23 +6,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "common/constants.h"
 
 namespace nonio::math {
 
 namespace {
 
-constexpr double whole_turn = 2.0 * std::numbers::pi;
 constexpr std::size_t fewest_in_turn = 16, fewest_turns = 2;
 // docs/dev/constants.md, A17.
-constexpr double widest_gap = whole_turn / 8.0;
+constexpr double widest_gap = full_turn / 8.0;
 constexpr double as_read = 1e-4;  // rad: angles this near to even steps are the steps
 
 /// Whether the readings already lie on even steps, whole steps in a turn; then how many.
 std::size_t even_steps(const SpindleTrack& k) {
   const double step = (k.angle.back() - k.angle.front()) / static_cast<double>(k.angle.size() - 1);
-  const double n = std::round(whole_turn / step);
-  if (!(std::fabs(whole_turn / n - step) * static_cast<double>(k.angle.size()) < as_read)) return 0;
+  const double n = std::round(full_turn / step);
+  if (!(std::fabs(full_turn / n - step) * static_cast<double>(k.angle.size()) < as_read)) return 0;
   for (std::size_t i = 0; i < k.angle.size(); ++i)
     if (std::fabs(k.angle[i] - k.angle.front() - step * static_cast<double>(i)) > as_read) return 0;
   return static_cast<std::size_t>(n);
@@ -50,7 +50,7 @@ bool with_gap(const SpindleTrack& k) {
 }  // namespace
 
 double Turns::angle(std::size_t i) const {
-  return whole_turn * static_cast<double>(i) / static_cast<double>(n);
+  return full_turn * static_cast<double>(i) / static_cast<double>(n);
 }
 
 std::optional<Turns> turns_of(const SpindleTrack& k) {
@@ -61,29 +61,29 @@ std::optional<Turns> turns_of(const SpindleTrack& k) {
   Turns out;
   if (const std::size_t n = even_steps(k);
       n >= fewest_in_turn &&
-      std::fabs(std::remainder(k.angle.front(), whole_turn / static_cast<double>(n))) < as_read) {
+      std::fabs(std::remainder(k.angle.front(), full_turn / static_cast<double>(n))) < as_read) {
     // From the first reading on; the curve begins at angle 0 of the spindle.
-    const double turn = std::fmod(std::fmod(k.angle.front(), whole_turn) + whole_turn, whole_turn);
+    const double turn = std::fmod(std::fmod(k.angle.front(), full_turn) + full_turn, full_turn);
     const auto shift =
-        static_cast<std::size_t>(std::lround(turn / whole_turn * static_cast<double>(n)));
+        static_cast<std::size_t>(std::lround(turn / full_turn * static_cast<double>(n)));
     out.n = n, out.N = k.r.size() / n;
     out.r.resize(out.n * out.N);
     for (std::size_t i = 0; i < out.r.size(); ++i) out.r[i / n * n + (i + shift) % n] = k.r[i];
     if (out.N < fewest_turns) return {};
     return out;
   }
-  const double first = std::ceil(k.angle.front() / whole_turn - 1e-9) * whole_turn;
-  const double turns = std::floor((k.angle.back() - first) / whole_turn + 1e-9);
+  const double first = std::ceil(k.angle.front() / full_turn - 1e-9) * full_turn;
+  const double turns = std::floor((k.angle.back() - first) / full_turn + 1e-9);
   if (!(turns >= static_cast<double>(fewest_turns))) return {};
   out.N = static_cast<std::size_t>(turns);
   out.n = std::min(
       most_in_turn,
-      static_cast<std::size_t>(static_cast<double>(k.angle.size() - 1) / span * whole_turn + 1e-6));
+      static_cast<std::size_t>(static_cast<double>(k.angle.size() - 1) / span * full_turn + 1e-6));
   if (out.n < fewest_in_turn) return {};
   out.resampled = true;
   std::size_t behind = 0;
   for (std::size_t i = 0; i < out.n * out.N; ++i) {
-    const double x = first + whole_turn * static_cast<double>(i) / static_cast<double>(out.n);
+    const double x = first + full_turn * static_cast<double>(i) / static_cast<double>(out.n);
     while (behind + 1 < k.angle.size() && k.angle[behind] < x) ++behind;
     out.r.push_back(cubic(k, behind, x));
   }

@@ -13,14 +13,14 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
+using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr double largest_size = 1e6;  // m; beyond it a micrometre has no digits
-constexpr double thinnest = 1e-6;     // second to first singular value: still a plane
-constexpr double same_angle = 1e-6;   // rad
+constexpr double thinnest = 1e-6;    // second to first singular value: still a plane
+constexpr double same_angle = 1e-6;  // rad
 // docs/dev/constants.md, A9.
 constexpr double worst_follow = 0.1;  // rms of encoder against circle, rad
 
@@ -30,7 +30,7 @@ std::optional<RotaryRefusal> bad_input(std::span<const BallCentre> centres) {
   std::vector<double> angles;
   for (const BallCentre& c : centres) {
     const double size = std::max({std::fabs(c.at[0]), std::fabs(c.at[1]), std::fabs(c.at[2])});
-    if (!(size <= largest_size) || !std::isfinite(c.angle) ||
+    if (!(size <= largest_coordinate) || !std::isfinite(c.angle) ||
         std::isnan(c.at[0] + c.at[1] + c.at[2]))
       return RotaryRefusal::not_finite;
     if (!(c.weight > 0.0) || !std::isfinite(c.weight)) return RotaryRefusal::weight;
@@ -70,9 +70,8 @@ std::optional<Plane> plane_of(std::span<const BallCentre> centres) {
   plane.origin = first + mean;
   const Points weighted = plane.weight.cwiseSqrt().asDiagonal() * points;
   // R of the QR decomposition has the singular values and right vectors of the whole.
-  const Matrix3d small =
-      Eigen::HouseholderQR<Points>(weighted).matrixQR().topRows<3>().triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<Matrix3d> svd(small, Eigen::ComputeFullV);
+  const MatrixXd small = upper(Eigen::HouseholderQR<MatrixXd>(weighted), 3);
+  const Eigen::JacobiSVD<MatrixXd> svd(small, Eigen::ComputeFullV);
   const auto& size = svd.singularValues();
   if (!(size[1] > thinnest * size[0]) || !(size[0] > 1e-12 * (1.0 + plane.origin.norm())))
     return {};
@@ -97,9 +96,9 @@ std::optional<Circle> kasa(const Plane& p) {
   a << 2.0 * p.flat.col(0), 2.0 * p.flat.col(1), Eigen::VectorXd::Ones(p.flat.rows());
   const Eigen::VectorXd b = p.flat.col(0).cwiseAbs2() + p.flat.col(1).cwiseAbs2();
   const Eigen::VectorXd root = p.weight.cwiseSqrt();
-  const Eigen::ColPivHouseholderQR<Points> qr(root.asDiagonal() * a);
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled_rows(root, a));
   if (qr.rank() < 3) return {};
-  const Vector3d x = qr.solve(root.cwiseProduct(b));
+  const Vector3d x = solution(qr, root.cwiseProduct(b));
   Circle c;
   c.centre = x.head<2>();
   c.radius = std::sqrt(x[2] + c.centre.squaredNorm());
@@ -108,7 +107,8 @@ std::optional<Circle> kasa(const Plane& p) {
 }
 
 double largest_singular(const Matrix2d& m) {
-  return Eigen::JacobiSVD<Matrix2d>(m).singularValues()[0];
+  return 0.5 * (std::hypot(m(0, 0) + m(1, 1), m(0, 1) - m(1, 0)) +
+                std::hypot(m(0, 0) - m(1, 1), m(0, 1) + m(1, 0)));
 }
 
 std::optional<Circle> geometric(const Plane& p) {
@@ -133,14 +133,14 @@ std::optional<Circle> geometric(const Plane& p) {
       spread.col(0) -= p.weight[i] * g * (0.5 * c->radius * cos2);
       spread.col(1) -= p.weight[i] * g * (0.5 * c->radius * sin2);
     }
-    const Eigen::FullPivLU<Matrix3d> lu(normal);
-    if (!lu.isInvertible()) return {};
-    const Vector3d delta = lu.solve(right);
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(normal);
+    if (!qr.isInvertible()) return {};
+    const Vector3d delta = solution(qr, right);
     c->centre += delta.head<2>();
     c->radius += delta[2];
-    if (!(c->radius > 0.0) || !(c->radius < largest_size)) return {};
+    if (!(c->radius > 0.0) || !(c->radius < largest_coordinate)) return {};
     if (!(delta.cwiseAbs().maxCoeff() > 1e-11 * c->radius)) {
-      const Matrix3d inverse = lu.inverse();
+      const Matrix3d inverse = math::inverse(qr);
       c->cofactor = inverse.topLeftCorner<2, 2>();
       c->cofactor_radius = inverse(2, 2);
       c->shear_shift = largest_singular((inverse * spread).topLeftCorner<2, 2>());

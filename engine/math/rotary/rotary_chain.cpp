@@ -6,6 +6,7 @@
 
 #include "chain_start.h"
 #include "combinations.h"
+#include "common/constants.h"
 
 namespace nonio::math {
 namespace {
@@ -15,14 +16,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double largest_coordinate = 1e6;  // m; beyond it a micrometre has no digits
-constexpr double step = 1e-6;               // m and rad, of derivatives
-constexpr double ended = 1e-12;             // m: a step that moves nothing
+constexpr double derivative_step = 1e-6;  // m and rad, of derivatives
+constexpr double ended = 1e-12;           // m: a step that moves nothing
 constexpr int most_steps = 60;
 constexpr double largest_tilt = 0.5;  // rad, of one step
-constexpr double alike = 4.0;         // sums of squares of two chains that fit alike
+constexpr double fits_alike = 4.0;    // sums of squares of two chains that fit alike
 constexpr double other_way = 0.1;     // rad, between directions of two chains
-constexpr double changes_nothing = 1e-5, rounding_size = 1e-9;
+constexpr double open_changes_nothing = 1e-5, rounding_size = 1e-9;
 constexpr std::size_t most_residual_rows = 200;
 
 bool sound(const std::vector<ChainReading>& all, const ChainOrder& order) {
@@ -130,7 +130,7 @@ class Descent {
   /// Whether the readings determine the direction of an axis.
   bool identifies_direction(std::size_t axis) const {
     for (const Index k : {4 * at(axis) + 2, 4 * at(axis) + 3})
-      if (std::fabs(V_.row(k).norm() - 1.0) > changes_nothing) return false;
+      if (std::fabs(V_.row(k).norm() - 1.0) > open_changes_nothing) return false;
     return true;
   }
   ChainFit fit() const;
@@ -148,10 +148,10 @@ class Descent {
     MatrixXd J(root_.size(), scale_.size());
     for (Index k = 0; k < scale_.size(); ++k) {
       VectorXd by = VectorXd::Zero(scale_.size());
-      by[k] = step;
+      by[k] = derivative_step;
       const VectorXd up = residual(moved(state_, by));
-      by[k] = -step;
-      J.col(k) = scale_[k] / (2.0 * step) * (residual(moved(state_, by)) - up);
+      by[k] = -derivative_step;
+      J.col(k) = scale_[k] / (2.0 * derivative_step) * (residual(moved(state_, by)) - up);
     }
     return J;
   }
@@ -197,9 +197,9 @@ void Descent::put_followed(ChainFit& out) const {
     double along = 0.0;
     for (std::size_t i = 0; i < all_.size(); ++i) {
       ChainReading r = all_[i];
-      r.angle[j] += step;
+      r.angle[j] += derivative_step;
       Eigen::Vector3d way = as_vector(chain_reading(state_, order_, r));
-      r.angle[j] -= 2.0 * step;
+      r.angle[j] -= 2.0 * derivative_step;
       way -= as_vector(chain_reading(state_, order_, r));
       if (!(way.norm() > 0.0)) continue;
       way.normalize();
@@ -288,7 +288,7 @@ tl::expected<ChainFit, ChainRefusal> fit_chain(const std::vector<ChainReading>& 
       ends.begin(), ends.end(), [](const auto& a, const auto& b) { return a.sum() < b.sum(); });
   const double none = std::pow(rounding_size, 2) * 3.0 * static_cast<double>(all.size());
   for (const Descent& other : ends)
-    if (other.sum() <= alike * best->sum() + none && other_chain(*best, other.state()))
+    if (other.sum() <= fits_alike * best->sum() + none && other_chain(*best, other.state()))
       return tl::unexpected(ChainRefusal::ambiguous);
   ChainState state = best->state();
   settle(state, order);  // and once more from there, so that derivatives are of these points
@@ -305,10 +305,10 @@ ChainValue chain_value(const ChainFit& fit, const std::function<double(const Cha
   VectorXd gradient(at(fit.unknowns));
   for (Index k = 0; k < gradient.size(); ++k) {
     VectorXd by = VectorXd::Zero(gradient.size());
-    by[k] = step;
+    by[k] = derivative_step;
     const double up = of(moved(fit.state, by));
-    by[k] = -step;
-    gradient[k] = (up - of(moved(fit.state, by))) / (2.0 * step);
+    by[k] = -derivative_step;
+    gradient[k] = (up - of(moved(fit.state, by))) / (2.0 * derivative_step);
   }
   double size = 0.0;
   for (Index k = 0; k < gradient.size(); ++k)
@@ -318,7 +318,7 @@ ChainValue chain_value(const ChainFit& fit, const std::function<double(const Cha
     double part = 0.0;
     for (std::size_t k = 0; k < v.size(); ++k) part += v[k] * gradient[at(k)] * fit.scale[k];
     out.identifiable =
-        out.identifiable && std::fabs(part) <= changes_nothing * std::max(size, rounding_size);
+        out.identifiable && std::fabs(part) <= open_changes_nothing * std::max(size, rounding_size);
   }
   out.by.assign(fit.by.front().size(), 0.0);
   for (std::size_t k = 0; k < fit.by.size(); ++k)

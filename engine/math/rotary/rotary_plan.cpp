@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "common/constants.h"
 #include "nonio/math/rotary.h"
 #include "nonio/sdk/splitmix64.h"
 
 namespace nonio::math {
 
 namespace {
-
-constexpr double whole_turn = 2.0 * std::numbers::pi;
 
 /// Two independent standard normal numbers at a time (Box and Muller 1958).
 class NormalNumbers {
@@ -26,7 +24,7 @@ class NormalNumbers {
       return second_;
     }
     const double r = std::sqrt(-2.0 * std::log1p(-random_.uniform())),
-                 t = whole_turn * random_.uniform();
+                 t = full_turn * random_.uniform();
     second_ = r * std::sin(t);
     has_second_ = true;
     return r * std::cos(t);
@@ -41,7 +39,7 @@ class NormalNumbers {
 Expected<void> sound(const RotaryPlan& p) {
   if (p.balls < 3 || p.balls > 10000)
     return fail("expected 3 to 10000 balls, found " + std::to_string(p.balls));
-  if (!(p.arc > 0.0 && p.arc <= whole_turn * (1.0 + 1e-9)))
+  if (!(p.arc > 0.0 && p.arc <= full_turn * (1.0 + 1e-9)))
     return fail("expected an arc above 0 and up to 360 degrees");
   if (!(p.sigma > 0.0) || !(p.radius > 100.0 * p.sigma))
     return fail("expected a radius of more than 100 times the uncertainty of the probe");
@@ -50,7 +48,7 @@ Expected<void> sound(const RotaryPlan& p) {
 
 /// The places of the plan about Z through the origin.
 std::vector<BallCentre> places_of(const RotaryPlan& p) {
-  const bool full = p.arc > whole_turn * (1.0 - 1e-9);
+  const bool full = p.arc > full_turn * (1.0 - 1e-9);
   const double n = static_cast<double>(p.balls), step = full ? p.arc / n : p.arc / (n - 1.0);
   std::vector<BallCentre> out;
   for (std::size_t i = 0; i < p.balls; ++i) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "common/constants.h"
 #include "dense.h"
 
 namespace nonio::math {
@@ -15,7 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double largest_coordinate = 1e6;  // m
 /// A coordinate of the centre that is so many times less sure than a touch is not fixed by them.
 constexpr double largest_growth = 20.0;
 

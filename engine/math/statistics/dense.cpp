@@ -30,6 +30,9 @@ VectorXd times(const MatrixXd& A, const VectorXd& x) { return A * x; }
 MatrixXd transposed_product(const MatrixXd& A, const MatrixXd& B) { return A.transpose() * B; }
 VectorXd transposed_times(const MatrixXd& A, const VectorXd& x) { return A.transpose() * x; }
 MatrixXd product_transposed(const MatrixXd& A, const MatrixXd& B) { return A * B.transpose(); }
+MatrixXd quadratic_form(const MatrixXd& S, const MatrixXd& B) {
+  return transposed_product(B, product(S, B));
+}
 VectorXd residual(const VectorXd& y, const MatrixXd& A, const VectorXd& x) { return y - A * x; }
 double squared_residual(const VectorXd& y, const MatrixXd& A, const VectorXd& x) {
   return (y - A * x).squaredNorm();
@@ -84,6 +87,14 @@ VectorXd rotated(const Eigen::HouseholderQR<MatrixXd>& qr, const VectorXd& y) {
 }
 MatrixXd upper(const Eigen::HouseholderQR<MatrixXd>& qr, Index rows) {
   return qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
+}
+MatrixXd pseudo_inverse(const Eigen::ColPivHouseholderQR<MatrixXd>& qr) {
+  // A P = Q R, and the rows of R that count are R = T' Z' with Z' Z = 1.
+  const Index rank = qr.rank();
+  const MatrixXd R = qr.matrixR().topRows(rank).triangularView<Eigen::Upper>();
+  const Eigen::HouseholderQR<MatrixXd> rows(R.transpose());
+  const MatrixXd half = product(orthonormal(qr, rank), inverse_of_upper(upper(rows, rank)));
+  return qr.colsPermutation() * product_transposed(orthonormal(rows, rank), half);
 }
 
 MatrixXd left_columns(const MatrixXd& A, Index count) { return A.leftCols(count); }

@@ -294,11 +294,10 @@ class Solution {
     const Eigen::LLT<Matrix> llt(C);
     const Matrix A = whitened(llt, system.A());
     const Vector y = whitened(llt, system.y());
-    Eigen::CompleteOrthogonalDecomposition<Matrix> cod;
-    cod.setThreshold(rank_threshold);
-    cod.compute(A);
-    rank_ = static_cast<std::size_t>(cod.rank());
-    const Matrix inverse = cod.pseudoInverse();
+    Eigen::ColPivHouseholderQR<Matrix> qr(A);
+    qr.setThreshold(rank_threshold);
+    rank_ = static_cast<std::size_t>(qr.rank());
+    const Matrix inverse = pseudo_inverse(qr);
     theta_ = times(inverse, y);
     projector_ = product(inverse, A);
     root_ = inverse;

@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 constexpr double changes_nothing = 1e-6;  // of a result, by what is open
 constexpr double shows_nothing = 1e-9;    // of a column, in the volume
 constexpr double same_share = 1e-6;
-constexpr std::size_t places = 21;  // of a curve
+constexpr std::size_t places_of_curve = 21;  // of a curve
 
 std::string name_of(const RigidTerm& term) {
   return term.kind == RigidTerm::Kind::squareness ? term.error
@@ -135,10 +135,10 @@ class Results {
 
 void put_curve(const Results& r, const RigidBox& box, const RigidTerm& term, RigidSolution& out) {
   RigidCurve curve{term.error, term.axis, {}, {}, {}, {}};
-  for (std::size_t i = 0; i < places; ++i) {
+  for (std::size_t i = 0; i < places_of_curve; ++i) {
     Corner place = box.low;
     place[term.axis] +=
-        box.length(term.axis) * static_cast<double>(i) / static_cast<double>(places - 1);
+        box.length(term.axis) * static_cast<double>(i) / static_cast<double>(places_of_curve - 1);
     const RowVectorXd row = r.row_of(term.error, place);
     if (!r.told(row)) return out.withheld.push_back(term.error);
     curve.position.push_back(place[term.axis]);

@@ -104,11 +104,8 @@ double squares_with(const Observations& o, const std::vector<Term>& terms, const
                     const VectorXd& y) {
   auto d = design_of(o, terms, white);
   if (!d) return std::numeric_limits<double>::infinity();
-  const Index columns = d->a.cols();
-  const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(d->a);  // in place
-  VectorXd rotated = white(y);
-  rotated.applyOnTheLeft(qr.householderQ().transpose());
-  return rotated.tail(rotated.size() - columns).squaredNorm();
+  const VectorXd rotated = math::rotated(Eigen::HouseholderQR<MatrixXd>(d->a), white(y));
+  return rotated.tail(rotated.size() - d->a.cols()).squaredNorm();
 }
 
 /// Sum of squares as a function of one term's shape: all other columns are taken out once.

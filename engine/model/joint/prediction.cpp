@@ -101,8 +101,8 @@ Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& m
   for (Index i = 0; i < n; ++i)
     root(i) = std::sqrt(
         compared.fit.weight.empty() ? 1.0 : compared.fit.weight[static_cast<std::size_t>(i)]);
-  const MatrixXd a =
-      root.asDiagonal() * with(of_model.topRows(n), with(of_seen.topRows(n), zeros_of(both, 0, n)));
+  const MatrixXd a = math::scaled_rows(
+      root, with(of_model.topRows(n), with(of_seen.topRows(n), zeros_of(both, 0, n))));
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
   if (qr.rank() < a.cols())
     return fail(
@@ -112,17 +112,17 @@ Expected<Prediction> predict_places(const Part& seen, const std::vector<Term>& m
   const double dof = root.cwiseAbs2().sum() - static_cast<double>(a.cols());
   if (!(dof >= 1.0))
     return fail("the model has as many unknowns as the first campaign has readings");
-  const double s2 = (weighted - a * x).squaredNorm() / dof;
+  const double s2 = math::squared_residual(weighted, a, x) / dof;
   const Index k = of_model.cols();
-  const MatrixXd cofactor = Eigen::LLT<MatrixXd>(math::transposed_product(a, a))
-                                .solve(MatrixXd::Identity(a.cols(), a.cols()));
+  const MatrixXd cofactor = math::solutions(Eigen::LLT<MatrixXd>(math::transposed_product(a, a)),
+                                            MatrixXd::Identity(a.cols(), a.cols()));
   const MatrixXd covariance = s2 * cofactor.topLeftCorner(k, k);
 
   // What it predicts; zeros and set-up of the other readings are new.
   const MatrixXd free = with(of_unseen.bottomRows(m), zeros_of(both, n, m));
   const Eigen::ColPivHouseholderQR<MatrixXd> decomposed(free);
-  const MatrixXd q = MatrixXd(decomposed.householderQ() * MatrixXd::Identity(m, decomposed.rank()));
-  VectorXd error = y.tail(m) - of_model.bottomRows(m) * x.head(k);
+  const MatrixXd q = math::orthonormal(decomposed, decomposed.rank());
+  VectorXd error = math::residual(y.tail(m), of_model.bottomRows(m), x.head(k));
   VectorXd readings = y.tail(m);
   MatrixXd from = of_model.bottomRows(m);
   math::take_out(q, error), math::take_out(q, readings), math::take_out(q, from);

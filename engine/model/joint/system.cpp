@@ -17,7 +17,7 @@ constexpr double least_independent = 1e-6;
 bool is_independent(const MatrixXd& left, const VectorXd& before) {
   if (left.rows() == 0) return true;
   const VectorXd unit = before.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<MatrixXd> llt(MatrixXd(unit.asDiagonal() * left * unit.asDiagonal()));
+  const Eigen::LLT<MatrixXd> llt(math::scaled_columns(math::scaled_rows(unit, left), unit));
   return llt.info() == Eigen::Success &&
          llt.matrixLLT().diagonal().minCoeff() > std::sqrt(least_independent);
 }
@@ -105,13 +105,14 @@ JointSystem::Solution JointSystem::solve(const std::vector<Choice>& choices) con
     if (!is_independent(oo, oo.diagonal())) out.sound = false;
     if (!out.sound) return out;
     inverse[m] = inverse_of(oo);
-    with[m] = part.own.transpose() * part.shared;
-    const VectorXd oy = part.own.transpose() * y;
-    alone[m] = inverse[m] * oy;
+    with[m] = math::transposed_product(part.own, part.shared);
+    const VectorXd oy = math::transposed_times(part.own, y);
+    alone[m] = math::times(inverse[m], oy);
     out.squares += y.squaredNorm() - oy.dot(alone[m]);
     const MatrixXd gg = math::transposed_product(part.shared, part.shared);
-    const MatrixXd left = gg - with[m].transpose() * inverse[m] * with[m];
-    const VectorXd gy = part.shared.transpose() * y - with[m].transpose() * alone[m];
+    const MatrixXd left = gg - math::quadratic_form(inverse[m], with[m]);
+    const VectorXd gy =
+        math::transposed_times(part.shared, y) - math::transposed_times(with[m], alone[m]);
     for (std::size_t i = 0; i < part.at.size(); ++i) {
       right(part.at[i]) += gy(static_cast<Index>(i));
       before(part.at[i]) += gg(static_cast<Index>(i), static_cast<Index>(i));
@@ -124,7 +125,7 @@ JointSystem::Solution JointSystem::solve(const std::vector<Choice>& choices) con
   out.sound = is_independent(s, before);
   if (!out.sound) return out;
   out.covariance = inverse_of(s);
-  out.shared = out.covariance * right;
+  out.shared = math::times(out.covariance, right);
   out.squares = std::max(out.squares - right.dot(out.shared), 0.0);
   out.parameters += n;
   out.price += static_cast<double>(n) * std::log(readings());
@@ -136,9 +137,10 @@ JointSystem::Solution JointSystem::solve(const std::vector<Choice>& choices) con
   for (std::size_t m = 0; m < r_.members.size(); ++m) {
     const Split part = split(choices, m);
     const std::vector<Index>& at = part.at;
-    const MatrixXd k = inverse[m] * with[m];
-    out.own.push_back(alone[m] - k * out.shared(at));
-    out.own_covariance.push_back(inverse[m] + k * out.covariance(at, at) * k.transpose());
+    const MatrixXd k = math::product(inverse[m], with[m]);
+    out.own.push_back(math::residual(alone[m], k, out.shared(at)));
+    out.own_covariance.push_back(inverse[m] +
+                                 math::quadratic_form(out.covariance(at, at), k.transpose()));
   }
   return out;
 }
@@ -165,7 +167,8 @@ std::vector<VectorXd> JointSystem::residuals(const std::vector<Choice>& choices,
   std::vector<VectorXd> out;
   for (std::size_t m = 0; m < r_.members.size(); ++m) {
     const Split part = split(choices, m);
-    out.push_back(r_.members[m].y - part.own * s.own[m] - part.shared * s.shared(part.at));
+    out.push_back(math::residual(math::residual(r_.members[m].y, part.own, s.own[m]), part.shared,
+                                 s.shared(part.at)));
   }
   return out;
 }
@@ -196,7 +199,9 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
     MatrixXd all(member.y.size(), a + columns);  // shared columns and readings without the own ones
     all << part.shared, y[m];
     const MatrixXd inverse = inverse_of(math::transposed_product(part.own, part.own));
-    if (o > 0) all -= part.own * (inverse * (part.own.transpose() * all));
+    if (o > 0)
+      all -=
+          math::product(part.own, math::product(inverse, math::transposed_product(part.own, all)));
     const MatrixXd with = math::transposed_product(member.x, all);
     const MatrixXd with_own = math::transposed_product(member.x, part.own);
     const MatrixXd aa = math::transposed_product(part.shared, all);
@@ -213,19 +218,20 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
       if (member.first[b] < 0) continue;
       const Index k = r_.blocks[b].count, at = member.first[b];
       const MatrixXd bo = with_own.middleRows(at, k);
-      const MatrixXd bb = member.own[b] - bo * inverse * bo.transpose();
+      const MatrixXd bb = member.own[b] - math::quadratic_form(inverse, bo.transpose());
       const MatrixXd ba = with.block(at, 0, k, a), by = with.block(at, a, k, columns);
       Sums& sum = sums[b];
       sum.any = true;
       sum.bb += bb, sum.right += by, sum.before += member.own[b].diagonal();
       put(ba, sum.ba);
       if (!is_independent(bb, member.own[b].diagonal())) continue;
-      const MatrixXd inner = inverse_of(bb), weighted = inner * by;
+      const MatrixXd inner = inverse_of(bb), weighted = math::product(inner, by);
       sum.own += by.cwiseProduct(weighted).colwise().sum().transpose();
       out.own_parameters[b] += k;
       out.own_price[b] += static_cast<double>(k) * std::log(member.readings);
       if (a == 0) continue;
-      const MatrixXd e = ba.transpose() * inner * ba, r = ba.transpose() * weighted;
+      const MatrixXd e = math::quadratic_form(inner, ba),
+                     r = math::transposed_product(ba, weighted);
       for (std::size_t i = 0; i < part.at.size(); ++i) {
         sum.right_of_own.row(part.at[i]) += r.row(static_cast<Index>(i));
         for (std::size_t j = 0; j < part.at.size(); ++j)
@@ -241,10 +247,10 @@ JointSystem::Gains JointSystem::gains(const std::vector<Choice>& choices,
     const Sums& sum = sums[b];
     if (!sum.any) continue;
     const auto row = static_cast<Index>(b);
-    const MatrixXd through = sum.ba * s_inverse;
-    const MatrixXd bb = sum.bb - through * sum.ba.transpose();
+    const MatrixXd through = math::product(sum.ba, s_inverse);
+    const MatrixXd bb = sum.bb - math::product_transposed(through, sum.ba);
     if (is_independent(bb, sum.before))
-      out.shared.row(row) = quadratic(bb, sum.right - through * right).transpose();
+      out.shared.row(row) = quadratic(bb, sum.right - math::product(through, right)).transpose();
     const MatrixXd left = s - sum.of_own;
     if (out.own_parameters[b] > 0 && is_independent(left, s.diagonal()))
       out.own.row(row) = (sum.own + quadratic(left, right - sum.right_of_own) - base).transpose();

@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes give observations that hold together, or an error in readable words. The reader is the
-// build's.
+// Any bytes give observations that hold together, or an error in readable words. The reader is the one whose corpus is
+// given.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
 
+#include "camonitor.h"
+#include "ecmc_iso230.h"
+#include "linuxcnc_probe.h"
+#include "long_table.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/plugin.h"
-#include READER_HEADER
+#include "rta.h"
+#include "rtl.h"
+#include "wide_table.h"
 
 namespace {
 
@@ -70,13 +79,28 @@ void check_observations(const nonio::Observations& o, std::string_view bytes) {
   }
 }
 
+using MakeReader = nonio::Reader (*)();
+MakeReader reader_of_corpus(const std::string& name) {
+  const std::map<std::string, MakeReader> readers{
+      {"camonitor", nonio::camonitor::reader},
+      {"ecmc-iso230", nonio::ecmc_iso230::reader},
+      {"linuxcnc-probe", nonio::linuxcnc_probe::reader},
+      {"long-table", nonio::long_table::reader},
+      {"renishaw-rta", nonio::renishaw::rta_reader},
+      {"renishaw-rtl", nonio::renishaw::rtl_reader},
+      {"wide-table", nonio::wide_table::reader},
+  };
+  const auto found = readers.find(name);
+  return found == readers.end() ? nullptr : found->second;
+}
+
 /// A machine, and options that make readers read.
 struct World {
-  nonio::Reader reader = READER_UNDER_TEST();
+  nonio::Reader reader;
   nonio::Campaign campaign;
   nonio::Measurement measurement;
 
-  World() {
+  explicit World(nonio::Reader of) : reader(std::move(of)) {
     nonio::Axis axis;
     const bool rotary = reader.info.name == "renishaw-rta" || reader.info.name == "linuxcnc-probe";
     axis.name = rotary ? "C" : "X";
@@ -132,10 +156,21 @@ struct World {
   }
 };
 
+std::optional<World> chosen;
+
 }  // namespace
 
+extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
+  for (int i = 1; i < *count; ++i)
+    if (const MakeReader make =
+            reader_of_corpus(std::filesystem::path((*arguments)[i]).filename().string()))
+      chosen.emplace(make());
+  must(chosen.has_value(), "an argument is the corpus of a reader");
+  return 0;
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const World world;
+  const World& world = *chosen;
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   world.reader.recognises(bytes);
   const nonio::Settings options = world.options(bytes);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <map>
 #include <numbers>
 #include <random>
 #include <sstream>
@@ -40,16 +40,17 @@ inline void flatten(const toml::table& table, const std::string& prefix, Setting
   }
 }
 
-/// The templates of a folder, as the host reads them.
-inline Templates read_templates(const std::filesystem::path& folder) {
+/// The templates of a folder, as the engine reads them.
+inline Templates parse_templates(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   Templates templates;
   const auto options = fs::directory_options::follow_directory_symlink;
   for (const auto& entry : fs::recursive_directory_iterator(folder, options)) {
     if (!entry.is_regular_file()) continue;
     const fs::path name = entry.path().lexically_relative(folder);
-    std::ifstream in(entry.path(), std::ios::binary);
-    std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    std::string bytes(entry.file_size(), '\0');
+    std::ifstream(entry.path(), std::ios::binary)
+        .read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (name.extension() == ".toml") {
       Settings settings;
       flatten(toml::parse(bytes), "", settings);
@@ -59,6 +60,14 @@ inline Templates read_templates(const std::filesystem::path& folder) {
     }
   }
   return templates;
+}
+
+/// The same, read once by a program.
+inline const Templates& read_templates(const std::filesystem::path& folder) {
+  static std::map<std::filesystem::path, Templates> read;
+  const auto [place, is_new] = read.try_emplace(folder);
+  if (is_new) place->second = parse_templates(folder);
+  return place->second;
 }
 
 struct Plugins final : Registry {
