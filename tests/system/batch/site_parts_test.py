@@ -106,8 +106,8 @@ class SiteParts(NightTest):
         name = "machines/S-0.toml"
         for fresh in (False, True):
             for what, change in BROKEN.items():
-                if fresh and what in ("missing", "cut before an axis"):
-                    continue  # nothing tells that there was more
+                if fresh and what not in ("syntax", "no since", "empty", "UTF-16"):  # one of each way to be wrong
+                    continue
                 with self.subTest(what, fresh=fresh):
                     if fresh:
                         shutil.rmtree(self.out)
@@ -132,7 +132,10 @@ class SiteParts(NightTest):
         before = tree(self.out)
         for name, text in self.parts.items():
             refused = name == "site.toml" or name.startswith("templates/")
-            for what in ("missing", "empty", "cut", "a folder"):
+            # Records of machines are read by one way: each is lost in another one.
+            ways = ("missing", "empty", "cut", "a folder")
+            number = int(name[len("machines/S-"):-len(".toml")]) if name.startswith("machines/") else None
+            for what in ways if number is None else ways[number % len(ways):][:1]:
                 with self.subTest(name, what=what):
                     path = self.site / name
                     path.unlink()

@@ -9,7 +9,7 @@ import unittest
 from parsers import STEP, TABLE
 from truth import BACKUP, FOUR, StateBench, Truth
 
-SEEDS = [int(s) for s in os.environ.get("SEEDS", "1,2,3").split(",")]
+SEEDS = [int(s) for s in os.environ.get("SEEDS", "1,2").split(",")]
 
 
 class State(StateBench):
