@@ -2,16 +2,16 @@
 // `nonio backup` and `nonio restore`.
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "certificates/certificate_list.h"
 #include "platform/storage/backup.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -55,7 +55,7 @@ Expected<Json> issued_since(const fs::path& site, const fs::path& out) {
   for (const fs::path& folder : folders) {
     const auto text = storage::read_file(folder / "results.json");
     if (!text) continue;  // a folder of something else
-    const Json results = Json::parse(*text, nullptr, false);
+    const Json results = storage::parse_or_discard(*text);
     if (!results.is_object() || !results.contains("certificate")) continue;
     const auto text_of = [&of = results["certificate"]](const char* name) {
       return of.is_object() && of.contains(name) && of[name].is_string()

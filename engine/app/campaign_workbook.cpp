@@ -6,17 +6,17 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "campaign/config/terminal_words.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/json_values.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
 using storage::Cell;
 using storage::Chart;
 using storage::Day;
+using storage::Json;
 using storage::Sheet;
 
 namespace {
@@ -63,7 +63,9 @@ void add_heading(Sheet& sheet, Row row) {
 class Composer {
  public:
   explicit Composer(const Shown& shown)
-      : shown_(shown), say_(shown.templates, shown.language), results_(Json::parse(shown.text)) {}
+      : shown_(shown),
+        say_(shown.templates, shown.language),
+        results_(storage::parse(shown.text)) {}
 
   storage::Workbook compose() {
     const Json& campaign = results_.at("campaign");

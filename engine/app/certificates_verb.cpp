@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "certificates/certificate_list.h"
+#include "platform/storage/json_values.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
 using certificates::RegisterEntry;
+using storage::Json;
 
 namespace {
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "campaign/config/manifest.h"
 #include "campaign/loader/plugins.h"
@@ -13,10 +12,11 @@
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/text.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "printable.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

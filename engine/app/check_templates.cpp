@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
+#include "platform/storage/json_values.h"
 #include "plugin_check/template_check.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 int check_templates(const std::string& site, const Common& common) {

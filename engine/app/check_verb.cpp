@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "batch/survey/site_walk.h"
 #include "campaign/config/site_files.h"
@@ -11,12 +10,13 @@
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/reading/campaign_reader.h"
 #include "check_file.h"
+#include "platform/storage/json_values.h"
 #include "results_folder.h"
 #include "site_words.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is written from the table of commands: the manual page, completion of bash and zsh, JSON.
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "command_line.h"
+#include "platform/storage/json_values.h"
 
 namespace nonio::app {
 
@@ -253,7 +253,7 @@ void write_completion(const Program& program, const std::string& shell, std::ost
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using storage::Json;
 
 const char* kind_of(const Argument& a) {
   constexpr const char* kinds[] = {"flag", "text", "list", "integer", "integer", "number"};

@@ -6,8 +6,9 @@
 #include <cstdlib>
 #include <ctime>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <sstream>
+
+#include "platform/storage/json_values.h"
 
 namespace nonio::app {
 namespace fs = std::filesystem;
@@ -75,9 +76,8 @@ Expected<std::map<std::string, std::string>> settings_of(const std::vector<std::
   return out;
 }
 
-void print_json(const nlohmann::ordered_json& json, int indent) {
-  std::cout << json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-            << "\n";
+void print_json(const storage::Json& json, int indent) {
+  std::cout << json.dump(indent, ' ', false, storage::Json::error_handler_t::replace) << "\n";
 }
 
 std::string today() {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "campaign/loader/plugins.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/json_values.h"
 #include "text_layout.h"
 #include "verbs.h"
 
@@ -15,7 +15,7 @@ namespace nonio::app {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using storage::Json;
 
 const char* to_text(ControlTable::Sign s) {
   return s == ControlTable::Sign::error ? "error" : "correction";

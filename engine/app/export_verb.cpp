@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "batch/state/output_lock.h"
 #include "campaign/config/manifest.h"
@@ -11,12 +10,13 @@
 #include "campaign_workbook.h"
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "platform/storage/pack.h"
 #include "results_folder.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 namespace storage = storage;
 namespace evaluation = evaluation;

@@ -3,15 +3,15 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "campaign/importing/import.h"
 #include "laboratory/store/identity.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

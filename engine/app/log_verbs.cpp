@@ -2,15 +2,15 @@
 #include <charconv>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "campaign/config/site_logs.h"
 #include "laboratory/store/query.h"
+#include "platform/storage/json_values.h"
 #include "printable.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace config = config;
 
 namespace {

@@ -6,7 +6,6 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "axis_argument.h"
@@ -17,13 +16,14 @@
 #include "new_text.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "platform/storage/scratch_folder.h"
 #include "questions.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

@@ -8,18 +8,18 @@
 #include <array>
 #include <cstdlib>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "campaign/evaluation/record.h"
 #include "colour.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "platform/storage/pack.h"
 #include "results_folder.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -30,7 +30,7 @@ struct OpenWish {
 
 Expected<Json> json_file(const fs::path& path) {
   NONIO_TRY(const auto text, storage::read_file(path));
-  Json json = Json::parse(text, nullptr, false);
+  Json json = storage::parse_or_discard(text);
   if (json.is_discarded() || !json.is_object())
     return fail(path.string() + " is not a JSON object");
   return json;

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 
 #include "axis_argument.h"
 #include "campaign/planning/plan_rotary.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/json_values.h"
 #include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"
@@ -42,7 +42,7 @@ std::vector<std::string> cells_of(const RotaryRow& row, const std::string& langu
   return cells;
 }
 
-nlohmann::ordered_json json_of(const RotaryRow& row) {
+storage::Json json_of(const RotaryRow& row) {
   const math::RotaryPlanU& u = row.u;
   return {{"balls", row.plan.balls},
           {"radius_mm", 1e3 * row.plan.radius},
@@ -59,10 +59,10 @@ using Fewest = std::optional<Expected<std::size_t>>;
 
 void print_rotary_json(const RotaryWish& wish, const std::vector<RotaryRow>& rows,
                        double two_points, const Fewest& fewest) {
-  nlohmann::ordered_json out{{"schema", "nonio-rotary-plan/1"}, {"axis", wish.axis},
-                             {"probe_u_um", wish.probe_u},      {"arc_deg", wish.arc},
-                             {"trials", wish.trials},           {"seed", wish.seed},
-                             {"U_two_points_um", two_points}};
+  storage::Json out{{"schema", "nonio-rotary-plan/1"}, {"axis", wish.axis},
+                    {"probe_u_um", wish.probe_u},      {"arc_deg", wish.arc},
+                    {"trials", wish.trials},           {"seed", wish.seed},
+                    {"U_two_points_um", two_points}};
   for (const RotaryRow& row : rows) out["plans"].push_back(json_of(row));
   if (fewest && *fewest) out["fewest_balls"] = **fewest;
   print_json(out);

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "axis_argument.h"
 #include "campaign/planning/plan.h"
@@ -16,6 +15,7 @@
 #include "nonio/sdk/format.h"
 #include "plan_sheet.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "site_words.h"
 #include "text_layout.h"
 #include "verbs.h"
@@ -116,8 +116,8 @@ Expected<std::vector<TableRow>> rows_that_fit(const TableWish& wish, math::Tripl
   return rows;
 }
 
-nlohmann::ordered_json json_of(const TableRow& row) {
-  nlohmann::ordered_json out{
+storage::Json json_of(const TableRow& row) {
+  storage::Json out{
       {"a", row.triple.a}, {"b", row.triple.b}, {"c", row.triple.c}, {"ratio", row.ratio()}};
   if (!row.fits()) return out;
   const math::TriplePlan& p = row.plan;
@@ -198,8 +198,8 @@ int plan_table(const TableWish& wish, const Common& common) {
     return one.triple.c < other.triple.c;
   });
   if (common.json) {
-    nlohmann::ordered_json out{{"schema", "nonio-triple-table/1"}, {"sort", sort}};
-    out["rows"] = nlohmann::ordered_json::array();
+    storage::Json out{{"schema", "nonio-triple-table/1"}, {"sort", sort}};
+    out["rows"] = storage::Json::array();
     for (const TableRow& row : rows) out["rows"].push_back(json_of(row));
     print_json(out);
   } else {

@@ -5,7 +5,6 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "axis_argument.h"
 #include "campaign/planning/plan.h"
@@ -13,6 +12,7 @@
 #include "nonio/sdk/format.h"
 #include "plan_sheet.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "site_words.h"
 #include "tables.h"
 #include "text_layout.h"
@@ -216,7 +216,7 @@ int plan_program(const ProgramWish& p, const Common& common) {
   std::vector<std::string> files;
   const int exit = write_programs(common, p.programs, machine, *rows, {}, &files);
   if (common.json && exit == exit_done)
-    print_json(nlohmann::ordered_json{{"schema", "nonio-programs/1"}, {"files", files}});
+    print_json(storage::Json{{"schema", "nonio-programs/1"}, {"files", files}});
   return exit;
 }
 

@@ -2,14 +2,14 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
+#include "platform/storage/json_values.h"
 #include "plugin_check/plugin_check.h"
 #include "plugin_check/plugin_new.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "campaign/loader/plugins.h"
 #include "nonio/sdk/method.h"
+#include "platform/storage/json_values.h"
 #include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 
 namespace {
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "campaign/config/manifest.h"
 #include "campaign/planning/plan.h"
@@ -11,6 +10,7 @@
 #include "campaign_verb.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "probe.h"
 #include "table_common.h"
 #include "tables.h"
@@ -20,7 +20,7 @@ namespace nonio::app {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using storage::Json;
 
 /// The writer of part programs for a control of this name: heidenhain-tnc has that of heidenhain,
 /// a control without one of its own plain G-code.

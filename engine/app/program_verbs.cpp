@@ -2,13 +2,13 @@
 // help, version, completion: what the program reports of itself.
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "nonio/sdk/plugin.h"
+#include "platform/storage/json_values.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

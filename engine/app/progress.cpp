@@ -6,17 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "colour.h"
 #include "common.h"
+#include "platform/storage/json_values.h"
 #include "text_layout.h"
 
 namespace nonio::app {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using storage::Json;
 
 void print_event(const Json& event) {
   std::cout << event.dump(-1, ' ', false, Json::error_handler_t::replace) << std::endl;

@@ -3,17 +3,17 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "laboratory/store/query.h"
 #include "nonio/sdk/fields.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/json_values.h"
 #include "printable.h"
 #include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 using store::NamedMachine;
 using store::Point;
 using store::Spelling;
@@ -76,11 +76,11 @@ Json to_json(const Point& p) {
     const std::string& text = p.*c.member;
     if (text.empty()) continue;
     if (c.number)
-      json[c.name] = Json::parse(text);
+      json[c.name] = storage::parse(text);
     else
       json[c.name] = text;
   }
-  if (!p.conditions.empty()) json["conditions"] = Json::parse(p.conditions, nullptr, false);
+  if (!p.conditions.empty()) json["conditions"] = storage::parse_or_discard(p.conditions);
   return json;
 }
 

@@ -2,17 +2,17 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "batch/release/release.h"
 #include "password_input.h"
+#include "platform/storage/json_values.h"
 #include "progress.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
 using batch::Released;
 using certificates::WaitingDraft;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

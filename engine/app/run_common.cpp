@@ -7,15 +7,15 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "platform/process/stop.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "text_layout.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -23,7 +23,7 @@ namespace {
 /// One line per campaign that requires action, as far as they fit a screen.
 void print_actions(const std::string& actions, const config::TerminalWords& words) {
   constexpr std::size_t most_campaigns = 20;
-  const Json lines = Json::parse(actions, nullptr, false);
+  const Json lines = storage::parse_or_discard(actions);
   if (!lines.is_array()) return;
   struct Campaign {
     std::string id, says;

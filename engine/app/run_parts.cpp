@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "batch/shards/packed_shard.h"
@@ -12,13 +11,14 @@
 #include "batch/state/run_plan.h"
 #include "batch/state/run_state.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "progress.h"
 #include "run_common.h"
 #include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

@@ -3,17 +3,17 @@
 #include <charconv>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "batch/close/summary.h"
 #include "batch/shards/parts.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "progress.h"
 #include "run_common.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "campaign/config/terminal_words.h"
 #include "campaign/evaluation/record.h"
 #include "colour.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "platform/storage/pack.h"
 #include "results_folder.h"
@@ -20,7 +20,7 @@
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -412,7 +412,7 @@ int show(const ShowWish& wish, const Common& common) {
   if (!shown) return complain(text_of(shown.error()));
   const bool is_stored = holds == Holds::results && !storage::in_pack(folder);
   try {
-    const Json results = Json::parse(shown->text);
+    const Json results = storage::parse(shown->text);
     if (common.json)
       std::cout << shown->text;
     else

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shown_results.h"
 
-#include <nlohmann/json.hpp>
-
 #include "campaign/config/template_files.h"
 #include "campaign/evaluation/evaluation.h"
 #include "campaign/evaluation/record.h"
 #include "campaign/evaluation/results_json.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "results_folder.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

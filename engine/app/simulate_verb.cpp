@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "campaign/evaluation/evaluate.h"
 #include "campaign/loader/plugins.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "simulation/simulate.h"
 #include "verbs.h"
 
@@ -53,9 +53,8 @@ int simulate(const SimulateWish& w, const Common& common) {
   if (written) written = storage::publish(out, made->campaign);
   if (!written) return complain(written.error().message, exit_failed);
   if (common.json)
-    std::cout
-        << nlohmann::ordered_json{{"campaign", out.string()}, {"truth", truth.string()}}.dump()
-        << "\n";
+    std::cout << storage::Json{{"campaign", out.string()}, {"truth", truth.string()}}.dump()
+              << "\n";
   else if (!common.quiet)
     std::cout << out.string() << "\nwhat is in it: " << truth.string() << "\n";
   return exit_done;

@@ -3,9 +3,9 @@
 
 #include <chrono>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 
 namespace nonio::app {
 
@@ -37,17 +37,17 @@ class Metrics {
   std::string out_, name_;
 };
 
-std::size_t length_of(const nlohmann::json& json, const char* list) {
+std::size_t length_of(const storage::Json& json, const char* list) {
   return json.contains(list) && json.at(list).is_array() ? json.at(list).size() : 0;
 }
 
-void put_lines(const nlohmann::json& summary, Metrics& metrics) {
+void put_lines(const storage::Json& summary, Metrics& metrics) {
   std::map<std::string, std::size_t> kinds;
   for (const char* kind : {"lost", "failed", "out", "changed", "soon", "overdue", "withheld",
                            "undecided", "information"})
     kinds[kind] = 0;
   if (summary.contains("lines"))
-    for (const nlohmann::json& line : summary.at("lines"))
+    for (const storage::Json& line : summary.at("lines"))
       if (line.value("state", "") != "fixed") ++kinds[line.value("kind", "other")];
   metrics.family("nonio_worklist_lines", "Lines of the worklist of the last run, by kind");
   for (const auto& [kind, count] : kinds) metrics.value(std::to_string(count), "kind", kind);
@@ -58,7 +58,7 @@ void put_lines(const nlohmann::json& summary, Metrics& metrics) {
 Expected<std::string> metrics_of(const std::filesystem::path& out) {
   const auto path = out / "summary.json";
   NONIO_TRY(const auto text, storage::read_file(path));
-  const nlohmann::json summary = nlohmann::json::parse(text, nullptr, false);
+  const storage::Json summary = storage::parse_or_discard(text);
   if (!summary.is_object() || !summary.contains("counts"))
     return fail(Error{"expected the summary of a run (JSON with counts)", path.string()});
   std::error_code error;

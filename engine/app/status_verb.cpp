@@ -3,19 +3,19 @@
 
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "batch/state/run_status.h"
 #include "laboratory/assessment/assess.h"
 #include "nonio/sdk/format.h"
+#include "platform/storage/json_values.h"
 #include "site_words.h"
 #include "status_metrics.h"
 #include "text_layout.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
 using batch::RunStatus;
+using storage::Json;
 
 namespace {
 

@@ -3,17 +3,17 @@
 
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "campaign/tables/table_check.h"
 #include "campaign_verb.h"
+#include "platform/storage/json_values.h"
 
 /// What the verbs about tables share.
 namespace nonio::app {
 
-using TableJson = nlohmann::ordered_json;
+using TableJson = storage::Json;
 using Texts = std::map<std::string, std::string>;
 
 /// Numbers with the unit in their name: "largest_um".

@@ -6,7 +6,6 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "axis_argument.h"
 #include "campaign/planning/plan.h"
@@ -15,6 +14,7 @@
 #include "campaign_verb.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "table_common.h"
 #include "tables.h"
 #include "verbs.h"

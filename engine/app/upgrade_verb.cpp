@@ -3,17 +3,17 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "batch/survey/site_walk.h"
 #include "campaign/config/manifest.h"
 #include "campaign/config/upgrade.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "results_folder.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
+using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {

@@ -3,19 +3,19 @@
 #include <array>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "certificates/trust.h"
 #include "certificates/verify.h"
 #include "platform/process/apart.h"
+#include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
 #include "printable.h"
 #include "verbs.h"
 
 namespace nonio::app {
-using Json = nlohmann::ordered_json;
 using certificates::Verdict;
+using storage::Json;
 
 namespace {
 

@@ -140,11 +140,11 @@ void post_news(RunResult& run, const RunOptions& options, const RunEvents& event
                const reading::Context& context) {
   using storage::Json;
   constexpr const char* name = "webhook.json";
-  const Json actions = Json::parse(run.actions, nullptr, false);
+  const Json actions = storage::parse_or_discard(run.actions);
   if (!context.site.webhook || !actions.is_array() || process::is_stop_requested()) return;
   const std::filesystem::path folder = options.out / state_folder;
   const auto before = storage::read_file(folder / name);
-  const Json taken = before ? Json::parse(*before, nullptr, false) : Json::array();
+  const Json taken = before ? storage::parse_or_discard(*before) : Json::array();
   Json lines = Json::array(), ids = Json::array(), still = Json::array();
   for (const Json& line : actions) {
     const bool known = std::find(taken.begin(), taken.end(), line.at("id")) != taken.end();

@@ -106,7 +106,7 @@ Expected<std::map<std::string, std::string>> Register::issued_digests() {
   if (is_of_this_version(*database_)) {
     for (const storage::Database::Row& row :
          database_->rows("SELECT number, says FROM journal WHERE what = 'issued'")) {
-      const storage::Json says = storage::Json::parse(row[1], nullptr, false);
+      const storage::Json says = storage::parse_or_discard(row[1]);
       if (!says.is_object() || !says.contains("files")) continue;
       for (const storage::Json& file : says["files"]) numbers[file.value("sha256", "")] = row[0];
     }
@@ -184,7 +184,7 @@ Expected<void> Register::note_persons(std::vector<RegisterEntry>& entries) {
     const auto found = by_number.find(noted.number);
     const bool issued = noted.what == "issued", withdrawn = noted.what == "withdrawn";
     if (found == by_number.end() || !(issued || withdrawn)) continue;
-    const storage::Json says = storage::Json::parse(noted.says, nullptr, false);
+    const storage::Json says = storage::parse_or_discard(noted.says);
     RegisterEntry& e = *found->second;
     (issued ? e.released_account : e.withdrawn_account) = text(says, "account");
     if (issued && says.is_object() && says.contains("signer")) {
@@ -215,7 +215,7 @@ namespace {
 Expected<storage::Json> issued_as_noted(storage::Database& database, const std::string& number) {
   const auto entry = Journal(database).last_of("issued", number);
   if (auto well = database.take_error(); !well) return fail(well.error());
-  storage::Json says = entry ? storage::Json::parse(entry->says, nullptr, false) : storage::Json();
+  storage::Json says = entry ? storage::parse_or_discard(entry->says) : storage::Json();
   if (!says.is_object())
     return fail("the register's journal does not state what " + number + " is");
   return says;
@@ -284,7 +284,7 @@ Expected<evaluation::Certificate> Register::load(std::int64_t id) {
     if (auto noted = note_replaced(integer(row[6]), issue); !noted) return fail(noted.error());
   }
   // Everything else that it prints is contained in the results that are attached to it.
-  const storage::Json results = storage::Json::parse(row[5], nullptr, false);
+  const storage::Json results = storage::parse_or_discard(row[5]);
   if (results.is_object() && results.contains("certificate"))
     if (Issue printed = evaluation::certificate_of(results["certificate"]).issue;
         printed.number == issue.number)
@@ -466,7 +466,7 @@ Expected<evaluation::Certificate> Register::issue(const evaluation::Certificate&
     db.rows("INSERT INTO files VALUES(?, ?, ?, ?, ?, ?)",
             {id, place++, f.output, f.name, f.no_time_stamp, storage::Database::Blob{f.bytes}});
   storage::Json says = issued_json(db, id);
-  storage::Json released = storage::Json::parse(certificate.released, nullptr, false);
+  storage::Json released = storage::parse_or_discard(certificate.released);
   if (released.is_object()) says["released"] = std::move(released);
   if (storage::Json signer = signer_json(certificate.files); !signer.empty())
     says["signer"] = std::move(signer);

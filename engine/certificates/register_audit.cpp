@@ -66,8 +66,7 @@ class Auditor {
     }
     if (entries_.empty() || entries_.front().what != "made")
       wrong("the journal does not begin with the making of the register");
-    else if (storage::Json::parse(entries_.front().says, nullptr, false).value("register", "") !=
-             audit_.id)
+    else if (storage::parse_or_discard(entries_.front().says).value("register", "") != audit_.id)
       wrong("the identity of the register is not the one with which it was made");
   }
 
@@ -91,7 +90,7 @@ class Auditor {
   void check_number(std::int64_t id, const std::string& number, const std::string& campaign,
                     const std::string& state, const std::string& reason) {
     const auto says = [](const Journal::Entry& e) {
-      storage::Json json = storage::Json::parse(e.says, nullptr, false);
+      storage::Json json = storage::parse_or_discard(e.says);
       return json.is_object() ? json : storage::Json::object();
     };
     const Journal::Entry* drawn = noted("drawn", number);
@@ -132,7 +131,7 @@ class Auditor {
       if (!attached) return wrong(number + ": " + attached.error().message);
       for (const pdf::Attachment& a : *attached) {
         if (a.name != evaluation::results_name) continue;
-        const storage::Json results = storage::Json::parse(a.bytes, nullptr, false);
+        const storage::Json results = storage::parse_or_discard(a.bytes);
         const storage::Json certificate = results.is_object() && results.contains("certificate")
                                               ? results["certificate"]
                                               : storage::Json::object();

@@ -59,7 +59,7 @@ WaitingDraft draft_of(const std::string& campaign, const storage::Json& json) {
 Expected<std::vector<WaitingDraft>> drafts_of(const std::vector<storage::Database::Row>& rows) {
   std::vector<WaitingDraft> drafts;
   for (const storage::Database::Row& row : rows) try {
-      drafts.push_back(draft_of(row[0], storage::Json::parse(row[1])));
+      drafts.push_back(draft_of(row[0], storage::parse(row[1])));
     } catch (const storage::Json::exception&) {
       return fail("the register's draft of " + row[0] +
                   " cannot be read; expected a draft of `nonio run`: run with --force");
@@ -168,8 +168,7 @@ Expected<void> Register::approve(const WaitingDraft& seen, const Approval& appro
 Expected<std::optional<Approval>> Register::approval_of(const std::string& number) {
   const auto issued = Journal(*database_).last_of("issued", number);
   if (auto well = database_->take_error(); !well) return fail(well.error());
-  const storage::Json says =
-      issued ? storage::Json::parse(issued->says, nullptr, false) : storage::Json();
+  const storage::Json says = issued ? storage::parse_or_discard(issued->says) : storage::Json();
   if (!says.is_object() || !says.contains("released") || !says["released"].contains("released"))
     return std::nullopt;
   const storage::Json& one = says["released"]["released"];

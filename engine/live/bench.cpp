@@ -310,7 +310,7 @@ class Loop {
     std::uint64_t number = 0;
     if (!storage::unpack(bytes, what, number, text)) return;
     if (what == "cancel") return cancel(number);
-    Job job{number, Json::parse(text), "", "", ""};
+    Job job{number, storage::parse(text), "", "", ""};
     job.kind = job.request.value("kind", "");
     job.part = job.request.value("part", "");
     job.key = trial_key(job.request);
@@ -349,7 +349,7 @@ class Loop {
   }
 
   void take_saved(std::string_view text) {
-    const Json saved = Json::parse(text);
+    const Json saved = storage::parse(text);
     bench_.read.manifest->campaign.model = saved.at("model").get<std::vector<std::string>>();
     bench_.read.inputs.front().second = saved.at("manifest_sha256").get<std::string>();
   }

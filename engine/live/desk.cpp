@@ -269,7 +269,7 @@ Answer Desk::asked(const std::string& kind, const std::string& part, const Reque
   if (wish.contains("count"))
     wish["count"] = std::min(wish["count"].get<std::uint64_t>(), most_rows);
   if (const auto text = request.query("rows")) {
-    const Json rows = Json::parse("[" + *text + "]", nullptr, false);
+    const Json rows = storage::parse_or_discard("[" + *text + "]");
     if (!rows.is_array() || rows.size() > most_rows ||
         !std::all_of(rows.begin(), rows.end(),
                      [](const Json& row) { return row.is_number_unsigned(); }))

@@ -110,7 +110,7 @@ Answer Desk::exclude(const Json& body) {
   const Waiting found = wait_for(lock, wish, "");
   if (!found.well) return refusal(422, found.text);
   std::vector<Excluded> readings;
-  const Json list = Json::parse(found.text);
+  const Json list = storage::parse(found.text);
   for (const Json& one : list.at("readings"))
     readings.push_back({part, one.at("row").get<std::size_t>(),
                         one.at("measurement").get<std::string>(), one.at("file").get<std::string>(),
@@ -160,7 +160,7 @@ Answer Desk::difference() {
   const Waiting done = wait_for(lock, save_request("difference"), "");
   if (!done.well) return refusal(done.done ? 422 : 503, done.text);
   Json json = {{"version", session_.version()}};
-  json.update(Json::parse(done.text));
+  json.update(storage::parse(done.text));
   json["model"] = session_.trial().model;
   json["command"] = command();
   return json_answer(200, json);
@@ -172,7 +172,7 @@ Answer Desk::save(const Request& request) {
   std::unique_lock lock(mutex_);
   const Waiting looked = wait_for(lock, save_request("difference"), "");
   if (!looked.well) return refusal(looked.done ? 422 : 503, looked.text);
-  const Json now = Json::parse(looked.text);
+  const Json now = storage::parse(looked.text);
   const std::string digest = now.at("manifest_sha256").get<std::string>();
   if (wanted != "\"" + digest + "\"" || now.at("changed_on_disk").get<bool>()) {
     Json more = {{"yours", session_.trial().model}, {"manifest_sha256", digest}};
@@ -189,7 +189,7 @@ Answer Desk::save(const Request& request) {
   if (!done.well)
     return done.text.find("changed while") != std::string::npos ? refused(412, "changed")
                                                                 : refusal(422, done.text);
-  const Json saved = Json::parse(done.text);
+  const Json saved = storage::parse(done.text);
   const Trial& trial = session_.trial();
   const bool reads_others = !trial.excluded.empty() || !trial.period_mm.empty();
   session_.was_saved(saved.at("model").get<std::vector<std::string>>());
@@ -274,7 +274,7 @@ void Desk::search_on() {
         }
         continue;
       }
-      const Json verdict = Json::parse(one.explain.head).at("explain");
+      const Json verdict = storage::parse(one.explain.head).at("explain");
       verdicts.push_back({verdict.at("verdict").at("kind").get<std::string>(),
                           verdict.at("verdict").value("effect", ""),
                           verdict.at("certain").get<std::vector<std::string>>()});

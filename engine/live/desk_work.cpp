@@ -26,7 +26,7 @@ std::string now() {
 /// RMS and the like of a fit, with their units.
 Json figures_of(const std::string& head) {
   Json out = Json::object();
-  const Json all = Json::parse("{" + head + "}", nullptr, false);
+  const Json all = storage::parse_or_discard("{" + head + "}");
   if (!all.is_object() || !all.contains("compare")) return out;
   for (const auto& [name, value] : all["compare"].items())
     if (value.is_number() &&
@@ -140,7 +140,7 @@ void Desk::tell(std::uint64_t job, const std::string& state, std::string text) {
 
 void Desk::take_campaign(const std::string& state, const std::string& text) {
   if (state == job_state::catalogue) {
-    campaign_["catalogue"] = Json::parse(text);
+    campaign_["catalogue"] = storage::parse(text);
     session_.touch();
     publish("state", "", Json::object());
   } else if (state == job_state::failed) {
@@ -158,7 +158,7 @@ void Desk::take_campaign(const std::string& state, const std::string& text) {
     publish("state", "", Json::object());
   } else {
     const bool first = order_.empty();
-    campaign_ = Json::parse(text);
+    campaign_ = storage::parse(text);
     const auto model = campaign_.at("model").get<std::vector<std::string>>();
     order_.clear();
     for (const Json& part : campaign_.at("parts")) {

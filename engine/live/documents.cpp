@@ -68,7 +68,7 @@ Expected<std::string> save(Bench& bench, const Json& request) {
   NONIO_TRY(const auto changes, modelling::change_campaign(bench.folder, bench.read, edit));
   Json steps = Json::array();
   for (const modelling::Change& change : changes)
-    steps.push_back(Json::parse(modelling::history_line(change.step)));
+    steps.push_back(storage::parse(modelling::history_line(change.step)));
   return storage::dump_line({{"model", bench.campaign().model},
                              {"manifest_sha256", bench.read.inputs.front().second},
                              {"steps", std::move(steps)}});

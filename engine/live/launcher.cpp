@@ -41,7 +41,7 @@ void serve_launches(const BenchWish& common, int server) {
   ::signal(SIGINT, SIG_IGN);   // the server ends it
   ::signal(SIGCHLD, SIG_IGN);  // bench processes leave nothing behind
   for (std::string what; process::read_text(server, what);)
-    if (!launch(common, storage::Json::parse(what), server)) break;
+    if (!launch(common, storage::parse(what), server)) break;
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ Answer Sentences::spelled(Answer answer) const {
   storage::Json json = {{"error", (*this)(answer.said)},
                         {"id", answer.said.name.substr(answer.said.name.find('.') + 1)},
                         {"status", answer.status}};
-  if (!answer.body.empty()) json.update(storage::Json::parse(answer.body));
+  if (!answer.body.empty()) json.update(storage::parse(answer.body));
   Answer out{answer.status, "application/json", storage::dump_line(json)};
   out.headers = std::move(answer.headers);
   return out;

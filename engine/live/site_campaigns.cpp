@@ -264,7 +264,7 @@ Answer SiteCampaigns::preview(const Request& request) {
   arguments.insert(arguments.end(), taken.options.begin(), taken.options.end());
   arguments.push_back(taken.path());
   const ToolEnd end = call_(std::move(arguments));
-  const Json out = Json::parse(end.out, nullptr, false);
+  const Json out = storage::parse_or_discard(end.out);
   return out.is_object() ? json_answer(200, out) : refusal(422, end.errors);
 }
 

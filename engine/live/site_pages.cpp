@@ -37,7 +37,7 @@ std::vector<std::string> SiteService::with_places(std::vector<std::string> argum
 /// What the verb prints with --json, and the command that was called.
 Answer SiteService::of_verb(const std::vector<std::string>& arguments, const std::string& input) {
   const ToolEnd end = call(arguments, input);
-  Json out = Json::parse(end.out, nullptr, false);
+  Json out = storage::parse_or_discard(end.out);
   if (!out.is_object()) {
     out = {{"error", end.errors.empty() ? "it printed nothing" : end.errors},
            {"status", 422},

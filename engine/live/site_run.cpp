@@ -94,7 +94,7 @@ void SiteRun::close() {
 }
 
 void SiteRun::take(const std::string& line) {
-  const Json event = Json::parse(line, nullptr, false);
+  const Json event = storage::parse_or_discard(line);
   {
     const std::lock_guard lock(mutex_);
     if (!event.is_object() || !event.contains("event")) {

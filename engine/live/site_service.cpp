@@ -204,7 +204,7 @@ Answer SiteService::recorded(const Request& request, const User& user, bool may)
   if (!audit_.write(entry)) return refused(503, "audit");
   if (!may) return refused(403, "role", {{"role", certificates::to_text(user.role)}});
   Answer out = answer_to(request, &user);
-  const Json said = Json::parse(out.body, nullptr, false);
+  const Json said = storage::parse_or_discard(out.body);
   const std::string result = said.is_object() && said.contains("state") && said["state"].is_string()
                                  ? said["state"].get<std::string>()
                                  : "";

@@ -3,11 +3,11 @@
 // (plugin_check_controllers.cpp).
 #include <algorithm>
 #include <charconv>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "platform/storage/digest.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 #include "plugin_check/plugin_checks.h"
 
 namespace nonio::plugin_check::kit {
@@ -43,7 +43,7 @@ std::string unsound_output(const OutputResult& r) {
     if (!storage::is_artifact_name(a.name))
       return "the file name \"" + a.name.substr(0, 60) + "\": expected a plain name";
     if (!names.insert(a.name).second) return "two files called " + a.name;
-    if (a.name.ends_with(".json") && !nlohmann::json::accept(a.bytes))
+    if (a.name.ends_with(".json") && !storage::Json::accept(a.bytes))
       return a.name + " is not JSON";
   }
   return unsound(r);

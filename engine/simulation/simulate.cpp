@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "nonio/model/explain.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/method.h"
+#include "platform/storage/json_values.h"
 #include "platform/storage/random.h"
 #include "simulation/simulate_rows.h"
 
 namespace nonio::simulation {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using storage::Json;
 
 /// What is drawn for one measurement, each from a stream of its own.
 enum Stream : std::uint64_t { offsets, noise, misreadings, streams };

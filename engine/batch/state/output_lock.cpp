@@ -61,7 +61,7 @@ std::string text_of(const User& user) {
 
 /// A file with unreadable content names no process, and is respected all the same.
 User user_in(const std::string& text) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = storage::parse_or_discard(text);
   if (!json.is_object()) return {};
   const auto word = [&](const char* key) {
     const auto it = json.find(key);

@@ -126,8 +126,7 @@ Expected<std::vector<Listed>> read_list(const fs::path& path, const RunPlan::Lis
   try {
     for (std::size_t from = 0; from < text.size();) {
       const std::size_t to = std::min(text.find('\n', from), text.size());
-      all.push_back(listed_in(Json::parse(text.begin() + static_cast<std::ptrdiff_t>(from),
-                                          text.begin() + static_cast<std::ptrdiff_t>(to))));
+      all.push_back(listed_in(storage::parse(std::string_view(text).substr(from, to - from))));
       from = to + 1;
     }
   } catch (const std::exception& e) {
@@ -315,7 +314,7 @@ Expected<std::optional<RunPlan>> find_plan(const fs::path& out) {
   if (!there) return std::nullopt;
   NONIO_TRY(const auto text, storage::read_file(path));
   try {
-    return plan_in(Json::parse(text));
+    return plan_in(storage::parse(text));
   } catch (const std::exception& e) {
     return fail(damaged(path, e.what()));
   }
@@ -393,7 +392,7 @@ Expected<std::optional<ShardRecord>> read_shard_record(const fs::path& out, cons
   }
   ShardRecord record;
   try {
-    const Json json = Json::parse(*text);
+    const Json json = storage::parse(*text);
     if (json.at("schema") != record_schema || json.at("plan") != plan.id ||
         json.at("shard") != shard || json.at("list_sha256") != plan.shards[shard].sha256)
       return fail(path.string() + " is of another plan; run the shard again");

@@ -55,7 +55,7 @@ Expected<std::optional<storage::Json>> read_state(const fs::path& out) {
   std::error_code error;
   if (fs::symlink_status(path, error).type() == fs::file_type::not_found) return std::nullopt;
   NONIO_TRY(const auto file, storage::read_file(path));
-  storage::Json json = storage::Json::parse(file, nullptr, false);
+  storage::Json json = storage::parse_or_discard(file);
   if (json.is_discarded() || !json.is_object() || !known_count(json, "night"))
     return fail(path.string() + " is damaged; remove it to do every campaign anew");
   return json;

@@ -77,7 +77,7 @@ Expected<void> SiteParts::read_inventory() {
   NONIO_TRY(const auto there, storage::is_there(out_ / inventory_name));
   if (!there) return read_copies();
   NONIO_TRY(const auto text, storage::read_file(out_ / inventory_name));
-  const storage::Json json = storage::Json::parse(text, nullptr, false);
+  const storage::Json json = storage::parse_or_discard(text);
   try {
     if (json.at("schema") != inventory_schema) throw std::runtime_error("another schema");
     date_ = json.at("date").get<std::string>();

@@ -299,7 +299,7 @@ std::string packed(const RecordFile& record) {
 }
 
 Expected<RecordFile> unpacked_record(std::string_view text) {
-  const storage::Json json = storage::Json::parse(text, nullptr, false);
+  const storage::Json json = storage::parse_or_discard(text);
   const auto is_text = [](const storage::Json& of, const char* key) {
     return of.is_object() && of.contains(key) && of[key].is_string();
   };

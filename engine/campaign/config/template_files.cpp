@@ -122,8 +122,8 @@ std::vector<std::string> words_in(const std::string& language) {
 
 Expected<CarriedTemplates> templates_from(std::string_view text, const Templates& installed,
                                           std::string_view installed_text) {
-  const storage::Json json = storage::Json::parse(text, nullptr, false),
-                      ours = storage::Json::parse(installed_text, nullptr, false);
+  const storage::Json json = storage::parse_or_discard(text),
+                      ours = storage::parse_or_discard(installed_text);
   if (!json.is_object() || !json.contains("files") || !json["files"].is_object() ||
       storage::dump(json) != text)
     return fail("the attached templates are none, or are written in another way");

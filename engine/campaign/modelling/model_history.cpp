@@ -71,7 +71,7 @@ Expected<std::vector<ModelStep>> parse_history(std::string_view text) {
     text.remove_prefix(std::min(end + 1, text.size()));
     if (one.find_first_not_of(" \t\r") == std::string_view::npos) continue;
     try {
-      steps.push_back(step_of(storage::Json::parse(one)));
+      steps.push_back(step_of(storage::parse(one)));
     } catch (const storage::Json::exception&) {
       return fail(Error{"expected a change of the model as `nonio model` writes it; found \"" +
                             std::string(one.substr(0, 60)) + "\" (the file may be deleted)",

@@ -437,7 +437,7 @@ void put_explained(storage::Json& json, const Explained& e, const Campaign& camp
 
 storage::Json steps_json(const std::vector<ModelStep>& steps) {
   storage::Json list = storage::Json::array();
-  for (const ModelStep& step : steps) list.push_back(storage::Json::parse(history_line(step)));
+  for (const ModelStep& step : steps) list.push_back(storage::parse(history_line(step)));
   return list;
 }
 
@@ -531,7 +531,7 @@ std::string explain_json(const std::vector<Explained>& all, const Campaign& camp
 
 std::string change_json(const Change& change, const Campaign& campaign, const ModelWords& words) {
   storage::Json json = {{"schema", "nonio-model/1"}, {"campaign", campaign.id}};
-  json["step"] = storage::Json::parse(history_line(change.step));
+  json["step"] = storage::parse(history_line(change.step));
   json["effects"] = change.effects;
   if (change.before) json["before"] = compared_json(*change.before, campaign, words);
   if (change.after) json["after"] = compared_json(*change.after, campaign, words);

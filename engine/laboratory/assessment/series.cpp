@@ -47,7 +47,7 @@ std::string difference(const Json& a, const Json& b, bool common_stretch) {
 
 /// No object: an empty one.
 Json parsed(const std::string& conditions) {
-  Json json = Json::parse(conditions, nullptr, false);
+  Json json = storage::parse_or_discard(conditions);
   return json.is_object() ? json : Json::object();
 }
 

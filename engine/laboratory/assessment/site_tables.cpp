@@ -131,7 +131,7 @@ std::vector<ComparedValue> compared_of(const AssessedMachine& m,
         if (of.axis == s.axis && of.quantity == s.quantity && !of.model.empty() &&
             p.campaign == m.stored.campaigns[r.campaign].id && p.value == value.value)
           value.u = reports::u_of_value(p);
-    storage::Json json = storage::Json::parse(r.conditions, nullptr, false);
+    storage::Json json = storage::parse_or_discard(r.conditions);
     if (json.is_object()) {
       value.rotary = std::any_of(described.curves.begin(), described.curves.end(),
                                  [&](const auto& c) { return c.axis == s.axis && c.rotary; });

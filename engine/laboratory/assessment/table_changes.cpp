@@ -57,7 +57,7 @@ struct Taken {
 };
 
 std::optional<Taken> taken(const AssessedMachine& m, const StoredTables& stored) {
-  const Json json = Json::parse(stored.json, nullptr, false);
+  const Json json = storage::parse_or_discard(stored.json);
   if (!json.is_object()) return std::nullopt;
   Taken out;
   out.campaign = stored.campaign, out.measurement = stored.measurement;

@@ -5,12 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "laboratory/store/schema.h"
 #include "laboratory/store/store.h"
 #include "platform/storage/files.h"
+#include "platform/storage/json_values.h"
 
 namespace nonio::store {
 namespace fs = std::filesystem;
@@ -29,7 +29,7 @@ std::string random_digits(int count) {
 }
 
 Expected<void> write_place(const fs::path& out, const StorePlace& place) {
-  nlohmann::ordered_json json;
+  storage::Json json;
   json["owner"] = place.owner;
   json["evaluations"] = place.evaluations;
   if (!place.turns.empty()) json["turns"] = place.turns;
@@ -61,7 +61,7 @@ Expected<StorePlace> place_of(const fs::path& out) {
   if (!there) return StorePlace{};
   NONIO_TRY(const auto text, storage::read_small_file(path));
   try {
-    const auto json = nlohmann::json::parse(text);
+    const auto json = storage::parse(text);
     StorePlace place{std::nullopt, json.at("owner"), json.at("evaluations"),
                      json.value("turns", std::vector<std::string>{})};
     if (json.contains("url"))
@@ -69,7 +69,7 @@ Expected<StorePlace> place_of(const fs::path& out) {
                                      json.at("password_file").get<std::string>()};
     if (place.server && is_of_somebody_else(path)) place.server->password_file.clear();
     return place;
-  } catch (const nlohmann::json::exception&) {
+  } catch (const storage::Json::exception&) {
     return fail(path.string() +
                 " is damaged: restore it from the backup; it states which schema is this folder's");
   }

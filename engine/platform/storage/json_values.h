@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,44 +10,30 @@
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/format.h"
 
+// Compiled once, in json_values.cpp: it costs each source that compiles it 2 to 4 s.
+#pragma GCC visibility push(default)
+#include <nlohmann/json.hpp>
+extern template class nlohmann::basic_json<nlohmann::ordered_map>;
+#pragma GCC visibility pop
+
 namespace nonio::storage {
 
 /// Keys stay in the order in which they are written.
 using Json = nlohmann::ordered_json;
 
+/// A text that this program wrote. Throws `Json::exception` where it is no JSON.
+Json parse(std::string_view text);
+/// Discarded where it is no JSON.
+Json parse_or_discard(std::string_view text);
 /// Discarded where it is no JSON; where an object has a key twice: one program reads the first,
 /// another one the last; and where it is nested so deeply that a copy could exhaust the stack.
-inline Json parse_once(std::string_view text) {
-  constexpr int deepest = 64;
-  std::vector<std::set<std::string>> open;
-  bool wrong = false;
-  Json json = Json::parse(
-      text,
-      [&](int depth, Json::parse_event_t event, Json& value) {
-        if (depth > deepest) wrong = true;
-        if (wrong) return false;
-        if (event == Json::parse_event_t::object_start) open.emplace_back();
-        if (event == Json::parse_event_t::object_end) open.pop_back();
-        if (event == Json::parse_event_t::key &&
-            !open.back().insert(value.get<std::string>()).second)
-          wrong = true;
-        return !wrong;
-      },
-      false);
-  if (wrong) return Json(Json::value_t::discarded);
-  return json;
-}
+Json parse_once(std::string_view text);
 
 /// Indented by one, so that a diff of two runs is readable. Text that is not UTF-8 (a file name, a
 /// plugin's message) gets replacement characters instead of stopping the run.
-inline std::string dump(const Json& json) {
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
+std::string dump(const Json& json);
 /// The same in one line.
-inline std::string dump_line(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string dump_line(const Json& json);
 
 inline Json to_json(const Error& error) {
   Json json = Json::object();

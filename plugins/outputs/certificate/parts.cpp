@@ -487,6 +487,34 @@ void add_authority(const Source& source, Blocks& blocks) {
                     "authority"});
 }
 
+namespace {
+
+/// RFC 3986, 2.1: of a value in the fragment of an address.
+std::string percent_encoded(std::string_view text) {
+  constexpr std::string_view digits = "0123456789ABCDEF", plain = "-._~";
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && (std::isalnum(byte) != 0 || plain.find(c) != plain.npos))
+      out += c;
+    else
+      (out += '%') += {digits[byte >> 4], digits[byte & 15]};
+  }
+  return out;
+}
+
+/// With an address a telephone opens the page that verifies; a fragment never leaves the browser.
+std::string text_of_code(const Source& source) {
+  const Issue& issue = *source.in.issue;
+  const std::string& address = source.look.verification;
+  if (address.empty())
+    return issue.number + "\n" + issue.date + "\nSHA-256 " + issue.readings_sha256;
+  return address + "#number=" + percent_encoded(issue.number) + "&date=" + issue.date +
+         "&readings=" + issue.readings_sha256;
+}
+
+}  // namespace
+
 /// A draft has neither frame nor code.
 void add_signature(const Source& source, Blocks& foot) {
   const Wording& w = source.words;
@@ -507,8 +535,7 @@ void add_signature(const Source& source, Blocks& foot) {
       {issue.released_by.empty() ? source.in.campaign.laboratory.authoriser : issue.released_by,
        source.in.campaign.laboratory.name, w.get("title.number", {{"number", issue.number}}),
        issue.date}};
-  Code code{issue.number + "\n" + issue.date + "\nSHA-256 " + issue.readings_sha256,
-            w.get("authority.code")};
+  Code code{text_of_code(source), w.get("authority.code")};
   foot.push_back({Columns{{{{std::move(grid), "authority"}},
                            {{std::move(box), "authority.box"}},
                            {{std::move(code), "authority.code"}}},

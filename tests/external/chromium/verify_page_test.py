@@ -92,11 +92,23 @@ def main():
             first = next(iter(results["analyses"][0]["values"].values()))["value"]
             assert str(first) in shown and "results.json" in shown, (first, shown)
             assert "signature.time" in browser.value("document.getElementById('verdict').textContent")
+            # The address of a QR code states of which certificate the paper is.
+            issued = results["certificate"]
+            for number, kind in ((issued["number"], "holds"), ("9999-0001", "fails")):
+                browser.open(f"{PAGE.as_uri()}?{kind}#number={number}&date={issued['date']}&readings={issued['readings_sha256']}", 900)
+                said = "document.getElementById('paper')"
+                assert number in browser.value(said + ".textContent") and browser.value(said + ".className") == "", number
+                browser.value(f"globalThis.given = Uint8Array.from(atob('{base64.b64encode(pdf).decode()}'), c => c.charCodeAt(0)); 0")
+                browser.value("take(new File([given], 'certificate.pdf'))")
+                assert browser.value(said + ".className") == "", "nothing is compared before the signature is trusted"
+                browser.value(f"document.getElementById('roots').value = {json.dumps(root.read_text())}; "
+                              f"document.getElementById('signer').value = {json.dumps(SIGNER)}; check()")
+                assert browser.value(said + ".className") == kind, browser.value("document.body.innerText")
             for width in (900, 360):
                 browser.width(width)
                 wide = browser.value("document.documentElement.scrollWidth")
                 assert wide <= width, f"at {width} the page is {wide} wide"
-            bad = complaints(browser, lambda url: url == PAGE.as_uri())
+            bad = complaints(browser, lambda url: url.split("?")[0].split("#")[0] == PAGE.as_uri())
             assert not bad, bad
         finally:
             browser.close()

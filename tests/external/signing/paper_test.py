@@ -145,9 +145,12 @@ class Paper(SigningTest):
         self.made("long-ago", put("calibrated", "2015-01-12"))
         self.made("to-come", lambda text: put("end_date", "2062-04-15")(put("date", "2062-04-14")(text)))
         self.run_nonio()
-        for name, why in (("later", "calibrated"), ("long-ago", "calibrated"), ("to-come", "still to come")):
+        for name, why in (("later", "calibrated"), ("to-come", "still to come")):
             with self.subTest(name):
                 self.assert_no_paper(name, why)
+        # A calibration of long ago is for a person to accept, with a reason.
+        self.assertEqual([p.name for p in self.files("long-ago", "pdf")], ["certificate-draft.pdf"])
+        self.assertIn("--reason=traceability.calibrated-long-ago=as found", self.release("long-ago"))
 
     def test_pages_and_dcc_say_the_same(self):
         self.site_text(lambda text: text.replace('["en"]', '["it", "en"]'))
@@ -162,13 +165,41 @@ class Paper(SigningTest):
         for words in ("SP-01 rev. 0", "In use; guideways clean", "Padova, hall 2", "SO-2026-0001", "A. Sample"):
             self.assertIn(words, paper)
             self.assertIn(words, dcc)
-        for mark in ('lang="it"', 'lang="en"', "basic_temperature", "influenceCondition", "ISO 14253-1:2013"):
+        for mark in ('lang="it"', 'lang="en"', "basic_temperature", "influenceCondition", "ISO 14253-1:2017"):
             self.assertIn(mark, dcc)
         for kind in ("si:valueExpandedMU", "si:valueExpandedMUXMLList"):
             found = [u for text in re.findall(rf"<{kind}>([^<]*)<", dcc) for u in text.split()]
             self.assertTrue(found, kind)
             for u in found:
                 self.assertLessEqual(len(u.replace(".", "").lstrip("0")), 2, f"{kind} {u}")
+
+    @needs("zbarimg", "pdftoppm")
+    def test_the_code_is_read_from_paper(self):
+        """By another program, from a picture of 300 dots per inch."""
+        self.made("plain")
+        issued = self.issued("plain")
+        self.assertEqual(self.code("plain"), f"{issued['number']}\n{issued['date']}\nSHA-256 {issued['readings_sha256']}")
+
+    @needs("zbarimg", "pdftoppm")
+    def test_the_code_opens_the_page_that_verifies(self):
+        address = "https://www.example.org/a/verify.html?x=1"
+        template = self.site / "templates" / "certificate.toml"
+        template.parent.mkdir()
+        shipped = (pathlib.Path(__file__).resolve().parents[3] / "templates" / "certificate.toml").read_text("utf-8")
+        template.write_text(f'{shipped}\n[verification]\naddress = "{address}"\n', "utf-8")
+        self.made("plain")
+        issued = self.issued("plain")
+        self.assertEqual(self.code("plain"), f"{address}#number={issued['number']}&date={issued['date']}&readings={issued['readings_sha256']}")
+
+    def issued(self, name):
+        self.run_nonio()
+        run(*self.release(name))
+        return self.results(name)["certificate"]
+
+    def code(self, name):
+        run("pdftoppm", "-r", "300", "-f", "1", "-l", "1", "-gray", self.out / name / "certificate.pdf", self.root / "page")
+        page, = self.root.glob("page*.pgm")
+        return run("zbarimg", "--quiet", "--raw", page).stdout.rstrip("\n")
 
     def release(self, name):
         from signing import NONIO

@@ -447,6 +447,20 @@ TEST_F(Certificate, ATemplateMayMovePartsButNotLeaveThemOut) {
   EXPECT_EQ(output().check_templates(templates).size(), 1U);
 }
 
+TEST_F(Certificate, TheAddressOfTheCodeIsAnAddress) {
+  auto& address = templates.tables["certificate"].values["verification.address"];
+  for (const char* good : {"https://lab.example/verify.html", "https://lab.example/a?b=c%20d"}) {
+    address = std::string(good);
+    EXPECT_TRUE(write(whole())) << good;
+  }
+  for (const std::string& bad :
+       {std::string("http://lab.example/"), std::string("https://lab.example/#a"),
+        std::string("https://lab.example/a b"), "https://lab.example/" + std::string(200, 'a')}) {
+    address = bad;
+    EXPECT_TRUE(has(complaint(whole()), "verification.address")) << bad;
+  }
+}
+
 TEST_F(Certificate, ALogoStandsAboveTheLaboratory) {
   auto& values = templates.tables["certificate"].values;
   values["logo.file"] = std::string("logo.png");

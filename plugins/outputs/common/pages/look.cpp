@@ -16,6 +16,8 @@ std::string joined(const Names& names) {
   return out;
 }
 
+constexpr std::size_t longest_address = 200;  // a QR code of it can still be read from paper
+
 /// Reads the keys of one file and keeps the first complaint.
 class Keys {
  public:
@@ -29,6 +31,20 @@ class Keys {
   std::string text_if_given(const char* key) {
     known_.insert(key);
     return settings_.has(key) ? text(key) : std::string();
+  }
+
+  /// An https address to which a fragment can be added; empty if it is not given.
+  std::string address_if_given(const char* key) {
+    const std::string address = text_if_given(key);
+    constexpr std::string_view also = "-._~:/?[]@!$&'()*+,;=%";
+    const bool plain = std::all_of(address.begin(), address.end(), [&](unsigned char c) {
+      return c < 0x80 && (std::isalnum(c) != 0 || also.find(static_cast<char>(c)) != also.npos);
+    });
+    if (!address.empty() &&
+        (!address.starts_with("https://") || !plain || address.size() > longest_address))
+      complain(key, "an address that begins with https://, without \"#\" and blanks, of at most " +
+                        std::to_string(longest_address) + " bytes");
+    return address;
   }
 
   double number(const char* key, double least, double most) {
@@ -156,6 +172,7 @@ Expected<Look> read_look(const Templates& templates, const std::string& name, co
   look.bold = keys.text("font.bold");
   look.wide = keys.text_if_given("font.wide");
   look.profile = keys.text_if_given("colour.profile");
+  look.verification = keys.address_if_given("verification.address");
   look.logo = keys.text_if_given("logo.file");
   look.mark = keys.text_if_given("logo.mark");
   if (!look.logo.empty() || !look.mark.empty()) look.logo_height = keys.mm("logo.height_mm", 3, 80);

@@ -17,6 +17,7 @@ struct Look {
   int plots_per_row = 2;
   std::string regular, bold, wide;  ///< names of the font files; `wide` may be empty
   std::string logo, mark;    ///< pictures: of the laboratory, of its accreditation; may be empty
+  std::string verification;  ///< address of the page that verifies a certificate; may be empty
   std::string profile;       ///< ICC profile of sRGB; may be empty
   double logo_height = 0.0;  ///< pt
   reports::Style style;
