@@ -35,10 +35,9 @@ class CycleReader {
     if (!c_.is("step-diagonal")) read_order();
     if (const auto runs = reader_.integer("runs")) c_.runs = static_cast<std::uint32_t>(*runs);
     read_times();
-    c_.noise = (angular ? reader_.number("noise_arcsec", 1.0 / arcsec_per_rad)
-                        : reader_.number("noise_um", 1e-6))
-                   .value_or(0.0);
-    if (c_.is("straightness")) c_.set_up = reader_.number("set_up_urad", 1e-6).value_or(0.0);
+    c_.noise =
+        (angular ? reader_.number("noise_arcsec") : reader_.number("noise_um")).value_or(0.0);
+    if (c_.is("straightness")) c_.set_up = reader_.number("set_up_urad").value_or(0.0);
     read_balls(campaign);
     read_misreadings();
     read_temperature();
@@ -96,7 +95,7 @@ class CycleReader {
     const auto given = reader_.numbers(list);
     const auto first = reader_.number(from), last = reader_.number(to),
                distance = reader_.number(step);
-    const double share = reader_.number("random_offset_pct", 0.01).value_or(0.0);
+    const double share = reader_.number("random_offset_pct").value_or(0.0);
     if (share > 0.45) reader_.error("random_offset_pct", "expected at most 45, targets keep order");
     if (c_.steps > 0) {
       if (given || first || last || distance) reader_.error("steps", "is not allowed with targets");
@@ -191,7 +190,7 @@ class CycleReader {
     if (!t) return;
     CycleSpec::Course course;
     course.start = t->number("start_c").value_or(course.start);
-    course.drift = t->number("drift_K_per_h", 1.0 / 3600.0).value_or(0.0);
+    course.drift = t->number("drift_K_per_h").value_or(0.0);
     course.swing = t->number("swing_K").value_or(0.0);
     course.period = t->number("period_s").value_or(course.period);
     t->finish();
@@ -223,7 +222,7 @@ class CycleReader {
   void read_times() {
     if (c_.is("circle")) return read_circle();
     const char* feed = c_.axis.rotary ? "feed_deg_per_min" : "feed_mm_per_min";
-    c_.feed = reader_.number(feed, unit_ / 60.0).value_or(c_.axis.rotary ? 0.1 : 0.05);
+    c_.feed = reader_.number(feed).value_or(c_.axis.rotary ? 0.1 : 0.05);
     c_.dwell = reader_.number("dwell_s").value_or(c_.dwell);
     c_.pause = reader_.number("pause_s").value_or(c_.pause);
     c_.timed = reader_.flag("times").value_or(true);

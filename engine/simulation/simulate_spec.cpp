@@ -59,9 +59,8 @@ class ParameterKeys {
   ParameterKeys(const Effect& effect, bool rotary) {
     for (const Effect::Parameter& p : effect.linear) names_.push_back(key_of(p, rotary));
     for (const Effect::Shape& s : effect.shapes) names_.push_back(key_of(s.parameter, rotary));
-    keys_.push_back({.name = "name", .holds = config::Key::Holds::text, .help = {}});
-    for (const std::string& name : names_)
-      keys_.push_back({.name = name, .holds = config::Key::Holds::number, .help = {}});
+    keys_.push_back({"name", config::Key::Holds::text, {}});
+    for (const std::string& name : names_) keys_.push_back({name, config::Key::Holds::number, {}});
     table_.keys = keys_;
   }
   const config::Key& table() const { return table_; }
@@ -69,7 +68,7 @@ class ParameterKeys {
  private:
   std::vector<std::string> names_;
   std::vector<config::Key> keys_;
-  config::Key table_{.name = "effect", .holds = config::Key::Holds::table, .help = {}};
+  config::Key table_{"effect", config::Key::Holds::table, {}};
 };
 
 /// The [[effect]]s.
@@ -156,7 +155,12 @@ std::vector<Formula> read_simulation(config::TableReader& top, Specification& s)
   if (!seed)
     reader->error("seed", "expected a whole number: the same seed gives the same readings");
   s.seed = static_cast<std::uint64_t>(seed.value_or(1));
-  std::vector<Formula> hidden = config::read_formulas(*reader, s.campaign.machine);
+  std::vector<Formula> hidden;
+  for (config::TableReader& formula : reader->tables("formula")) {
+    formula.fill(hidden.emplace_back());
+    config::check_formula(formula, hidden, s.campaign.machine);
+    formula.finish();
+  }
   read_things(*reader, s);
   reader->finish();
   return hidden;

@@ -74,8 +74,8 @@ void read_things(config::TableReader& simulation, Specification& s) {
     if (!q.name.empty() && std::find(squares.begin(), squares.end(), q.name) == squares.end())
       reader.error("name", "no [[square]] is called \"" + q.name + "\"" +
                                storage::suggestion(q.name, squares));
-    q.error = reader.number("error_urad", 1e-6).value_or(0.0);
-    q.set_up = reader.number("set_up_urad", 1e-6).value_or(0.0);
+    q.error = reader.number("error_urad").value_or(0.0);
+    q.set_up = reader.number("set_up_urad").value_or(0.0);
     reader.finish();
     s.squares.push_back(std::move(q));
   }

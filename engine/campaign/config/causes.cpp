@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "campaign/config/causes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "campaign/config/formula_reader.h"
 #include "campaign/config/toml_reader.h"
 #include "nonio/sdk/axis_readings.h"
 
@@ -17,27 +17,13 @@ constexpr int values_of_a_range = 32;
 Cause read_cause(TableReader& reader) {
   Cause c;
   c.file = reader.file();
-  c.formula.name = reader.text("name");
-  c.formula.expression = reader.text("expression");
+  reader.fill(c);
   c.formula.line = reader.line_of("expression");
-  for (TableReader& parameter : reader.tables("parameters"))
-    c.formula.parameters.push_back(read_parameter(parameter));
-  c.rotary = reader.text("axis") == "rotary";
-  c.titles = reader.translations("title");
   for (const char* language : {"", "en"})
     if (const auto found = c.titles.find(language); found != c.titles.end())
       c.title = found->second;
   if (c.title.empty() && reader.raw().contains("title"))
     reader.error("title", "expected a text, or one for en among the texts by language");
-  c.is = reader.text("is");
-  c.size = reader.text("size");
-  c.appearance = reader.text("appearance");
-  c.similar = reader.text("similar");
-  c.remedy = reader.text("remedy");
-  c.compensable = reader.flag("compensable").value_or(false);
-  c.prior = reader.text("prior");
-  for (const std::string& column : reader.texts("columns").value_or(std::vector<std::string>{}))
-    c.timed = c.timed || column == "time_s";
   reader.finish();
   return c;
 }
@@ -62,7 +48,7 @@ Expected<Effect> Cause::effect(bool tried) const {
   if (!made) return made;
   made->info.summary = title;
   made->compensable = compensable;
-  if (timed)
+  if (std::find(columns.begin(), columns.end(), "time_s") != columns.end())
     made->applies = [inner = made->applies](const Observations& o, const Axis& a) {
       if (!inner(o, a)) return false;
       const auto r = readings_of(o, a);
@@ -95,14 +81,13 @@ Checked<std::vector<Cause>> causes_in(const Templates& templates) {
     TableReader top(*root, causes_file(), file, errors);
     top.integer("format");
     for (TableReader& reader : top.tables("cause")) {
-      const std::size_t before = reader.errors();
       Cause cause = read_cause(reader);
       const auto [first, is_new] = there.try_emplace(
           cause.formula.name, file + ":" + std::to_string(reader.line_of("name")));
       if (!is_new)
         reader.error("name", "\"" + cause.formula.name + "\" is in " + first->second +
                                  " already; give one of them another name");
-      if (reader.errors() == before && name.starts_with(site_causes))
+      if (!reader.has_errors() && name.starts_with(site_causes))
         if (const auto effect = cause.effect(false); !effect)
           reader.error("expression", effect.error().message);
       all.push_back(std::move(cause));

@@ -23,7 +23,7 @@ struct Cause {
   std::string title, is, size, appearance, similar, remedy;  ///< English
   std::map<std::string, std::string> titles{};               ///< by language
   std::string prior;                                         ///< common, rare, very-rare
-  bool timed = false;  ///< readings without times do not show it
+  std::vector<std::string> columns{};  ///< "time_s": readings without times do not show it
   bool compensable = false;
   std::string file;  ///< of the formula's line
 

@@ -3,41 +3,14 @@
 
 #include <tuple>
 
+#include "campaign/config/checks.h"
 #include "campaign/config/number_pattern.h"
+#include "campaign/config/toml_reader.h"
 
 namespace nonio::config {
 
-CertificateTexts read_certificate(TableReader& reader) {
-  CertificateTexts c;
-  c.languages = reader.texts("languages").value_or(std::vector<std::string>{});
-  c.form = reader.text("template");
-  c.location = reader.text("location");
-  c.procedure = reader.text("procedure");
-  c.title = reader.translations("title");
-  c.decision_rule = reader.text("decision_rule");
-  return c;
-}
-
-void read_certificate_of_campaign(TableReader& reader, CertificateTexts& into) {
-  into.deviations = reader.text("deviations");
-  into.no_other_deviations_by = reader.text("no_other_deviations_by");
-  into.conditions = reader.text("conditions");
-  into.opinions = reader.text("opinions");
-  into.amendment = reader.text("amendment");
-  into.customer_data = reader.texts("customer_data").value_or(std::vector<std::string>{});
-}
-
-Numbering read_numbering(TableReader& reader) {
-  Numbering n;
-  if (const std::string pattern = reader.text("numbering"); !pattern.empty()) n.pattern = pattern;
-  if (const std::string file = reader.text("register"); !file.empty()) n.register_file = file;
-  n.patience = reader.number("register_seconds").value_or(n.patience);
-  n.automatic = reader.text("release") == "automatic";
-  n.two_persons = reader.flag("two_persons").value_or(false);
-  for (TableReader& rule : reader.tables("accept")) {
-    n.accepted.push_back({rule.text("finding"), rule.text("reason")});
-    rule.finish();
-  }
+void check_numbering(TableReader& reader, SiteFile& site) {
+  const Numbering& n = site.numbering;
   if (n.automatic && !reader.raw().contains("accept"))
     reader.error("release",
                  "\"automatic\" requires the list of accepted findings, [[certificate.accept]] "
@@ -46,7 +19,6 @@ Numbering read_numbering(TableReader& reader) {
     reader.error("two_persons", "true and release = \"automatic\" contradict each other");
   if (const auto sound = number_text(n.pattern, "2026", 1); !sound)
     reader.error("numbering", sound.error().message);
-  return n;
 }
 
 CertificateTexts certificate_of(const CertificateTexts& site, const CertificateTexts& campaign) {

@@ -8,8 +8,7 @@ namespace nonio::config {
 
 /// [[formula]] of [model], or of a simulation: read and tried, so that what is wrong with them is
 /// stated with the rest.
-std::vector<Formula> read_formulas(TableReader& table, const Machine& machine);
-
-Formula::Parameter read_parameter(TableReader& reader);
+/// The last formula, after its keys were read.
+void check_formula(TableReader& reader, std::vector<Formula>& all, const Machine& machine);
 
 }  // namespace nonio::config

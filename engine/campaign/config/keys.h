@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 /// The keys of Nonio's TOML files as data. `TableReader` checks a file against them, `schema.cpp`
 /// makes a JSON schema of them; a check across several keys stays with the code that reads them.
@@ -14,6 +16,7 @@ namespace nonio::config {
 struct Choice {
   std::string_view name;
   std::string_view meaning{};  ///< in brackets after the name in messages: "um (deviation)"
+  int value = 0;               ///< of the enum or bool that it is chosen for
 };
 
 /// A key of the same table has one of these values.
@@ -34,6 +37,8 @@ struct TextRule {
 
 /// What is known only at run time, of the loaded plugins.
 enum class Named { nothing, method, reader, effect, analysis, output, control };
+
+class TableReader;
 
 struct Key {
   enum class Holds {
@@ -57,10 +62,25 @@ struct Key {
     by_kind          ///< declared differently by the kinds that have it
   };
 
+  /// What a key holds, and where its value goes: into a member of the struct that its table fills.
+  /// Made by bind.h, or of `Holds` alone: such a key is checked, and read by its name if at all.
+  struct Into {
+    Holds holds;
+    void (*read)(TableReader&, const Key&, void* object) = nullptr;
+    const void* of = nullptr;     ///< the type of `object`
+    const void* inner = nullptr;  ///< of a table: the type that its keys fill
+    constexpr Into(Holds h) : holds(h) {}
+    template <class Read>
+    constexpr Into(Holds h, Read r, const void* o, const void* i = nullptr)
+        : holds(h), read(r), of(o), inner(i) {}
+  };
+
   std::string_view name;
   Holds holds;
-  std::string_view help;         ///< plain English; the first letter is a capital
+  std::string_view help;  ///< plain English; the first letter is a capital
+  Into into;
   std::string_view unit{};       ///< as in docs: "um", "mm or deg"; empty: none
+  double scale = 1.0;            ///< from this unit to that of the member
   std::string_view otherwise{};  ///< the default, if it is a value
   bool required = false;
   When only{};    ///< elsewhere the key is unknown
@@ -85,6 +105,25 @@ struct Key {
   std::string_view named_so{};
   /// Name of an earlier version. It is accepted with a warning; schema and reference omit it.
   std::string_view former{};
+
+  /// Attributes: choices, keys, `Named`, and those of bind.h. In a constant, keys of a table that
+  /// fill another struct than the table does are an error of the compiler.
+  template <class... Attributes>
+  constexpr Key(std::string_view n, Into i, std::string_view h, const Attributes&... attributes)
+      : name(n), holds(i.holds), help(h), into(i) {
+    (set(attributes), ...);
+    for (const Key& key : keys)
+      if (key.into.of != nullptr && key.into.of != into.inner)
+        throw std::logic_error("a key of another struct than that of its table");
+  }
+
+ private:
+  constexpr void set(Named kind) { named = kind; }
+  constexpr void set(std::span<const Choice> all) { choices = all; }
+  constexpr void set(std::span<const Key> all) { keys = all; }
+  template <class Attribute>
+  requires std::is_invocable_v<const Attribute&, Key&>
+  constexpr void set(const Attribute& attribute) { attribute(*this); }
 };
 
 /// The whole file as one table: what is not named here is unknown.

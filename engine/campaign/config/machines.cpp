@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "campaign/config/checks.h"
 #include "campaign/config/site_files.h"
 #include "campaign/config/table_files.h"
 #include "campaign/config/toml_reader.h"
@@ -25,78 +26,6 @@ bool is_range(std::string_view text) {
   if (dash == std::string_view::npos) return digits(text);
   const std::string_view from = text.substr(0, dash), to = text.substr(dash + 1);
   return digits(from) && digits(to) && std::stol(std::string(from)) <= std::stol(std::string(to));
-}
-
-/// Numbers that a control uses unchanged, by the key of option `axes`.
-void read_settings(TableReader& reader, RecordedAxis& axis) {
-  const auto keep = [&](const char* key, std::optional<double> value) {
-    if (value) axis.settings[key] = *value;
-  };
-  if (const auto number = reader.integer("number")) axis.settings["number"] = *number;
-  const auto travel = reader.span("travel");
-  if (axis.rotary) {
-    keep("reference_deg", reader.number("reference_deg"));
-    keep("resolution_arcsec", reader.number("resolution_arcsec"));
-    keep("largest_arcsec", reader.number("largest_arcsec"));
-    keep("slope_arcsec_per_deg", reader.number("slope_arcsec_per_deg"));
-  } else {
-    keep("reference_mm", reader.number("reference_mm"));
-    keep("resolution_um", reader.number("resolution_um"));
-    keep("largest_um", reader.number("largest_um"));
-    keep("slope_um_per_m", reader.number("slope_um_per_m"));
-  }
-  if (!travel) return;
-  axis.settings[axis.rotary ? "from_deg" : "from_mm"] = travel->first;
-  axis.settings[axis.rotary ? "to_deg" : "to_mm"] = travel->second;
-}
-
-ControlState read_state(TableReader& reader, bool rotary, const std::string& key) {
-  ControlState state;
-  state.key = key;
-  state.line_of_table = reader.line_of("table"), state.line_of_since = reader.line_of("since");
-  if (const std::string table = reader.text("table"); !table.empty())
-    state.table = table == "none" ? std::string() : table;
-  state.backlash = rotary ? reader.number_or_none("backlash_deg", 1.0 / deg_per_rad)
-                          : reader.number_or_none("backlash_mm", 1e-3);
-  state.since = reader.date("since");
-  if ((state.table || state.backlash) && state.since.empty())
-    reader.error("since",
-                 "is missing: the day on which table and backlash came into the control; they "
-                 "count for measurements of later days only");
-  return state;
-}
-
-RecordedAxis read_recorded_axis(const std::string& name, TableReader& reader) {
-  RecordedAxis axis{.rotary = rotary_by_name(name)};
-  if (const std::string kind = reader.text("kind"); !kind.empty()) axis.rotary = kind == "rotary";
-  reader.settle("kind", axis.rotary ? "rotary" : "linear");
-  axis.name = reader.text("name");
-  reader.text("gear");  // for people
-  read_settings(reader, axis);
-  const std::string place = "axes." + name;
-  if (ControlState present = read_state(reader, axis.rotary, place); !present.since.empty()) {
-    if (present.table) present.files = name;
-    axis.states.push_back(std::move(present));
-  }
-  for (TableReader& one : reader.tables("state")) {
-    const char* const other = axis.rotary ? "backlash_mm" : "backlash_deg";
-    if (one.number_or_none(other))
-      one.error(other, std::string("axis ") + name + " is " + (axis.rotary ? "rotary" : "linear") +
-                           ": expected " + (axis.rotary ? "backlash_deg" : "backlash_mm"));
-    ControlState state = read_state(one, axis.rotary, place + ".state");
-    if (const std::string source = one.text("source"); !source.empty()) state.source = source;
-    state.sha256 = one.text("sha256");
-    one.span("grid");  // for people, as the two that follow
-    one.integer("points");
-    one.number("reference");
-    one.finish();
-    if (state.table) state.files = name + " " + *state.table;
-    axis.states.push_back(std::move(state));
-  }
-  std::stable_sort(axis.states.begin(), axis.states.end(),
-                   [](const ControlState& a, const ControlState& b) { return a.since < b.since; });
-  reader.finish();
-  return axis;
 }
 
 void same_number_twice(const MachineRecord& record, TableReader& top) {
@@ -166,7 +95,52 @@ RecordFile read_record(const fs::path& site, const std::string& asset) {
   return file;
 }
 
+void check_since(TableReader& reader, ControlState& state) {
+  state.key = reader.place();
+  state.line_of_table = reader.line_of("table"), state.line_of_since = reader.line_of("since");
+  if (state.table == "none") state.table.emplace();
+  if ((state.table || state.backlash) && state.since.empty())
+    reader.error("since",
+                 "is missing: the day on which table and backlash came into the control; they "
+                 "count for measurements of later days only");
+}
+
 }  // namespace
+
+void read_as_written(TableReader& reader, const Key& key, std::map<std::string, double>& settings) {
+  const bool rotary = reader.settled() == "rotary";
+  if (key.holds == Key::Holds::span) {
+    const auto travel = value_of<Span>(reader, key);
+    if (!travel) return;
+    settings[rotary ? "from_deg" : "from_mm"] = travel->first;
+    settings[rotary ? "to_deg" : "to_mm"] = travel->second;
+  } else if (key.holds == Key::Holds::whole) {
+    if (const auto value = value_of<int>(reader, key)) settings[std::string(key.name)] = *value;
+  } else if (const auto value = value_of<double>(reader, key)) {
+    settings[std::string(key.name)] = *value;
+  }
+}
+
+void check_state(TableReader& reader, ControlState& state) {
+  const bool rotary = reader.settled() == "rotary";
+  const char* const other = rotary ? "backlash_mm" : "backlash_deg";
+  if (reader.contains(other))
+    reader.error(other, "axis " + reader.name() + " is " + (rotary ? "rotary" : "linear") +
+                            ": expected " + (rotary ? "backlash_deg" : "backlash_mm"));
+  check_since(reader, state);
+  if (state.table) state.files = reader.name() + " " + *state.table;
+}
+
+void check_recorded_axis(TableReader& reader, RecordedAxis& axis) {
+  axis.rotary = reader.settled() == "rotary";
+  check_since(reader, axis.present);
+  if (!axis.present.since.empty()) {
+    if (axis.present.table) axis.present.files = reader.name();
+    axis.states.insert(axis.states.begin(), axis.present);
+  }
+  std::stable_sort(axis.states.begin(), axis.states.end(),
+                   [](const ControlState& a, const ControlState& b) { return a.since < b.since; });
+}
 
 const ControlState* RecordedAxis::state_on(const std::string& day) const {
   const ControlState* last = nullptr;
@@ -192,21 +166,12 @@ Checked<MachineRecord> parse_machine(std::string_view text, const std::string& f
   MachineRecord record;
   record.file = file;
   TableReader top(*root, machine_file(), file, errors);
-  top.integer("format");
-  record.asset = top.text("asset");
+  top.fill(record);
   if (!record.asset.empty() && record.asset != asset)
     top.error("asset",
               "expected \"" + asset + "\", as the file is called; found \"" + record.asset + "\"");
-  record.maker = top.text("maker");
-  record.model = top.text("model");
-  record.serial = top.text("serial");
-  record.control = top.text("control");
-  record.control_version = top.text("control_version");
-  record.taken = top.texts("taken").value_or(std::vector<std::string>{});
   if (!std::all_of(record.taken.begin(), record.taken.end(), is_range))
     top.error("taken", "expected numbers or ranges of them, [\"0\", \"100-227\"]");
-  for (auto& [name, axis] : top.named_tables("axes"))
-    record.axes[name] = read_recorded_axis(name, axis);
   same_number_twice(record, top);
   top.finish();
   if (!errors.empty()) return tl::unexpected(std::move(errors));

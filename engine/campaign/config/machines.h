@@ -40,6 +40,7 @@ struct RecordedAxis {
   /// resolution_um, largest_um, slope_um_per_m, and the same of rotary axes.
   std::map<std::string, double> settings{};
   std::vector<ControlState> states{};  ///< by day
+  ControlState present{};              ///< as stated for the axis; in `states` if it has a day
 
   /// What was in the control on this day; null: not known.
   const ControlState* state_on(const std::string& day) const;

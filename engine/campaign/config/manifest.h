@@ -69,6 +69,7 @@ struct Limits {
 /// `[[alias]]` of site.toml: two names of one machine.
 struct Alias {
   std::string name, asset, why;
+  std::uint64_t line_of_asset = 0;
 };
 
 /// `[database]` of site.toml. The path is relative to the site.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "campaign/config/bind.h"
 #include "nonio/sdk/format.h"
 
 namespace nonio::config {
@@ -12,11 +13,27 @@ using Holds = Key::Holds;
 
 std::span<const Key> common_keys() { return find_key(campaign_file().keys, "measurement")->keys; }
 
+/// The kind of key for values of an option.
 Holds holds_of(const Setting& value) {
-  static constexpr Holds holds[] = {Holds::flag,    Holds::whole,       Holds::number,
-                                    Holds::text,    Holds::numbers,     Holds::texts,
-                                    Holds::by_kind, Holds::number_table};
-  return holds[value.index()];
+  return std::visit(
+      []<class T>(const T&) {
+        if constexpr (std::is_same_v<T, NumberTables>)
+          return Holds::by_kind;
+        else
+          return decltype(binding::usual<T>())::holds;
+      },
+      value);
+}
+
+/// Keeps the default, which is there, where the key is not.
+void read_setting(TableReader& reader, const Key& key, void* measurement) {
+  auto& values = static_cast<Measurement*>(measurement)->settings.values;
+  std::visit(
+      [&]<class T>(T& to) {
+        if constexpr (!std::is_same_v<T, NumberTables>)
+          binding::read<decltype(binding::usual<T>()), T>(reader, key, to);
+      },
+      values.find(key.name)->second);
 }
 
 /// What is expected of a value, where the method does not state it.
@@ -57,7 +74,9 @@ KindKeys::KindKeys(const Method& method)
 }
 
 Key KindKeys::key_of(const Option& option) {
-  Key key{.name = option.name, .holds = holds_of(option.default_value), .help = option.help};
+  Key key{option.name,
+          {holds_of(option.default_value), read_setting, &binding::tag<Measurement>},
+          option.help};
   key.unit = option.unit;
   key.required = option.required;
   key.missing = option.missing;

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "campaign/config/run_reader.h"
-
 #include <cmath>
 
-namespace nonio::config {
+#include "campaign/config/checks.h"
+#include "campaign/config/toml_reader.h"
 
-RunChoice read_run(TableReader& top) {
-  RunChoice run;
-  auto reader = top.table("run");
-  if (!reader) return run;
-  run.analyses = reader->texts("analyses");
-  run.outputs = reader->texts("outputs");
-  reader->finish();
-  return run;
-}
+namespace nonio::config {
 
 namespace {
 
@@ -38,17 +29,16 @@ Error wrong_option(const std::string& place, const toml::node& value, const std:
 
 }  // namespace
 
-RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
-  RawOptions options;
-  const toml::table* table = top.anything("options");
-  if (table == nullptr) return options;
+void read_options(TableReader& top, const Key& declaration, RawOptions& options) {
+  const toml::table* table = top.anything(declaration);
+  if (table == nullptr) return;
   const std::string& file = top.file();
   for (const auto& [plugin, node] : *table) {
     const std::string name(plugin.str());
     const toml::table* entries = node.as_table();
     if (entries == nullptr) {
-      errors.push_back(Error{"options." + name + ": expected a table, found " + type_name(node),
-                             file, node.source().begin.line});
+      top.error(Error{"options." + name + ": expected a table, found " + type_name(node), file,
+                      node.source().begin.line});
       continue;
     }
     auto& of_plugin = options[name];
@@ -57,11 +47,9 @@ RawOptions read_options(TableReader& top, std::vector<Error>& errors) {
       if (auto setting = to_setting(value))
         of_plugin[std::string(key.str())] = RawOption{std::move(*setting), file, line};
       else
-        errors.push_back(
-            wrong_option("options." + name + "." + std::string(key.str()), value, file));
+        top.error(wrong_option("options." + name + "." + std::string(key.str()), value, file));
     }
   }
-  return options;
 }
 
 }  // namespace nonio::config

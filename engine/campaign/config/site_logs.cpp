@@ -9,7 +9,7 @@
 #include <charconv>
 #include <functional>
 
-#include "campaign/config/machines.h"
+#include "campaign/config/checks.h"
 #include "campaign/config/toml_reader.h"
 #include "nonio/sdk/statement.h"
 #include "platform/storage/files.h"
@@ -27,44 +27,29 @@ bool is_site_part(std::string_view path) {
 
 namespace {
 
-/// Every `[[name]]` by `read`, which takes one entry's keys.
-template <class T, class Read>
-std::vector<T> entries_of(TableReader& top, const char* name, const Read& read) {
-  std::vector<T> entries;
-  for (TableReader& reader : top.tables(name)) {
-    entries.push_back(read(reader));
-    entries.back().line = reader.line();
-    reader.finish();
-  }
-  return entries;
-}
-
-/// A file of one kind of entries.
-template <class T, class Read>
-Checked<std::vector<T>> parse_log(std::string_view text, const std::string& file,
-                                  const Key& declaration, const char* name, const Read& read) {
-  auto root = parse_toml(text, file);
-  if (!root) return tl::unexpected(std::vector<Error>{root.error()});
-  std::vector<Error> errors;
-  TableReader top(*root, declaration, file, errors);
-  top.integer("format");
-  auto entries = entries_of<T>(top, name, read);
-  top.finish();
-  if (!errors.empty()) return tl::unexpected(std::move(errors));
-  return entries;
-}
-
 bool takes_back(const Withdrawal& w, const Acknowledgement& a) {
   return a.line < w.line && a.finding == w.finding && a.machine == w.machine && a.axis == w.axis &&
          a.quantity == w.quantity;
 }
 
-/// A reason that excuses something is read next to a name for years.
-std::string reason_of(TableReader& reader) {
-  std::string why = reader.text("why");
-  if (!why.empty() && !has_content(why))
-    reader.error("why", "expected a reason in words, found \"" + why + "\"");
-  return why;
+/// What a file of entries has.
+Checked<Entries> parse_log(std::string_view text, const std::string& file, const Key& declaration) {
+  auto root = parse_toml(text, file);
+  if (!root) return tl::unexpected(std::vector<Error>{root.error()});
+  std::vector<Error> errors;
+  Entries logs;
+  TableReader top(*root, declaration, file, errors);
+  top.fill(logs);
+  top.finish();
+  for (const Withdrawal& w : logs.withdrawn)
+    if (std::erase_if(logs.acknowledged,
+                      [&](const Acknowledgement& a) { return takes_back(w, a); }) == 0)
+      errors.push_back(
+          Error{"[[withdrawn]] takes back no acknowledgement above it: none that "
+                "active has this finding, machine, axis and quantity",
+                file, w.line});
+  if (!errors.empty()) return tl::unexpected(std::move(errors));
+  return logs;
 }
 
 Expected<std::string> text_of_log(const fs::path& site, const char* name) {
@@ -199,50 +184,39 @@ Check counts(Checked<std::vector<T>> (*parse)(std::string_view, const std::strin
 
 }  // namespace
 
+/// A reason that excuses something is read next to a name for years.
+template <class Entry>
+void check_entry(TableReader& reader, Entry& entry) {
+  entry.line = reader.line();
+  if constexpr (requires { entry.why; })
+    if (!entry.why.empty() && !has_content(entry.why))
+      reader.error("why", "expected a reason in words, found \"" + entry.why + "\"");
+  if constexpr (requires { entry.until; })
+    if (!entry.until.empty() && entry.until < entry.date)
+      reader.error("until", "expected a day that is not before date, " + entry.date);
+}
+template void check_entry(TableReader&, Event&);
+template void check_entry(TableReader&, Acknowledgement&);
+template void check_entry(TableReader&, Withdrawal&);
+template void check_entry(TableReader&, Forgotten&);
+
 Checked<std::vector<Event>> parse_events(std::string_view text, const std::string& file) {
-  return parse_log<Event>(text, file, events_file(), "event", [](TableReader& reader) {
-    return Event{reader.date("date"), reader.text("machine"), reader.text("axis"),
-                 reader.text("kind"), reader.text("text"),    reader.text("by")};
-  });
+  auto logs = parse_log(text, file, events_file());
+  if (!logs) return tl::unexpected(logs.error());
+  return std::move(logs->events);
 }
 
 Checked<std::vector<Acknowledgement>> parse_acknowledged(std::string_view text,
                                                          const std::string& file) {
-  auto root = parse_toml(text, file);
-  if (!root) return tl::unexpected(std::vector<Error>{root.error()});
-  std::vector<Error> errors;
-  TableReader top(*root, acknowledged_file(), file, errors);
-  top.integer("format");
-  auto known = entries_of<Acknowledgement>(top, "acknowledged", [](TableReader& reader) {
-    Acknowledgement a{reader.date("date"),    reader.text("finding"),  reader.text("machine"),
-                      reader.text("axis"),    reader.text("quantity"), reader.date("until"),
-                      reader.number("value"), reader.number("U"),      reader.text("by"),
-                      reason_of(reader)};
-    if (!a.until.empty() && a.until < a.date)
-      reader.error("until", "expected a day that is not before date, " + a.date);
-    return a;
-  });
-  const auto withdrawn = entries_of<Withdrawal>(top, "withdrawn", [](TableReader& reader) {
-    return Withdrawal{reader.date("date"), reader.text("finding"),  reader.text("machine"),
-                      reader.text("axis"), reader.text("quantity"), reader.text("by"),
-                      reason_of(reader)};
-  });
-  top.finish();
-  for (const Withdrawal& w : withdrawn)
-    if (std::erase_if(known, [&](const Acknowledgement& a) { return takes_back(w, a); }) == 0)
-      errors.push_back(
-          Error{"[[withdrawn]] takes back no acknowledgement above it: none that "
-                "active has this finding, machine, axis and quantity",
-                file, w.line});
-  if (!errors.empty()) return tl::unexpected(std::move(errors));
-  return known;
+  auto logs = parse_log(text, file, acknowledged_file());
+  if (!logs) return tl::unexpected(logs.error());
+  return std::move(logs->acknowledged);
 }
 
 Checked<std::vector<Forgotten>> parse_forgotten(std::string_view text, const std::string& file) {
-  return parse_log<Forgotten>(text, file, forgotten_file(), "forgotten", [](TableReader& reader) {
-    return Forgotten{reader.date("date"), reader.text("campaign"), reader.text("by"),
-                     reason_of(reader)};
-  });
+  auto logs = parse_log(text, file, forgotten_file());
+  if (!logs) return tl::unexpected(logs.error());
+  return std::move(logs->forgotten);
 }
 
 Checked<SiteLogs> read_site_logs(const fs::path& site) {

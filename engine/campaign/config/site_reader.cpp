@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <set>
+#include <algorithm>
 #include <sstream>
 
-#include "campaign/config/certificate_reader.h"
-#include "campaign/config/manifest.h"
-#include "campaign/config/run_reader.h"
+#include "campaign/config/checks.h"
 #include "campaign/config/toml_reader.h"
 #include "nonio/sdk/format.h"
 #include "nonio/sdk/statement.h"
@@ -16,8 +14,23 @@ namespace {
 
 constexpr const char* ways[] = {"smtp", "tls", "port", "trust", "user"};
 
-/// Keys that exclude each other, and keys that need another one.
-void check_mail(TableReader& reader, const Mail& m) {
+int usual_port(Mail::Tls tls) {
+  switch (tls) {
+    case Mail::Tls::starttls:
+      return 587;
+    case Mail::Tls::tls:
+      return 465;
+    case Mail::Tls::none:
+      break;
+  }
+  return 25;
+}
+
+}  // namespace
+
+/// No password leaves without encryption.
+void check_mail(TableReader& reader, Mail& m) {
+  if (m.port == 0) m.port = usual_port(m.tls);
   if (reader.raw().contains("to") && m.to.empty())
     reader.error("to", "expected at least one address");
   if (m.sendmail.empty() == m.smtp.empty())
@@ -36,43 +49,8 @@ void check_mail(TableReader& reader, const Mail& m) {
     reader.error("tls", "none would send the password readable; expected starttls or tls");
 }
 
-int usual_port(Mail::Tls tls) {
-  switch (tls) {
-    case Mail::Tls::starttls:
-      return 587;
-    case Mail::Tls::tls:
-      return 465;
-    case Mail::Tls::none:
-      break;
-  }
-  return 25;
-}
-
-/// `[mail]` of site.toml. No password leaves without encryption.
-Mail read_mail(TableReader& reader) {
-  Mail m;
-  m.to = reader.texts("to").value_or(std::vector<std::string>{});
-  m.from = reader.text("from");
-  const std::string on = reader.text("on"), tls = reader.text("tls");
-  m.on = on == "lost" ? Mail::On::lost : on == "out" ? Mail::On::out : Mail::On::decision;
-  m.tls = tls == "tls" ? Mail::Tls::tls : tls == "none" ? Mail::Tls::none : Mail::Tls::starttls;
-  m.base_url = reader.text("base_url");
-  m.sendmail = reader.text("sendmail");
-  m.smtp = reader.text("smtp");
-  m.port = reader.integer("port").value_or(usual_port(m.tls));
-  m.trust = reader.text("trust");
-  m.user = reader.text("user");
-  m.password_file = reader.text("password_file");
-  m.password_env = reader.text("password_env");
-  m.password_credential = reader.text("password_credential");
-  check_mail(reader, m);
-  reader.finish();
-  return m;
-}
-
-/// `[webhook]` of site.toml. Nothing leaves this machine readable.
-Webhook read_webhook(TableReader& reader) {
-  Webhook w{reader.text("url"), reader.text("secret_file"), reader.text("trust")};
+/// Nothing leaves this machine readable.
+void check_webhook(TableReader& reader, Webhook& w) {
   const auto begins = [&](std::string_view host) {
     const std::string from = "http://" + std::string(host);
     return w.url.starts_with(from) &&
@@ -83,14 +61,14 @@ Webhook read_webhook(TableReader& reader) {
     reader.error("url",
                  "expected an address that begins with https://, or with http://127.0.0.1; without "
                  "encryption customers and machines would be readable on the way");
-  reader.finish();
-  return w;
 }
 
-constexpr double cmc_length = 1e-6, cmc_angle = 1.0 / arcsec_per_rad;
+void check_signer(TableReader& reader, SignerRule& rule) {
+  if (!rule.from.empty() && !rule.until.empty() && rule.until < rule.from)
+    reader.error("until", "is before from");
+}
 
-/// Keys that exclude each other, and keys that need another one.
-void check_signing(TableReader& reader, const Signing& s) {
+void check_signing(TableReader& reader, Signing& s) {
   if (s.pkcs12.empty() == s.pkcs11.empty())
     reader.error("pkcs12", "expected the key in either pkcs12 (a file) or pkcs11 (a token)");
   if (!s.pkcs11.empty() && s.module.empty())
@@ -109,71 +87,16 @@ void check_signing(TableReader& reader, const Signing& s) {
     reader.error("signer", "excludes [[signing.signers]]");
 }
 
-Signing read_signing(TableReader& reader) {
-  Signing s;
-  s.pkcs12 = reader.text("pkcs12");
-  s.pkcs11 = reader.text("pkcs11");
-  s.module = reader.text("module");
-  s.certificates = reader.text("certificates");
-  s.password_file = reader.text("password_file");
-  s.password_env = reader.text("password_env");
-  s.password_credential = reader.text("password_credential");
-  s.trust = reader.text("trust");
-  s.revocation = reader.text("revocation");
-  s.signer_roots = reader.text("signer_roots");
-  s.time_stamp_roots = reader.text("time_stamp_roots");
-  s.signer = reader.text("signer");
-  for (TableReader& one : reader.tables("signers")) {
-    s.signers.push_back({one.text("who"), one.date("from"), one.date("until")});
-    const SignerRule& rule = s.signers.back();
-    if (!rule.from.empty() && !rule.until.empty() && rule.until < rule.from)
-      one.error("until", "is before from");
-    one.finish();
-  }
-  s.time_stamp = reader.text("time_stamp");
-  s.time_stamp_required = reader.text("time_stamp_missing") != "sign";
-  s.time_stamp_seconds = reader.integer("time_stamp_seconds").value_or(s.time_stamp_seconds);
-  check_signing(reader, s);
-  reader.finish();
-  return s;
-}
-
-Cmc read_cmc(TableReader& laboratory) {
-  Cmc cmc;
-  auto reader = laboratory.table("cmc");
-  if (!reader) return cmc;
-  cmc.fixed = reader->number("fixed_um", cmc_length);
-  cmc.per_length = reader->number("per_m_um", cmc_length);
-  cmc.angle = reader->number("arcsec", cmc_angle);
-  reader->finish();
-  return cmc;
-}
-
 /// A name that leads to a name would be followed or not, whoever reads it.
-std::vector<Alias> read_aliases(TableReader& top) {
-  std::vector<Alias> aliases;
-  std::set<std::string> names;
-  auto tables = top.tables("alias");
-  for (TableReader& reader : tables) {
-    Alias alias{reader.text("name"), reader.text("asset"), reader.text("why")};
-    if (!alias.name.empty() && !names.insert(alias.name).second)
-      reader.error("name", "\"" + alias.name + "\" is given twice");
-    if (!alias.why.empty() && !has_content(alias.why))
-      reader.error("why", "expected how this is known, found \"" + alias.why + "\"");
-    reader.finish();
-    aliases.push_back(std::move(alias));
-  }
-  for (std::size_t i = 0; i < aliases.size(); ++i)
-    if (names.contains(aliases[i].asset))
-      tables[i].error("asset", "\"" + aliases[i].asset +
-                                   "\" is itself the name of an alias; expected the machine");
-  return aliases;
+void check_alias(TableReader& reader, Alias& alias, SiteFile& site) {
+  alias.line_of_asset = reader.line_of("asset");
+  if (!alias.name.empty() && given_before(site.aliases, &Alias::name))
+    reader.error("name", "\"" + alias.name + "\" is given twice");
+  if (!alias.why.empty() && !has_content(alias.why))
+    reader.error("why", "expected how this is known, found \"" + alias.why + "\"");
 }
 
-DatabaseChoice read_database(TableReader& reader) {
-  DatabaseChoice choice{reader.text("url"), reader.text("password_file")};
-  if (const std::string schema = reader.text("schema"); !schema.empty()) choice.schema = schema;
-  choice.register_schema = reader.text("register");
+void check_database(TableReader& reader, DatabaseChoice& choice) {
   if (choice.register_schema == choice.schema)
     reader.error("register",
                  "\"" + choice.schema +
@@ -182,25 +105,16 @@ DatabaseChoice read_database(TableReader& reader) {
   if (!choice.url.empty())
     if (const auto well = storage::check_address(choice.url); !well)
       reader.error("url", well.error().message);
-  reader.finish();
-  return choice;
 }
 
-std::vector<DueRule> read_due(TableReader& top) {
-  std::vector<DueRule> rules;
-  std::set<std::string> machines;
-  for (TableReader& reader : top.tables("due")) {
-    DueRule rule{reader.text("machine"), 0};
-    rule.months = reader.integer("months").value_or(0);
-    if (!machines.insert(rule.machine).second)
-      reader.error(rule.machine.empty() ? "months" : "machine",
-                   rule.machine.empty() ? "a rule for all machines is given twice"
-                                        : "\"" + rule.machine + "\" is given twice");
-    reader.finish();
-    rules.push_back(std::move(rule));
-  }
-  return rules;
+void check_due(TableReader& reader, DueRule& rule, SiteFile& site) {
+  if (given_before(site.due, &DueRule::machine))
+    reader.error(rule.machine.empty() ? "months" : "machine",
+                 rule.machine.empty() ? "a rule for all machines is given twice"
+                                      : "\"" + rule.machine + "\" is given twice");
 }
+
+namespace {
 
 std::string settings_of(const toml::table& root, std::initializer_list<const char*> keys) {
   toml::table out;
@@ -221,32 +135,14 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   SiteFile site;
   site.warnings = warnings_of(rename_former_keys(*root, site_file()), file);
   TableReader top(*root, site_file(), file, errors);
-  top.integer("format");
-  if (const std::string language = top.text("language"); !language.empty())
-    site.language = language;
-  if (auto reader = top.table("laboratory")) {
-    site.laboratory = {reader->text("name"),       reader->text("address"),
-                       reader->text("country"),    reader->text("accreditation"),
-                       reader->text("authoriser"), reader->text("contact"),
-                       read_cmc(*reader)};
-    reader->finish();
-  }
-  if (auto reader = top.table("limits")) {
-    site.limits.seconds = reader->number("seconds").value_or(site.limits.seconds);
-    site.limits.memory_MB = reader->number("memory_MB").value_or(site.limits.memory_MB);
-    site.limits.disk_seconds = reader->number("disk_seconds").value_or(site.limits.disk_seconds);
-    if (const auto most = reader->integer("missing_campaigns"))
-      site.limits.missing_campaigns = static_cast<std::size_t>(*most);
-    reader->finish();
-  }
-  if (auto reader = top.table("results")) {
-    site.hashed_folders = reader->text("folders") == "hashed";
-    reader->finish();
-  }
-  site.run = read_run(top);
-  site.options = read_options(top, errors);
-  site.aliases = read_aliases(top);
-  site.due = read_due(top);
+  top.fill(site);
+  for (const Alias& alias : site.aliases)
+    if (!alias.asset.empty() &&
+        std::any_of(site.aliases.begin(), site.aliases.end(),
+                    [&](const Alias& other) { return other.name == alias.asset; }))
+      errors.push_back(Error{"alias.asset: \"" + alias.asset +
+                                 "\" is itself the name of an alias; expected the machine",
+                             file, alias.line_of_asset});
   site.evaluation = settings_of(*root, {"run", "options"});
   toml::table printed = *root;
   // How it comes to a release is the laboratory's own business, and nothing that is printed.
@@ -261,24 +157,14 @@ Checked<SiteFile> parse_site(std::string_view text, const std::string& file) {
   if (const auto rule = (*root)["certificate"]["decision_rule"].value<std::string>();
       rule && *rule != "iso14253-1")
     site.evaluation += "decision_rule = \"" + *rule + "\"\n";
-  if (auto reader = top.table("signing")) site.signing = read_signing(*reader);
-  if (auto reader = top.table("mail")) site.mail = read_mail(*reader);
-  if (auto reader = top.table("webhook")) site.webhook = read_webhook(*reader);
-  if (auto reader = top.table("certificate")) {
-    site.certificate = read_certificate(*reader);
-    site.numbering = read_numbering(*reader);
-    reader->finish();
-  }
-  if (auto reader = top.table("database")) {
-    site.database = read_database(*reader);
-    if (!site.database->register_schema.empty()) {
-      const auto in_file = (*root)["certificate"]["register"].value_or(std::string());
-      if (!in_file.empty())
-        reader->error("register", "[certificate] register states \"" + in_file +
-                                      "\"; expected the register here or there");
-      site.numbering.server = site.database;
-      site.numbering.server->schema = site.database->register_schema;
-    }
+  if (site.database && !site.database->register_schema.empty()) {
+    const auto in_file = (*root)["certificate"]["register"].value_or(std::string());
+    if (!in_file.empty())
+      top.table("database")
+          ->error("register", "[certificate] register states \"" + in_file +
+                                  "\"; expected the register here or there");
+    site.numbering.server = site.database;
+    site.numbering.server->schema = site.database->register_schema;
   }
   top.finish();
   if (!errors.empty()) return tl::unexpected(std::move(errors));

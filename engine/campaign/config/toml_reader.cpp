@@ -33,15 +33,32 @@ std::string list_of(std::span<const Choice> choices) {
 
 }  // namespace
 
-TableReader::Found TableReader::find(std::string_view name, std::initializer_list<Key::Holds> as) {
+void TableReader::fill(void* object, const void* type) {
+  if (declaration_->into.inner != type)
+    throw std::logic_error(std::string(declaration_->name) + ": fills another struct");
+  errors_before_ = errors_.size();
+  for (const Key& key : declaration_->keys)
+    if (!key.only.key.empty() && !holds(key.only))
+      continue;
+    else if (key.into.read != nullptr)
+      key.into.read(*this, key, object);
+    else
+      check(key);
+}
+
+const Key& TableReader::find(std::string_view name, Key::Holds as) const {
   const Key* key = find_key(declaration_->keys, name);
-  if (key == nullptr || std::find(as.begin(), as.end(), key->holds) == as.end())
+  if (key == nullptr || key->holds != as)
     throw std::logic_error(std::string(declaration_->name) + " (" + place(name) + "): " +
                            (key == nullptr ? "read and not declared" : "read not as declared"));
-  read_.push_back(key);
-  const toml::node* node = table_.get(name);
-  if (node == nullptr && is_needed(*key)) missing(*key);
-  return {*key, node};
+  return *key;
+}
+
+const toml::node* TableReader::take(const Key& key) {
+  read_.push_back(&key);
+  const toml::node* node = table_.get(key.name);
+  if (node == nullptr && is_needed(key)) missing(key);
+  return node;
 }
 
 bool TableReader::holds(const When& when) const {
@@ -99,28 +116,39 @@ std::optional<std::string> TableReader::one_line(const Key& key, const toml::nod
   return value;
 }
 
-void TableReader::check_choice(const Key& key, std::string& value) {
+bool TableReader::check_choice(const Key& key, const std::string& value) {
   const auto is_it = [&](const Choice& choice) { return choice.name == value; };
-  if (key.choices.empty() || std::any_of(key.choices.begin(), key.choices.end(), is_it)) return;
+  if (key.choices.empty() || std::any_of(key.choices.begin(), key.choices.end(), is_it))
+    return true;
   std::vector<std::string> names;
   for (const Choice& choice : key.choices) names.emplace_back(choice.name);
   error(key.name, "expected one of " + list_of(key.choices) + "; found \"" + value + "\"" +
                       storage::suggestion(value, names));
-  value.clear();
+  return false;
 }
 
-std::string TableReader::text(std::string_view name) {
-  const Found found = find(name, {Key::Holds::text});
-  if (found.node == nullptr) return {};
-  auto value = one_line(found.key, *found.node);
-  if (!value) return {};
+template <>
+std::optional<std::string> value_of(TableReader& reader, const Key& key) {
+  const toml::node* node = reader.take(key);
+  if (node == nullptr) return std::nullopt;
+  if (key.holds == Key::Holds::date) return reader.date(key, *node);
+  auto value = reader.one_line(key, *node);
+  if (!value) return std::nullopt;
   if (value->empty()) {
-    if (is_needed(found.key)) missing(found.key);
-    return {};
+    if (reader.is_needed(key)) reader.missing(key);
+    return std::nullopt;
   }
-  if (!obeys(*value, found.key.text)) refuse(found.key, found.key.may_be_secret ? "" : *value);
-  check_choice(found.key, *value);
-  return *value;
+  if (!obeys(*value, key.text)) reader.refuse(key, key.may_be_secret ? "" : *value);
+  return reader.check_choice(key, *value) ? value : std::nullopt;
+}
+
+template <>
+std::optional<Chosen> value_of(TableReader& reader, const Key& key) {
+  const auto name = value_of<std::string>(reader, key);
+  if (!name) return std::nullopt;
+  return Chosen{std::find_if(key.choices.begin(), key.choices.end(), [&](const Choice& choice) {
+                  return choice.name == *name;
+                })->value};
 }
 
 std::optional<double> TableReader::finite(std::string_view key, const toml::node& node) {
@@ -134,74 +162,63 @@ std::optional<double> TableReader::finite(std::string_view key, const toml::node
   return value;
 }
 
-std::optional<double> TableReader::number(std::string_view name, double scale) {
-  return number_at(find(name, {Key::Holds::number}), scale);
-}
-
-std::optional<double> TableReader::number_or_none(std::string_view name, double scale) {
-  const Found found = find(name, {Key::Holds::number_or_none});
-  if (found.node == nullptr) return std::nullopt;
-  if (const auto text = found.node->value_exact<std::string>()) {
+template <>
+std::optional<double> value_of(TableReader& reader, const Key& key) {
+  const toml::node* node = reader.take(key);
+  if (node == nullptr) return std::nullopt;
+  if (const auto text = node->value_exact<std::string>();
+      text && key.holds == Key::Holds::number_or_none) {
     if (*text == "none") return 0.0;
-    refuse(found.key, "\"" + *text + "\"");
+    reader.refuse(key, "\"" + *text + "\"");
     return std::nullopt;
   }
-  return number_at(found, scale);
-}
-
-std::optional<double> TableReader::number_at(const Found& found, double scale) {
-  if (found.node == nullptr) return std::nullopt;
-  const auto value = finite(found.key.name, *found.node);
+  const auto value = reader.finite(key.name, *node);
   if (!value) return std::nullopt;
-  if (!in_range(*value, found.key)) {
+  if (!in_range(*value, key)) {
     std::string shown;
     append_shortest(shown, *value);
-    refuse(found.key, shown);
+    reader.refuse(key, shown);
     return std::nullopt;
   }
-  return *value * scale;
+  return *value * key.scale;
 }
 
-std::optional<int> TableReader::integer(std::string_view name) {
-  const Found found = find(name, {Key::Holds::whole});
-  if (found.node == nullptr) return std::nullopt;
-  const auto value = found.node->value_exact<std::int64_t>();
-  if (!value) {
-    wrong_type(name, *found.node, "a whole number");
-    return std::nullopt;
-  }
-  if (*value < 0 || *value > 1'000'000'000) {
-    error(name, "expected a whole number from 0 to 1000000000");
-    return std::nullopt;
-  }
-  if (!in_range(static_cast<double>(*value), found.key)) {
-    refuse(found.key, std::to_string(*value));
-    return std::nullopt;
-  }
-  return static_cast<int>(*value);
+template <>
+std::optional<int> value_of(TableReader& reader, const Key& key) {
+  const toml::node* node = reader.take(key);
+  if (node == nullptr) return std::nullopt;
+  const auto value = node->value_exact<std::int64_t>();
+  if (!value)
+    reader.wrong_type(key.name, *node, "a whole number");
+  else if (*value < 0 || *value > 1'000'000'000)
+    reader.error(key.name, "expected a whole number from 0 to 1000000000");
+  else if (!in_range(static_cast<double>(*value), key))
+    reader.refuse(key, std::to_string(*value));
+  else
+    return static_cast<int>(*value);
+  return std::nullopt;
 }
 
-std::optional<bool> TableReader::flag(std::string_view name) {
-  const Found found = find(name, {Key::Holds::flag});
-  if (found.node == nullptr) return std::nullopt;
-  const auto value = found.node->value_exact<bool>();
-  if (!value) wrong_type(name, *found.node, "true or false");
+template <>
+std::optional<bool> value_of(TableReader& reader, const Key& key) {
+  const toml::node* node = reader.take(key);
+  if (node == nullptr) return std::nullopt;
+  const auto value = node->value_exact<bool>();
+  if (!value) reader.wrong_type(key.name, *node, "true or false");
   return value;
 }
 
-std::string TableReader::date(std::string_view name) {
-  const Found found = find(name, {Key::Holds::date});
-  if (found.node == nullptr) return {};
-  const auto value = found.node->value_exact<toml::date>();
+std::optional<std::string> TableReader::date(const Key& key, const toml::node& node) {
+  const auto value = node.value_exact<toml::date>();
   if (!value) {
-    wrong_type(name, *found.node, "a date without quotes, 2026-11-03");
-    return {};
+    wrong_type(key.name, node, "a date without quotes, 2026-11-03");
+    return std::nullopt;
   }
   constexpr int first_year = 1950, last_year = 2100;
   if (value->year < first_year || value->year > last_year) {
-    error(name,
+    error(key.name,
           "expected a day from 1950 to 2100; found one of the year " + std::to_string(value->year));
-    return {};
+    return std::nullopt;
   }
   const auto digits = [](unsigned n, std::size_t width) {
     std::string s = std::to_string(n);
@@ -210,155 +227,221 @@ std::string TableReader::date(std::string_view name) {
   return digits(value->year, 4) + "-" + digits(value->month, 2) + "-" + digits(value->day, 2);
 }
 
-std::optional<std::vector<std::string>> TableReader::texts(std::string_view name) {
-  const Found found = find(name, {Key::Holds::texts});
-  if (found.node == nullptr) return std::nullopt;
-  const auto setting = found.node->is_array() ? to_setting(*found.node) : std::nullopt;
+template <>
+std::optional<std::vector<std::string>> value_of(TableReader& reader, const Key& key) {
+  const toml::node* node = reader.take(key);
+  if (node == nullptr) return std::nullopt;
+  const auto setting = node->is_array() ? to_setting(*node) : std::nullopt;
   if (!setting || !std::holds_alternative<std::vector<std::string>>(*setting)) {
-    wrong_type(name, *found.node, "a list of texts");
+    reader.wrong_type(key.name, *node, "a list of texts");
     return std::nullopt;
   }
   auto list = std::get<std::vector<std::string>>(*setting);
-  const Key& key = found.key;
   const std::set<std::string_view> distinct(list.begin(), list.end());
   const bool good = std::all_of(list.begin(), list.end(), [&](const std::string& one) {
     return one.size() >= key.text.shortest && obeys(one, key.text);
   });
   if (!good || (key.longest_list != 0 && list.size() > key.longest_list) ||
       (key.distinct && distinct.size() != list.size()))
-    refuse(key);
+    reader.refuse(key);
   return list;
 }
 
-std::optional<std::vector<double>> TableReader::number_list(const Found& found) {
-  if (found.node == nullptr) return std::nullopt;
-  if (found.node->is_array() && found.node->as_array()->empty()) return std::vector<double>{};
-  const auto setting = found.node->is_array() ? to_setting(*found.node) : std::nullopt;
+std::optional<std::vector<double>> TableReader::number_list(const Key& key) {
+  const toml::node* node = take(key);
+  if (node == nullptr) return std::nullopt;
+  if (node->is_array() && node->as_array()->empty()) return std::vector<double>{};
+  const auto setting = node->is_array() ? to_setting(*node) : std::nullopt;
   if (!setting || !std::holds_alternative<std::vector<double>>(*setting)) {
-    wrong_type(found.key.name, *found.node, "a list of numbers");
+    wrong_type(key.name, *node, "a list of numbers");
     return std::nullopt;
   }
   return std::get<std::vector<double>>(*setting);
 }
 
-std::optional<std::vector<double>> TableReader::numbers(std::string_view name) {
-  return number_list(find(name, {Key::Holds::numbers}));
+template <>
+std::optional<std::vector<double>> value_of(TableReader& reader, const Key& key) {
+  return reader.number_list(key);
 }
 
-std::vector<std::uint32_t> TableReader::integers(std::string_view name) {
-  const Found found = find(name, {Key::Holds::wholes});
+template <>
+std::optional<std::vector<std::uint32_t>> value_of(TableReader& reader, const Key& key) {
   std::vector<std::uint32_t> list;
-  for (const double value : number_list(found).value_or(std::vector<double>{}))
-    if (in_range(value, found.key) && value == std::floor(value))
+  for (const double value : reader.number_list(key).value_or(std::vector<double>{}))
+    if (in_range(value, key) && value == std::floor(value))
       list.push_back(static_cast<std::uint32_t>(value));
     else
-      refuse(found.key);
+      reader.refuse(key);
   return list;
 }
 
-std::optional<std::pair<double, double>> TableReader::span(std::string_view name, double scale) {
-  const Found found = find(name, {Key::Holds::span});
-  const auto ends = number_list(found);
+template <>
+std::optional<Span> value_of(TableReader& reader, const Key& key) {
+  const auto ends = reader.number_list(key);
   if (!ends) return std::nullopt;
-  const auto is_finite = [&](double value) {
-    return std::isfinite(value) && in_range(value, found.key);
-  };
+  const auto is_finite = [&](double value) { return std::isfinite(value) && in_range(value, key); };
   if (ends->size() == 2 && (*ends)[0] < (*ends)[1] &&
       std::all_of(ends->begin(), ends->end(), is_finite))
-    return std::pair{(*ends)[0] * scale, (*ends)[1] * scale};
-  refuse(found.key);
+    return std::pair{(*ends)[0] * key.scale, (*ends)[1] * key.scale};
+  reader.refuse(key);
   return std::nullopt;
 }
 
-std::vector<std::pair<std::string, double>> TableReader::number_table(std::string_view name,
-                                                                      double scale) {
-  std::vector<std::pair<std::string, double>> out;
-  const Found found = find(name, {Key::Holds::number_table});
-  const toml::table* child = table_at(found);
-  if (child == nullptr) return out;
-  if (child->empty() && is_needed(found.key)) missing(found.key);
-  TableReader reader = inside(*child, found.key, place(name));
-  for (const auto& [key, node] : *child) {
-    const auto value = reader.finite(key.str(), node);
-    if (value && !in_range(*value, found.key))
-      error(name, std::string(key.str()) + ": " + std::string(found.key.wanted));
+template <>
+std::optional<Numbers> value_of(TableReader& reader, const Key& key) {
+  const toml::table* child = reader.table_at(key);
+  if (child == nullptr) return std::nullopt;
+  if (child->empty() && reader.is_needed(key)) reader.missing(key);
+  TableReader inner = reader.inside(*child, key, reader.place(key.name));
+  Numbers out;
+  for (const auto& [name, node] : *child) {
+    const auto value = inner.finite(name.str(), node);
+    if (value && !in_range(*value, key))
+      reader.error(key.name, std::string(name.str()) + ": " + std::string(key.wanted));
     else if (value)
-      out.emplace_back(key.str(), *value * scale);
+      out.emplace(name.str(), *value * key.scale);
   }
   return out;
 }
 
-std::map<std::string, std::string> TableReader::translations(std::string_view name) {
-  std::map<std::string, std::string> out;
-  const Found found = find(name, {Key::Holds::translations});
-  if (found.node == nullptr) return out;
-  if (found.node->is_string()) {
-    if (const auto text = one_line(found.key, *found.node); text && !text->empty()) out[""] = *text;
+template <>
+std::optional<Translations> value_of(TableReader& reader, const Key& key) {
+  const toml::node* node = reader.table_.get(key.name);
+  Translations out;
+  if (node != nullptr && node->is_string()) {
+    if (const auto text = reader.one_line(key, *reader.take(key)); text && !text->empty())
+      out[""] = *text;
     return out;
   }
-  const toml::table* table = table_at(found);
-  if (table == nullptr) return out;
-  for (const auto& [key, value] : *table) {
-    const std::string_view language = key.str();
+  const toml::table* table = reader.table_at(key);
+  if (table == nullptr) return std::nullopt;
+  for (const auto& [name, value] : *table) {
+    const std::string_view language = name.str();
     const auto text = value.value_exact<std::string>();
-    if (text && language.size() == 2 && obeys(language, found.key.text))
+    if (text && language.size() == 2 && obeys(language, key.text))
       out[std::string(language)] = *text;
     else
-      refuse(found.key);
+      reader.refuse(key);
   }
   return out;
 }
 
-const toml::table* TableReader::table_at(const Found& found) {
-  if (found.node == nullptr) return nullptr;
-  if (!found.node->is_table()) wrong_type(found.key.name, *found.node, "a table");
-  return found.node->as_table();
+const toml::table* TableReader::table_at(const Key& key) {
+  const toml::node* node = take(key);
+  if (node == nullptr) return nullptr;
+  if (!node->is_table()) wrong_type(key.name, *node, "a table");
+  return node->as_table();
 }
 
-const toml::table* TableReader::anything(std::string_view name) {
-  return table_at(find(name, {Key::Holds::anything, Key::Holds::options}));
+/// Of what is not declared with a member.
+void TableReader::check(const Key& key) {
+  using enum Key::Holds;
+  switch (key.holds) {
+    case text:
+    case date:
+      value_of<std::string>(*this, key);
+      break;
+    case number:
+    case number_or_none:
+      value_of<double>(*this, key);
+      break;
+    case whole:
+      value_of<int>(*this, key);
+      break;
+    case span:
+      value_of<Span>(*this, key);
+      break;
+    default:
+      throw std::logic_error(place(key.name) + ": declared without a member");
+  }
 }
 
+std::string TableReader::text(std::string_view name) {
+  return value_of<std::string>(*this, find(name, Key::Holds::text)).value_or("");
+}
+std::optional<double> TableReader::number(std::string_view name) {
+  return value_of<double>(*this, find(name, Key::Holds::number));
+}
+std::optional<int> TableReader::integer(std::string_view name) {
+  return value_of<int>(*this, find(name, Key::Holds::whole));
+}
+std::optional<bool> TableReader::flag(std::string_view name) {
+  return value_of<bool>(*this, find(name, Key::Holds::flag));
+}
+std::optional<std::vector<double>> TableReader::numbers(std::string_view name) {
+  return number_list(find(name, Key::Holds::numbers));
+}
 std::optional<TableReader> TableReader::table(std::string_view name) {
-  const Found found = find(name, {Key::Holds::table});
-  const toml::table* table = table_at(found);
-  if (table == nullptr) return std::nullopt;
-  return inside(*table, found.key, place(name));
+  auto all = tables(find(name, Key::Holds::table));
+  return all.empty() ? std::nullopt : std::optional(all.front());
 }
-
 std::vector<TableReader> TableReader::tables(std::string_view name) {
-  const Found found = find(name, {Key::Holds::tables});
+  return tables(find(name, Key::Holds::tables));
+}
+
+std::vector<TableReader> TableReader::tables(const Key& key) {
   std::vector<TableReader> out;
-  if (found.node == nullptr) return out;
-  const toml::array* list = found.node->as_array();
-  if (list == nullptr || (!list->empty() && !list->is_homogeneous(toml::node_type::table))) {
-    wrong_type(name, *found.node, "tables, each headed [[" + place(name) + "]]");
+  const std::string at = place(key.name);
+  if (key.holds == Key::Holds::tables) {
+    const toml::node* node = take(key);
+    if (node == nullptr) return out;
+    const toml::array* list = node->as_array();
+    if (list == nullptr || (!list->empty() && !list->is_homogeneous(toml::node_type::table))) {
+      wrong_type(key.name, *node, "tables, each headed [[" + at + "]]");
+      return out;
+    }
+    if (list->empty() && is_needed(key)) missing(key);
+    if (key.longest_list != 0 && list->size() > key.longest_list) {
+      refuse(key, std::to_string(list->size()));
+      return out;
+    }
+    for (const toml::node& one : *list) {
+      out.push_back(inside(*one.as_table(), key, at));
+      out.back().settled_ = settled_;
+      out.back().name_ = name_;
+    }
     return out;
   }
-  if (list->empty() && is_needed(found.key)) missing(found.key);
-  if (found.key.longest_list != 0 && list->size() > found.key.longest_list) {
-    refuse(found.key, std::to_string(list->size()));
-    return out;
+  const toml::table* table = table_at(key);
+  if (table == nullptr) return out;
+  if (key.holds == Key::Holds::table) return {inside(*table, key, at)};
+  for (const auto& [name, node] : *table) {
+    const std::string named = at + "." + std::string(name.str());
+    if (const toml::table* child = node.as_table()) {
+      out.push_back(inside(*child, key, named));
+      out.back().name_ = name.str();
+      out.back().settle_by_name();
+    } else {
+      errors_.push_back(
+          Error{named + ": expected a table, found " + type_name(node), file_, line_of_node(node)});
+    }
   }
-  for (const toml::node& node : *list)
-    out.push_back(inside(*node.as_table(), found.key, place(name)));
   return out;
 }
 
-std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(std::string_view name) {
-  const Found found = find(name, {Key::Holds::named_tables});
-  std::vector<std::pair<std::string, TableReader>> out;
-  const toml::table* table = table_at(found);
-  if (table == nullptr) return out;
-  for (const auto& [key, node] : *table) {
-    const std::string at = place(name) + "." + std::string(key.str());
-    if (const toml::table* child = node.as_table())
-      out.emplace_back(key.str(), inside(*child, found.key, at));
-    else
-      errors_.push_back(
-          Error{at + ": expected a table, found " + type_name(node), file_, line_of_node(node)});
+void TableReader::settle_by_name() {
+  const Key* by_name = find_key(declaration_->keys, declaration_->by_name);
+  if (by_name == nullptr) return;
+  const auto stated = table_[by_name->name].value_exact<std::string>();
+  const bool named =
+      !name_.empty() && declaration_->initials.find(name_.front()) != std::string_view::npos;
+  std::string_view value;
+  for (const Choice& choice : by_name->choices) {
+    if (stated == choice.name) return settle(by_name->name, choice.name);
+    if (named == (choice.name == declaration_->named_so)) value = choice.name;
   }
-  return out;
+  settle(by_name->name, value);
+}
+
+void read_tables(TableReader& reader, const Key& key, void* outer,
+                 void* (*add)(void* outer, std::string_view name),
+                 void (*check)(TableReader&, void* inner, void* outer)) {
+  for (TableReader& at : reader.tables(key)) {
+    void* const inner = add(outer, at.name());
+    at.fill(inner, key.into.inner);
+    check(at, inner, outer);
+    at.finish();
+  }
 }
 
 TableReader TableReader::declared(const Key& declaration) const {

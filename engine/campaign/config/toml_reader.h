@@ -3,14 +3,12 @@
 
 #include <toml++/toml.h>
 
-#include <initializer_list>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "campaign/config/keys.h"
+#include "campaign/config/bind.h"
 #include "campaign/config/manifest.h"
 #include "nonio/sdk/error.h"
 #include "nonio/sdk/settings.h"
@@ -27,28 +25,26 @@ class TableReader {
               std::vector<Error>& errors)
       : TableReader(table, declaration, {}, file, errors) {}
 
+  /// Reads all keys of the table into the members that they are declared with, as far as they are,
+  /// and checks the others.
+  template <class T>
+  void fill(T& object) {
+    fill(&object, &binding::tag<T>);
+  }
+
+  // For what is not declared with a member, by name.
   std::string text(std::string_view key);
-  std::optional<double> number(std::string_view key, double scale = 1.0);
-  /// 0 where the file states "none".
-  std::optional<double> number_or_none(std::string_view key, double scale = 1.0);
+  std::optional<double> number(std::string_view key);
   std::optional<int> integer(std::string_view key);
   std::optional<bool> flag(std::string_view key);
-  std::string date(std::string_view key);
-  std::optional<std::vector<std::string>> texts(std::string_view key);
   std::optional<std::vector<double>> numbers(std::string_view key);
-  std::vector<std::uint32_t> integers(std::string_view key);
-  std::optional<std::pair<double, double>> span(std::string_view key, double scale = 1.0);
-  /// A table of numbers, each multiplied by `scale`; none if absent.
-  std::vector<std::pair<std::string, double>> number_table(std::string_view key, double scale);
-  /// A text, under "", or texts by language.
-  std::map<std::string, std::string> translations(std::string_view key);
   std::optional<TableReader> table(std::string_view key);
   std::vector<TableReader> tables(std::string_view key);
-  std::vector<std::pair<std::string, TableReader>> named_tables(std::string_view key);
-  const toml::table* anything(std::string_view key);
 
   /// For conditions of the declaration: what `key` is where the table does not state that.
   void settle(std::string_view key, std::string_view value) { settled_ = {key, value}; }
+  /// What was settled: for a table under any name by the host, "linear" or "rotary".
+  std::string_view settled() const { return settled_.second; }
   /// The same table, read further with another declaration.
   TableReader declared(const Key& declaration) const;
   /// Reports every unknown key, with the nearest known one. A key that is declared and was not read
@@ -56,20 +52,29 @@ class TableReader {
   void finish();
 
   void error(std::string_view key, std::string message);
-  std::size_t errors() const { return errors_.size(); }
+  void error(Error error) { errors_.push_back(std::move(error)); }
+  /// Whether anything is wrong in this table since its keys were read.
+  bool has_errors() const { return errors_.size() > errors_before_; }
+  const toml::table* anything(const Key& key) { return table_at(key); }
+  /// As it is declared: one, a list, or those under any name, which know it.
+  std::vector<TableReader> tables(const Key& key);
+  bool contains(std::string_view key) const { return table_.contains(key); }
   std::uint64_t line_of(std::string_view key) const;
   std::uint64_t line() const { return table_.source().begin.line; }
   const std::string& file() const { return file_; }
+  /// Of a table under any name: that name.
+  const std::string& name() const { return name_; }
   const toml::table& raw() const { return table_; }
+  const std::string& place() const { return place_; }
   std::string place(std::string_view key) const {
     return place_.empty() ? std::string(key) : place_ + "." + std::string(key);
   }
 
  private:
-  struct Found {
-    const Key& key;
-    const toml::node* node;
-  };
+  template <class T>
+  friend std::optional<T> value_of(TableReader&, const Key&);
+  friend void read_tables(TableReader&, const Key&, void*, void* (*)(void*, std::string_view),
+                          void (*)(TableReader&, void*, void*));
 
   TableReader(const toml::table& table, const Key& declaration, std::string place,
               const std::string& file, std::vector<Error>& errors)
@@ -82,24 +87,30 @@ class TableReader {
     return {table, declaration, std::move(place), file_, errors_};
   }
 
-  std::optional<double> number_at(const Found& found, double scale);
-  Found find(std::string_view name, std::initializer_list<Key::Holds> as);
+  void fill(void* object, const void* type);
+  const Key& find(std::string_view name, Key::Holds as) const;
+  /// Null where the table does not have it, which is reported if it is needed.
+  const toml::node* take(const Key& key);
   bool holds(const When& when) const;
   bool is_needed(const Key& key) const { return key.required || holds(key.needed); }
   void missing(const Key& key);
   void refuse(const Key& key, const std::string& found = {});
   void wrong_type(std::string_view key, const toml::node& found, std::string_view wanted);
   std::optional<std::string> one_line(const Key& key, const toml::node& node);
+  std::optional<std::string> date(const Key& key, const toml::node& node);
   std::optional<double> finite(std::string_view key, const toml::node& node);
-  void check_choice(const Key& key, std::string& value);
-  const toml::table* table_at(const Found& found);
-  std::optional<std::vector<double>> number_list(const Found& found);
+  bool check_choice(const Key& key, const std::string& value);
+  const toml::table* table_at(const Key& key);
+  std::optional<std::vector<double>> number_list(const Key& key);
+  void check(const Key& key);
+  void settle_by_name();
 
   const toml::table& table_;
   const Key* declaration_;
-  std::string place_;
+  std::string place_, name_;
   const std::string& file_;
   std::vector<Error>& errors_;
+  std::size_t errors_before_ = 0;
   std::pair<std::string_view, std::string_view> settled_;
   std::vector<const Key*> read_;
 };

@@ -130,33 +130,40 @@ class Matcher {
   std::uint64_t steps_ = 0;
 };
 
+void read_axes(config::TableReader& reader, const config::Key& key,
+               Places& axes) {
+  if (const toml::table* table = reader.anything(key))
+    for (const auto& [word, node] : *table)
+      axes[std::string(word.str())] = node.value_or(std::string());
+}
+
+void read_rest(config::TableReader& reader, const config::Key& key, std::string& text) {
+  const toml::table* manifest = reader.anything(key);
+  if (manifest == nullptr) return;
+  for (const char* own : {"format", "measurement"})
+    if (manifest->contains(own))
+      reader.error(key.name, std::string("expected no \"") + own + "\", which the import writes");
+  std::ostringstream out;
+  out << *manifest;
+  text = out.str();
+}
+
+using config::declared::into, config::declared::by, config::declared::anything;
 constexpr config::Key rule_keys[] = {
-    {.name = "pattern",
-     .holds = config::Key::Holds::text,
-     .help = "How the names of the files are made.",
-     .required = true},
-    {.name = "campaign",
-     .holds = config::Key::Holds::text,
-     .help = "How the campaigns' ids are made."},
-    {.name = "kind", .holds = config::Key::Holds::text, .help = "Kind of the measurements."},
-    {.name = "reader", .holds = config::Key::Holds::text, .help = "Reader of the files."},
-    {.name = "exclude",
-     .holds = config::Key::Holds::texts,
-     .help = "Files whose path holds one of these are passed over."},
-    {.name = "axis",
-     .holds = config::Key::Holds::text,
-     .help = "Axis of every file, where no name states it."},
-    {.name = "axes",
-     .holds = config::Key::Holds::anything,
-     .help = "Texts accepted at {axis}, and the axis that each means."},
-    {.name = "manifest",
-     .holds = config::Key::Holds::anything,
-     .help = "What goes into every campaign.toml."},
+    {"pattern", into<&ImportRule::pattern>, "How the names of the files are made.",
+     config::declared::required},
+    {"campaign", into<&ImportRule::campaign>, "How the campaigns' ids are made."},
+    {"kind", into<&ImportRule::kind>, "Kind of the measurements."},
+    {"reader", into<&ImportRule::reader>, "Reader of the files."},
+    {"exclude", into<&ImportRule::exclude>, "Files whose path holds one of these are passed over."},
+    {"axis", into<&ImportRule::axis>, "Axis of every file, where no name states it."},
+    {"axes", by<read_axes, anything, &ImportRule::axes>,
+     "Texts accepted at {axis}, and the axis that each means."},
+    {"manifest", by<read_rest, anything, &ImportRule::manifest>,
+     "What goes into every campaign.toml."},
 };
-constexpr config::Key rule_file = {.name = "rule",
-                                   .holds = config::Key::Holds::table,
-                                   .help = "Rule of an import.",
-                                   .keys = rule_keys};
+constexpr config::Key rule_file{"rule", config::declared::file<ImportRule>, "Rule of an import.",
+                                rule_keys};
 
 /// The axes that a rule states are axes, and stated in one place.
 void check_axes(const ImportRule& rule, config::TableReader& reader) {
@@ -195,25 +202,8 @@ config::Checked<ImportRule> parse_import_rule(std::string_view text, const std::
   std::vector<Error> errors;
   config::TableReader reader(*root, rule_file, file, errors);
   ImportRule rule;
-  rule.pattern = reader.text("pattern");
-  rule.campaign = reader.text("campaign");
-  if (const std::string kind = reader.text("kind"); !kind.empty()) rule.kind = kind;
-  rule.reader = reader.text("reader");
-  rule.exclude = reader.texts("exclude").value_or(std::vector<std::string>{});
-  rule.axis = reader.text("axis");
-  if (const toml::table* axes = reader.anything("axes"))
-    for (const auto& [word, node] : *axes)
-      rule.axes[std::string(word.str())] = node.value_or(std::string());
+  reader.fill(rule);
   check_axes(rule, reader);
-  if (const toml::table* manifest = reader.anything("manifest")) {
-    for (const char* own : {"format", "measurement"})
-      if (manifest->contains(own))
-        reader.error("manifest",
-                     std::string("expected no \"") + own + "\", which the import writes");
-    std::ostringstream out;
-    out << *manifest;
-    rule.manifest = out.str();
-  }
   reader.finish();
   if (auto ok = check(rule); !ok && !rule.pattern.empty()) {
     Error error = ok.error();

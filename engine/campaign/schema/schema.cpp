@@ -263,7 +263,7 @@ class SchemaWriter {
     json_.key("patternProperties");
     json_.begin_object();
     json_.key(pattern_of(key.text));
-    put_typed("string", {.name = {}, .holds = Holds::text, .help = {}});
+    put_typed("string", {{}, Holds::text, {}});
     json_.end_object();
     json_.member("additionalProperties", false);
   }

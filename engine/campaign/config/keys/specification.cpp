@@ -4,7 +4,8 @@
 namespace nonio::config {
 namespace declared {
 
-constexpr Words from_0 = "expected a number from 0";
+constexpr Range from_0 = from(0.0, "expected a number from 0");
+constexpr Unit percent{"%", 0.01}, degC{"degC"}, K_per_h{"K/h", 1.0 / 3600.0};
 // A cycle is of one of these, by the kind of its measurement and axis.
 constexpr Words with_mm[] = {"linear", "straightness", "diagonal"};
 constexpr Words with_deg[] = {"rotary", "ball-centres", "rtcp"};
@@ -20,226 +21,121 @@ constexpr Words step_diagonal_cycle[] = {"step-diagonal"}, straightness_cycle[] 
 constexpr Words with_balls[] = {"ball-centres", "rtcp"}, rtcp_cycle[] = {"rtcp"},
                 circle_cycle[] = {"circle"}, centres_cycle[] = {"ball-centres"};
 constexpr Key misreading_keys[] = {
-    {.name = "fraction",
-     .holds = number,
-     .help = "Share of the readings that are misread.",
-     .wanted = from_0,
-     .least = 0.0},
+    {"fraction", number, "Share of the readings that are misread.", from_0},
     {"size", numbers, "Range of a misreading, times the noise."},
 };
 
 constexpr Key temperature_keys[] = {
-    {.name = "start_c", .holds = number, .help = "Temperature at the start.", .unit = "degC"},
-    {.name = "drift_K_per_h", .holds = number, .help = "Drift.", .unit = "K/h"},
-    {.name = "swing_K", .holds = number, .help = "Amplitude of the swing.", .unit = "K"},
-    {.name = "period_s",
-     .holds = number,
-     .help = "Period of the swing.",
-     .unit = "s",
-     .wanted = above_0,
-     .least = 0.0,
-     .above = true},
+    {"start_c", number, "Temperature at the start.", degC},
+    {"drift_K_per_h", number, "Drift.", K_per_h},
+    {"swing_K", number, "Amplitude of the swing.", K},
+    {"period_s", number, "Period of the swing.", seconds, above_0},
 };
 
 constexpr Choice orders[] = {{"pendulum"}, {"unidirectional"}};
 constexpr Choice directions[] = {{"+"}, {"-"}};
 constexpr Choice sensors[] = {{"turns"}, {"stands"}, {"probe"}};
 constexpr Choice carried[] = {{"table"}, {"head"}};
-/// A key of cycles of these kinds.
-constexpr Key of_kinds(Key key, std::span<const Words> kinds, std::string_view unit = {}) {
-  key.unit = unit;
-  key.only = {cycle_axis, kinds};
-  return key;
-}
-
-constexpr Key feed(std::string_view name) {
-  return {.name = name,
-          .holds = number,
-          .help = "Feed to the next target.",
-          .wanted = above_0,
-          .least = 0.0,
-          .above = true};
-}
-
-constexpr Key noise(std::string_view name) {
-  return {.name = name,
-          .holds = number,
-          .help = "Standard deviation of a reading.",
-          .wanted = from_0,
-          .least = 0.0};
-}
+/// Of cycles of these kinds.
+constexpr auto of(std::span<const Words> kinds) { return only({cycle_axis, kinds}); }
 
 constexpr Key cycle_keys[] = {
-    {.name = "measurement",
-     .holds = text,
-     .help = "Id of the simulated measurement.",
-     .required = true},
-    of_kinds({"targets_mm", numbers, "Targets, ascending."}, with_mm, "mm"),
-    of_kinds({"targets_deg", numbers, "Targets, ascending."}, with_deg, "deg"),
-    of_kinds({"from_mm", number, "First target."}, with_mm, "mm"),
-    of_kinds({"from_deg", number, "First target."}, with_deg, "deg"),
-    of_kinds({"to_mm", number, "End of the targets."}, with_mm, "mm"),
-    of_kinds({"to_deg", number, "End of the targets."}, with_deg, "deg"),
-    of_kinds({"step_mm", number, "Distance of targets."}, with_mm, "mm"),
-    of_kinds({"step_deg", number, "Distance of targets."}, with_deg, "deg"),
-    of_kinds({.name = "random_offset_pct",
-              .holds = number,
-              .help = "Largest shift of a target, as a part of the step.",
-              .wanted = from_0,
-              .least = 0.0},
-             by_targets, "%"),
-    of_kinds({.name = "order",
-              .holds = text,
-              .help = "Each run upwards and then downwards (a circle counter-clockwise and then "
-                      "clockwise), or all runs in one direction.",
-              .choices = orders},
-             in_order),
-    of_kinds({.name = "direction",
-              .holds = text,
-              .help = "Direction of unidirectional runs; of a circle + is counter-clockwise.",
-              .choices = directions},
-             in_order),
-    of_kinds({.name = "steps",
-              .holds = whole,
-              .help = "Equal steps along a diagonal, in place of targets; of a step diagonal the "
-                      "moves of each axis.",
-              .wanted = "expected 1 to 10000 steps",
-              .least = 1,
-              .most = 10000},
-             stepwise),
-    of_kinds({.name = "readings",
-              .holds = whole,
-              .help = "Readings of a turn, evenly spaced. Default: 720.",
-              .wanted = "expected 24 to 100000 readings",
-              .least = 24,
-              .most = 100000},
-             circle_cycle),
-    of_kinds({"set_up_urad", number,
-              "Angle between the straightedge or beam and the axis: a slope of the readings."},
-             straightness_cycle, "urad"),
-    of_kinds({"ball_mm", numbers,
-              "Place of the ball in machine coordinates with the axis at 0, [X, Y, Z]; "
-              "of a further ball three numbers more."},
-             with_balls, "mm"),
-    of_kinds({"carrier", text,
-              "Another rotary axis, which turned too: the table or head that carries this "
-              "one, or the head in addition to this table."},
-             centres_cycle),
-    of_kinds({"carrier_deg", numbers, "Positions of the carrier: all targets at each of them."},
-             centres_cycle, "deg"),
-    of_kinds({.name = "sensor",
-              .holds = text,
-              .help = "A gauge that turns with the axis, a stationary gauge, or a probe "
-                      "that finds the whole centre.",
-              .choices = sensors},
-             rtcp_cycle),
-    of_kinds({"sense", numbers,
-              "Direction in which a gauge senses with the axis at 0, [1, 0, 0]; of a "
-              "further gauge three numbers more."},
-             rtcp_cycle),
-    of_kinds({"ball_offset_um", numbers,
-              "How far the ball was from where the control takes it to be, [X, Y, Z] with "
-              "the axis at 0."},
-             rtcp_cycle, "um"),
-    {.name = "runs",
-     .holds = whole,
-     .help = "Number of runs.",
-     .wanted = "expected 1 to 100000",
-     .least = 1,
-     .most = 100000},
-    of_kinds(feed("feed_mm_per_min"), moving_mm, "mm/min"),
-    of_kinds(feed("feed_deg_per_min"), with_deg, "deg/min"),
-    {.name = "dwell_s",
-     .holds = number,
-     .help = "Dwell at a target.",
-     .unit = "s",
-     .wanted = from_0,
-     .least = 0.0},
-    {.name = "pause_s",
-     .holds = number,
-     .help = "Pause before each further run.",
-     .unit = "s",
-     .wanted = from_0,
-     .least = 0.0},
+    {"measurement", text, "Id of the simulated measurement.", required},
+    {"targets_mm", numbers, "Targets, ascending.", mm, of(with_mm)},
+    {"targets_deg", numbers, "Targets, ascending.", deg, of(with_deg)},
+    {"from_mm", number, "First target.", Unit{"mm"}, of(with_mm)},
+    {"from_deg", number, "First target.", Unit{"deg"}, of(with_deg)},
+    {"to_mm", number, "End of the targets.", Unit{"mm"}, of(with_mm)},
+    {"to_deg", number, "End of the targets.", Unit{"deg"}, of(with_deg)},
+    {"step_mm", number, "Distance of targets.", Unit{"mm"}, of(with_mm)},
+    {"step_deg", number, "Distance of targets.", Unit{"deg"}, of(with_deg)},
+    {"random_offset_pct", number, "Largest shift of a target, as a part of the step.", from_0,
+     percent, of(by_targets)},
+    {"order", text,
+     "Each run upwards and then downwards (a circle counter-clockwise and then clockwise), or all "
+     "runs in one direction.",
+     orders, of(in_order)},
+    {"direction", text, "Direction of unidirectional runs; of a circle + is counter-clockwise.",
+     directions, of(in_order)},
+    {"steps", whole,
+     "Equal steps along a diagonal, in place of targets; of a step diagonal the moves of each "
+     "axis.",
+     within(1, 10000, "expected 1 to 10000 steps"), of(stepwise)},
+    {"readings", whole, "Readings of a turn, evenly spaced. Default: 720.",
+     within(24, 100000, "expected 24 to 100000 readings"), of(circle_cycle)},
+    {"set_up_urad", number,
+     "Angle between the straightedge or beam and the axis: a slope of the readings.", urad,
+     of(straightness_cycle)},
+    {"ball_mm", numbers,
+     "Place of the ball in machine coordinates with the axis at 0, [X, Y, Z]; of a further ball "
+     "three numbers more.",
+     mm, of(with_balls)},
+    {"carrier", text,
+     "Another rotary axis, which turned too: the table or head that carries this one, or the head "
+     "in addition to this table.",
+     of(centres_cycle)},
+    {"carrier_deg", numbers, "Positions of the carrier: all targets at each of them.", deg,
+     of(centres_cycle)},
+    {"sensor", text,
+     "A gauge that turns with the axis, a stationary gauge, or a probe that finds the whole "
+     "centre.",
+     sensors, of(rtcp_cycle)},
+    {"sense", numbers,
+     "Direction in which a gauge senses with the axis at 0, [1, 0, 0]; of a further gauge three "
+     "numbers more.",
+     of(rtcp_cycle)},
+    {"ball_offset_um", numbers,
+     "How far the ball was from where the control takes it to be, [X, Y, Z] with the axis at 0.",
+     um, of(rtcp_cycle)},
+    {"runs", whole, "Number of runs.", within(1, 100000, "expected 1 to 100000")},
+    {"feed_mm_per_min", number, "Feed to the next target.", mm_per_min, above_0, of(moving_mm)},
+    {"feed_deg_per_min", number, "Feed to the next target.", deg_per_min, above_0, of(with_deg)},
+    {"dwell_s", number, "Dwell at a target.", seconds, from_0},
+    {"pause_s", number, "Pause before each further run.", seconds, from_0},
     {"times", flag, "Whether the file has times."},
-    of_kinds(noise("noise_um"), in_um, "um"),
-    of_kinds(noise("noise_arcsec"), rotary, "arcsec"),
-    {.name = "misreadings", .holds = table, .help = "Misreadings.", .keys = misreading_keys},
-    {.name = "temperature",
-     .holds = table,
-     .help = "Temperature over time.",
-     .keys = temperature_keys},
+    {"noise_um", number, "Standard deviation of a reading.", um, from_0, of(in_um)},
+    {"noise_arcsec", number, "Standard deviation of a reading.", arcsec, from_0, of(rotary)},
+    {"misreadings", table, "Misreadings.", misreading_keys},
+    {"temperature", table, "Temperature over time.", temperature_keys},
 };
 
 constexpr Key simulated_rotary_keys[] = {
-    {.name = "axis", .holds = text, .help = "The rotary axis.", .required = true},
-    {.name = "centre_mm",
-     .holds = numbers,
-     .help = "A point of the axis as it is, in machine coordinates.",
-     .unit = "mm",
-     .required = true},
-    {.name = "direction",
-     .holds = numbers,
-     .help = "Its direction: positive angles turn right-handed about it.",
-     .required = true},
-    {.name = "control_centre_mm",
-     .holds = numbers,
-     .help = "The point that the control has of it (rtcp).",
-     .unit = "mm"},
+    {"axis", text, "The rotary axis.", required},
+    {"centre_mm", numbers, "A point of the axis as it is, in machine coordinates.", required, mm},
+    {"direction", numbers, "Its direction: positive angles turn right-handed about it.", required},
+    {"control_centre_mm", numbers, "The point that the control has of it (rtcp).", mm},
     {"control_direction", numbers, "The direction that the control has of it (rtcp)."},
-    {.name = "carries",
-     .holds = text,
-     .help = "What the axis turns: the table or the head. Needed for rtcp; ball-centres: table.",
-     .choices = carried},
+    {"carries", text,
+     "What the axis turns: the table or the head. Needed for rtcp; ball-centres: table.", carried},
 };
 
 constexpr Key simulated_square_keys[] = {
-    {.name = "name", .holds = text, .help = "The [[square]].", .required = true},
-    {.name = "error_urad",
-     .holds = number,
-     .help = "Error of its angle: positive is over 90 deg.",
-     .unit = "urad"},
-    {.name = "set_up_urad",
-     .holds = number,
-     .help = "Its angle to the first axis, positive from the first axis to the second.",
-     .unit = "urad"},
+    {"name", text, "The [[square]].", required},
+    {"error_urad", number, "Error of its angle: positive is over 90 deg.", urad},
+    {"set_up_urad", number,
+     "Its angle to the first axis, positive from the first axis to the second.", urad},
 };
 
 constexpr Key simulation_keys[] = {
     {"seed", whole, "The same seed gives the same readings."},
-    {.name = "rotary",
-     .holds = tables,
-     .help = "A rotary axis, exact, for ball-centres and rtcp.",
-     .keys = simulated_rotary_keys},
-    {.name = "square",
-     .holds = tables,
-     .help = "A square as it is.",
-     .keys = simulated_square_keys},
-    {.name = "formula",
-     .holds = tables,
-     .help = "A hidden effect, as a formula.",
-     .keys = formula_keys},
+    {"rotary", tables, "A rotary axis, exact, for ball-centres and rtcp.", simulated_rotary_keys},
+    {"square", tables, "A square as it is.", simulated_square_keys},
+    {"formula", tables_of<Formula>, "A hidden effect, as a formula.", formula_keys},
 };
 
 /// The others are parameters of the effect that it names.
 constexpr Key effect_keys[] = {
-    {.name = "name", .holds = text, .help = "The effect, \"kind:axis\".", .required = true},
+    {"name", text, "The effect, \"kind:axis\".", required},
 };
 constexpr Key specification_keys[] = {
-    {.name = "simulation",
-     .holds = table,
-     .help = "Seed and hidden formulas.",
-     .required = true,
-     .missing = "[simulation] with a seed",
-     .keys = simulation_keys},
-    {.name = "cycle", .holds = tables, .help = "Test cycle of a measurement.", .keys = cycle_keys},
-    {.name = "effect", .holds = tables, .help = "A known effect.", .keys = effect_keys},
+    {"simulation", table, "Seed and hidden formulas.", missing("[simulation] with a seed"),
+     simulation_keys},
+    {"cycle", tables, "Test cycle of a measurement.", cycle_keys},
+    {"effect", tables, "A known effect.", effect_keys},
 };
 
-constexpr Key specification_toml = {.name = "specification",
-                                    .holds = table,
-                                    .help = "Specification of a simulated campaign.",
-                                    .keys = specification_keys};
+constexpr Key specification_toml = {"specification", table,
+                                    "Specification of a simulated campaign.", specification_keys};
 
 }  // namespace declared
 

@@ -19,11 +19,10 @@ using Holds = config::Key::Holds;
 constexpr std::string_view turning[] = {"rotary"};
 constexpr config::Choice kinds[] = {{"linear"}, {"rotary"}};
 constexpr config::Key some_keys[] = {
-    {.name = "kind", .holds = Holds::text, .help = "", .choices = kinds},
-    {.name = "teeth", .holds = Holds::whole, .help = "", .only = {"kind", turning}},
+    {"kind", Holds::text, "", kinds},
+    {"teeth", Holds::whole, "", config::declared::only({"kind", turning})},
 };
-constexpr config::Key some = {
-    .name = "some.toml", .holds = Holds::table, .help = "", .keys = some_keys};
+constexpr config::Key some{"some.toml", Holds::table, "", some_keys};
 
 /// What reading a text with these keys says; "threw: ..." if the reader holds it for a mistake of
 /// the program.
