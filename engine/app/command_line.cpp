@@ -43,8 +43,7 @@ CLI::Validator member_of(const Words& choices) {
   return {[choices](const std::string& found) {
             if (std::find(choices.begin(), choices.end(), found) != choices.end())
               return std::string();
-            return "expected one of " + storage::listed(choices) + "; found \"" + found + "\"" +
-                   storage::suggestion(found, choices);
+            return storage::not_one_of(choices, found);
           },
           ""};
 }

@@ -138,7 +138,7 @@ constexpr Key::Into member() {
             read<Kind, typename P::Value>(reader, key,
                                           P::in(*static_cast<typename P::Class*>(object)));
           },
-          &tag<typename P::Class>};
+          &tag<typename P::Class>, nullptr, std::is_same_v<typename Kind::Type, Chosen>};
 }
 
 template <class T>

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <type_traits>
 
-/// The keys of Nonio's TOML files as data. `TableReader` checks a file against them, `schema.cpp`
-/// makes a JSON schema of them; a check across several keys stays with the code that reads them.
+/// The keys of Nonio's TOML files as data. `TableReader` fills structs by them, `schema.cpp` makes a
+/// JSON schema of them; a check across several keys is a function of checks.h.
 namespace nonio::config {
 
 struct Choice {
@@ -69,10 +69,11 @@ struct Key {
     void (*read)(TableReader&, const Key&, void* object) = nullptr;
     const void* of = nullptr;     ///< the type of `object`
     const void* inner = nullptr;  ///< of a table: the type that its keys fill
+    bool by_choice = false;       ///< the value is that of the choice
     constexpr Into(Holds h) : holds(h) {}
     template <class Read>
-    constexpr Into(Holds h, Read r, const void* o, const void* i = nullptr)
-        : holds(h), read(r), of(o), inner(i) {}
+    constexpr Into(Holds h, Read r, const void* o, const void* i = nullptr, bool c = false)
+        : holds(h), read(r), of(o), inner(i), by_choice(c) {}
   };
 
   std::string_view name;
@@ -106,12 +107,13 @@ struct Key {
   /// Name of an earlier version. It is accepted with a warning; schema and reference omit it.
   std::string_view former{};
 
-  /// Attributes: choices, keys, `Named`, and those of bind.h. In a constant, keys of a table that
-  /// fill another struct than the table does are an error of the compiler.
+  /// Attributes: choices, keys, `Named`, and those of bind.h. In a constant, what is thrown here is
+  /// an error of the compiler.
   template <class... Attributes>
   constexpr Key(std::string_view n, Into i, std::string_view h, const Attributes&... attributes)
       : name(n), holds(i.holds), help(h), into(i) {
     (set(attributes), ...);
+    if (into.by_choice && choices.empty()) throw std::logic_error("a key without choices");
     for (const Key& key : keys)
       if (key.into.of != nullptr && key.into.of != into.inner)
         throw std::logic_error("a key of another struct than that of its table");

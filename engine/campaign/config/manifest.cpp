@@ -96,10 +96,7 @@ void refuse_kind(TableReader& reader, const std::string& kind, const std::vector
   std::vector<std::string> kinds;
   for (const Method& method : methods) kinds.push_back(method.info.name);
   std::sort(kinds.begin(), kinds.end());
-  std::string list;
-  for (const std::string& known : kinds) list += (list.empty() ? "" : ", ") + known;
-  reader.error("kind", "expected one of " + list + "; found \"" + kind + "\"" +
-                           storage::suggestion(kind, kinds));
+  reader.error("kind", storage::not_one_of(kinds, kind));
 }
 
 /// Without `methods` only the keys of every method are read, and others are accepted.

@@ -5,7 +5,7 @@
 #include <optional>
 #include <sstream>
 
-#include "campaign/config/manifest.h"
+#include "campaign/config/checks.h"
 #include "campaign/config/toml_reader.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/nearest.h"
@@ -15,24 +15,10 @@ namespace nonio::config {
 namespace {
 
 const char* kind_of(const Setting& setting) {
-  switch (setting.index()) {
-    case 0:
-      return "true or false";
-    case 1:
-      return "a whole number";
-    case 2:
-      return "a number";
-    case 3:
-      return "a text";
-    case 4:
-      return "a list of numbers";
-    case 5:
-      return "a list of texts";
-    case 6:
-      return "tables of numbers";
-    default:
-      return "a table of numbers";
-  }
+  static constexpr const char* kinds[] = {
+      "true or false",     "a whole number",  "a number",          "a text",
+      "a list of numbers", "a list of texts", "tables of numbers", "a table of numbers"};
+  return kinds[setting.index()];
 }
 
 /// "X reference_mm=0 step_mm=50", the form in manifests before there were tables.
@@ -115,16 +101,54 @@ std::string choice_complaint(const Option& option, const Setting& setting) {
     found = std::to_string(*i);
   else
     return {};
-  std::string list;
-  for (const std::string& choice : option.choices) {
-    if (choice == found) return {};
-    list += (list.empty() ? "" : ", ") + choice;
-  }
-  return "expected one of " + list + "; found \"" + found + "\"" +
-         storage::suggestion(found, option.choices);
+  const auto& all = option.choices;
+  if (std::find(all.begin(), all.end(), found) != all.end()) return {};
+  return storage::not_one_of(all, found);
+}
+
+/// What is not a valid setting in an option: of a table, its first key that is not a number.
+Error wrong_option(const std::string& place, const toml::node& value, const std::string& file) {
+  if (const toml::table* tables = value.as_table())
+    for (const auto& [name, node] : *tables) {
+      const std::string at = place + "." + std::string(name.str());
+      const toml::table* entries = node.as_table();
+      if (entries == nullptr)
+        return {at + ": expected a table of numbers, found " + type_name(node), file,
+                node.source().begin.line};
+      for (const auto& [key, item] : *entries)
+        if (const auto number = item.is_number() ? item.value<double>() : std::nullopt;
+            !number || !std::isfinite(*number))
+          return {at + "." + std::string(key.str()) + ": expected a finite number, found " +
+                      type_name(item),
+                  file, item.source().begin.line};
+    }
+  return {place + ": expected a value, found " + type_name(value), file, value.source().begin.line};
 }
 
 }  // namespace
+
+void read_options(TableReader& top, const Key& declaration, RawOptions& options) {
+  const toml::table* table = top.anything(declaration);
+  if (table == nullptr) return;
+  const std::string& file = top.file();
+  for (const auto& [plugin, node] : *table) {
+    const std::string name(plugin.str());
+    const toml::table* entries = node.as_table();
+    if (entries == nullptr) {
+      top.error(Error{"options." + name + ": expected a table, found " + type_name(node), file,
+                      node.source().begin.line});
+      continue;
+    }
+    auto& of_plugin = options[name];
+    for (const auto& [key, value] : *entries) {
+      const std::uint64_t line = value.source().begin.line;
+      if (auto setting = to_setting(value))
+        of_plugin[std::string(key.str())] = RawOption{std::move(*setting), file, line};
+      else
+        top.error(wrong_option("options." + name + "." + std::string(key.str()), value, file));
+    }
+  }
+}
 
 Checked<Settings> settle_options(const Info& plugin, const RawOptions& site,
                                  const RawOptions& campaign, const std::vector<Option>& others) {

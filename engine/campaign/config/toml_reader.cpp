@@ -122,8 +122,7 @@ bool TableReader::check_choice(const Key& key, const std::string& value) {
     return true;
   std::vector<std::string> names;
   for (const Choice& choice : key.choices) names.emplace_back(choice.name);
-  error(key.name, "expected one of " + list_of(key.choices) + "; found \"" + value + "\"" +
-                      storage::suggestion(value, names));
+  error(key.name, storage::not_one_of(names, value, list_of(key.choices)));
   return false;
 }
 

@@ -130,8 +130,7 @@ class Matcher {
   std::uint64_t steps_ = 0;
 };
 
-void read_axes(config::TableReader& reader, const config::Key& key,
-               Places& axes) {
+void read_axes(config::TableReader& reader, const config::Key& key, Places& axes) {
   if (const toml::table* table = reader.anything(key))
     for (const auto& [word, node] : *table)
       axes[std::string(word.str())] = node.value_or(std::string());

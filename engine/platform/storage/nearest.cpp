@@ -27,4 +27,10 @@ std::string listed(const std::vector<std::string>& names) {
   return out;
 }
 
+std::string not_one_of(const std::vector<std::string>& choices, std::string_view found,
+                       std::string list) {
+  return "expected one of " + (list.empty() ? listed(choices) : std::move(list)) + "; found \"" +
+         std::string(found) + "\"" + suggestion(found, choices);
+}
+
 }  // namespace nonio::storage

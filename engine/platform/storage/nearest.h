@@ -14,4 +14,9 @@ std::string suggestion(std::string_view found, const std::vector<std::string>& c
 /// "a, b and c" in no language: "a, b, c".
 std::string listed(const std::vector<std::string>& names);
 
+/// What to state of a value that is none of the choices: "expected one of a, b; found "c"", with
+/// the nearest. `list`: the choices with what they mean; empty: their names.
+std::string not_one_of(const std::vector<std::string>& choices, std::string_view found,
+                       std::string list = {});
+
 }  // namespace nonio::storage

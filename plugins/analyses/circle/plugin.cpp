@@ -415,27 +415,21 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 }
 
 std::vector<Option> options() {
-  return {{"centre",
-           std::string("minimum-zone"),
-           "",
-           "Centre of the two circles of G, G(b) and H.",
-           {"minimum-zone", "least-squares"}},
-          {"F_about",
-           std::string("least-squares"),
-           "",
-           "Centre of F: the least-squares one, or the commanded one if the bar's ball was there.",
-           {"least-squares", "commanded"}},
-          {"calibrated_length", false, "",
-           "Whether the readings are deviations from the commanded radius (a calibrated bar): "
-           "needed for D and F."},
-          {"leave_out_deg",
-           2.0,
-           "deg",
-           "Readings left out of the fit on both sides of each reversal; more where spikes last "
-           "longer.",
-           {},
-           0.0,
-           most_left_out}};
+  return {
+      one_of({"minimum-zone", "least-squares"}, {"centre", std::string("minimum-zone"), "",
+                                                 "Centre of the two circles of G, G(b) and H."}),
+      {"F_about",
+       std::string("least-squares"),
+       "",
+       "Centre of F: the least-squares one, or the commanded one if the bar's ball was there.",
+       {"least-squares", "commanded"}},
+      {"calibrated_length", false, "",
+       "Whether the readings are deviations from the commanded radius (a calibrated bar): "
+       "needed for D and F."},
+      within(0.0, most_left_out,
+             {"leave_out_deg", 2.0, "deg",
+              "Readings left out of the fit on both sides of each reversal; more where spikes last "
+              "longer."})};
 }
 
 }  // namespace

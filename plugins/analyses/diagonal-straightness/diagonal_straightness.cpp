@@ -404,39 +404,25 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 }
 
 std::vector<Option> options() {
-  return {{"EXY_odd_bound_um",
-           0.0,
-           "um",
-           "Largest size of the odd part of EXY that is known from elsewhere; 0: not known.",
-           {},
-           0.0,
-           {}},
-          {"direct_straightness",
-           std::string("odd"),
-           "",
-           "Which part of a directly measured straightness is used: the 'odd' part or the 'whole'.",
-           {"odd", "whole"}},
-          {"largest_gain",
-           3.0,
-           "",
-           "Largest noise gain 1/(2 min(c, s)); above it no straightness.",
-           {},
-           0.7,
-           {}},
-          {"reading_u_um",
-           0.0,
-           "um",
-           "Standard uncertainty of every mean; 0: from the scatter of the readings.",
-           {},
-           0.0,
-           {}},
-          {"yaw_u_urad",
-           0.0,
-           "urad",
-           "Standard uncertainty of every mean of a yaw read for itself; 0: from the scatter.",
-           {},
-           0.0,
-           {}}};
+  return {
+      {"EXY_odd_bound_um",
+       0.0,
+       "um",
+       "Largest size of the odd part of EXY that is known from elsewhere; 0: not known.",
+       {},
+       0.0,
+       {}},
+      one_of({"odd", "whole"}, {"direct_straightness", std::string("odd"), "",
+                                "Which part of a directly measured straightness is used: the 'odd' "
+                                "part or the 'whole'."}),
+      at_least(0.7, {"largest_gain", 3.0, "",
+                     "Largest noise gain 1/(2 min(c, s)); above it no straightness."}),
+      at_least(0.0, {"reading_u_um", 0.0, "um",
+                     "Standard uncertainty of every mean; 0: from the scatter of the readings."}),
+      at_least(
+          0.0,
+          {"yaw_u_urad", 0.0, "urad",
+           "Standard uncertainty of every mean of a yaw read for itself; 0: from the scatter."})};
 }
 
 }  // namespace

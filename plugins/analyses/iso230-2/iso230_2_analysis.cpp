@@ -82,11 +82,9 @@ NONIO_PLUGIN(registry) {
   a.info = {"iso230-2",
             "1.0.0",
             "Accuracy and repeatability of positioning according to ISO 230-2.",
-            {{"edition",
-              std::int64_t{2014},
-              "",
-              "Edition of the standard; 1988 has k = 3, the later ones k = 2.",
-              {"1988", "1997", "2006", "2014"}},
+            {one_of({"1988", "1997", "2006", "2014"},
+                    {"edition", std::int64_t{2014}, "",
+                     "Edition of the standard; 1988 has k = 3, the later ones k = 2."}),
              incomplete_targets_option()}};
   a.applies = applies;
   a.analyse = analyse;

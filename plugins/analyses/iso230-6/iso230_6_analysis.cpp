@@ -260,11 +260,8 @@ NONIO_PLUGIN(registry) {
   a.info = {"iso230-6",
             "1.0.0",
             "Positioning along body and face diagonals according to ISO 230-6.",
-            {{"edition",
-              std::int64_t{2002},
-              "",
-              "Edition of the standard whose terms are used.",
-              {"2002"}}}};
+            {one_of({"2002"}, {"edition", std::int64_t{2002}, "",
+                               "Edition of the standard whose terms are used."})}};
   a.applies = applies;
   a.analyse = analyse;
   a.states_followed = true;

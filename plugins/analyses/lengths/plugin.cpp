@@ -310,12 +310,10 @@ class Worker {
 Expected<Evaluation> analyse(const AnalysisInput& in) { return Worker(in).run(); }
 
 std::vector<Option> options() {
-  std::vector<Option> out{{"edition",
-                           std::string("2009"),
-                           "",
-                           "Edition of ISO 10360-2: 2001 allows five lengths with one repeat "
-                           "outside, each measured ten times more.",
-                           {"2001", "2009"}}};
+  std::vector<Option> out{
+      one_of({"2001", "2009"}, {"edition", std::string("2009"), "",
+                                "Edition of ISO 10360-2: 2001 allows five lengths with one repeat "
+                                "outside, each measured ten times more."})};
   const auto number = [&](const char* name, const char* unit, const char* help, double most) {
     out.push_back({name, 0.0, unit, help, {}, 0.0, most});
   };

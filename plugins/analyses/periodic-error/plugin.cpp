@@ -154,17 +154,13 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 
 NONIO_PLUGIN(registry) {
   Analysis a;
-  a.info = {"periodic-error",
-            "1.0.0",
-            "Periodic error of a linear axis from a dense run over two periods or more.",
-            {{"period_mm",
-              0.0,
-              "mm",
-              "Period; 0: the axis's screw_pitch_mm of the manifest.",
-              {},
-              0.0,
-              1e5}},
-            true};
+  a.info = {
+      "periodic-error",
+      "1.0.0",
+      "Periodic error of a linear axis from a dense run over two periods or more.",
+      {within(0.0, 1e5,
+              {"period_mm", 0.0, "mm", "Period; 0: the axis's screw_pitch_mm of the manifest."})},
+      true};
   a.applies = applies;
   a.analyse = analyse;
   a.states_followed = true;

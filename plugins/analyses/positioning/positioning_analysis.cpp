@@ -282,14 +282,12 @@ NONIO_PLUGIN(registry) {
       "1.0.0",
       "Positioning of an axis by any rule of the trade (ISO, VDI, ASME, NMTBA, BS, JIS, GB), "
       "several at once.",
-      {{"rules", std::vector<std::string>{"iso-2014"}, "", "Any of " + names_of_rules() + ".", {}},
-       {"nmtba_offset",
-        std::string("mean-of-all"),
-        "",
-        "What NMTBA without offset takes off: the mean of all bidirectional means, that of "
-        "the first target, or the middle between the largest and the smallest. The rule "
-        "does not state which.",
-        {"mean-of-all", "first-target", "mid-range"}},
+      {{"rules", std::vector<std::string>{"iso-2014"}, "", "Any of " + names_of_rules() + "."},
+       one_of({"mean-of-all", "first-target", "mid-range"},
+              {"nmtba_offset", std::string("mean-of-all"), "",
+               "What NMTBA without offset takes off: the mean of all bidirectional means, that of "
+               "the first target, or the middle between the largest and the smallest. The rule "
+               "does not state which."}),
        incomplete_targets_option()},
       true};
   a.applies = applies;

@@ -298,38 +298,26 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 
 std::vector<Option> options() {
   return {
-      {"method",
-       std::string("least-squares"),
-       "",
-       "Least squares with the set-up angles, or the conventional averaging of increments.",
-       {"least-squares", "averaging"}},
-      {"u_reading_um",
-       0.0,
-       "um",
-       "Standard uncertainty of a reading; 0: from the residuals.",
-       {},
-       0.0,
-       {}},
+      one_of(
+          {"least-squares", "averaging"},
+          {"method", std::string("least-squares"), "",
+           "Least squares with the set-up angles, or the conventional averaging of increments."}),
+      at_least(0.0, {"u_reading_um", 0.0, "um",
+                     "Standard uncertainty of a reading; 0: from the residuals."}),
       {"set_up_square", false, "",
        "The mirror is known to be square to the diagonals within the noise over a step."},
-      {"beam",
-       std::string("off-diagonal"),
-       "",
-       "Where a set-up angle comes from: the mirror is square to a beam off the diagonal, or "
-       "only the mirror is tilted.",
-       {"off-diagonal", "on-diagonal"}},
+      one_of({"off-diagonal", "on-diagonal"},
+             {"beam", std::string("off-diagonal"), "",
+              "Where a set-up angle comes from: the mirror is square to a beam off the diagonal, "
+              "or only the mirror is tilted."}),
       {"lengths", std::vector<std::string>{}, "",
        "Ids of the axis measurements that give the lengths; none: those with the same words after "
        "the name (SD final: X final)."},
-      {"mirror_mm", 0.0, "mm", "Usable half width of the mirror; 0: not checked.", {}, 0.0, {}},
-      {"angle_urad", 0.0, "urad", "Largest yaw or pitch of an axis; 0: not known.", {}, 0.0, {}},
-      {"budget_um",
-       0.0,
-       "um",
-       "Straightness is withheld where angle_urad could make more than this; 0: never.",
-       {},
-       0.0,
-       {}}};
+      at_least(0.0, {"mirror_mm", 0.0, "mm", "Usable half width of the mirror; 0: not checked."}),
+      at_least(0.0, {"angle_urad", 0.0, "urad", "Largest yaw or pitch of an axis; 0: not known."}),
+      at_least(0.0,
+               {"budget_um", 0.0, "um",
+                "Straightness is withheld where angle_urad could make more than this; 0: never."})};
 }
 
 bool applies(const Campaign&, const Measurement& m) { return m.kind == "step-diagonal"; }

@@ -58,22 +58,13 @@ Expected<Evaluation> analyse(const AnalysisInput& in) {
 }
 
 std::vector<Option> options() {
-  return {
-      {"window_min",
-       60.0,
-       "min",
-       "Length of the windows in which ranges are taken: the time that a run of other campaigns "
-       "takes.",
-       {},
-       0.1,
-       1e5},
-      {"remaining_um",
-       1.0,
-       "um",
-       "Change that may remain after the warm-up that is proposed.",
-       {},
-       0.001,
-       1e4}};
+  return {within(0.1, 1e5,
+                 {"window_min", 60.0, "min",
+                  "Length of the windows in which ranges are taken: the time that a run of other "
+                  "campaigns takes."}),
+          within(0.001, 1e4,
+                 {"remaining_um", 1.0, "um",
+                  "Change that may remain after the warm-up that is proposed."})};
 }
 
 }  // namespace

@@ -127,21 +127,19 @@ std::vector<Option> options() {
   return {
       {"x", std::string("X"), "", "The axis of leg a."},
       {"y", std::string("Y"), "", "The axis of leg b."},
-      {"over_travel_mm", 0.0, "mm", "Kept free at each end of both axes.", {}, 0.0, {}},
-      {"resolution_mm", 1.0, "mm", "Steps are whole multiples of it.", {}, 1e-6, {}},
-      {"max_step_mm", 0.0, "mm", "Largest step of either axis; 0: any.", {}, 0.0, {}},
-      {"max_points", std::int64_t{1500}, "", "Entries of the control's table.", {}, 5.0, {}},
+      at_least(0.0, {"over_travel_mm", 0.0, "mm", "Kept free at each end of both axes."}),
+      at_least(1e-6, {"resolution_mm", 1.0, "mm", "Steps are whole multiples of it."}),
+      at_least(0.0, {"max_step_mm", 0.0, "mm", "Largest step of either axis; 0: any."}),
+      at_least(5.0, {"max_points", std::int64_t{1500}, "", "Entries of the control's table."}),
       {"pitch_x_mm", std::vector<double>{}, "mm",
        "Pitches of x, in addition to its screw_pitch_mm, of which no step is a whole multiple."},
       {"pitch_y_mm", std::vector<double>{}, "mm", "The same of y."},
       {"density", false, "", "Only stops that are an ISO 230-2 sampling of both axes."},
-      {"even",
-       std::string("any"),
-       "",
-       "An even number of steps, for a diagonal to half of y.",
-       {"any", "prefer", "require"}},
-      {"hypotenuse", std::int64_t{5000}, "", "Largest c of the triples.", {}, 5.0, 1e6},
-      {"count", std::int64_t{5}, "", "Plans to give.", {}, 1.0, 1000.0}};
+      one_of({"any", "prefer", "require"},
+             {"even", std::string("any"), "",
+              "An even number of steps, for a diagonal to half of y."}),
+      within(5.0, 1e6, {"hypotenuse", std::int64_t{5000}, "", "Largest c of the triples."}),
+      within(1.0, 1000.0, {"count", std::int64_t{5}, "", "Plans to give."})};
 }
 
 }  // namespace

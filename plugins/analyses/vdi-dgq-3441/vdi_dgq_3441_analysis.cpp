@@ -110,11 +110,9 @@ NONIO_PLUGIN(registry) {
   a.info = {"vdi-dgq-3441",
             "1.0.0",
             "Positional accuracy according to VDI/DGQ 3441.",
-            {{"standard_deviation",
-              std::string("direct"),
-              "",
-              "Standard deviation 'direct' from n - 1, or 'from-range' with d_n.",
-              {"direct", "from-range"}},
+            {one_of({"direct", "from-range"},
+                    {"standard_deviation", std::string("direct"), "",
+                     "Standard deviation 'direct' from n - 1, or 'from-range' with d_n."}),
              incomplete_targets_option()}};
   a.applies = applies;
   a.analyse = analyse;

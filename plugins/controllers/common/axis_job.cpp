@@ -372,8 +372,9 @@ Option axes_option(std::string keys) {
 }
 
 std::vector<Option> step_options() {
-  return {{"step_mm", 0.0, "mm", "Distance of the points on linear axes; 0: chosen.", {}, 0.0},
-          {"step_deg", 0.0, "deg", "Distance of the points on rotary axes; 0: chosen.", {}, 0.0}};
+  return {
+      at_least(0.0, {"step_mm", 0.0, "mm", "Distance of the points on linear axes; 0: chosen."}),
+      at_least(0.0, {"step_deg", 0.0, "deg", "Distance of the points on rotary axes; 0: chosen."})};
 }
 
 double wished_step(const AxisJob& job, const Settings& options) {

@@ -421,13 +421,10 @@ void note_cross(const CrossJob& job, OutputResult& result) {
 }
 
 Option squareness_option() {
-  return {
-      "squareness",
-      std::string("table"),
-      "",
-      "Where the squareness of a gantry goes: into the cross table, or into a shift of the zero "
-      "of its second side, which the file states.",
-      {"table", "slave-zero"}};
+  return one_of({"table", "slave-zero"},
+                {"squareness", std::string("table"), "",
+                 "Where the squareness of a gantry goes: into the cross table, or into a shift of "
+                 "the zero of its second side, which the file states."});
 }
 
 bool together(const CrossJob& set, const AxisJob& job, const Campaign& campaign) {

@@ -383,21 +383,16 @@ std::vector<Option> table_options(const ControlTable& t, std::string keys_of_axe
     list.push_back({"directions", false, "",
                     "A table for each direction of travel in place of mean and backlash."});
   if (t.points > 0)
-    list.push_back({"max_points",
-                    static_cast<std::int64_t>(t.points),
-                    "",
-                    "Points of one table.",
-                    {},
-                    2.0,
-                    100000.0});
+    list.push_back(
+        within(2.0, 100000.0,
+               {"max_points", static_cast<std::int64_t>(t.points), "", "Points of one table."}));
   for (const ControlTable::Fact& f : t.facts)
     if (f.id == "sign" && f.confidence == ControlTable::Confidence::unsure)
-      list.push_back({"sign",
-                      std::string(),
-                      "",
-                      "What an entry is, as a sign probe showed it on the machine: the measured "
-                      "error, or the correction; nothing is written before it is said.",
-                      {"", "error", "correction"}});
+      list.push_back(
+          one_of({"", "error", "correction"},
+                 {"sign", std::string(), "",
+                  "What an entry is, as a sign probe showed it on the machine: the measured error, "
+                  "or the correction; nothing is written before it is said."}));
   for (Option& o : more) list.push_back(std::move(o));
   list.push_back(axes_option(std::move(keys_of_axes)));
   return list;

@@ -73,13 +73,9 @@ NONIO_PLUGIN(registry) {
       {"ecmc", "1.0.0", "Encoder look-up tables for ecmc (EPICS).",
        controllers::table_options(
            declared(), "step_mm, first_mm, reference_mm, backlash_mm and the same with _deg",
-           {{"release",
-             std::int64_t{10},
-             "",
-             "Main number of the ecmc release: before 10 values are added.",
-             {},
-             1.0,
-             99.0}})},
+           {within(1.0, 99.0,
+                   {"release", std::int64_t{10}, "",
+                    "Main number of the ecmc release: before 10 values are added."})})},
       declared(), write, parse));
 }
 

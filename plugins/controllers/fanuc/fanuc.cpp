@@ -248,11 +248,8 @@ std::vector<Option> options() {
       "number (controlled axis), reference_number (3620), step_mm, reference_mm, backlash_mm (1851 "
       "while measured), and the same with _deg",
       {{"extended", false, "", "The control takes -128..127 in a number, not -7..7."},
-       {"reference_return",
-        std::string("+"),
-        "",
-        "Direction in which the axis returns to reference.",
-        {"+", "-"}},
+       one_of({"+", "-"}, {"reference_return", std::string("+"), "",
+                           "Direction in which the axis returns to reference."}),
        {"taken", std::vector<std::string>{}, "",
         "Numbers that are in use in the control, \"0\", \"100-227\": others are taken."},
        whole("magnification", 1, "Parameter 3623.", 1, 100),

@@ -273,12 +273,10 @@ std::vector<Option> options() {
       declared(),
       "step_mm, first_mm, reference_mm (where the table is made zero; else at 0), backlash_mm "
       "(the parameter while measured), and the same with _deg",
-      {{"layout",
-        std::string("tnc640"),
-        "",
-        "Listed positions (tnc640), equidistant (itnc530), or that with a spacing of a power of "
-        "two of 0.1 um (tnc407).",
-        {"tnc640", "itnc530", "tnc407"}}});
+      {one_of({"tnc640", "itnc530", "tnc407"},
+              {"layout", std::string("tnc640"), "",
+               "Listed positions (tnc640), equidistant (itnc530), or that with a spacing of a "
+               "power of two of 0.1 um (tnc407)."})});
 }
 
 }  // namespace

@@ -257,14 +257,9 @@ std::vector<Option> options() {
       "joint (or number; not stated, the INI lines name none), step_mm, first_mm, reference_mm "
       "(where the table is made zero), backlash_mm (BACKLASH while measured), and the same with "
       "_deg",
-      {{"type",
-        std::int64_t{0},
-        "",
-        "COMP_FILE_TYPE: 0 actual positions, 1 corrections.",
-        {},
-        0.0,
-        1.0},
-       {"units", std::string("mm"), "", "LINEAR_UNITS of the machine.", {"mm", "inch"}}});
+      {within(0.0, 1.0,
+              {"type", std::int64_t{0}, "", "COMP_FILE_TYPE: 0 actual positions, 1 corrections."}),
+       one_of({"mm", "inch"}, {"units", std::string("mm"), "", "LINEAR_UNITS of the machine."})});
 }
 
 }  // namespace

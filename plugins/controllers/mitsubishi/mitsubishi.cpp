@@ -84,7 +84,7 @@ NONIO_PLUGIN(registry) {
        "Incremental machine error compensation of Mitsubishi C64 and E68, as a list.",
        controllers::table_options(
            declared(), "step_mm, reference_mm, backlash_mm",
-           {{"scale", std::int64_t{1}, "", "Compensation scale factor.", {}, 1.0, 99.0}})},
+           {within(1.0, 99.0, {"scale", std::int64_t{1}, "", "Compensation scale factor."})})},
       declared(), write, parse));
 }
 

@@ -149,14 +149,10 @@ std::vector<Option> options() {
       declared(),
       "number (n of AXn), step_mm, first_mm, reference_mm, backlash_mm (MD32450 while measured), "
       "and the same with _deg",
-      {{"measuring_system", std::int64_t{0}, "", "Encoder: 0 first, 1 second.", {}, 0.0, 1.0},
-       {"first_cec_table",
-        std::int64_t{0},
-        "",
-        "Number of the first CEC table; axis n takes this + 2 (n - 1) and the next.",
-        {},
-        0.0,
-        120.0},
+      {within(0.0, 1.0, {"measuring_system", std::int64_t{0}, "", "Encoder: 0 first, 1 second."}),
+       within(0.0, 120.0,
+              {"first_cec_table", std::int64_t{0}, "",
+               "Number of the first CEC table; axis n takes this + 2 (n - 1) and the next."}),
        {"taken", std::vector<std::string>{}, "",
         "Numbers of CEC tables that are in use in the control, \"0\", \"4-9\": none of them is "
         "written."},

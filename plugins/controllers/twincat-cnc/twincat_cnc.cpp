@@ -263,13 +263,10 @@ std::vector<Option> options() {
   return controllers::table_options(
       declared(),
       "number (of the axis), step_mm, first_mm, reference_mm, backlash_mm, and the same with _deg",
-      {{"cross_sign",
-        std::string(),
-        "",
-        "What an entry of kw.crosscomp is, as a sign probe showed it: the error, or the "
-        "correction; "
-        "no cross tables before it is said.",
-        {"", "error", "correction"}},
+      {one_of({"", "error", "correction"},
+              {"cross_sign", std::string(), "",
+               "What an entry of kw.crosscomp is, as a sign probe showed it: the error, or the "
+               "correction; no cross tables before it is said."}),
        controllers::squareness_option()});
 }
 

@@ -78,11 +78,8 @@ NONIO_PLUGIN(registry) {
       "A Digital Calibration Certificate (DCC 3.3.0, XML) with a signature of its own.",
       {{"number", std::string(), "", "Number of the certificate (default: the campaign's id)."},
        {"language", std::string("en"), "", "Language of the texts, ISO 639-1."},
-       {"location",
-        std::string("customer"),
-        "",
-        "Where it was calibrated.",
-        {"laboratory", "customer", "laboratoryBranch", "customerBranch", "other"}},
+       one_of({"laboratory", "customer", "laboratoryBranch", "customerBranch", "other"},
+              {"location", std::string("customer"), "", "Where it was calibrated."}),
        {"sign", true, "", "Signed with the key of [signing] in site.toml."}},
       true};
   output.applies = applies;

@@ -237,7 +237,7 @@ NONIO_PLUGIN(registry) {
       "model-html",
       "1.0.0",
       "The error model as an interactive page for a browser, in one file.",
-      {{"language", std::string("en"), "", "Language of the page.", {"de", "en", "it"}}}};
+      {one_of({"de", "en", "it"}, {"language", std::string("en"), "", "Language of the page."})}};
   output.applies = applies;
   output.write = write;
   registry.add(std::move(output));

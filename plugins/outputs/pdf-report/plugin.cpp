@@ -58,7 +58,7 @@ NONIO_PLUGIN(registry) {
       "pdf-report",
       "1.0.0",
       "The campaign's report as a PDF with plots, in English, German or Italian.",
-      {{"language", std::string("en"), "", "Language of the report.", {"de", "en", "it"}},
+      {one_of({"de", "en", "it"}, {"language", std::string("en"), "", "Language of the report."}),
        {"template", std::string("report"), "", "Name of the template: templates/<name>.toml."},
        {"sign", false, "", "Have it signed with the key of [signing] in site.toml."},
        {"history", false, "",

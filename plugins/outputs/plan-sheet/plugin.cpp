@@ -277,15 +277,16 @@ Expected<OutputResult> write(const OutputInput& in) {
 }
 
 std::vector<Option> options() {
-  return {{"language", std::string("en"), "", "Language of the sheet.", {"de", "en", "it"}},
-          {"template", std::string("report"), "", "How it looks: templates/<name>.toml."},
-          {"stops", std::int64_t{1}, "", "So many plans with their stops.", {}, 0.0, 1000.0},
-          {"x", std::string("X"), "", "First axis of the diagonals."},
-          {"y", std::string("Y"), "", "Second axis of the diagonals."},
-          {"over_travel_mm", 1.0, "mm", "Kept free beyond the stops at both ends.", {}, 0.0, 1e4},
-          {"runs", std::int64_t{5}, "", "There and back, for the time.", {}, 1.0, 100.0},
-          {"feed_mm_per_min", 2000.0, "mm/min", "For the time.", {}, 1.0, 1e6},
-          {"dwell_s", 5.0, "s", "At each stop, for the time.", {}, 0.0, 3600.0}};
+  return {
+      one_of({"de", "en", "it"}, {"language", std::string("en"), "", "Language of the sheet."}),
+      {"template", std::string("report"), "", "How it looks: templates/<name>.toml."},
+      within(0.0, 1000.0, {"stops", std::int64_t{1}, "", "So many plans with their stops."}),
+      {"x", std::string("X"), "", "First axis of the diagonals."},
+      {"y", std::string("Y"), "", "Second axis of the diagonals."},
+      within(0.0, 1e4, {"over_travel_mm", 1.0, "mm", "Kept free beyond the stops at both ends."}),
+      within(1.0, 100.0, {"runs", std::int64_t{5}, "", "There and back, for the time."}),
+      within(1.0, 1e6, {"feed_mm_per_min", 2000.0, "mm/min", "For the time."}),
+      within(0.0, 3600.0, {"dwell_s", 5.0, "s", "At each stop, for the time."})};
 }
 
 }  // namespace

@@ -51,17 +51,13 @@ NONIO_PLUGIN(registry) {
   output.info = {
       "program-gcode", "1.0.0", "Part programs of the measurement in ISO G-code.",
       programs::options(
-          {Option{"dwell_word",
-                  std::string("P-s"),
-                  "",
-                  "G4: P-s (LinuxCNC), P-ms (P in milliseconds: Fanuc), X (seconds: Fanuc).",
-                  {"P-s", "P-ms", "X"}},
-           Option{"work_offset",
-                  std::string("G54"),
-                  "",
-                  "Offset that is set to the machine's zero; G53: none, each move is in machine "
-                  "coordinates.",
-                  {"G53", "G54", "G55", "G56", "G57", "G58", "G59"}}}),
+          {one_of({"P-s", "P-ms", "X"},
+                  {"dwell_word", std::string("P-s"), "",
+                   "G4: P-s (LinuxCNC), P-ms (P in milliseconds: Fanuc), X (seconds: Fanuc)."}),
+           one_of({"G53", "G54", "G55", "G56", "G57", "G58", "G59"},
+                  {"work_offset", std::string("G54"), "",
+                   "Offset that is set to the machine's zero; G53: none, each move is in machine "
+                   "coordinates."})}),
       true};
   output.applies = [](const Campaign&) { return true; };
   output.write = write;

@@ -198,17 +198,15 @@ Expected<OutputResult> write(const OutputInput& in) {
 }
 
 std::vector<Option> options() {
-  return {{"limit_mm",
-           0.2,
-           "mm",
-           "Largest change of a parameter against what is stated in `before`; beyond it no file.",
-           {},
-           1e-3,
-           1e3},
-          {"sign_shown", std::vector<std::string>{}, "",
-           "Controls on which a move has shown the signs: heidenhain, siemens."},
-          {"before", NumberTables{}, "",
-           "What each control has now, mm: [options.rotary-vectors.before.fanuc] 19700 = 412.3"}};
+  return {
+      within(
+          1e-3, 1e3,
+          {"limit_mm", 0.2, "mm",
+           "Largest change of a parameter against what is stated in `before`; beyond it no file."}),
+      {"sign_shown", std::vector<std::string>{}, "",
+       "Controls on which a move has shown the signs: heidenhain, siemens."},
+      {"before", NumberTables{}, "",
+       "What each control has now, mm: [options.rotary-vectors.before.fanuc] 19700 = 412.3"}};
 }
 
 }  // namespace

@@ -65,17 +65,11 @@ Reader rta_reader() {
       "1.0",
       "Angular measurements of Renishaw laser interferometers (.rta), with a unit that the user "
       "confirms.",
-      {{"unit",
-        std::string(),
-        "",
-        "Unit of the values in the file.",
-        {"", "mrad", "urad", "arcsec", "deg"}},
-       {"sign",
-        std::string(),
-        "",
-        "+: a positive value is a right-handed turn (kind angle), or too far towards plus "
-        "(rotary).",
-        {"", "+", "-"}},
+      {one_of({"", "mrad", "urad", "arcsec", "deg"},
+              {"unit", std::string(), "", "Unit of the values in the file."}),
+       one_of({"", "+", "-"}, {"sign", std::string(), "",
+                               "+: a positive value is a right-handed turn (kind angle), or too "
+                               "far towards plus (rotary)."}),
        code_page_option(),
        {"ignore_axis", false, "",
         "The axis that the operator typed into the file is wrong; the manifest's holds."}}};

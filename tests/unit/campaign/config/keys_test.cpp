@@ -24,6 +24,61 @@ constexpr config::Key some_keys[] = {
 };
 constexpr config::Key some{"some.toml", Holds::table, "", some_keys};
 
+enum class Size { small, large };
+struct Part {
+  std::string name;
+  double length = 1.0;
+  std::optional<double> mass{};
+  Size size = Size::small;
+  std::uint64_t line = 0;
+};
+struct Whole {
+  std::vector<Part> parts;
+  std::map<std::string, Part> named;
+  std::optional<Part> spare{};
+  std::optional<std::pair<double, double>> ends{};
+  std::vector<std::string> words;
+};
+void check_part(config::TableReader& reader, Part& part, Whole&) {
+  part.line = reader.line();
+  if (part.name == "none") reader.error("name", "expected a part");
+}
+
+namespace declared {
+using namespace config::declared;
+constexpr config::Choice sizes[] = {choice(Size::large, "large"), choice(Size::small, "small")};
+constexpr config::Key part_keys[] = {
+    {"name", into<&Part::name>, "", required},
+    {"length_mm", into<&Part::length>, "", config::declared::Unit{"mm", 1e-3},
+     from(0.0, "expected from 0")},
+    {"mass", into<&Part::mass>, ""},
+    {"size", into<&Part::size>, "", sizes},
+};
+constexpr config::Key whole_keys[] = {
+    {"part", checked<check_part, &Whole::parts>, "", part_keys},
+    {"named", nested<&Whole::named>, "", part_keys},
+    {"spare", nested<&Whole::spare>, "", part_keys},
+    {"ends", into<&Whole::ends>, "", config::declared::Unit{"mm", 1e-3}},
+    {"words", into<&Whole::words>, ""},
+    {"note", text, "Not filled, and checked."},
+};
+constexpr config::Key whole_file{"whole.toml", file<Whole>, "", whole_keys};
+}  // namespace declared
+
+/// What filling a struct by these keys reports.
+std::string filled(const std::string& text, Whole& whole) {
+  const std::string name = "whole.toml";
+  const auto root = config::parse_toml(text, name);
+  if (!root) return root.error().message;
+  std::vector<Error> errors;
+  config::TableReader reader(*root, declared::whole_file, name, errors);
+  reader.fill(whole);
+  reader.finish();
+  std::string all;
+  for (const Error& e : errors) all += std::to_string(e.line) + ": " + e.message + "\n";
+  return all;
+}
+
 /// What reading a text with these keys says; "threw: ..." if the reader holds it for a mistake of
 /// the program.
 std::string read(const std::string& text, const std::function<void(config::TableReader&)>& how) {
@@ -81,6 +136,56 @@ TEST(Keys, KnownOnlyUnderACondition) {
     r.integer("teeth");
   };
   EXPECT_EQ(read("teeth = 3", settled), "");
+}
+
+TEST(Keys, FillTheirMembers) {
+  Whole whole;
+  EXPECT_EQ(filled("ends = [1, 2]\nwords = [\"a\"]\nnote = \"n\"\n[[part]]\nname = \"p\"\n"
+                   "length_mm = 2\nsize = \"large\"\n[[part]]\nname = \"q\"\nmass = 3\n"
+                   "[named.x]\nname = \"r\"\n[spare]\nname = \"s\"\n",
+                   whole),
+            "");
+  ASSERT_EQ(whole.parts.size(), 2U);
+  EXPECT_EQ(whole.parts[0].name, "p");
+  EXPECT_EQ(whole.parts[0].length, 2e-3);
+  EXPECT_EQ(whole.parts[0].size, Size::large);
+  EXPECT_FALSE(whole.parts[0].mass);
+  EXPECT_EQ(whole.parts[0].line, 4U);
+  EXPECT_EQ(whole.parts[1].mass, 3.0);
+  EXPECT_EQ(whole.parts[1].length, 1.0) << "what is absent leaves the default";
+  EXPECT_EQ(whole.parts[1].size, Size::small);
+  EXPECT_EQ(whole.named.at("x").name, "r");
+  ASSERT_TRUE(whole.spare);
+  EXPECT_EQ(whole.spare->name, "s");
+  EXPECT_EQ(whole.ends, std::pair(1e-3, 2e-3));
+  EXPECT_EQ(whole.words, std::vector<std::string>{"a"});
+}
+
+TEST(Keys, FillingReportsWhatIsWrong) {
+  Whole whole;
+  EXPECT_EQ(filled("note = 1\n[[part]]\nname = \"none\"\nsize = \"larg\"\nlength_mm = -1\n"
+                   "[spare]\nnames = \"s\"\n",
+                   whole),
+            "5: part.length_mm: expected from 0; found -1\n"
+            "4: part.size: expected one of large, small; found \"larg\" (nearest: \"large\")\n"
+            "3: part.name: expected a part\n"
+            "6: spare.name is missing\n"
+            "7: unknown key spare.names (nearest: \"name\")\n"
+            "1: note: expected a text in quotes, found a whole number\n");
+  EXPECT_FALSE(filled("spare = 1", whole).empty());
+}
+
+TEST(Keys, OfAnotherStructAreRefused) {
+  const auto wrong = [] {
+    return config::Key("whole.toml", config::declared::file<Part>, "", declared::whole_keys);
+  };
+  EXPECT_THROW(wrong(), std::logic_error);
+  std::vector<Error> errors;
+  const std::string file;
+  const toml::table empty;
+  config::TableReader reader(empty, declared::whole_file, file, errors);
+  Part part;
+  EXPECT_THROW(reader.fill(part), std::logic_error);
 }
 
 TEST(Keys, DeclarationsAreSound) {

@@ -44,6 +44,20 @@ struct Option {
   std::string forbidden{};  ///< characters that a text must not contain
 };
 
+inline Option one_of(std::vector<std::string> choices, Option o) {
+  o.choices = std::move(choices);
+  return o;
+}
+inline Option at_least(double min, Option o) {
+  o.min = min;
+  return o;
+}
+/// Both ends included.
+inline Option within(double min, double max, Option o) {
+  o.max = max;
+  return at_least(min, std::move(o));
+}
+
 struct Info {
   std::string name;
   std::string version;
