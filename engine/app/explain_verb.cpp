@@ -31,8 +31,8 @@ class Explain {
 
   int run() {
     auto opened = open_campaign(options_.folder, common_,
-                                options_.library ? reading::TemplatesFor::terminal_with_library
-                                                 : reading::TemplatesFor::terminal);
+                                options_.automatic ? reading::TemplatesFor::terminal_with_library
+                                                   : reading::TemplatesFor::terminal);
     if (!opened) return opened.error();
     open_ = std::move(*opened);
     words_.emplace(words_for(open_, common_));
@@ -95,8 +95,7 @@ class Explain {
       const auto known = std::find_if(before.begin(), before.end(), [&](const auto& one) {
         return one.part.part.name == part.part.name && one.part.names() == part.names();
       });
-      auto explanation = known == before.end() ? modelling::explain_part(part, options_.seed,
-                                                                         nullptr, options_.library)
+      auto explanation = known == before.end() ? modelling::explain_part(part, options_.seed)
                                                : Expected<model::Explanation>(known->explanation);
       if (explanation) {
         all_.push_back({std::move(part), std::move(*explanation)});
@@ -156,8 +155,7 @@ class Explain {
 int explain(ExplainOptions& options, const Common& common) {
   if (!is_single(options.together)) {
     for (const auto& [given, name] : {std::pair{options.automatic, "--auto"},
-                                      {options.what_if, "--what-if"},
-                                      {options.library, "--library"}})
+                                      {options.what_if, "--what-if"}})
       if (given) return complain(std::string(name) + " is for one campaign; found several");
     return explain_together(options.together, common, options.seed);
   }
@@ -186,8 +184,8 @@ Verb explain_verb(Common& common) {
            {"--until", &options->together.until, "Of several campaigns those up to this day"},
            {"--all", &options->all, "Every candidate, and why an effect could not be tested"},
            {"--library", &options->library,
-            "Also tries the causes of the library where no effect explains: it names more causes, "
-            "and more wrong ones"},
+            "Without effect: the causes of the library are always tried where no effect of the "
+            "catalogue is certain to explain"},
            {"--what-if", &options->what_if,
             "Also predicts what one more run, in each order of directions, would do to the "
             "uncertainties and to the evidence"},

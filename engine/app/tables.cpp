@@ -265,9 +265,6 @@ void print_limits(std::ostream& out, const modelling::Explained& e, const Campai
   }
   if (!untested.empty())
     sentence(out, 2, say("untested", {{"effects", storage::listed(untested)}}));
-  if (e.explanation.verdict.kind == model::Verdict::Kind::unknown && e.part.library.empty() &&
-      e.part.part.kind == model::Part::Kind::axis && e.explanation.comparison.floor)
-    sentence(out, 2, say("library"));
 }
 
 void print_bars(std::ostream& out, const modelling::ModelStep& step,

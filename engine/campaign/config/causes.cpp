@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <mutex>
 
 #include "campaign/config/toml_reader.h"
 #include "nonio/sdk/axis_readings.h"
@@ -65,50 +67,67 @@ bool is_causes_file(std::string_view name) {
          name.substr(under) != manifest_name;
 }
 
-Checked<std::vector<Cause>> causes_in(const Templates& templates) {
-  std::vector<Cause> all;
-  std::vector<Error> errors;
-  std::map<std::string, std::string> there;  // name, place
-  for (const auto& [name, text] : templates.files) {
-    if (!is_causes_file(name)) continue;
-    const std::string file = place_of(name);
-    auto root = parse_toml(text, file);
-    if (!root) {
-      errors.push_back(root.error());
-      continue;
-    }
-    rename_former_keys(*root, causes_file());
-    TableReader top(*root, causes_file(), file, errors);
-    top.integer("format");
-    for (TableReader& reader : top.tables("cause")) {
-      Cause cause = read_cause(reader);
-      const auto [first, is_new] = there.try_emplace(
-          cause.formula.name, file + ":" + std::to_string(reader.line_of("name")));
-      if (!is_new)
-        reader.error("name", "\"" + cause.formula.name + "\" is in " + first->second +
-                                 " already; give one of them another name");
-      if (!reader.has_errors() && name.starts_with(site_causes))
-        if (const auto effect = cause.effect(false); !effect)
-          reader.error("expression", effect.error().message);
-      all.push_back(std::move(cause));
-    }
-    top.finish();
+namespace {
+
+struct Read {
+  std::map<std::string, std::string> files;
+  std::vector<Cause> causes{};
+  std::vector<Error> errors{}, warnings{};
+};
+
+void read_file(const std::string& name, std::string_view text,
+               std::map<std::string, std::string>& there, Read& out) {
+  const std::string file = place_of(name);
+  auto root = parse_toml(text, file);
+  if (!root) {
+    out.errors.push_back(root.error());
+    return;
   }
-  if (!errors.empty()) return tl::unexpected(std::move(errors));
-  return all;
+  for (Error& warning : warnings_of(rename_former_keys(*root, causes_file()), file))
+    out.warnings.push_back(std::move(warning));
+  TableReader top(*root, causes_file(), file, out.errors);
+  top.integer("format");
+  for (TableReader& reader : top.tables("cause")) {
+    Cause cause = read_cause(reader);
+    const auto [first, is_new] = there.try_emplace(
+        cause.formula.name, file + ":" + std::to_string(reader.line_of("name")));
+    if (!is_new)
+      reader.error("name", "\"" + cause.formula.name + "\" is in " + first->second +
+                               " already; give one of them another name");
+    if (!reader.has_errors() && name.starts_with(site_causes))
+      if (const auto effect = cause.effect(false); !effect)
+        reader.error("expression", effect.error().message);
+    out.causes.push_back(std::move(cause));
+  }
+  top.finish();
+}
+
+/// Every campaign asks for them, and to read them takes a tenth of a short command: they are kept
+/// until others are asked for.
+std::shared_ptr<const Read> read_in(const Templates& templates) {
+  static std::mutex one_at_a_time;
+  static std::shared_ptr<const Read> last;
+  Read now;
+  for (const auto& [name, text] : templates.files)
+    if (is_causes_file(name)) now.files[name] = text;
+  const std::lock_guard lock(one_at_a_time);
+  if (last && last->files == now.files) return last;
+  std::map<std::string, std::string> there;  // name, place
+  for (const auto& [name, text] : now.files) read_file(name, text, there, now);
+  last = std::make_shared<const Read>(std::move(now));
+  return last;
+}
+
+}  // namespace
+
+Checked<std::vector<Cause>> causes_in(const Templates& templates) {
+  const auto read = read_in(templates);
+  if (!read->errors.empty()) return tl::unexpected(read->errors);
+  return read->causes;
 }
 
 std::vector<Error> warnings_of_causes(const Templates& templates) {
-  std::vector<Error> all;
-  for (const auto& [name, text] : templates.files) {
-    if (!is_causes_file(name)) continue;
-    const std::string file = place_of(name);
-    auto root = parse_toml(text, file);
-    if (!root) continue;
-    for (Error& warning : warnings_of(rename_former_keys(*root, causes_file()), file))
-      all.push_back(std::move(warning));
-  }
-  return all;
+  return read_in(templates)->warnings;
 }
 
 void add_words(const std::vector<Cause>& causes, Templates& templates) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "campaign/config/formula_expression.h"
 #include "campaign/config/formula_units.h"
@@ -211,9 +212,24 @@ struct Wants {
   }
 };
 
-Expected<Effect::Columns> columns(const Formula& formula, const Observations& o, const Axis& axis,
-                                  const std::vector<double>& shape) {
-  auto expression = Expression::parse(formula, axis, true);
+/// The expression of the formula that was last in use: columns are made for one value of its shapes
+/// after the other, and to understand it costs as much as 200 readings.
+Expected<Expression>& understood(const std::shared_ptr<const Formula>& formula, const Axis& axis) {
+  struct Last {
+    std::shared_ptr<const Formula> formula;
+    bool rotary = false;
+    Expected<Expression> expression = fail("");
+  };
+  thread_local Last last;
+  if (last.formula != formula || last.rotary != axis.rotary)
+    last = {formula, axis.rotary, Expression::parse(*formula, axis, true)};
+  return last.expression;
+}
+
+Expected<Effect::Columns> columns(const std::shared_ptr<const Formula>& one, const Observations& o,
+                                  const Axis& axis, const std::vector<double>& shape) {
+  const Formula& formula = *one;
+  Expected<Expression>& expression = understood(one, axis);
   if (!expression) return fail("formula " + formula.name + ": " + expression.error().message);
   NONIO_TRY(const auto r, readings_of(o, axis));
   std::vector<double>& slots = expression->in_place();
@@ -251,9 +267,9 @@ Expected<Effect::Columns> columns(const Formula& formula, const Observations& o,
                                                         humidity ? o.humidity[i] - *humidity : 0.0};
     std::copy(row.begin(), row.end(), slots.begin());
     for (std::size_t k = 0; k < linear.size(); ++k) {
-      const double one = amount(formula.parameters[linear[k]]);
-      slots[Expression::parameter_slot(linear[k])] = one;
-      const double value = expression->value() / one;
+      const double unit = amount(formula.parameters[linear[k]]);
+      slots[Expression::parameter_slot(linear[k])] = unit;
+      const double value = expression->value() / unit;
       slots[Expression::parameter_slot(linear[k])] = 0.0;
       if (!std::isfinite(value)) {
         Error e{"formula " + formula.name + " has no finite value for this reading"};
@@ -303,7 +319,7 @@ Expected<Effect> formula_effect(const Formula& formula, const Axis& axis, bool t
     const auto r = readings_of(o, a);
     return r && wants.met(o, a, *r);
   };
-  e.columns = [formula](const Observations& o, const Axis& a, const std::vector<double>& shape) {
+  e.columns = [formula = std::make_shared<const Formula>(formula)](const Observations& o, const Axis& a, const std::vector<double>& shape) {
     return columns(formula, o, a, shape);
   };
   return e;

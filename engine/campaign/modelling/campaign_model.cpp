@@ -109,7 +109,7 @@ bool PartModel::shows(const std::string& written) const {
   // Of a course "heat:t4/x1" is its heat:t4 where it is among the terms.
   const std::string name =
       part.kind == model::Part::Kind::course ? effect.substr(0, effect.find('/')) : effect;
-  for (const auto* list : {&terms, &catalogue, &library})
+  for (const auto* list : {&terms, &catalogue})
     for (const model::Term& t : *list)
       if (t.name() == name) return true;
   return std::any_of(held.begin(), held.end(),
@@ -259,6 +259,17 @@ std::vector<std::string> kinds_measured(const reading::ReadCampaign& read) {
   return kinds;
 }
 
+namespace {
+
+std::vector<config::Cause>::const_iterator cause_of(const std::vector<config::Cause>& library,
+                                                    const model::Term& term) {
+  return std::find_if(library.begin(), library.end(), [&](const config::Cause& c) {
+    return c.formula.name == term.effect->info.name;
+  });
+}
+
+}  // namespace
+
 Error nothing_to_compare(const reading::ReadCampaign& read) {
   const auto kinds = kinds_measured(read);
   if (kinds.empty()) return {"no measurement of this campaign has readings"};
@@ -269,22 +280,11 @@ Error nothing_to_compare(const reading::ReadCampaign& read) {
 }
 
 void fill_catalogue(PartModel& part, const reading::ReadCampaign& read) {
-  const auto cause_of = [&](const model::Term& t) {
-    return std::find_if(read.causes.begin(), read.causes.end(), [&](const config::Cause& c) {
-      return c.formula.name == t.effect->info.name;
-    });
-  };
-  part.catalogue.clear(), part.library.clear();
-  for (model::Term& term : model::catalogue(part.part, read.effects)) {
-    const auto cause = cause_of(term);
-    if (cause == read.causes.end()) {
-      part.catalogue.push_back(std::move(term));
-    } else if (part.part.kind == model::Part::Kind::axis && !term.grouping) {
-      term.price = cause->price();
-      term.library = true;
-      part.library.push_back(std::move(term));
-    }
-  }
+  part.catalogue = model::catalogue(part.part, read.effects);
+  std::erase_if(part.catalogue, [&](const model::Term& t) {
+    return cause_of(*read.causes, t) != read.causes->end();
+  });
+  part.library = part.part.kind == model::Part::Kind::axis ? read.causes : nullptr;
   part.left_out = model::not_applying(part.part, read.effects);
   fill_interpolated(part, read);
 }
@@ -360,41 +360,58 @@ void leave_out_weaker_groups(model::Explanation& e) {
   });
 }
 
-// docs/dev/constants.md, M37.
-constexpr double least_better = 12.0;
+/// Terms of the causes that these readings can show; `keeps` has their effects.
+std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const void>& keeps) {
+  auto effects = std::make_shared<std::vector<Effect>>();
+  for (const config::Cause& cause : *part.library)
+    if (cause.rotary == part.part.axes.front().rotary)
+      if (auto effect = cause.effect(true)) effects->push_back(std::move(*effect));
+  std::vector<model::Term> terms = model::catalogue(part.part, *effects);
+  std::erase_if(terms, [](const model::Term& t) { return t.grouping != nullptr; });
+  for (model::Term& term : terms) {
+    term.price = cause_of(*part.library, term)->price();
+    term.library = true;
+  }
+  keeps = std::move(effects);
+  return terms;
+}
 
-/// Common effects first: where those of the catalogue leave an error unexplained, its causes are
-/// searched together with those of the library, and where a shape that was searched
-/// may imitate one. What then is certain by the same rules is the
-/// answer, if it holds one cause of the library: a set of several is a
-/// description of what none of them is. Whether there is an error at all is settled before, and so is the rate of false alarms.
+/// Whether the effect that is named may be the shadow of a cause: its shape was searched, or
+/// something was recorded that no effect of the catalogue follows.
+bool may_imitate(const PartModel& part, const std::string& named) {
+  const Observations& o = part.part.table;
+  return !o.air.empty() || !o.pressure.empty() || !o.humidity.empty() ||
+         std::any_of(part.catalogue.begin(), part.catalogue.end(), [&](const model::Term& t) {
+           return t.name() == named && !t.effect->shapes.empty();
+         });
+}
+
+/// Common effects first: where those of the catalogue leave an error unexplained, or may imitate a
+/// cause, they are searched together with the causes of the library. What then is missing is the
+/// answer, if it holds at most one cause: a set of several is a description of what none of them
+/// is. Whether there is an error at all is settled before, and so is the rate of false alarms.
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;
   // Where nothing was repeated, many of so many shapes describe what is left.
-  if (!out.comparison.floor) return;
-  // A shape that was searched may be the shadow of another cause.
-  const auto imitates = [&](const model::Term& t) {
-    return t.name() == out.verdict.effect && !t.effect->shapes.empty();
-  };
-  const bool explained = out.verdict.kind == Kind::missing &&
-                         std::any_of(part.catalogue.begin(), part.catalogue.end(), imitates);
-  if ((out.verdict.kind != Kind::unknown && !explained) || part.library.empty()) return;
+  if (!out.comparison.floor || part.library == nullptr) return;
+  const bool explained = out.verdict.kind == Kind::missing;
+  if (explained ? !may_imitate(part, out.verdict.effect) : out.verdict.kind != Kind::unknown)
+    return;
+  std::shared_ptr<const void> keeps;
+  const std::vector<model::Term> library = library_of(part, keeps);
   std::vector<model::Term> all = part.catalogue;
-  all.insert(all.end(), part.library.begin(), part.library.end());
-  all = without_held(std::move(all), part);
-  auto more = model::explain(part.part, part.terms, all, seed, known);
+  all.insert(all.end(), library.begin(), library.end());
+  auto more = model::explain(part.part, part.terms, without_held(std::move(all), part), seed, known);
   if (!more || more->verdict.kind != Kind::missing) return;
-  const auto found = [&](const model::Term& t) {
+  const auto causes = std::count_if(library.begin(), library.end(), [&](const model::Term& t) {
     return std::find(more->together.begin(), more->together.end(), t.name()) !=
            more->together.end();
-  };
-  if (std::count_if(part.library.begin(), part.library.end(), found) != 1) return;
-  if (explained &&
-      !(more->readings == out.readings && more->criterion < out.criterion - least_better))
-    return;
+  });
+  if (causes > 1 || (causes == 0 && !explained)) return;
   more->verdict.false_alarms = out.verdict.false_alarms;
   more->verdict.trials = out.verdict.trials;
+  more->keeps = std::move(keeps);
   out = std::move(*more);
 }
 

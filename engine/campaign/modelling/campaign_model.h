@@ -23,8 +23,8 @@ struct PartModel {
   std::string unfit;  ///< why these readings cannot show the model; "" if they can
   std::vector<model::Candidate> left_out{};  ///< effects that do not apply, and why
   RowsPlace interpolated{};                  ///< readings whose temperature is interpolated
-  /// Causes of the library, where they are requested: searched if the catalogue does not explain.
-  std::vector<model::Term> library{};
+  /// The library, of an axis: its causes are searched where the catalogue may not explain.
+  std::shared_ptr<const std::vector<config::Cause>> library{};
   /// Effects whose value is stated. Their prediction is subtracted from the deviations of `part`,
   /// so that everything else is fitted to the rest; a comparison has them after its other terms.
   struct Held {
@@ -104,9 +104,9 @@ std::vector<std::string> below_uncertainty(const model::Fit& fit);
 Expected<model::Comparison> compare_part(const PartModel& part,
                                          const model::Groundwork* known = nullptr,
                                          const model::Fitted& fitted = {});
-/// `with_library`: causes of the library are tried where no effect explains.
+/// `with_library`: with the second stage of the search, in which causes of the library take part.
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
                                           const model::Groundwork* known = nullptr,
-                                          bool with_library = false);
+                                          bool with_library = true);
 
 }  // namespace nonio::modelling

@@ -190,43 +190,48 @@ bool names_a_cause(const ReadCampaign& out) {
   });
 }
 
-/// Reading the library costs more than the rest of a campaign.
+/// Why a cause cannot have its name, or nothing.
+std::optional<Error> name_taken(const config::Cause& cause, const ReadCampaign& read) {
+  const std::string& name = cause.formula.name;
+  for (const Formula& own : read.manifest->campaign.formulas)
+    if (own.name == name)
+      return Error{"model.formula \"" + name + "\": the library has a cause of this name (" +
+                       cause.file + ":" + std::to_string(cause.formula.line) +
+                       "); give one of them another name",
+                   config::manifest_name, own.line};
+  if (std::any_of(read.effects.begin(), read.effects.end(),
+                  [&](const Effect& e) { return e.info.name == name; }))
+    return Error{
+        "cause \"" + name + "\": a plugin has an effect of this name; give the cause another name",
+        cause.file, cause.formula.line};
+  return std::nullopt;
+}
+
+/// All causes are known by name; effects are made of them where that is not enough.
 void add_library(const Context& context, ReadCampaign& out) {
-  if (!context.every_cause && !names_a_cause(out)) return;
   auto causes = config::causes_in(context.templates);
   if (!causes) {
     for (Error& e : causes.error()) report_in(out, std::move(e));
     return;
   }
+  const bool as_effects = context.every_cause || names_a_cause(out);
+  auto library = std::make_shared<std::vector<config::Cause>>();
   for (config::Cause& cause : *causes) {
-    const std::string& name = cause.formula.name;
-    const auto own =
-        std::find_if(campaign_in(out).formulas.begin(), campaign_in(out).formulas.end(),
-                     [&](const Formula& f) { return f.name == name; });
-    if (own != campaign_in(out).formulas.end()) {
-      report_in(out,
-                Error{"model.formula \"" + name + "\": the library has a cause of this name (" +
-                          cause.file + ":" + std::to_string(cause.formula.line) +
-                          "); give one of them another name",
-                      config::manifest_name, own->line});
+    if (auto taken = name_taken(cause, out)) {
+      report_in(out, std::move(*taken));
       continue;
     }
-    if (std::any_of(out.effects.begin(), out.effects.end(),
-                    [&](const Effect& e) { return e.info.name == name; })) {
-      report_in(out,
-                Error{"cause \"" + name +
-                          "\": a plugin has an effect of this name; give the cause another name",
-                      cause.file, cause.formula.line});
-      continue;
+    if (as_effects) {
+      auto effect = cause.effect(true);
+      if (!effect) {
+        report_in(out, Error{effect.error().message, cause.file, cause.formula.line});
+        continue;
+      }
+      out.effects.push_back(std::move(*effect));
     }
-    auto effect = cause.effect(true);
-    if (!effect) {
-      report_in(out, Error{effect.error().message, cause.file, cause.formula.line});
-      continue;
-    }
-    out.effects.push_back(std::move(*effect));
-    out.causes.push_back(std::move(cause));
+    library->push_back(std::move(cause));
   }
+  out.causes = std::move(library);
 }
 
 }  // namespace

@@ -27,8 +27,10 @@ struct ReadCampaign {
   /// Files of the states that `machine` has, by ControlState::files.
   std::map<std::string, std::vector<Artifact>> state_files{};
   std::vector<Observations> observations;  ///< of each measurement; empty where none could be read
-  std::vector<Effect> effects;             ///< of the plugins, the campaign and the library
-  std::vector<config::Cause> causes{};     ///< the library
+  std::vector<Effect> effects;             ///< of the plugins and the campaign
+  /// The library. Causes that the model may name are among the effects too.
+  std::shared_ptr<const std::vector<config::Cause>> causes =
+      std::make_shared<std::vector<config::Cause>>();
   std::vector<Finding> doubts{};           ///< what makes the files themselves implausible
   std::vector<Remark> notes;
   std::vector<std::string> unread;  ///< measurements of a kind that no plugin reads
@@ -47,7 +49,7 @@ struct Workplace {
 };
 
 /// What `open_workplace` reads of the templates: fonts and words of other languages take a third of
-/// the time of a short command, and the library of causes a tenth.
+/// the time of a short command. With the library its causes are effects that can be named.
 enum class TemplatesFor { documents, terminal, terminal_with_library };
 
 /// Plugins, templates and the site.toml of the nearest folder above the campaign that has one.

@@ -25,7 +25,7 @@ struct Context {
   Templates templates;
   std::string templates_sha256;
   std::string templates_json{};  ///< see `read_templates`; travels in what is signed
-  bool every_cause = false;      ///< of the library; else those that a model names
+  bool every_cause = false;      ///< of the library is an effect; else where a model names one
 };
 
 /// What a campaign's results depend on, in the order in which a change is reported.

@@ -290,8 +290,6 @@ Expected<Explanation> explain_all(const Part& part, const std::vector<Term>& mod
     if (c.visible && finding->bench->holds(finding->best, finding->index_of(c.term.name())))
       out.together.push_back(c.term.name());
   out.best_rms = finding->of_best.fit.rms;
-  out.criterion = finding->best.criterion;
-  out.readings = finding->bench->readings();
   judge(*finding, out);
   if (out.verdict.kind == Verdict::Kind::unknown) {
     describe(*finding, catalogue, out);

@@ -90,7 +90,9 @@ class Judge {
                            !passes_.shows(out_.together.front());
     if (!out_.together.empty() && !walks && !of_passes && !of_one_pass(out_.together.front()) &&
         !cancels(out_.together.front()) && !with_cancelling(out_.together.front()) &&
-        !in_doubt(out_.together.front(), left, unexplained_share)) {
+        !in_doubt(out_.together.front(), left, unexplained_share) &&
+        std::none_of(out_.together.begin(), out_.together.end(),
+                     [&](const std::string& name) { return is_one_target(name); })) {
       v.kind = Verdict::Kind::missing;
       v.effect = out_.together.front();
     }
@@ -356,6 +358,38 @@ class Judge {
   /// Whether the readings of one target are most of its evidence: then it is that target.
   bool of_one_target(const std::string& name) const {
     return share_of_one(name, f_.repeats.target, f_.repeats.targets) > most_of_one_target;
+  }
+
+  /// Whether a cause of the library explains no more than a free value of one target, or a free
+  /// reversal there, would: then it is that target, and no cause.
+  bool is_one_target(const std::string& name) const {
+    const std::size_t e = f_.index_of(name);
+    if (!f_.terms[e].library) return false;
+    const Workbench::State rest = f_.bench->without(f_.best, e);
+    const auto targets = static_cast<Index>(f_.repeats.targets);
+    MatrixXd free = MatrixXd::Zero(static_cast<Index>(f_.part.table.size()), 2 * targets);
+    for (Index i = 0; i < free.rows(); ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      const auto at = static_cast<Index>(f_.repeats.target[row]);
+      free(i, at) = 1.0;
+      free(i, targets + at) = f_.part.way[row];
+    }
+    free = f_.bench->white()(free);
+    f_.bench->white().take_out_zeros(free);
+    const VectorXd left = f_.residual(rest);
+    const MatrixXd basis = f_.bench->basis(rest);
+    double most = 0.0;
+    for (Index k = 0; k < free.cols(); ++k) {
+      const double whole = free.col(k).squaredNorm();
+      const VectorXd own = math::orthogonal_part(basis, VectorXd(free.col(k)));
+      if (own.squaredNorm() > 1e-6 * whole)
+        most = std::max(most, std::pow(own.dot(left), 2) / own.squaredNorm());
+    }
+    // One parameter, one name, and which of these targets.
+    const double n = f_.bench->readings();
+    const double price = f_.price_of_zero() + 2.0 * std::log(static_cast<double>(free.cols()));
+    return n * std::log(std::max(rest.squares - most, 1e-300) / n) + rest.price + price <
+           f_.best.criterion + alias_evidence;
   }
 
   /// Where passes have zeros of their own: whether one pass is most of its evidence.

@@ -149,7 +149,7 @@ class CandidateOf {
       c.within = c.score;
     }
     c.score = c.within > 0.0 && c.alone > 0.0 ? c.alone : c.within;
-    if (c.term.library && !member && !(c.within > 0.0)) {
+    if (c.term.library && !member && c.aliases.empty()) {
       c.visible = false;
       return c;
     }

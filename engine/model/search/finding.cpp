@@ -130,15 +130,22 @@ class Finder {
   }
 
   /// Each effect of the best explanation alone with the model: others must not fit the remainder
-  /// that a coarse grid leaves of a large one.
+  /// that a coarse grid leaves of a large one. So too, of several shapes, whose grids are coarsest,
+  /// each effect that alone explains half as much: another one would be taken for it.
   bool add_refined_alone() {
+    constexpr double much = 0.5;
     bool any = false;
     const State best = f_.best;
-    for (const std::size_t b : best.blocks) {
-      const std::size_t e = f_.bench->effect_of(b);
-      if (e < f_.in_model || f_.bench->blocks()[b].searched == 0) continue;
-      const State alone = f_.bench->with(f_.start, f_.bench->gains(f_.start, e), e);
+    const Workbench::Gains gains = f_.bench->gains(f_.start);
+    double most = 0.0;
+    for (std::size_t e = f_.in_model; e < f_.terms.size(); ++e)
+      most = std::max(most, f_.start.criterion - f_.bench->with(f_.start, gains, e).criterion);
+    for (std::size_t e = f_.in_model; e < f_.terms.size(); ++e) {
+      const State alone = f_.bench->with(f_.start, gains, e);
       if (alone.blocks.size() == f_.start.blocks.size()) continue;
+      const Index searched = f_.bench->blocks()[alone.blocks.back()].searched;
+      const bool near = f_.terms[e].library && searched > 1 && f_.start.criterion - alone.criterion > much * most;
+      if (searched == 0 || !(near || f_.bench->holds(best, e))) continue;
       any = add_fitted(alone, terms_of_state(alone)) || any;
       any = add_moved(alone) || any;
     }

@@ -105,7 +105,7 @@ class Campaign:
         """The same with the effects that are named: fit("scale:X", mine["X"], effects=[mine])."""
         return self.compare(model, effects)
 
-    def explain(self, model=None, effects=(), seed=1, library=False):
+    def explain(self, model=None, effects=(), seed=1, library=True):
         """Which effect is missing: a dict, nonio-explain/1 of docs/json.md. `effects` are candidates too."""
         return _json.loads(self._opened.explain(self.model if model is None else list(model),
                                                 [e._effect for e in effects], seed, library))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -136,9 +137,6 @@ struct Explanation {
   std::vector<std::string> together;  ///< what the best explanation adds to the model
   bool explains_all = false;          ///< it leaves nothing in any place
   double best_rms = 0.0;              ///< what the best explanation leaves, m or rad
-  /// Of the best explanation, and the readings that count in it: by it two searches of the same
-  /// readings are compared, the smaller is the better.
-  double criterion = 0.0, readings = 0.0;
   /// Of these what is free of doubt, whatever the rest is; most evidence first.
   std::vector<std::string> certain;
   /// Pairs of effects of `together` that cancel each other: neither is shown by that.
@@ -151,6 +149,7 @@ struct Explanation {
   std::vector<Statement> statements;      ///< unknown, of an axis
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
+  std::shared_ptr<const void> keeps{};  ///< effects that terms point into, beyond the catalogue's
   std::optional<Sensors> sensors{};  ///< over time, where effects of channels are in it
   Verdict verdict;
 };
