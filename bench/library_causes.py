@@ -123,7 +123,7 @@ def interval(k, n):
 
 
 def explained(program, folder, *more):
-    done = subprocess.run([program, "model", "explain", folder, "--library", "--json", *more], capture_output=True, text=True)
+    done = subprocess.run([program, "model", "explain", folder, "--json", *more], capture_output=True, text=True)
     return json.loads(done.stdout)
 
 

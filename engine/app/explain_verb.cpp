@@ -154,8 +154,8 @@ class Explain {
 
 int explain(ExplainOptions& options, const Common& common) {
   if (!is_single(options.together)) {
-    for (const auto& [given, name] : {std::pair{options.automatic, "--auto"},
-                                      {options.what_if, "--what-if"}})
+    for (const auto& [given, name] :
+         {std::pair{options.automatic, "--auto"}, {options.what_if, "--what-if"}})
       if (given) return complain(std::string(name) + " is for one campaign; found several");
     return explain_together(options.together, common, options.seed);
   }

@@ -14,7 +14,7 @@ namespace nonio::config {
 
 namespace {
 
-constexpr int values_of_a_range = 32;
+constexpr int values_of_a_range = 24;
 
 Cause read_cause(TableReader& reader) {
   Cause c;
@@ -89,8 +89,8 @@ void read_file(const std::string& name, std::string_view text,
   top.integer("format");
   for (TableReader& reader : top.tables("cause")) {
     Cause cause = read_cause(reader);
-    const auto [first, is_new] = there.try_emplace(
-        cause.formula.name, file + ":" + std::to_string(reader.line_of("name")));
+    const auto [first, is_new] =
+        there.try_emplace(cause.formula.name, file + ":" + std::to_string(reader.line_of("name")));
     if (!is_new)
       reader.error("name", "\"" + cause.formula.name + "\" is in " + first->second +
                                " already; give one of them another name");

@@ -319,7 +319,8 @@ Expected<Effect> formula_effect(const Formula& formula, const Axis& axis, bool t
     const auto r = readings_of(o, a);
     return r && wants.met(o, a, *r);
   };
-  e.columns = [formula = std::make_shared<const Formula>(formula)](const Observations& o, const Axis& a, const std::vector<double>& shape) {
+  e.columns = [formula = std::make_shared<const Formula>(formula)](
+                  const Observations& o, const Axis& a, const std::vector<double>& shape) {
     return columns(formula, o, a, shape);
   };
   return e;

@@ -402,7 +402,8 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
   const std::vector<model::Term> library = library_of(part, keeps);
   std::vector<model::Term> all = part.catalogue;
   all.insert(all.end(), library.begin(), library.end());
-  auto more = model::explain(part.part, part.terms, without_held(std::move(all), part), seed, known);
+  auto more =
+      model::explain(part.part, part.terms, without_held(std::move(all), part), seed, known);
   if (!more || more->verdict.kind != Kind::missing) return;
   const auto causes = std::count_if(library.begin(), library.end(), [&](const model::Term& t) {
     return std::find(more->together.begin(), more->together.end(), t.name()) !=

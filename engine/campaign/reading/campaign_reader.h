@@ -31,7 +31,7 @@ struct ReadCampaign {
   /// The library. Causes that the model may name are among the effects too.
   std::shared_ptr<const std::vector<config::Cause>> causes =
       std::make_shared<std::vector<config::Cause>>();
-  std::vector<Finding> doubts{};           ///< what makes the files themselves implausible
+  std::vector<Finding> doubts{};  ///< what makes the files themselves implausible
   std::vector<Remark> notes;
   std::vector<std::string> unread;  ///< measurements of a kind that no plugin reads
   std::vector<Error> errors;

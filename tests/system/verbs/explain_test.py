@@ -58,19 +58,45 @@ class Explain(VerbTest):
         self.assertNotEqual(answer["verdict"]["kind"], "nothing")
         self.assertEqual(answer["verdict"].get("suspects_share", 0), 0)
 
-    def test_a_cause_of_the_library_is_named_and_added(self):
-        """The reversal of a screw clamped at both ends, largest in the middle: no effect of the catalogue has this shape."""
-        rows = readings(runs=5, seed=random.SystemRandom().randrange(2**31)).splitlines()
+    def explain_with(self, seed, error):
+        """`error` (um) of the position from -1 to 1, the direction 1 or -1 and the run, in addition to usual readings."""
+        rows = readings(runs=5, seed=seed).splitlines()
         targets = [float(row.split(",")[2]) for row in rows[1:]]
         low, high = min(targets), max(targets)
-        for i, row in enumerate(rows):
+        for i, row in enumerate(rows[1:], 1):
             run, way, target, value, *more = row.split(",")
-            if i > 0:
-                z = (2 * float(target) - low - high) / (high - low)
-                value = f"{float(value) + (1 if way == '+' else -1) * 12 * (1 - z * z):.3f}"
+            z = (2 * float(target) - low - high) / (high - low)
+            value = f"{float(value) + error(z, 1 if way == '+' else -1, int(run)):.3f}"
             rows[i] = ",".join([run, way, target, value, *more])
-        self.campaign(manifest(["backlash:X"]), x="\n".join(rows) + "\n")
-        named = self.explain("--library")["verdict"]
+        self.campaign(manifest(["scale:X", "backlash:X"]), x="\n".join(rows) + "\n")
+        return self.explain()
+
+    def test_a_cause_without_an_alternative_is_named_alone(self):
+        """Each of a shape that a general effect of the catalogue follows too, with more parameters."""
+        for cause, error in (("scale-kink:X", lambda z, d, run: 14 * max(0.0, z + 0.1)),
+                             ("worn-section:X", lambda z, d, run: 12 * math.exp(-((z - 0.2) / 0.3) ** 2 / 2))):
+            named = self.explain_with(770, error)["verdict"]
+            self.assertEqual((named["kind"], named.get("effect")), ("missing", cause))
+
+    def test_two_causes_of_the_same_readings_are_both_named(self):
+        """The first run apart: the run, or a jump after it."""
+        answer = self.explain_with(771, lambda z, d, run: 12.0 * (run == 1))
+        first = answer["candidates"][0]
+        self.assertEqual(answer["verdict"]["effect"], first["effect"])
+        self.assertLessEqual({"one-run-off:X", "run-jump:X"}, {first["effect"], *first["aliases"]})
+
+    def test_one_target_is_no_cause(self):
+        """A chip on one target: several causes have a shape that is large there only."""
+        answer = self.explain_with(772, lambda z, d, run: 15.0 * (abs(z) < 0.03))
+        self.assertNotEqual(answer["verdict"]["kind"], "nothing")
+        causes = {"worn-section:X", "local-reversal:X", "scale-step:X", "end-targets:X", "rack-sections:X"}
+        self.assertFalse(causes & {answer["verdict"].get("effect"), *answer["certain"]}, answer["verdict"])
+
+    def test_a_cause_of_the_library_is_named_and_added(self):
+        """The reversal of a screw clamped at both ends, largest in the middle: no effect of the catalogue has this shape."""
+        seed = random.SystemRandom().randrange(2**31)
+        print("seed", seed)
+        named = self.explain_with(seed, lambda z, d, run: d * 12 * (1 - z * z))["verdict"]
         self.assertEqual((named["kind"], named["effect"]), ("missing", "parabolic-reversal:X"), named)
         self.nonio("model", "add", self.folder, named["effect"])
         self.assertEqual(self.explain()["verdict"]["kind"], "nothing")

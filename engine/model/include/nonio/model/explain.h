@@ -150,7 +150,7 @@ struct Explanation {
   std::vector<Place> fails;  ///< unknown: what the best explanation leaves; else the model's
   std::vector<Plan> plans;   ///< cheapest first; for the alias group of the verdict
   std::shared_ptr<const void> keeps{};  ///< effects that terms point into, beyond the catalogue's
-  std::optional<Sensors> sensors{};  ///< over time, where effects of channels are in it
+  std::optional<Sensors> sensors{};     ///< over time, where effects of channels are in it
   Verdict verdict;
 };
 
