@@ -376,27 +376,25 @@ std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const
   return terms;
 }
 
-/// Whether the effect that is named may be the shadow of a cause: its shape was searched, or
-/// something was recorded that no effect of the catalogue follows.
-bool may_imitate(const PartModel& part, const std::string& named) {
+/// Whether the effect that is named may be the shadow of a cause: its shape was searched, it has
+/// evidence only next to others, or something was recorded that no effect of the catalogue follows.
+bool may_imitate(const PartModel& part, const model::Candidate& named) {
   const Observations& o = part.part.table;
-  return !o.air.empty() || !o.pressure.empty() || !o.humidity.empty() ||
-         std::any_of(part.catalogue.begin(), part.catalogue.end(), [&](const model::Term& t) {
-           return t.name() == named && !t.effect->shapes.empty();
-         });
+  return !(named.alone > 0.0) || !named.term.effect->shapes.empty() || !o.air.empty() ||
+         !o.pressure.empty() || !o.humidity.empty();
 }
 
 /// Common effects first: where those of the catalogue leave an error unexplained, or may imitate a
 /// cause, they are searched together with the causes of the library. What then is missing is the
-/// answer, if it holds at most one cause: a set of several is a description of what none of them
-/// is. Whether there is an error at all is settled before, and so is the rate of false alarms.
+/// answer, if it holds at most one cause and if what is named has evidence by itself: another set is
+/// a description of what none of its effects is. Whether there is an error at all is settled before, and so is the rate of false alarms.
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;
   // Where nothing was repeated, many of so many shapes describe what is left.
   if (!out.comparison.floor || part.library == nullptr) return;
   const bool explained = out.verdict.kind == Kind::missing;
-  if (explained ? !may_imitate(part, out.verdict.effect) : out.verdict.kind != Kind::unknown)
+  if (explained ? !may_imitate(part, out.candidates.front()) : out.verdict.kind != Kind::unknown)
     return;
   std::shared_ptr<const void> keeps;
   const std::vector<model::Term> library = library_of(part, keeps);
@@ -404,7 +402,8 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
   all.insert(all.end(), library.begin(), library.end());
   auto more =
       model::explain(part.part, part.terms, without_held(std::move(all), part), seed, known);
-  if (!more || more->verdict.kind != Kind::missing) return;
+  if (!more || more->verdict.kind != Kind::missing || !(more->candidates.front().alone > 0.0))
+    return;
   const auto causes = std::count_if(library.begin(), library.end(), [&](const model::Term& t) {
     return std::find(more->together.begin(), more->together.end(), t.name()) !=
            more->together.end();

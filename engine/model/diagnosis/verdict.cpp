@@ -21,9 +21,6 @@ namespace nonio::model {
 
 namespace {
 
-// What is left in the same place, of what the candidate predicts: beyond, the candidate is not it.
-// docs/dev/constants.md, M6.
-constexpr double unexplained_share = 0.04;
 // The same of an effect that is certain, whatever else there is.
 // docs/dev/constants.md, M7.
 constexpr double certain_share = 0.06;

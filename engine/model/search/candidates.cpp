@@ -172,7 +172,8 @@ class CandidateOf {
       State changed = f_.bench->joined(rest, gains, other);
       if (f_.bench->in_space() && !(changed.criterion < f_.best.criterion + hopeless)) continue;
       changed = f_.bench->settled(std::move(changed));
-      if (changed.blocks.size() > rest.blocks.size() && as_good(changed))
+      if ((changed.blocks.size() > rest.blocks.size() && as_good(changed)) ||
+          (f_.terms[member].effect->curve && is_form_of(other)))
         names.push_back(f_.terms[other].name());
     }
     for (const std::string& name : f_.otherwise)
@@ -180,6 +181,16 @@ class CandidateOf {
           std::find(names.begin(), names.end(), name) == names.end())
         names.push_back(name);
     return names;
+  }
+
+  /// A cause with fewer parameters that alone explains nearly all that the best explanation does: a
+  /// curve follows every form, and that of a cause is known only roughly.
+  bool is_form_of(std::size_t cause) const {
+    if (!f_.terms[cause].library) return false;
+    const State alone = f_.bench->joined(f_.start, f_.bench->gains(f_.start, cause), cause);
+    return alone.parameters < f_.best.parameters &&
+           alone.squares - f_.best.squares <
+               unexplained_share * (f_.start.squares - f_.best.squares);
   }
 
   /// Hardly any evidence is lost, or hardly any likelihood apart from the cost of further columns:

@@ -130,8 +130,8 @@ class Finder {
   }
 
   /// Each effect of the best explanation alone with the model: others must not fit the remainder
-  /// that a coarse grid leaves of a large one. So too each cause of the library with several shapes,
-  /// whose grids are coarsest, if it explains much: another effect would be taken for it.
+  /// that a coarse grid leaves of a large one. So too each cause of the library, whose grids are the
+  /// coarsest, if it explains much: another effect would be taken for it.
   bool add_refined_alone() {
     constexpr double much = 0.5;  // of the evidence of the best one; docs/dev/constants.md, M37
     bool any = false;
@@ -144,8 +144,7 @@ class Finder {
       const State alone = f_.bench->with(f_.start, gains, e);
       if (alone.blocks.size() == f_.start.blocks.size()) continue;
       const Index searched = f_.bench->blocks()[alone.blocks.back()].searched;
-      const bool near =
-          f_.terms[e].library && searched > 1 && f_.start.criterion - alone.criterion > much * most;
+      const bool near = f_.terms[e].library && f_.start.criterion - alone.criterion > much * most;
       if (searched == 0 || !(near || f_.bench->holds(best, e))) continue;
       any = add_fitted(alone, terms_of_state(alone)) || any;
       any = add_moved(alone) || any;

@@ -17,6 +17,10 @@ inline constexpr double alias_evidence = 6.0;  ///< 2 ln 20: one twentieth is no
 // docs/dev/constants.md, M3.
 inline constexpr double least_rms = 0.2;  ///< of the noise: smaller effects are not worth a name
 
+// What is left in the same place, of what the candidate predicts: beyond, the candidate is not it.
+// docs/dev/constants.md, M6.
+inline constexpr double unexplained_share = 0.04;
+
 /// What the search over all sets of effects has found in one part: candidates and the verdict are
 /// read off it.
 struct Finding {
