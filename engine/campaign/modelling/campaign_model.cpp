@@ -376,12 +376,12 @@ std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const
   return terms;
 }
 
-/// Whether the effect that is named may be the shadow of a cause: its shape was searched, it has
-/// evidence only next to others, or something was recorded that no effect of the catalogue follows.
+/// Whether the effect that is named may be the shadow of a cause: its shape was searched, or
+/// something was recorded that no effect of the catalogue follows.
 bool may_imitate(const PartModel& part, const model::Candidate& named) {
   const Observations& o = part.part.table;
-  return !(named.alone > 0.0) || !named.term.effect->shapes.empty() || !o.air.empty() ||
-         !o.pressure.empty() || !o.humidity.empty();
+  return !named.term.effect->shapes.empty() || !o.air.empty() || !o.pressure.empty() ||
+         !o.humidity.empty();
 }
 
 /// Common effects first: where those of the catalogue leave an error unexplained, or may imitate a
