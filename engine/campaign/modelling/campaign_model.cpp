@@ -397,7 +397,8 @@ void look_up_library(const PartModel& part, std::uint64_t seed, const model::Gro
   if (explained ? !may_imitate(part, out.candidates.front()) : out.verdict.kind != Kind::unknown)
     return;
   std::shared_ptr<const void> keeps;
-  const std::vector<model::Term> library = library_of(part, keeps);
+  std::vector<model::Term> library = library_of(part, keeps);
+  if (explained && out.explains_all) library = model::replacing(part.part, out, std::move(library));
   std::vector<model::Term> all = part.catalogue;
   all.insert(all.end(), library.begin(), library.end());
   auto more =

@@ -116,12 +116,12 @@ struct Means {
 };
 
 /// Whether the term predicts the same for all readings of a target from one side.
-bool of_place(const Finding& f, const Term& term) {
-  const auto columns = columns_of(f.part.table, term, term.shape);
+bool of_place(const Observations& o, const Repeats& repeats, const Term& term) {
+  const auto columns = columns_of(o, term, term.shape);
   if (!columns) return false;
-  std::vector<Index> first(f.repeats.cells, -1);
-  for (std::size_t i = 0; i < f.repeats.cell.size(); ++i) {
-    Index& seen = first[f.repeats.cell[i]];
+  std::vector<Index> first(repeats.cells, -1);
+  for (std::size_t i = 0; i < repeats.cell.size(); ++i) {
+    Index& seen = first[repeats.cell[i]];
     const auto row = static_cast<Index>(i);
     if (seen < 0)
       seen = row;
@@ -129,6 +129,10 @@ bool of_place(const Finding& f, const Term& term) {
       return false;
   }
   return true;
+}
+
+bool of_place(const Finding& f, const Term& term) {
+  return of_place(f.part.table, f.repeats, term);
 }
 
 /// What a description predicts: of each target a value or a reversal, else of each reading.
@@ -329,6 +333,23 @@ void add_suspects(const std::vector<Suspect>& found, Comparison& comparison) {
 }
 
 }  // namespace
+
+std::vector<Term> replacing(const Part& part, const Explanation& e, std::vector<Term> terms) {
+  const Repeats repeats(part.table);
+  bool place = false, time = false;
+  for (const Candidate& c : e.candidates)
+    if (std::find(e.together.begin(), e.together.end(), c.term.name()) != e.together.end())
+      (of_place(part.table, repeats, c.term) ? place : time) = true;
+  std::erase_if(terms, [&](Term term) {
+    for (const Effect::Shape& shape : term.effect->shapes) {
+      const auto grid = shape.grid(part.table, term.axis);
+      if (grid.empty()) return false;
+      term.shape.push_back(grid[grid.size() / 2]);
+    }
+    return !(of_place(part.table, repeats, term) ? place : time);
+  });
+  return terms;
+}
 
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed,

@@ -130,24 +130,30 @@ class Finder {
   }
 
   /// Each effect of the best explanation alone with the model: others must not fit the remainder
-  /// that a coarse grid leaves of a large one. So too each cause of the library, whose grids are the
-  /// coarsest, if it explains much: another effect would be taken for it.
+  /// that a coarse grid leaves of a large one. So too the causes of the library that explain most,
+  /// whose grids are the coarsest: another effect would be taken for them.
   bool add_refined_alone() {
-    constexpr double much = 0.5;  // of the evidence of the best one; docs/dev/constants.md, M37
-    bool any = false;
-    const State best = f_.best;
+    constexpr std::size_t causes = 4;  // docs/dev/constants.md, M37
     const Workbench::Gains gains = f_.bench->gains(f_.start);
-    double most = 0.0;
-    for (std::size_t e = f_.in_model; e < f_.terms.size(); ++e)
-      most = std::max(most, f_.start.criterion - f_.bench->with(f_.start, gains, e).criterion);
+    std::vector<State> alone, of_library;
     for (std::size_t e = f_.in_model; e < f_.terms.size(); ++e) {
-      const State alone = f_.bench->with(f_.start, gains, e);
-      if (alone.blocks.size() == f_.start.blocks.size()) continue;
-      const Index searched = f_.bench->blocks()[alone.blocks.back()].searched;
-      const bool near = f_.terms[e].library && f_.start.criterion - alone.criterion > much * most;
-      if (searched == 0 || !(near || f_.bench->holds(best, e))) continue;
-      any = add_fitted(alone, terms_of_state(alone)) || any;
-      any = add_moved(alone) || any;
+      State one = f_.bench->with(f_.start, gains, e);
+      if (one.blocks.size() == f_.start.blocks.size() ||
+          f_.bench->blocks()[one.blocks.back()].searched == 0)
+        continue;
+      if (f_.bench->holds(f_.best, e))
+        alone.push_back(std::move(one));
+      else if (f_.terms[e].library)
+        of_library.push_back(std::move(one));
+    }
+    std::stable_sort(of_library.begin(), of_library.end(),
+                     [](const State& a, const State& b) { return a.criterion < b.criterion; });
+    if (of_library.size() > causes) of_library.resize(causes);
+    alone.insert(alone.end(), of_library.begin(), of_library.end());
+    bool any = false;
+    for (const State& one : alone) {
+      any = add_fitted(one, terms_of_state(one)) || any;
+      any = add_moved(one) || any;
     }
     return any;
   }

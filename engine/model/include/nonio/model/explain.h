@@ -154,6 +154,10 @@ struct Explanation {
   Verdict verdict;
 };
 
+/// Of `terms` those that may replace an effect of the best explanation: what differs between
+/// repeats does not replace what is the same in all of them, and the other way round.
+std::vector<Term> replacing(const Part& part, const Explanation& e, std::vector<Term> terms);
+
 /// `seed` is for the shuffles behind the false-alarm rate.
 Expected<Explanation> explain(const Part& part, const std::vector<Term>& model,
                               const std::vector<Term>& catalogue, std::uint64_t seed = 1,
