@@ -89,6 +89,23 @@ Json card_of(const modelling::ModelWords& words, const std::string& effect) {
   return card;
 }
 
+/// Causes that an explanation of an axis may name, and that can be added then.
+void put_library(const PartModel& part, const modelling::ModelWords& words, Json& list) {
+  if (part.library == nullptr) return;
+  const Axis& axis = part.part.axes.front();
+  for (const config::Cause& cause : *part.library) {
+    if (cause.rotary != axis.rotary) continue;
+    const std::string name = cause.formula.name + ":" + axis.name;
+    list.push_back({{"effect", name},
+                    {"written", name},
+                    {"part", part.part.name},
+                    {"card", card_of(words, name)},
+                    {"compensable", cause.compensable},
+                    {"why_not", nullptr},
+                    {"library", true}});
+  }
+}
+
 Json catalogue_json(const Bench& bench) {
   const modelling::ModelWords words = words_of(bench);
   Json list = Json::array();
@@ -108,6 +125,7 @@ Json catalogue_json(const Bench& bench) {
            {"card", card_of(words, c.term.name())},
            {"compensable", c.term.effect->compensable},
            {"why_not", words.unseen(c, modelling::place_of(part, bench.campaign(), c.rows))}});
+    put_library(part, words, list);
   }
   return list;
 }

@@ -1,7 +1,7 @@
 // ---- the effects: in the model, would help, no sign of, cannot be judged; and all about the one that is chosen ----
 const effects = (() => {
   const cardOf = (state, effect) => (state.catalogue || []).find((c) => c.effect === nameOf(effect)) || {effect, card: {}};
-  const ofPart = (state, shown) => (state.catalogue || []).filter((c) => c.part === shown.part).map((c) => c.effect);
+  const ofPart = (state, shown) => (state.catalogue || []).filter((c) => c.part === shown.part && !c.library).map((c) => c.effect);
 
   /// "squareness:XY = 12.3 arcsec" is a held effect, "heat:t4/x1+x2" one of these displacements only.
   const nameOf = (entry) => entry.split(" = ")[0].split("/")[0];

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Steps, undo, names; saving with If-Match; a file that changes beside the page."""
 import json
+import math
+import random
 import shlex
 import time
 import unittest
@@ -114,6 +116,31 @@ class Changes(LiveTest):
             self.assertIn('effects = ["backlash:Z"]', self.manifest.read_text())
             time.sleep(2.5)
             self.assertFalse(s.get("/api/state")["campaign"]["changed_on_disk"])
+
+    def test_a_cause_of_the_library_is_described_added_and_saved(self):
+        folder = self.site / "dent"
+        folder.mkdir()
+        rng = random.Random(7)
+        rows = [f"{run},{way},{x},{8 * math.exp(-((x - 320) / 90) ** 2 / 2) + 1.5 * (way == '+') + rng.gauss(0, 0.4):.3f}"
+                for run in range(1, 6) for way in "+-" for x in (range(0, 801, 40) if way == "+" else range(800, -1, -40))]
+        (folder / "x.csv").write_text("run,direction,target_mm,deviation_um\n" + "\n".join(rows) + "\n")
+        manifest = folder / "campaign.toml"
+        manifest.write_text('format = 1\n[campaign]\nid = "dent"\ndate = 2026-11-03\n[machine]\nmodel = "M"\n[machine.axes.X]\n'
+                            'travel = [0, 800]\n[model]\neffects = ["scale:X", "backlash:X"]\n'
+                            '[[measurement]]\nid = "X"\nkind = "axis"\naxis = "X"\nfile = "x.csv"\n')
+        with Server(folder, "--edit") as s:
+            s.opened()
+            s.fit("X")
+            named = s.explained("X")["explain"]["candidates"][0]["effect"]
+            self.assertEqual(named, "worn-section:X")
+            entry, = [e for e in s.get("/api/state")["catalogue"] if e["effect"] == named]
+            self.assertTrue(entry["compensable"], "as its remedy states")
+            self.assertEqual(entry["card"]["title"], "Error in one section")
+            before = s.fit("X")["compare"]["rms_um"]
+            s.post("/api/model", {"add": named})
+            self.assertLess(s.fit("X")["compare"]["rms_um"], 0.3 * before)
+            s.post("/api/save", headers=self.match(s))
+        self.assertIn('"worn-section:X"', manifest.read_text())
 
     def test_exclusions_and_a_period_are_saved_as_the_verbs_write_them(self):
         twin = self.site / "twin"
