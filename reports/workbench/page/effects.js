@@ -101,17 +101,18 @@ const effects = (() => {
     const [name, xs, unit] = best, points = xs.map((x, i) => [x, says[i], data.direction[i]]).filter((p) => finite(p[0]) && finite(p[1]));
     const ends = (k) => [Math.min(...points.map((p) => p[k])), Math.max(...points.map((p) => p[k]))];
     const [x0, x1] = ends(0), [y0, y1] = ends(1), width = 270, height = 110;
+    const level = (y) => short(Math.abs(y) < 1e-6 * Math.max(-y0, y1) ? 0 : y); // 0 with its rounding is 0
     const px = (x) => 44 + ((width - 52) * (x - x0)) / (x1 - x0 || 1), py = (y) => 8 + (height - 34) * (1 - (y - y0) / (y1 - y0 || 1));
     const path = (d) => points.filter((p) => (d < 0 ? p[2] < 0 : p[2] >= 0)).map((p) => `M${px(p[0]).toFixed(1)} ${py(p[1]).toFixed(1)}h0`).join("");
-    const picture = svg("svg", {viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": say("about.picture_alt", {x: say("x." + name), low: short(y0), high: short(y1), unit: shown.unit})},
+    const picture = svg("svg", {viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": say("about.picture_alt", {x: say("x." + name), low: level(y0), high: level(y1), unit: shown.unit})},
       svg("rect", {class: "frame", x: 44, y: 4, width: width - 48, height: height - 26}), svg("path", {class: "dots plus", d: path(1)}), svg("path", {class: "dots minus", d: path(-1)}));
     const label = (x, y, anchor, text) => {
       const node = svg("text", {x, y, "text-anchor": anchor});
       node.textContent = text;
       picture.append(node);
     };
-    label(40, 14, "end", short(y1));
-    label(40, height - 24, "end", short(y0));
+    label(40, 14, "end", level(y1));
+    label(40, height - 24, "end", level(y0));
     label(width - 4, height - 6, "end", `${say("x." + name)} ${short(x0)} \u2026 ${short(x1)} ${unit}`);
     label(4, height - 6, "start", shown.unit);
     return el("figure", {class: "fingerprint"}, picture, el("figcaption", {class: "muted"}, say("about.picture")));
