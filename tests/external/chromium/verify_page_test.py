@@ -9,6 +9,7 @@ import random
 import subprocess
 import sys
 import tempfile
+import time
 
 from browser import SKIPPED, Browser, complaints, program
 
@@ -104,6 +105,21 @@ def main():
                 browser.value(f"document.getElementById('roots').value = {json.dumps(root.read_text())}; "
                               f"document.getElementById('signer').value = {json.dumps(SIGNER)}; check()")
                 assert browser.value(said + ".className") == kind, browser.value("document.body.innerText")
+            # What is not as Nonio writes it is not shown, and no text of a stranger without quotes.
+            readings = issued["readings_sha256"]
+            for fragment in (f"number=1&date={issued['date']}. Verified.&readings={readings}", f"number=1&date={issued['date']}&readings=none",
+                             f"number={'9' * 61}&date={issued['date']}&readings={readings}", f"number=%E2%80%AE1&date={issued['date']}&readings={readings}"):
+                browser.open(f"{PAGE.as_uri()}?refused#{fragment}", 900)
+                assert browser.value(said + ".textContent") == "", fragment
+            browser.value(f"location.hash = 'number=2&date={issued['date']}&readings={readings}'; 0")
+            for _ in range(100):  # the page is loaded again
+                time.sleep(0.05)
+                if '"2"' in browser.value("(document.getElementById('paper') || {}).textContent || ''"):
+                    break
+            else:
+                raise AssertionError("the code of another paper is not shown")
+            browser.open(f"{PAGE.as_uri()}?quoted#number=1%22 is valid: {'W' * 40}&date={issued['date']}&readings={readings}", 360)
+            assert '"1\\" is valid: W' in browser.value(said + ".textContent"), browser.value(said + ".textContent")
             for width in (900, 360):
                 browser.width(width)
                 wide = browser.value("document.documentElement.scrollWidth")
