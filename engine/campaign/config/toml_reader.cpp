@@ -243,6 +243,8 @@ std::optional<std::vector<std::string>> value_of(TableReader& reader, const Key&
   if (!good || (key.longest_list != 0 && list.size() > key.longest_list) ||
       (key.distinct && distinct.size() != list.size()))
     reader.refuse(key);
+  for (const std::string& one : list)
+    if (!reader.check_choice(key, one)) break;
   return list;
 }
 

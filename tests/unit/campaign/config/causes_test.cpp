@@ -83,6 +83,14 @@ TEST(Causes, AFormerKeyIsReadWithAWarning) {
   EXPECT_TRUE(warnings_of_causes(with("causes/site/shop.toml", one)).empty());
 }
 
+TEST(Causes, AColumnThatNoReadingHasIsRefused) {
+  const std::string text = std::string(one) + "columns = [\"tiem_s\"]\n";
+  EXPECT_EQ(
+      message(with("causes/site/shop.toml", text)),
+      "causes/shop.toml:12: cause.columns: expected one of time_s; found \"tiem_s\" (nearest: "
+      "\"time_s\")");
+}
+
 TEST(Causes, ATitleMayHaveLanguages) {
   Templates t = with("causes/site/shop.toml",
                      changed("\"The crane\"", "{ en = \"The crane\", de = \"Der Kran\" }"));
