@@ -89,7 +89,7 @@ class Judge {
         !cancels(out_.together.front()) && !with_cancelling(out_.together.front()) &&
         !in_doubt(out_.together.front(), left, unexplained_share) &&
         std::none_of(out_.together.begin(), out_.together.end(),
-                     [&](const std::string& name) { return is_one_target(name); })) {
+                     [&](const std::string& name) { return is_single(name); })) {
       v.kind = Verdict::Kind::missing;
       v.effect = out_.together.front();
     }
@@ -357,19 +357,28 @@ class Judge {
     return share_of_one(name, f_.repeats.target, f_.repeats.targets) > most_of_one_target;
   }
 
-  /// Whether a cause of the library explains no more than a free value of one target, or a free
-  /// reversal there, would: then it is that target, and no cause.
-  bool is_one_target(const std::string& name) const {
+  /// Whether a cause of the library explains no more than a free value of one target, a free
+  /// reversal there or a free slope of one run would: then it is that target or run, and no cause.
+  /// Causes of the zero and of the reversal of one run are in the library.
+  bool is_single(const std::string& name) const {
     const std::size_t e = f_.index_of(name);
     if (!f_.terms[e].library) return false;
     const Workbench::State rest = f_.bench->without(f_.best, e);
     const auto targets = static_cast<Index>(f_.repeats.targets);
-    MatrixXd free = MatrixXd::Zero(static_cast<Index>(f_.part.table.size()), 2 * targets);
+    std::map<std::uint32_t, Index> column;  // of the slope of each run
+    for (const std::uint32_t run : f_.part.table.run)
+      column.try_emplace(run, 2 * targets + static_cast<Index>(column.size()));
+    const std::vector<double>& along = f_.part.along;
+    const double middle = std::accumulate(along.begin(), along.end(), 0.0) /
+                          std::max(static_cast<double>(along.size()), 1.0);
+    MatrixXd free = MatrixXd::Zero(static_cast<Index>(f_.part.table.size()),
+                                   2 * targets + static_cast<Index>(column.size()));
     for (Index i = 0; i < free.rows(); ++i) {
       const auto row = static_cast<std::size_t>(i);
       const auto at = static_cast<Index>(f_.repeats.target[row]);
       free(i, at) = 1.0;
       free(i, targets + at) = f_.part.way[row];
+      if (!column.empty()) free(i, column[f_.part.table.run[row]]) = along[row] - middle;
     }
     free = f_.bench->white()(free);
     f_.bench->white().take_out_zeros(free);
@@ -382,7 +391,7 @@ class Judge {
       if (own.squaredNorm() > 1e-6 * whole)
         most = std::max(most, std::pow(own.dot(left), 2) / own.squaredNorm());
     }
-    // One parameter, one name, and which of these targets.
+    // One parameter, one name, and which of these targets and runs.
     const double n = f_.bench->readings();
     const double price = f_.price_of_zero() + 2.0 * std::log(static_cast<double>(free.cols()));
     return n * std::log(std::max(rest.squares - most, 1e-300) / n) + rest.price + price <
