@@ -58,7 +58,10 @@ class Check {
       if (!e.column.empty()) json["column"] = e.column;
       errors_.push_back(std::move(json));
     } else {
-      std::cout << (campaign.empty() ? "" : campaign + "/") << text_of(e) << "\n";
+      // Files of the site are named from there.
+      const bool below =
+          !campaign.empty() && (e.file.empty() || fs::exists(campaign + "/" + e.file));
+      std::cout << (below ? campaign + "/" : "") << text_of(e) << "\n";
     }
     ++count_;
   }

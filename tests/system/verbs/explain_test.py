@@ -92,6 +92,13 @@ class Explain(VerbTest):
         causes = {"worn-section:X", "local-reversal:X", "scale-step:X", "end-targets:X", "rack-sections:X"}
         self.assertFalse(causes & {answer["verdict"].get("effect"), *answer["certain"]}, answer["verdict"])
 
+    def test_the_slope_of_one_run_is_no_cause(self):
+        """That the scale changed after the first run is shown by no other run than this one."""
+        answer = self.explain_with(773, lambda z, d, run: 8.0 * z * (run == 1))
+        self.assertNotEqual(answer["verdict"]["kind"], "nothing")
+        self.assertNotEqual(answer["verdict"].get("effect"), "scale-after-run:X", answer["verdict"])
+        self.assertEqual(self.explain_with(773, lambda z, d, run: 8.0 * z * (run > 2))["verdict"].get("effect"), "scale-after-run:X")
+
     def test_a_cause_of_the_library_is_named_and_added(self):
         """The reversal of a screw clamped at both ends, largest in the middle: no effect of the catalogue has this shape."""
         seed = random.SystemRandom().randrange(2**31)
@@ -100,6 +107,19 @@ class Explain(VerbTest):
         self.assertEqual((named["kind"], named["effect"]), ("missing", "parabolic-reversal:X"), named)
         self.nonio("model", "add", self.folder, named["effect"])
         self.assertEqual(self.explain()["verdict"]["kind"], "nothing")
+
+    def test_an_error_in_a_cause_of_the_site_names_its_file(self):
+        self.campaign(manifest(["scale:X"]), x=readings())
+        (self.site / "site.toml").write_text("format = 1\n", "utf-8")
+        causes = self.site / "templates" / "causes"
+        causes.mkdir(parents=True)
+        cause = ('format = 1\n[[cause]]\nname = "backlash"\ntitle = "T"\naxis = "linear"\nexpression = "b*d/2"\n'
+                 'parameters = [{ name = "b", unit = "um" }]\nis = "I."\nsize = "S."\nremedy = "R."\n')
+        (causes / "own.toml").write_text(cause, "utf-8")
+        said = self.nonio("check", self.folder, expect=1).stdout
+        self.assertTrue(said.startswith('templates/causes/own.toml:6: cause "backlash": a plugin has an effect of this name; give'), said)
+        (self.folder / "x.csv").write_text("run,direction\n", "utf-8")
+        self.assertIn(f"\n{self.folder}/x.csv:1: ", "\n" + self.nonio("check", self.folder, expect=1).stdout)
 
     def test_the_predicted_error_is_the_one_obtained(self):
         """Also where shapes of the model and of the candidate are searched: each depends on the others."""
