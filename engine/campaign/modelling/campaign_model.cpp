@@ -345,22 +345,6 @@ Expected<model::Comparison> compare_part(const PartModel& part, const model::Gro
   return out;
 }
 
-namespace {
-
-/// With values of its own for each group an effect is only worth a line where they explain more.
-void leave_out_weaker_groups(model::Explanation& e) {
-  std::map<std::string, double> score;
-  for (const model::Candidate& c : e.candidates) score[c.term.name()] = c.score;
-  std::erase_if(e.candidates, [&](const model::Candidate& c) {
-    if (!c.term.grouping ||
-        std::find(e.together.begin(), e.together.end(), c.term.name()) != e.together.end())
-      return false;
-    const auto plain = score.find(c.term.of_all());
-    return !(c.score > 0.0) || (plain != score.end() && !(c.score > plain->second));
-  });
-}
-
-/// Terms of the causes that these readings can show; `keeps` has their effects.
 std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const void>& keeps) {
   auto effects = std::make_shared<std::vector<Effect>>();
   for (const config::Cause& cause : *part.library)
@@ -374,6 +358,21 @@ std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const
   }
   keeps = std::move(effects);
   return terms;
+}
+
+namespace {
+
+/// With values of its own for each group an effect is only worth a line where they explain more.
+void leave_out_weaker_groups(model::Explanation& e) {
+  std::map<std::string, double> score;
+  for (const model::Candidate& c : e.candidates) score[c.term.name()] = c.score;
+  std::erase_if(e.candidates, [&](const model::Candidate& c) {
+    if (!c.term.grouping ||
+        std::find(e.together.begin(), e.together.end(), c.term.name()) != e.together.end())
+      return false;
+    const auto plain = score.find(c.term.of_all());
+    return !(c.score > 0.0) || (plain != score.end() && !(c.score > plain->second));
+  });
 }
 
 /// Whether the effect that is named may be the shadow of a cause: its shape was searched, or

@@ -104,6 +104,8 @@ std::vector<std::string> below_uncertainty(const model::Fit& fit);
 Expected<model::Comparison> compare_part(const PartModel& part,
                                          const model::Groundwork* known = nullptr,
                                          const model::Fitted& fitted = {});
+/// Terms of the causes of the library that these readings can show; `keeps` has their effects.
+std::vector<model::Term> library_of(const PartModel& part, std::shared_ptr<const void>& keeps);
 /// `with_library`: with the second stage of the search, in which causes of the library take part.
 Expected<model::Explanation> explain_part(const PartModel& part, std::uint64_t seed,
                                           const model::Groundwork* known = nullptr,

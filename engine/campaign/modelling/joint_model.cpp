@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "campaign/modelling/model_verdict.h"
 #include "nonio/math/distributions.h"
@@ -201,6 +202,32 @@ Json part_of_json(const Together& t, const config::TerminalWords& say) {
   return json;
 }
 
+std::vector<model::Member> members_of(const Together& t) {
+  std::vector<model::Member> members;
+  for (std::size_t m = 0; m < t.parts.size(); ++m)
+    members.push_back({t.campaigns[m], &t.parts[m].part, t.parts[m].terms, t.parts[m].catalogue});
+  return members;
+}
+
+/// The cause of the library that a campaign alone shows is a candidate in all of them: without it
+/// others would be named for it. Whether there is one.
+bool add_named_causes(Together& t, std::uint64_t seed) {
+  std::set<std::string> named;
+  for (const PartModel& part : t.parts)
+    if (const auto alone = explain_part(part, seed);
+        alone && alone->verdict.kind == model::Verdict::Kind::missing &&
+        alone->candidates.front().term.library)
+      named.insert(alone->verdict.effect);
+  if (named.empty()) return false;
+  for (PartModel& part : t.parts)
+    for (model::Term& term : library_of(part, t.keeps.emplace_back()))
+      if (named.contains(term.name())) {
+        term.library = false;
+        part.catalogue.push_back(std::move(term));
+      }
+  return true;
+}
+
 }  // namespace
 
 Expected<std::vector<Together>> explain_together(
@@ -229,10 +256,13 @@ Expected<std::vector<Together>> explain_together(
                     " give its deviation in different units (um and arcsec)");
       t.parts.push_back(std::move(part));
     }
-    std::vector<model::Member> members;
-    for (std::size_t m = 0; m < t.parts.size(); ++m)
-      members.push_back({t.campaigns[m], &t.parts[m].part, t.parts[m].terms, t.parts[m].catalogue});
-    NONIO_TRY(t.explanation, model::explain_together(members, seed));
+    NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));
+    const bool explained =
+        t.explanation.verdict == model::Verdict::Kind::nothing ||
+        (t.explanation.verdict == model::Verdict::Kind::missing && t.explanation.explains_all);
+    if (!explained && add_named_causes(t, seed)) {
+      NONIO_TRY(t.explanation, model::explain_together(members_of(t), seed));
+    }
     out.push_back(std::move(t));
   }
   return out;

@@ -17,6 +17,7 @@ struct Together {
   std::vector<PartModel> parts;
   std::vector<std::string> effects;  ///< of the models of the campaigns
   model::JointExplanation explanation;
+  std::vector<std::shared_ptr<const void>> keeps{};  ///< effects beyond those of the campaigns
 
   Quantity deviation() const { return parts.front().deviation(); }
 };

@@ -108,6 +108,16 @@ class Explain(VerbTest):
         self.nonio("model", "add", self.folder, named["effect"])
         self.assertEqual(self.explain()["verdict"]["kind"], "nothing")
 
+    def test_several_campaigns_have_the_cause_that_each_has(self):
+        """The catalogue alone describes it by a drift and a jump."""
+        self.explain_with(774, lambda z, d, run: d * 12 * (1 - z * z))
+        other = self.site / "d"
+        shutil.copytree(self.folder, other)
+        (other / "campaign.toml").write_text(self.text().replace('id = "c"', 'id = "d"'), "utf-8")
+        self.explain_with(775, lambda z, d, run: d * 12 * (1 - z * z))
+        answer = self.json_of("explain", self.folder, other)
+        self.assertEqual([e["effect"] for e in answer["effects"]], ["parabolic-reversal:X"], answer["verdict"])
+
     def test_an_error_in_a_cause_of_the_site_names_its_file(self):
         self.campaign(manifest(["scale:X"]), x=readings())
         (self.site / "site.toml").write_text("format = 1\n", "utf-8")
