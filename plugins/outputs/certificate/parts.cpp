@@ -2,6 +2,7 @@
 //
 // Blocks of the first page and the statements; clauses are those of ISO/IEC 17025:2017.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 

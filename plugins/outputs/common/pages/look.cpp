@@ -2,7 +2,9 @@
 #include "look.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
+#include <cmath>
 #include <set>
 
 namespace nonio::pages {
