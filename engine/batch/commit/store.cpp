@@ -127,8 +127,11 @@ class Move {
   /// An error if what is on the disk is not what was written.
   void read_back() {
     for (const evaluation::RecordedFile& f : record_.files) {
-      const fs::path path = storage::temporary_path(folder_, f.name);
-      const auto same = storage::disk_gives_back(path, f.size, f.sha256);
+      const fs::path temporary = storage::temporary_path(folder_, f.name);
+      // A commit that was cut short may have given it its name.
+      const auto waits = storage::is_there(temporary);
+      const auto same = storage::disk_gives_back(waits && !*waits ? folder_ / f.name : temporary,
+                                                 f.size, f.sha256);
       if (!same || !*same)
         return give_up("the disk does not give back what was written to it: " +
                        (folder_ / f.name).string() + (same ? "" : ": " + same.error().message));
