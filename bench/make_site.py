@@ -31,6 +31,8 @@ serial = "{index:06}"
 kind = "linear"
 travel = [0.0, 1100.0]
 expansion_um_per_m_K = 11.5
+active_table = "none"
+active_backlash_mm = 0.0
 tolerance_um = {{ A = 30.0, R = 8.0 }}
 [instrument]
 maker = "Maker"
@@ -49,6 +51,10 @@ id = "X"
 kind = "axis"
 axis = "X"
 file = "x.csv"
+[options.siemens-840d.axes.X]
+number = 1
+[options.fanuc.axes.X]
+number = 1
 ''')
 
 
