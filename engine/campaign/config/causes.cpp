@@ -107,11 +107,16 @@ void read_file(const std::string& name, std::string_view text,
 std::shared_ptr<const Read> read_in(const Templates& templates) {
   static std::mutex one_at_a_time;
   static std::shared_ptr<const Read> last;
-  Read now;
+  std::map<std::string_view, std::string_view> files;
   for (const auto& [name, text] : templates.files)
-    if (is_causes_file(name)) now.files[name] = text;
+    if (is_causes_file(name)) files[name] = text;
   const std::lock_guard lock(one_at_a_time);
-  if (last && last->files == now.files) return last;
+  const auto same = [](const auto& a, const auto& b) {
+    return a.first == b.first && a.second == b.second;
+  };
+  if (last && std::equal(files.begin(), files.end(), last->files.begin(), last->files.end(), same))
+    return last;
+  Read now{{files.begin(), files.end()}};
   std::map<std::string, std::string> there;  // name, place
   for (const auto& [name, text] : now.files) read_file(name, text, there, now);
   last = std::make_shared<const Read>(std::move(now));
@@ -120,10 +125,10 @@ std::shared_ptr<const Read> read_in(const Templates& templates) {
 
 }  // namespace
 
-Checked<std::vector<Cause>> causes_in(const Templates& templates) {
+Checked<Library> causes_in(const Templates& templates) {
   const auto read = read_in(templates);
   if (!read->errors.empty()) return tl::unexpected(read->errors);
-  return read->causes;
+  return Library(read, &read->causes);
 }
 
 std::vector<Error> warnings_of_causes(const Templates& templates) {

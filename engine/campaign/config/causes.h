@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,9 +37,11 @@ struct Cause {
 /// Whether a file of the templates is one of the library.
 bool is_causes_file(std::string_view name);
 
+using Library = std::shared_ptr<const std::vector<Cause>>;
+
 /// All causes in these templates, in the order of their files; a name may be there once. Those of
 /// the site are tried.
-Checked<std::vector<Cause>> causes_in(const Templates& templates);
+Checked<Library> causes_in(const Templates& templates);
 
 /// Keys with former names in these files, each with file and line.
 std::vector<Error> warnings_of_causes(const Templates& templates);

@@ -105,7 +105,7 @@ Expected<Templates> read_templates(const std::vector<fs::path>& folders, std::st
       return fail(kept.error());
   }
   if (auto read = causes_in(templates))
-    add_words(*read, templates);
+    add_words(**read, templates);
   else
     return fail(read.error().front());
   gather_words(templates);
@@ -164,7 +164,7 @@ Expected<CarriedTemplates> templates_from(std::string_view text, const Templates
     for (const auto& [name, file] : ours["files"].items())
       if (!json["files"].contains(name) && travels(name)) out.strange.push_back(name);
   if (auto read = causes_in(out.templates))
-    add_words(*read, out.templates);
+    add_words(**read, out.templates);
   else
     return fail(read.error().front());
   gather_words(out.templates);

@@ -386,8 +386,8 @@ bool may_imitate(const PartModel& part, const model::Candidate& named) {
 /// Common effects first: where those of the catalogue leave an error unexplained, or may imitate a
 /// cause, they are searched together with the causes of the library. What then is missing is the
 /// answer, if it holds at most one cause and if what is named has evidence by itself: another set is
-/// a description of what none of its effects is. Whether there is an error at all is settled before. The rate of false
-/// alarms is that of the second search, whose noise no longer has what the first one left.
+/// a description of what none of its effects is. Whether there is an error at all is settled before.
+/// The rate of false alarms is that of the second search: its noise has no longer what the first left.
 void look_up_library(const PartModel& part, std::uint64_t seed, const model::Groundwork* known,
                      model::Explanation& out) {
   using Kind = model::Verdict::Kind;

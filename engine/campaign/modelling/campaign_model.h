@@ -24,7 +24,7 @@ struct PartModel {
   std::vector<model::Candidate> left_out{};  ///< effects that do not apply, and why
   RowsPlace interpolated{};                  ///< readings whose temperature is interpolated
   /// The library, of an axis: its causes are searched where the catalogue may not explain.
-  std::shared_ptr<const std::vector<config::Cause>> library{};
+  config::Library library{};
   /// Effects whose value is stated. Their prediction is subtracted from the deviations of `part`,
   /// so that everything else is fitted to the rest; a comparison has them after its other terms.
   struct Held {

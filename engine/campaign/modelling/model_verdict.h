@@ -8,8 +8,8 @@
 #include "campaign/modelling/campaign_model.h"
 #include "nonio/model/explain.h"
 
-/// What the verdicts of the parts of a campaign say together: which is the most severe, and what is to
-/// be added to the model next.
+/// The verdicts of the parts of a campaign together: which is the most severe, and what is to be
+/// added to the model next.
 namespace nonio::modelling {
 
 struct Explained {

@@ -2,6 +2,7 @@
 #include "campaign/reading/campaign_reader.h"
 
 #include <algorithm>
+#include <set>
 
 #include "campaign/config/certificate_reader.h"
 #include "campaign/config/formula.h"
@@ -207,7 +208,8 @@ std::optional<Error> name_taken(const config::Cause& cause, const ReadCampaign& 
   return std::nullopt;
 }
 
-/// All causes are known by name; effects are made of them where that is not enough.
+/// Causes are searched by an explanation. They are effects where any may be named; only there is a
+/// name that is taken an error.
 void add_library(const Context& context, ReadCampaign& out) {
   auto causes = config::causes_in(context.templates);
   if (!causes) {
@@ -215,23 +217,25 @@ void add_library(const Context& context, ReadCampaign& out) {
     return;
   }
   const bool as_effects = context.every_cause || names_a_cause(out);
-  auto library = std::make_shared<std::vector<config::Cause>>();
-  for (config::Cause& cause : *causes) {
-    if (auto taken = name_taken(cause, out)) {
-      report_in(out, std::move(*taken));
-      continue;
-    }
-    if (as_effects) {
+  std::set<std::string> refused;
+  for (const config::Cause& cause : **causes) {
+    auto error = name_taken(cause, out);
+    if (!error && as_effects) {
       auto effect = cause.effect(true);
-      if (!effect) {
-        report_in(out, Error{effect.error().message, cause.file, cause.formula.line});
-        continue;
-      }
-      out.effects.push_back(std::move(*effect));
+      if (effect)
+        out.effects.push_back(std::move(*effect));
+      else
+        error = Error{effect.error().message, cause.file, cause.formula.line};
     }
-    library->push_back(std::move(cause));
+    if (!error) continue;
+    refused.insert(cause.formula.name);
+    if (as_effects) report_in(out, std::move(*error));
   }
-  out.causes = std::move(library);
+  out.causes = *causes;
+  if (refused.empty()) return;
+  auto others = std::make_shared<std::vector<config::Cause>>(**causes);
+  std::erase_if(*others, [&](const config::Cause& c) { return refused.contains(c.formula.name); });
+  out.causes = std::move(others);
 }
 
 }  // namespace

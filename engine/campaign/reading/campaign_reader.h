@@ -29,8 +29,7 @@ struct ReadCampaign {
   std::vector<Observations> observations;  ///< of each measurement; empty where none could be read
   std::vector<Effect> effects;             ///< of the plugins and the campaign
   /// The library. Causes that the model may name are among the effects too.
-  std::shared_ptr<const std::vector<config::Cause>> causes =
-      std::make_shared<std::vector<config::Cause>>();
+  config::Library causes = std::make_shared<std::vector<config::Cause>>();
   std::vector<Finding> doubts{};  ///< what makes the files themselves implausible
   std::vector<Remark> notes;
   std::vector<std::string> unread;  ///< measurements of a kind that no plugin reads

@@ -382,15 +382,13 @@ class Judge {
     }
     free = f_.bench->white()(free);
     f_.bench->white().take_out_zeros(free);
-    const VectorXd left = f_.residual(rest);
-    const MatrixXd basis = f_.bench->basis(rest);
+    const MatrixXd own = math::orthogonal_part(f_.bench->basis(rest), free);
+    const VectorXd with_left = math::transposed_times(own, f_.residual(rest));
     double most = 0.0;
-    for (Index k = 0; k < free.cols(); ++k) {
-      const double whole = free.col(k).squaredNorm();
-      const VectorXd own = math::orthogonal_part(basis, VectorXd(free.col(k)));
-      if (own.squaredNorm() > 1e-6 * whole)
-        most = std::max(most, std::pow(own.dot(left), 2) / own.squaredNorm());
-    }
+    for (Index k = 0; k < free.cols(); ++k)
+      if (const double squares = own.col(k).squaredNorm();
+          squares > 1e-6 * free.col(k).squaredNorm())
+        most = std::max(most, with_left(k) * with_left(k) / squares);
     // One parameter, one name, and which of these targets and runs.
     const double n = f_.bench->readings();
     const double price = f_.price_of_zero() + 2.0 * std::log(static_cast<double>(free.cols()));

@@ -131,6 +131,16 @@ class Explain(VerbTest):
         (self.folder / "x.csv").write_text("run,direction\n", "utf-8")
         self.assertIn(f"\n{self.folder}/x.csv:1: ", "\n" + self.nonio("check", self.folder, expect=1).stdout)
 
+    def test_a_formula_of_a_campaign_has_the_name_of_a_cause(self):
+        """A cause that a later version brings stops no run: the campaign's own formula is what its model names."""
+        formula = ('[[model.formula]]\nname = "worn-section"\naxis = "X"\nexpression = "e*(p/length)^2"\n'
+                   'parameters = [{ name = "e", unit = "um" }]\n')
+        self.campaign(manifest(["scale:X", "worn-section:X"], model=formula), x=readings())
+        self.assertIn("worn-section:X", self.nonio("compare", self.folder).stdout)
+        self.explain()
+        said = self.nonio("check", self.folder, expect=1).stdout
+        self.assertIn("the library has a cause of this name", said)
+
     def test_the_predicted_error_is_the_one_obtained(self):
         """Also where shapes of the model and of the candidate are searched: each depends on the others."""
         seed = random.SystemRandom().randrange(2**31)

@@ -54,8 +54,8 @@ TEST(Causes, EachOneThatIsShippedPassesTheTrialOfItsUnits) {
   }
   const auto causes = causes_in(t);
   ASSERT_TRUE(causes) << message(t);
-  EXPECT_GE(causes->size(), 60U);
-  for (const Cause& c : *causes) {
+  EXPECT_GE((*causes)->size(), 60U);
+  for (const Cause& c : **causes) {
     const auto effect = c.effect(false);
     EXPECT_TRUE(effect) << c.formula.name << ": " << effect.error().message;
   }
@@ -65,9 +65,9 @@ TEST(Causes, OneOfASiteIsReadWithItsTextsAndItsPrice) {
   Templates t = with("causes/site/shop.toml", one);
   const auto causes = causes_in(t);
   ASSERT_TRUE(causes) << message(t);
-  ASSERT_EQ(causes->size(), 1U);
-  EXPECT_NEAR(causes->front().price(), 2.0 * std::log(10.0), 1e-12);
-  add_words(*causes, t);
+  ASSERT_EQ((*causes)->size(), 1U);
+  EXPECT_NEAR((*causes)->front().price(), 2.0 * std::log(10.0), 1e-12);
+  add_words(**causes, t);
   EXPECT_EQ(words(t, "en", "effect.crane.remedy"), "Park it elsewhere.");
 }
 
@@ -75,7 +75,7 @@ TEST(Causes, AFormerKeyIsReadWithAWarning) {
   Templates t = with("causes/site/shop.toml", changed("remedy =", "cure ="));
   const auto causes = causes_in(t);
   ASSERT_TRUE(causes) << message(t);
-  EXPECT_EQ(causes->front().remedy, "Park it elsewhere.");
+  EXPECT_EQ((*causes)->front().remedy, "Park it elsewhere.");
   const auto warnings = warnings_of_causes(t);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].message.find("cause.cure is now named cause.remedy"), std::string::npos)
@@ -96,8 +96,8 @@ TEST(Causes, ATitleMayHaveLanguages) {
                      changed("\"The crane\"", "{ en = \"The crane\", de = \"Der Kran\" }"));
   const auto causes = causes_in(t);
   ASSERT_TRUE(causes) << message(t);
-  EXPECT_EQ("The crane", causes->front().title);
-  add_words(*causes, t);
+  EXPECT_EQ("The crane", (*causes)->front().title);
+  add_words(**causes, t);
   EXPECT_EQ("The crane", words(t, "en", "effect.crane.title"));
   EXPECT_EQ("Der Kran", words(t, "de", "effect.crane.title"));
   EXPECT_EQ("", words(t, "it", "effect.crane.title")) << "English takes its place";

@@ -40,8 +40,8 @@ struct Term {
   double price = 0.0;
   /// Its value is known: no unknowns, and its prediction is subtracted from the readings.
   bool held = false;
-  bool library =
-      false;  ///< one of very many: a candidate only in the best set or instead of one of it
+  /// One of very many: a candidate only in the best set, or instead of an effect of it.
+  bool library = false;
 
   /// The effect without groups: "backlash:X".
   std::string of_all() const { return effect->info.name + ":" + axis.name; }
