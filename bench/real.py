@@ -95,7 +95,7 @@ def read_all(nonio, page):
 
 
 class Real:
-    """A set and its scatter: of each pass its readings less the means of their cells."""
+    """A set and its scatter: of each pass its readings less the means of their cells, without misread ones."""
 
     def __init__(self, name):
         lines = [l for l in (HERE / name / "readings.csv").read_text().splitlines() if not l.startswith("#")]
@@ -109,7 +109,10 @@ class Real:
         cells = collections.defaultdict(list)
         for r in rows:
             cells[r["direction"], float(r[target])].append(float(r[value]))
-        middle = {cell: statistics.fmean(values) for cell, values in cells.items()}
+        # A mean that contains a misread value would give the other readings of its cell an error in common.
+        far = 6 * statistics.median(abs(v - statistics.median(c)) for c in cells.values() for v in c)
+        middle = {cell: statistics.fmean(v for v in values if abs(v - statistics.median(values)) <= far)
+                  for cell, values in cells.items()}
         grow = math.sqrt(self.runs / (self.runs - 1))  # the middle takes some of the scatter with it
         self.passes = collections.defaultdict(list)
         for way in self.ways:

@@ -60,7 +60,7 @@ install(PROGRAMS ${PROJECT_SOURCE_DIR}/cmake/package/slurm/nonio-night ${PROJECT
 # The same as pages with search, if they were made: cmake --build BUILD --target docs_site
 find_program(MKDOCS mkdocs)
 if(MKDOCS)
-  add_custom_target(docs_site COMMAND ${MKDOCS} build --quiet --site-dir ${CMAKE_BINARY_DIR}/site
+  add_custom_target(docs_site COMMAND ${MKDOCS} build --quiet --strict --site-dir ${CMAKE_BINARY_DIR}/site
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/site/ DESTINATION ${papers}/site OPTIONAL)
 endif()

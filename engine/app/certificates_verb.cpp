@@ -107,7 +107,7 @@ int certificates(const CertificateWish& wanted, const Common& common) {
     print_json(Json{{"schema", "nonio-certificates/1"}, {"certificates", std::move(all)}});
   } else {
     for (const RegisterEntry& e : *entries) print(e);
-    if (entries->empty() && !common.quiet) std::cout << "no certificate number was drawn yet\n";
+    if (entries->empty() && !common.quiet) std::cout << "the register has no certificate yet\n";
   }
   return exit_done;
 }

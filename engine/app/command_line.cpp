@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <sstream>
 
@@ -13,6 +14,7 @@
 #include "text_layout.h"
 
 namespace nonio::app {
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -48,12 +50,26 @@ CLI::Validator member_of(const Words& choices) {
           ""};
 }
 
+CLI::Validator existing(Argument::Takes takes) {
+  return {
+      [takes](const std::string& path) {
+        std::error_code error;
+        const fs::file_status found = fs::status(path, error);
+        using Takes = Argument::Takes;
+        if (!fs::exists(found))
+          return std::string(takes == Takes::folder ? "there is no folder " : "there is no file ") +
+                 path;
+        if (takes == Takes::folder && !fs::is_directory(found)) return path + " is not a folder";
+        if (takes == Takes::file && fs::is_directory(found))
+          return path + " is a folder, not a file";
+        return std::string();
+      },
+      ""};
+}
+
 void check(CLI::Option& option, const Argument& a) {
   if (a.required) option.required();
-  if (a.exists)
-    option.check(a.takes == Argument::Takes::folder ? CLI::Validator(CLI::ExistingDirectory)
-                 : a.takes == Argument::Takes::file ? CLI::Validator(CLI::ExistingFile)
-                                                    : CLI::Validator(CLI::ExistingPath));
+  if (a.exists) option.check(existing(a.takes));
   if (!a.choices.empty()) option.check(member_of(a.choices));
   if (a.range) option.check(CLI::Range(a.range->first, a.range->second));
 }

@@ -136,8 +136,8 @@ class ExplainTogether {
                                 {"first", t.campaigns.front()},
                                 {"last", t.campaigns.back()},
                                 {"readings", std::to_string(readings)}}));
-    line(std::cout, "RMS", with_unit(x.rms, q));
-    line(std::cout, say("floor"), with_unit(x.noise, q));
+    line(std::cout, "RMS", with_unit(x.rms, q, say));
+    line(std::cout, say("floor"), with_unit(x.noise, q, say));
     sentence(std::cout, 2, modelling::sentence_of(t, say));
     for (const model::JointEffect& e : x.effects) {
       sentence(std::cout, 2, modelling::sentence_of(e, t, say));
@@ -155,8 +155,8 @@ class ExplainTogether {
     for (std::size_t k = 0; k < std::min(most_candidates, x.candidates.size()); ++k) {
       const model::JointEffect& e = x.candidates[k];
       if (!(e.evidence > 0.0)) break;
-      std::cout << "  " << padded(e.effect, 22) << padded(short_text(e.evidence, 4), 12)
-                << padded(with_unit(e.rms, q), 15)
+      std::cout << "  " << padded(e.effect, 22) << padded(say.number(short_text(e.evidence, 4)), 12)
+                << padded(with_unit(e.rms, q, say), 15)
                 << say(e.holds == model::Holds::shared ? "joint.is-shared" : "joint.is-own")
                 << "\n";
     }

@@ -184,8 +184,7 @@ Verb explain_verb(Common& common) {
            {"--until", &options->together.until, "Of several campaigns those up to this day"},
            {"--all", &options->all, "Every candidate, and why an effect could not be tested"},
            {"--library", &options->library,
-            "Without effect: the causes of the library are always tried where no effect of the "
-            "catalogue is certain to explain"},
+            "Accepted and without effect: the library of causes is always searched"},
            {"--what-if", &options->what_if,
             "Also predicts what one more run, in each order of directions, would do to the "
             "uncertainties and to the evidence"},
@@ -200,7 +199,10 @@ Verb explain_verb(Common& common) {
           "Verdicts: missing (an effect belongs in the model), complete (nothing missing: the "
           "model explains everything down to the noise; `nothing` in JSON), unknown (no effect "
           "explains the remaining error; it states where), unrepeatable (the readings contradict "
-          "each other: check the machine first).\n\nSeveral campaigns: each axis is fitted in all "
+          "each other: check the machine first). Evidence: 2 ln of the odds that the effect exists "
+          "(6: 20 "
+          "to 1), for the effect alone and within the best set; - if there is none.\n\nSeveral "
+          "campaigns: each axis is fitted in all "
           "of "
           "them, every line with its own zero, every campaign with its own noise and model. An "
           "effect has the same value in all, a value in each, or one before and one after a date.",

@@ -111,14 +111,14 @@ int tell(const Released& done, const ReleaseVerbWish& wish, const Common& common
     case State::lacking:
       if (!common.json) print(std::cerr, *done.draft);
       for (const std::string& key : done.without_reason)
-        complain(key +
-                 " requires action and no reason is given for accepting it; expected --reason \"" +
-                 key + "=TEXT\"");
+        complain(key + " requires a reason for accepting it");
+      complain("repeat with --reason \"" + done.without_reason.front() +
+               "=TEXT\" and so on: one --reason for each of these findings");
       return exit_failed;
     case State::approved:
       if (!common.json)
         std::cout << done.draft->campaign << " approved by " << wish.person()
-                  << "; an authoriser releases it with nonio certificate approve " << wish.folder
+                  << "; an authoriser approves it with nonio certificate approve " << wish.folder
                   << " --by NAME --as authoriser\n";
       return exit_done;
     case State::failed:

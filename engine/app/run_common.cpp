@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "laboratory/assessment/describe.h"
+#include "nonio/reports/number.h"
 #include "platform/process/stop.h"
 #include "platform/storage/files.h"
 #include "platform/storage/json_values.h"
@@ -19,6 +21,18 @@ using storage::Json;
 namespace fs = std::filesystem;
 
 namespace {
+
+/// " 4.8 ± 1.0 um": the value that a line of the worklist is about, where its decision is; else empty.
+std::string judged_value(const Json& line, const std::string& language) {
+  const std::string kind = line.value("kind", ""), unit = line.value("unit", "");
+  if ((kind != "out" && kind != "undecided") || !line.contains("value")) return {};
+  const Quantity q = quantity_of_unit(unit);
+  const auto si = [&](const char* key) { return line.at(key).get<double>() / unit_of(q).per_si; };
+  const reports::Printed shown = reports::printed_result(
+      si("value"), line.contains("u") ? std::optional(2.0 * si("u")) : std::nullopt, q, language);
+  return " " + shown.value + (shown.U.empty() ? "" : " ± " + shown.U) +
+         (unit.empty() ? "" : " " + unit);
+}
 
 /// One line per campaign that requires action, as far as they fit a screen.
 void print_actions(const std::string& actions, const config::TerminalWords& words) {
@@ -36,7 +50,8 @@ void print_actions(const std::string& actions, const config::TerminalWords& word
     if (line.value("state", "") != "new" || id.empty() || kind == "failed" || kind == "information")
       continue;  // what failed has been printed already
     const std::string axis = line.value("axis", ""), quantity = line.value("quantity", ""),
-                      of = axis + (axis.empty() || quantity.empty() ? "" : " ") + quantity,
+                      of = axis + (axis.empty() || quantity.empty() ? "" : " ") + quantity +
+                           judged_value(line, words.language()),
                       says = line.value("says", "");
     auto same = std::find_if(campaigns.begin(), campaigns.end(),
                              [&](const Campaign& one) { return one.id == id; });

@@ -180,9 +180,9 @@ class Session {
     const Quantity q = deviation_of(f.rotary);
     done("table", say("session.table", {{"files", names_of(merged_.files)},
                                         {"folder", out_.string()},
-                                        {"before", with_unit(f.E[0], q)},
-                                        {"after", with_unit(f.E[1], q)},
-                                        {"most", with_unit(f.E[1] + f.scatter, q)}}));
+                                        {"before", with_unit(f.E[0], q, *words_)},
+                                        {"after", with_unit(f.E[1], q, *words_)},
+                                        {"most", with_unit(f.E[1] + f.scatter, q, *words_)}}));
     return true;
   }
 
@@ -229,12 +229,12 @@ class Session {
         return refused("probe", stored.error());
     const Quantity q = deviation_of(p->rotary), at = position_of(p->rotary);
     done("probe", say("session.probe", {{"file", std::move(where)},
-                                        {"from", with_unit(p->from, at)},
-                                        {"to", with_unit(p->to, at)},
-                                        {"right", with_unit(0.0, q)},
-                                        {"wrong", with_unit(2.0 * p->difference, q)},
-                                        {"none", with_unit(p->difference, q)},
-                                        {"old", with_unit(p->as_measured, q)}}));
+                                        {"from", with_unit(p->from, at, *words_)},
+                                        {"to", with_unit(p->to, at, *words_)},
+                                        {"right", with_unit(0.0, q, *words_)},
+                                        {"wrong", with_unit(2.0 * p->difference, q, *words_)},
+                                        {"none", with_unit(p->difference, q, *words_)},
+                                        {"old", with_unit(p->as_measured, q, *words_)}}));
     return true;
   }
 
@@ -301,9 +301,9 @@ class Session {
                       answer_ == Answer::worked   ? "done"
                       : answer_ == Answer::failed ? "failed"
                                                   : "open",
-                      say("session.verdict", {{"before", with_unit(f.E[0], q)},
-                                              {"predicted", with_unit(f.E[1], q)},
-                                              {"after", with_unit(judged->E, q)}})});
+                      say("session.verdict", {{"before", with_unit(f.E[0], q, *words_)},
+                                              {"predicted", with_unit(f.E[1], q, *words_)},
+                                              {"after", with_unit(judged->E, q, *words_)}})});
     if (judged->change && judged->change->loading != statistics::Loading::loaded)
       verdict_.push_back(named_change(*judged->change, q));
     verdict_.insert(verdict_.end(), judged->findings.begin(), judged->findings.end());
@@ -316,7 +316,7 @@ class Session {
 
   Finding named_change(const statistics::TableChange& change, Quantity q) const {
     const double per = unit_of(q).per_si;
-    return {std::string("morning.table-") + assessment::loading_name(change.loading),
+    return {std::string("worklist.table-") + assessment::loading_name(change.loading),
             true,
             {{"rms", change.rms / per, q}, {"left", change.left / per, q}},
             {{"axis", axis_},

@@ -10,6 +10,7 @@
 #include "campaign/config/terminal_words.h"
 #include "campaign/evaluation/record.h"
 #include "colour.h"
+#include "laboratory/store/reader.h"
 #include "nonio/sdk/format.h"
 #include "platform/storage/json_values.h"
 #include "platform/storage/nearest.h"
@@ -97,11 +98,17 @@ class Page {
         {thing.value("maker", ""), thing.value("model", ""), thing.value("serial", "")}, " ");
   }
 
-  /// Whether a result is above its tolerance: only that requests an action, other findings warn.
-  static bool exceeded(const Json& results) {
-    for (const Json& analysis : results.value("analyses", Json::array()))
-      for (const Json& value : analysis.value("values", Json::object()))
-        if (rank_of(value) == 0) return true;
+  /// Whether the campaign is on the worklist: a result that does not conform or is indeterminate, a
+  /// table or certificate that was withheld. Other findings only warn.
+  static bool requires_action(const Json& results) {
+    for (const Json& value : results.value("conformity", Json::array()))
+      if (rank_of(value) < 2) return true;
+    for (const char* made : {"analyses", "tables", "outputs"})
+      for (const Json& source : results.value(made, Json::array()))
+        for (const Json& finding : source.value("findings", Json::array()))
+          if (finding.value("severity", "") == "attention" &&
+              store::is_withholding(finding.value("id", "")))
+            return true;
     return false;
   }
 
@@ -110,9 +117,9 @@ class Page {
     const std::string status = results.at("status");
     const Json nothing = Json::object();
     const std::string id = c.at("id"),
-                      verdict =
-                          say_.of("status",
-                                  status != "attention" || exceeded(results) ? status : "warnings");
+                      verdict = say_.of("status", status != "attention" || requires_action(results)
+                                                      ? status
+                                                      : "warnings");
     out_ << paint(id, Colour::bold) << "  " << paint(verdict, status_colour(status)) << "\n"
          << wrapped(joined_text({name_of(c.value("machine", nothing)), c.value("customer", ""),
                                  c.value("site", ""), c.value("date", "")},
@@ -450,7 +457,9 @@ Verb show_verb(Common& common) {
           common_arguments(common)),
       .footer =
           "Results with a tolerance come first: ! does not conform, ? indeterminate, ok "
-          "conforms. Findings with the severity warning require action. --json prints the text of "
+          "conforms. A campaign requires action if a result does not conform or is indeterminate, "
+          "or "
+          "if a table or certificate was withheld. --json prints the text of "
           "results.json (of a machine: nonio-history/1).\n\n"
           "Exit status: 0 shown; 1 shown, and the campaign failed; 2 usage or configuration.",
       .examples = {"nonio show samples/site/09-tolerances", "nonio show out/09-tolerances --all",

@@ -56,7 +56,7 @@ int simulate(const SimulateWish& w, const Common& common) {
     std::cout << storage::Json{{"campaign", out.string()}, {"truth", truth.string()}}.dump()
               << "\n";
   else if (!common.quiet)
-    std::cout << out.string() << "\nwhat is in it: " << truth.string() << "\n";
+    std::cout << out.string() << "\ntrue values: " << truth.string() << "\n";
   return exit_done;
 }
 

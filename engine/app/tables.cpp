@@ -43,10 +43,13 @@ std::string bar(double part, double whole, std::size_t width, std::optional<doub
   return text;
 }
 
-std::string p_text(double p) { return short_text(p, 2); }
+std::string p_text(double p, const config::TerminalWords& say) {
+  return p < 1e-4 ? "< " + say.number("0.0001") : say.number(short_text(p, 2));
+}
 
-std::string floor_text(const model::NoiseFloor& floor, Quantity q) {
-  return with_unit(floor.s, q) + ", u = " + with_unit(floor.u, q);
+std::string floor_text(const model::NoiseFloor& floor, Quantity q,
+                       const config::TerminalWords& say) {
+  return with_unit(floor.s, q, say) + ", u = " + with_unit(floor.u, q, say);
 }
 
 const char* head_of(const model::Part& part) {
@@ -69,7 +72,9 @@ void print_head(std::ostream& out, const modelling::PartModel& part,
   const std::string effects = storage::listed(part.names());
   sentence(out, 0,
            say(head_of(part.part)) + " " + part.part.name + " (" +
-               storage::listed(part.part.measurements) + "): " +
+               say.counted("head.from", part.part.measurements.size(),
+                           {{"ids", storage::listed(part.part.measurements)}}) +
+               "): " +
                say("head.readings", {{"count", std::to_string(part.part.table.size())},
                                      {"model", effects.empty() ? say("head.empty") : effects}}));
 }
@@ -85,7 +90,8 @@ std::string held_text(const modelling::PartModel& part, const model::Parameter& 
 void print_parameters(std::ostream& out, const model::Fit& fit, const modelling::PartModel& part,
                       const modelling::ModelWords& words) {
   if (fit.parameters.empty()) return;
-  out << "  " << words.terminal()("parameters") << "\n";
+  const config::TerminalWords say = words.terminal();
+  out << "  " << say("parameters") << "\n";
   std::string told;
   for (const model::Parameter& p : fit.parameters) {
     const auto term = std::find_if(fit.terms.begin(), fit.terms.end(),
@@ -107,8 +113,8 @@ void print_parameters(std::ostream& out, const model::Fit& fit, const modelling:
     }
     const double value = printed(p.value, p.quantity);
     out << "    " << padded(p.effect, 20) << " " << padded(p.name, 8) << " "
-        << (p.quantity == Quantity::count ? fixed_text(value, 0) : short_text(value, 4));
-    if (std::isfinite(p.u)) out << ", u = " << short_text(printed(p.u, p.quantity), 2);
+        << say.number(p.quantity == Quantity::count ? fixed_text(value, 0) : short_text(value, 4));
+    if (std::isfinite(p.u)) out << ", u = " << say.number(short_text(printed(p.u, p.quantity), 2));
     const std::string_view unit = unit_of(p.quantity).symbol;
     const bool stated = p.shape && term != fit.terms.end() && model::has_stated(*term) &&
                         term->effect->shapes[term->stated->shape].parameter.name == p.name;
@@ -118,6 +124,14 @@ void print_parameters(std::ostream& out, const model::Fit& fit, const modelling:
   }
 }
 
+/// "direction x position" in the language of the words.
+std::string where_text(const model::Where& where, const config::TerminalWords& say) {
+  const std::string names = to_text(where);
+  const std::size_t by = names.find(" x ");
+  const std::string first = say.of("where", names.substr(0, by));
+  return by == std::string::npos ? first : first + " x " + say.of("where", names.substr(by + 3));
+}
+
 /// Added one after the other: each is fitted together with those above it.
 void print_places(std::ostream& out, const model::Comparison& c, const modelling::ModelWords& words,
                   Quantity deviation) {
@@ -125,7 +139,7 @@ void print_places(std::ostream& out, const model::Comparison& c, const modelling
   if (!c.fails()) return line(out, say("fails"), say("fails.nowhere"));
   out << "  " << say("fails") << "\n";
   for (const model::Place& place : c.seats.empty() ? c.places : c.seats)
-    out << "    " << padded(to_text(place.where) + modelling::on_line(place), 25)
+    out << "    " << padded(where_text(place.where, say) + modelling::on_line(place), 25)
         << wrapped(words.place(place, deviation), 29, sentence_width(STDOUT_FILENO)).substr(29);
 }
 
@@ -142,7 +156,7 @@ void print_after_table(std::ostream& out, const modelling::PartModel& part, cons
                        Quantity q, const config::TerminalWords& say) {
   const modelling::AfterTable predicted = modelling::after_table(part, fit);
   if (predicted.effects.empty()) return;
-  const auto value = [q](double v) { return std::isfinite(v) ? with_unit(v, q) : "-"; };
+  const auto value = [q, &say](double v) { return std::isfinite(v) ? with_unit(v, q, say) : "-"; };
   line(out, say("after-table"),
        say("after-table.rms", {{"before", value(predicted.rms_before)},
                                {"after", value(predicted.rms)},
@@ -165,8 +179,8 @@ std::string largest_text(const modelling::Compared& compared, const Campaign& ca
   const std::string direction = at.direction > 0 ? "+" : "-";
   std::string text =
       say(at.run == 0 ? "largest.in-time" : "largest.at",
-          {{"value", with_unit(compared.comparison.largest, part.deviation())},
-           {"position", evidence_text({"", at.target, at.position}) + " " +
+          {{"value", with_unit(compared.comparison.largest, part.deviation(), say)},
+           {"position", say.number(evidence_text({"", at.target, at.position})) + " " +
                             std::string(unit_of(at.position).symbol)},
            {"run", std::to_string(at.run)}}) +
       (at.direction == 0 ? "" : ", " + say("largest.direction", {{"direction", direction}})) +
@@ -197,12 +211,14 @@ void print_candidates(std::ostream& out, const modelling::Explained& e, bool all
   out << "  " << padded(say("candidate"), 22) << padded(say("evidence"), 13)
       << padded(say("evidence.alone"), 9) << padded(say("evidence.within"), 10)
       << padded(say("rms-after"), 14) << padded(say("left-out"), 18) << "p\n";
-  const auto evidence = [](double score) { return score > 0.0 ? fixed_text(score, 1) : "-"; };
+  const auto evidence = [&](double score) {
+    return score > 0.0 ? say.number(fixed_text(score, 1)) : "-";
+  };
   for (const model::Candidate* c : shown)
     out << "  " << padded(c->term.name() + " ", 22) << bar(c->score, best, 12) << " "
         << padded(evidence(c->alone), 9) << padded(evidence(c->within), 10)
-        << padded(with_unit(c->rms, q), 14)
-        << padded(c->cv_rms ? with_unit(*c->cv_rms, q) : "-", 18) << p_text(c->p) << "\n";
+        << padded(with_unit(c->rms, q, say), 14)
+        << padded(c->cv_rms ? with_unit(*c->cv_rms, q, say) : "-", 18) << p_text(c->p, say) << "\n";
   if (left > 0) out << "  " << say("show.more", {{"count", std::to_string(left)}}) << " (--all)\n";
 }
 
@@ -239,7 +255,7 @@ void print_advice(std::ostream& out, const modelling::Explained& e, const std::s
       sentence(out, 2, say(label) + ": " + text);
   for (const model::Candidate& c : x.candidates)
     if (c.term.price > 0.0 && c.term.name() == x.verdict.effect)
-      sentence(out, 2, say("rare", {{"price", fixed_text(c.term.price, 1)}}));
+      sentence(out, 2, say("rare", {{"price", say.number(fixed_text(c.term.price, 1))}}));
   for (const std::string& text : words.next(x, e.part))
     sentence(out, 2, say(x.plans.empty() ? "next" : "next.apart") + ": " + text);
   if (x.verdict.kind == model::Verdict::Kind::missing && !x.verdict.effect.empty())
@@ -275,7 +291,7 @@ void print_bars(std::ostream& out, const modelling::ModelStep& step,
   const auto one = [&](const std::string& name, const std::optional<double>& rms) {
     if (rms)
       out << "  " << padded(name, 8) << bar(*rms, whole, bar_width, step.floor) << " "
-          << with_unit(*rms, q) << "\n";
+          << with_unit(*rms, q, say) << "\n";
   };
   one(say("before"), step.rms_before);
   one(say("after"), step.rms_after);
@@ -287,6 +303,10 @@ std::string with_unit(double value, Quantity q) {
   return short_text(printed(value, q)) + " " + std::string(unit_of(q).symbol);
 }
 
+std::string with_unit(double value, Quantity q, const config::TerminalWords& say) {
+  return say.number(short_text(printed(value, q))) + " " + std::string(unit_of(q).symbol);
+}
+
 void print_comparison(std::ostream& out, const modelling::Compared& compared,
                       const Campaign& campaign, const modelling::ModelWords& words) {
   const model::Comparison& c = compared.comparison;
@@ -294,12 +314,12 @@ void print_comparison(std::ostream& out, const modelling::Compared& compared,
   const Quantity q = part.deviation();
   const config::TerminalWords say = words.terminal();
   print_head(out, part, words);
-  line(out, "RMS", with_unit(c.fit.rms, q));
-  line(out, say("left-out"), c.cv_rms ? with_unit(*c.cv_rms, q) : say("left-out.one-run"));
+  line(out, "RMS", with_unit(c.fit.rms, q, say));
+  line(out, say("left-out"), c.cv_rms ? with_unit(*c.cv_rms, q, say) : say("left-out.one-run"));
   const std::vector<std::uint32_t>& run = part.part.table.run;
   const bool runs = std::adjacent_find(run.begin(), run.end(), std::not_equal_to<>()) != run.end();
   line(out, say("floor"),
-       c.floor ? floor_text(*c.floor, q) : say(runs ? "floor.short-runs" : "floor.unknown"));
+       c.floor ? floor_text(*c.floor, q, say) : say(runs ? "floor.short-runs" : "floor.unknown"));
   if (c.largest != 0.0) line(out, say("largest"), largest_text(compared, campaign, say));
   line(out, say("redundancy"), std::to_string(c.fit.redundancy));
   if (c.lack_of_fit && std::isfinite(c.lack_of_fit->F))
@@ -309,7 +329,7 @@ void print_comparison(std::ostream& out, const modelling::Compared& compared,
     line(out, say("correlated"),
          say("correlated.pair", {{"one", pair.one->effect + " " + pair.one->name},
                                  {"other", pair.other->effect + " " + pair.other->name}}) +
-             ": r = " + fixed_text(pair.r, 3));
+             ": r = " + say.number(fixed_text(pair.r, 3)));
   print_places(out, c, words, part.deviation());
   if (c.means > 0) line(out, "", say("means", {{"count", std::to_string(c.means)}}));
   print_suspects(out, c, part, campaign, words);
@@ -324,9 +344,9 @@ void print_model(std::ostream& out, const modelling::Compared& compared,
   const Quantity q = compared.part.deviation();
   const config::TerminalWords say = words.terminal();
   print_head(out, compared.part, words);
-  line(out, "RMS", with_unit(c.fit.rms, q));
-  if (c.cv_rms) line(out, say("left-out"), with_unit(*c.cv_rms, q));
-  if (c.floor) line(out, say("floor"), floor_text(*c.floor, q));
+  line(out, "RMS", with_unit(c.fit.rms, q, say));
+  if (c.cv_rms) line(out, say("left-out"), with_unit(*c.cv_rms, q, say));
+  if (c.floor) line(out, say("floor"), floor_text(*c.floor, q, say));
   print_parameters(out, c.fit, compared.part, words);
   for (const std::string& warning : modelling::warnings_of(compared.part, c.fit, words))
     sentence(out, 2, say("warning") + ": " + warning);
@@ -338,8 +358,8 @@ void print_explanation(std::ostream& out, const modelling::Explained& e, const C
   const Quantity q = e.part.deviation();
   const config::TerminalWords say = words.terminal();
   print_head(out, e.part, words);
-  line(out, "RMS", with_unit(c.fit.rms, q));
-  if (c.floor) line(out, say("floor"), floor_text(*c.floor, q));
+  line(out, "RMS", with_unit(c.fit.rms, q, say));
+  if (c.floor) line(out, say("floor"), floor_text(*c.floor, q, say));
   print_verdict(out, e, words);
   print_candidates(out, e, all, say);
   print_together(out, e.explanation, say);
@@ -359,11 +379,12 @@ void print_foresight(std::ostream& out, const modelling::Explained& e,
       for (const model::Parameter& p : e.explanation.comparison.fit.parameters)
         if (p.effect == f.effect && p.name == f.parameter)
           out << "    " << padded("u " + p.effect + " " + p.name, 30)
-              << padded(short_text(printed(p.u, p.quantity)), 10) << "-> "
-              << with_unit(p.u * f.factor, p.quantity) << "\n";
+              << padded(say.number(short_text(printed(p.u, p.quantity))), 10) << "-> "
+              << with_unit(p.u * f.factor, p.quantity, say) << "\n";
     for (const auto& x : one.evidence)
       out << "    " << padded(say("what-if.evidence") + " " + x.effect, 30)
-          << padded(short_text(x.now), 10) << "-> " << short_text(x.then) << "\n";
+          << padded(say.number(short_text(x.now)), 10) << "-> " << say.number(short_text(x.then))
+          << "\n";
   }
 }
 
@@ -380,13 +401,13 @@ void print_change(std::ostream& out, const modelling::Change& change,
   const Quantity q = step.quantity;
   const auto row = [&](const std::string& name, const std::optional<double>& before,
                        const std::optional<double>& after) {
-    out << "  " << padded(name, 18) << padded(before ? with_unit(*before, q) : "-", 14)
-        << (after ? with_unit(*after, q) : "-") << "\n";
+    out << "  " << padded(name, 18) << padded(before ? with_unit(*before, q, say) : "-", 14)
+        << (after ? with_unit(*after, q, say) : "-") << "\n";
   };
   out << "  " << padded("", 18) << padded(say("before"), 14) << say("after") << "\n";
   row("RMS", step.rms_before, step.rms_after);
   row(say("left-out"), step.cv_before, step.cv_after);
-  if (step.floor) line(out, say("floor"), with_unit(*step.floor, q));
+  if (step.floor) line(out, say("floor"), with_unit(*step.floor, q, say));
   print_bars(out, step, say);
   if (!change.after) return;
   print_parameters(out, change.after->comparison.fit, change.after->part, words);
@@ -405,7 +426,8 @@ void print_step(std::ostream& out, const modelling::ModelStep& step,
                             {"lines", lines},
                             {"why", step.excluded->why}});
   } else if (step.period) {
-    out << say("period", {{"axis", step.period->axis}, {"mm", short_text(step.period->mm)}});
+    out << say("period",
+               {{"axis", step.period->axis}, {"mm", say.number(short_text(step.period->mm))}});
   }
   out << "\n";
 }
@@ -425,7 +447,7 @@ void print_history(std::ostream& out, const std::vector<modelling::ModelStep>& h
     }
     out << "  " << padded((step.added ? "+ " : "- ") + step.effect, 24)
         << (step.rms_after ? bar(*step.rms_after, whole, bar_width, step.floor) + " " +
-                                 with_unit(*step.rms_after, step.quantity)
+                                 with_unit(*step.rms_after, step.quantity, say)
                            : "-")
         << "\n";
   }

@@ -10,6 +10,8 @@ namespace nonio::app {
 
 /// "0.71 um"
 std::string with_unit(double value, Quantity quantity);
+/// With the decimal sign of the language of the words.
+std::string with_unit(double value, Quantity quantity, const config::TerminalWords&);
 /// A name and its value; a sentence, wrapped to the terminal.
 void line(std::ostream& out, const std::string& name, const std::string& value);
 void sentence(std::ostream& out, std::size_t indent, const std::string& text);

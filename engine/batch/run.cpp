@@ -105,8 +105,8 @@ void leave_out_forgotten(RunResult& run, const Expected<store::SiteRecords>& rec
 }
 
 /// If pages cannot be made, the run does not fail: they are made again from the results.
-MorningPages worklist_of(RunResult& run, const RunOptions& options, const RunEvents& events,
-                         const reading::Context& context) {
+WorklistPages worklist_of(RunResult& run, const RunOptions& options, const RunEvents& events,
+                          const reading::Context& context) {
   auto made = make_worklist(options, context, last_run_of(run, options.out, context.templates));
   if (made) {
     run.asking = made->asking;
@@ -122,12 +122,12 @@ MorningPages worklist_of(RunResult& run, const RunOptions& options, const RunEve
 
 /// A mail that cannot be sent is reported in the summary, and nothing is lost.
 void write_mail(RunResult& run, const RunOptions& options, const RunEvents& events,
-                const reading::Context& context, const MorningPages& morning) {
-  if (morning.mail.empty() || process::is_stop_requested()) return;
+                const reading::Context& context, const WorklistPages& worklist) {
+  if (worklist.mail.empty() || process::is_stop_requested()) return;
   const config::TerminalWords words(context.templates, context.site.language);
   const std::string subject =
       words("mail.subject", {{"number", std::to_string(run.run.number)}, {"date", run.run.date}});
-  const auto sent = send_mail(*context.site.mail, options.site, {subject, morning.mail});
+  const auto sent = send_mail(*context.site.mail, options.site, {subject, worklist.mail});
   if (sent) return;
   run.worklist_error = "the mail of this run was not sent: " + sent.error().message;
   run.notes.push_back(run.worklist_error);
@@ -175,13 +175,13 @@ Expected<void> close_run(RunResult& run, const RunOptions& options, const RunEve
   const reading::Context& context = place.context;
   if (auto tidied = tidy_all(run, options.out, state.resumed); !tidied) return tidied;
   if (auto noted = note_certificates(run, options, context, state); !noted) return noted;
-  const MorningPages morning = worklist_of(run, options, events, context);
+  const WorklistPages worklist = worklist_of(run, options, events, context);
   if (!state.reopened) {
-    write_mail(run, options, events, context, morning);
+    write_mail(run, options, events, context, worklist);
     post_news(run, options, events, context);
   }
   const config::TerminalWords words(context.templates, context.site.language);
-  if (auto written = write_summary(run, options.out, options.version, words, morning); !written)
+  if (auto written = write_summary(run, options.out, options.version, words, worklist); !written)
     return written;
   if (auto kept = place.parts.keep(state.of()); !kept) return kept;
   return end_run(options.out, state, {state.of(), run.campaigns.size(), run.failed()});

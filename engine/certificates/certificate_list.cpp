@@ -37,7 +37,9 @@ Expected<void> withdraw(const fs::path& site, const config::Numbering& numbering
   if (std::any_of(why.begin(), why.end(), control))
     return fail("the reason has a control character; expected one line of text");
   NONIO_TRY(const auto entries, Register::entries(site, numbering));
-  if (entries.empty()) return fail("no number " + number + " was ever drawn");
+  if (entries.empty())
+    return fail("the register has no number " + number +
+                " (`nonio certificate list SITE` lists the numbers)");
   NONIO_TRY(auto opened, Register::open(site, numbering));
   return opened.withdraw(number, why, by);
 }

@@ -372,7 +372,7 @@ Expected<evaluation::Certificate> Register::draw(const std::string& campaign,
   if (!later.empty())
     return fail("today is " + today + ", and " + later.front()[0] + " was issued on " +
                 later.front()[1] +
-                ": the clock was set back, and no number is drawn until it is right");
+                ": the clock was set back; no number is assigned until it is right");
   evaluation::Certificate drawn;
   const std::string unfinished = "the run of " + today + " ended before it was issued";
   drawn.issue.date = today;
@@ -494,7 +494,9 @@ Expected<void> Register::withdraw(const std::string& number, const std::string& 
       "ON new.replaces = c.id AND new.state <> 'drawn' WHERE c.number = ?",
       {number});
   if (auto well = db.take_error(); !well) return well;
-  if (found.empty()) return fail("no number " + number + " was ever drawn");
+  if (found.empty())
+    return fail("the register has no number " + number +
+                " (`nonio certificate list SITE` lists the numbers)");
   const auto& entry = found.front();
   if (entry[1] == "drawn") return fail(number + " was never issued: there is nothing to withdraw");
   if (entry[1] == "withdrawn") return fail(number + " is withdrawn already");

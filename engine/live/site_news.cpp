@@ -80,8 +80,8 @@ SiteNews::Seen SiteNews::look() const {
   out.run = run_now(out_);
   for (const char* name :
        {config::events_name, config::acknowledged_name, config::forgotten_name, "site.toml"})
-    out.morning += news_stamp(site_ / name);
-  if (!out_.empty()) out.morning += news_stamp(out_ / "summary.json");
+    out.worklist += news_stamp(site_ / name);
+  if (!out_.empty()) out.worklist += news_stamp(out_ / "summary.json");
   if (!register_.empty())
     out.drafts = news_stamp(register_) + news_stamp(register_.string() + "-wal");
   return out;
@@ -102,8 +102,8 @@ void SiteNews::watch() {
       const std::lock_guard lock(mutex_);
       before = std::exchange(seen_, now);
     }
-    if (!(now.run == before.run)) tell_("night");
-    if (now.morning != before.morning) tell_("morning");
+    if (!(now.run == before.run)) tell_("run");
+    if (now.worklist != before.worklist) tell_("worklist");
     if (now.drafts != before.drafts) tell_("drafts");
   }
 }

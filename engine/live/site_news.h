@@ -26,7 +26,7 @@ struct RunNow {
 /// (here or on a terminal), or by a release.
 class SiteNews {
  public:
-  /// `what`: night (a run began or ended), morning (results or entries changed), drafts.
+  /// `what`: run (a run began or ended), worklist (results or entries changed), drafts.
   using Tell = std::function<void(const std::string& what)>;
   SiteNews(std::filesystem::path site, std::filesystem::path out, Tell tell);
   SiteNews(const SiteNews&) = delete;
@@ -40,7 +40,7 @@ class SiteNews {
  private:
   struct Seen {
     RunNow run{};
-    std::string morning{}, drafts{};
+    std::string worklist{}, drafts{};
   };
   Seen look() const;
   void watch();

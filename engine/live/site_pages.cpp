@@ -58,7 +58,7 @@ Answer SiteService::entered(const std::vector<std::string>& arguments, const std
   return out;
 }
 
-Answer SiteService::morning() {
+Answer SiteService::worklist() {
   if (wish_.out.empty()) return refused(409, "no_out");
   return of_verb({"status", "--actions", "--json", verb_option("site", wish_.folder.string()),
                   wish_.out.string()});

@@ -239,7 +239,7 @@ Answer SiteService::answer_to(const Request& request, const User* user) {
 }
 
 Answer SiteService::get(const std::string& path, const Request& request, const User* user) {
-  if (path == "/api/site") return morning();
+  if (path == "/api/site") return worklist();
   if (path == "/metrics") return metrics();
   if (path == "/api/site/state") return state(user);
   if (path == "/api/settings") return settings(user);

@@ -79,7 +79,7 @@ class SiteService : public Starting {
   Answer end_session(const Request& request);
   Answer get(const std::string& path, const Request& request, const User* user);
   Answer post(const std::string& what, const Request& request, const User* user);
-  Answer morning();
+  Answer worklist();
   Answer metrics();
   Answer page(const std::string& name);
   Answer result(const std::string& campaign, const std::string& file);

@@ -119,6 +119,13 @@ std::string also_text(const Page& page, const WorkItem& l) {
   return out;
 }
 
+std::string limit_text(const Page& page, const WorkItem& l) {
+  const bool in_sentence = std::any_of(l.finding.evidence.begin(), l.finding.evidence.end(),
+                                       [](const Evidence& e) { return e.name == "limit"; });
+  if (!l.limit || in_sentence) return {};
+  return ", " + page.words.get("site.limit", {{"limit", short_number(page, *l.limit, l.unit)}});
+}
+
 std::string since_text(const Page& page, const WorkItem& l) {
   if (l.since.empty() || l.kind == WorkItem::Kind::overdue) return {};
   return page.words.get("site.since", {{"date", l.since}});

@@ -53,6 +53,8 @@ bool shows_value(const WorkItem&);
 std::string line_text(const Page&, const WorkItem&, const char* part);
 /// "Also out: A 15.5 ± 1.9 µm (limit 5)."; empty where the line has one value.
 std::string also_text(const Page&, const WorkItem&);
+/// ", limit 12.0"; empty without a limit, or if the line's sentence states it.
+std::string limit_text(const Page&, const WorkItem&);
 /// "Since 2026-01-24."; nothing where what it states has the day already.
 std::string since_text(const Page&, const WorkItem&);
 /// Name of a quantity in words, with its symbol where it has none.

@@ -82,11 +82,6 @@ void add_filters(View& view, const Page& page) {
   add_filter(view, page, "axis", axes);
 }
 
-std::string limit_text(const Page& page, const WorkItem& l) {
-  if (!l.limit) return {};
-  return ", " + page.words.get("site.limit", {{"limit", short_number(page, *l.limit, l.unit)}});
-}
-
 Html says(const Page& page, const WorkItem& l, const char* part) {
   return {typeset_html(line_text(page, l, part))};
 }
@@ -246,7 +241,7 @@ void add_sparks(View& view, const Page& page) {
 }  // namespace
 
 Expected<std::string> index_page(const Page& page) {
-  View view = page_view(page, page.words.get("site.morning"),
+  View view = page_view(page, page.words.get("site.worklist"),
                         page.words.get("site.night", {{"night", std::to_string(page.site.run)},
                                                       {"date", page.site.date}}));
   view.set("counts", counts(page));

@@ -1,5 +1,5 @@
 "use strict";
-// The lines of a morning below `root`, until a signal says that they have gone: {signal}.
+// The lines of a worklist below `root`, until a signal says that they have gone: {signal}.
 // Filters of the lines stand in the address, so that they can be sent: index.html#customer=Rossi&kind=out
 function nonioLines(root, until = {}) {
   const rows = [...root.querySelectorAll("tr[data-kind]")];

@@ -32,10 +32,7 @@ std::string number_of(const Page& page, const WorkItem& l) {
   if (!l.quantity.empty()) out = site::quantity_text(page, l.quantity);
   if (!site::shows_value(l)) return out;
   out += (out.empty() ? "" : " ") + site::value_text(page, *l.value, l.u, l.unit);
-  if (l.limit)
-    out += ", " +
-           page.words.get("site.limit", {{"limit", site::short_number(page, *l.limit, l.unit)}});
-  return out;
+  return out + site::limit_text(page, l);
 }
 
 void say(std::string& line, const std::string& sentence) {

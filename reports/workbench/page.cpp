@@ -39,8 +39,8 @@ Expected<std::string> shell_html(const Templates& templates, const std::string& 
 
 std::string_view app_js() { return embedded::app_js; }
 std::string_view app_css() { return embedded::app_css; }
-std::string_view morning_js() { return embedded::morning_js; }
-std::string_view morning_css() { return embedded::morning_css; }
+std::string_view site_js() { return embedded::site_js; }
+std::string_view site_css() { return embedded::site_css; }
 std::string_view uplot_js() { return embedded::uplot_js; }
 std::string_view uplot_css() { return embedded::uplot_css; }
 

@@ -17,7 +17,7 @@ quietly() { "$@" > "$work/said.log" 2>&1 || { local s=$?; cat "$work/said.log"; 
 
 [ -n "${NONIO_TEST_PACKAGES:-}" ] || skip "it takes minutes and makes a whole Debian; NONIO_TEST_PACKAGES=1 asks for it"
 [ "$(id -u)" = 0 ] || skip "it makes a root file system, which needs root"
-for program in buildah mmdebstrap lintian man; do
+for program in buildah mmdebstrap lintian man mkdocs; do
   [ -n "$(type -P $program)" ] || skip "$program is missing (scripts/install-dependencies --all)"
 done
 unshare --mount --pid --fork true 2> /dev/null || skip "unshare --mount is not permitted here"
@@ -35,10 +35,12 @@ export ARCHIVES=$store/archives DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 PA
 export -n CXX CC CMAKE_GENERATOR NONIO_PLUGIN_PATH 2> /dev/null || true
 mkdir -p "$ARCHIVES/partial"
 
+quietly cmake --build "$build" --target docs_site  # each link of its pages leads to a page, or this fails
 cp "$build/CPackConfig.cmake" "$work/"
 quietly "$cpack" --config "$build/CPackConfig.cmake" -B "$work/packages"
 package=$(echo "$work"/packages/nonio_*.deb) development=$(echo "$work"/packages/libnonio-dev_*.deb)
 step "packed: $(basename "$package") ($(($(stat -c %s "$package") / 1000)) kB), $(basename "$development")"
+dpkg-deb -c "$package" | grep -q 'doc/nonio/site/index\.html' || fail "the pages of the documentation are not in the package"
 lintian --allow-root --fail-on error,warning --tag-display-limit 0 "$package" "$development" || fail "lintian says no"
 step "lintian"
 

@@ -210,7 +210,7 @@ std::string waiting_line(const std::vector<certificates::WaitingDraft>& drafts,
 }
 
 /// "12 campaigns: 3 done, 9 unchanged, 0 failed; 2 lines: action required".
-std::string counts_line(const RunResult& run, const Lists& lists, const MorningPages& morning,
+std::string counts_line(const RunResult& run, const Lists& lists, const WorklistPages& worklist,
                         const std::string& version) {
   const auto n = [](std::size_t count) { return std::to_string(count); };
   const config::TerminalWords& words = lists.words;
@@ -222,7 +222,7 @@ std::string counts_line(const RunResult& run, const Lists& lists, const MorningP
          (lists.vanished.count == 0
               ? ""
               : words("vanished", {{"count", n(lists.vanished.count)}}) + "; ") +
-         words.counted("asking", morning.asking) + "\n";
+         words.counted("asking", worklist.asking) + "\n";
 }
 
 /// One line per heading, those with the most findings first.
@@ -242,23 +242,23 @@ void write_fresh(storage::Spool& out, const Lists& lists) {
 }
 
 /// A run in which nothing is new and no action is required.
-bool is_quiet(const RunResult& run, const Lists& lists, const MorningPages& morning) {
+bool is_quiet(const RunResult& run, const Lists& lists, const WorklistPages& worklist) {
   return lists.done.count == 0 && lists.failed.count == 0 && lists.vanished.count == 0 &&
-         morning.asking == 0 && !morning.json.empty() && run.issued.empty() &&
+         worklist.asking == 0 && !worklist.json.empty() && run.issued.empty() &&
          run.waiting.empty() && run.notes.empty();
 }
 
 /// What requires action comes first. Of long lists the begin: summary.json has them whole.
 void write_text(storage::Spool& out, const RunResult& run, Lists& lists, const std::string& version,
-                const MorningPages& morning) {
+                const WorklistPages& worklist) {
   const config::TerminalWords& words = lists.words;
-  if (is_quiet(run, lists, morning)) {
+  if (is_quiet(run, lists, worklist)) {
     std::string line = run_line(run, words);
     line.pop_back();
-    out.add(line + ": " + words(morning.judged ? "quiet" : "quiet.not-judged") + "\n");
+    out.add(line + ": " + words(worklist.judged ? "quiet" : "quiet.not-judged") + "\n");
     return;
   }
-  out.add(counts_line(run, lists, morning, version));
+  out.add(counts_line(run, lists, worklist, version));
   out.add(run_line(run, words));
   if (!run.issued.empty()) out.add(issued_line(run.issued, words));
   if (!run.waiting.empty()) out.add(waiting_line(run.waiting, words));
@@ -272,7 +272,7 @@ void write_text(storage::Spool& out, const RunResult& run, Lists& lists, const s
   };
   section("heading.failed", lists.failed);
   section("heading.vanished", lists.vanished);
-  if (!morning.text.empty()) out.add("\n" + words("heading.morning") + "\n" + morning.text);
+  if (!worklist.text.empty()) out.add("\n" + words("heading.worklist") + "\n" + worklist.text);
   write_fresh(out, lists);
   section("heading.done", lists.done);
   if (!run.notes.empty()) out.add("\n" + words("heading.notes") + "\n");
@@ -280,7 +280,7 @@ void write_text(storage::Spool& out, const RunResult& run, Lists& lists, const s
 }
 
 void write_json(storage::Spool& out, const RunResult& run, Lists& lists, const std::string& version,
-                const fs::path& out_folder, const MorningPages& morning) {
+                const fs::path& out_folder, const WorklistPages& worklist) {
   const std::initializer_list<List*> all{&lists.done,   &lists.unchanged, &lists.attention,
                                          &lists.failed, &lists.vanished,  &lists.fresh};
   storage::Json seen = {{"tonight", run.campaigns.size()}, {"night_before", nullptr}};
@@ -298,7 +298,7 @@ void write_json(storage::Spool& out, const RunResult& run, Lists& lists, const s
     out.add(l->json);
     out.add(l->count == 0 ? "]" : "\n ]");
   }
-  out.add(",\n \"lines\": " + (morning.json.empty() ? "[]" : morning.json));
+  out.add(",\n \"lines\": " + (worklist.json.empty() ? "[]" : worklist.json));
   storage::Json issued = storage::Json::array();
   for (const certificates::RegisterEntry& e : run.issued) {
     storage::Json one = {{"number", e.number}, {"campaign", e.campaign}};
@@ -354,7 +354,7 @@ std::string first_error(const CampaignState& c, const config::TerminalWords& wor
 }
 
 Expected<void> write_summary(const RunResult& run, const fs::path& out, const std::string& version,
-                             const config::TerminalWords& words, const MorningPages& morning) {
+                             const config::TerminalWords& words, const WorklistPages& worklist) {
   const std::vector<std::string> names{"summary.txt", "summary.json"};
   storage::remove_leftovers(out);
   storage::Spool text = storage::Spool::at(storage::temporary_path(out, names[0]));
@@ -367,8 +367,8 @@ Expected<void> write_summary(const RunResult& run, const fs::path& out, const st
     return fail("cannot write the summary in " + out.string() + ": " + added.error().message);
   }
   for (const Vanished& v : run.vanished) lists.add(v);
-  write_text(text, run, lists, version, morning);
-  write_json(json, run, lists, version, out, morning);
+  write_text(text, run, lists, version, worklist);
+  write_json(json, run, lists, version, out, worklist);
   auto written = text.flush();
   if (written) written = json.flush();
   if (written) written = storage::rename_temporaries(out, names);

@@ -22,6 +22,6 @@ std::string reason_in(const std::string& text, const config::TerminalWords& word
 /// campaigns' records there, one at a time; the lists grow in files.
 Expected<void> write_summary(const RunResult& run, const std::filesystem::path& out,
                              const std::string& version, const config::TerminalWords& words,
-                             const MorningPages& morning);
+                             const WorklistPages& worklist);
 
 }  // namespace nonio::batch

@@ -80,7 +80,7 @@ Expected<void> write_pages(const fs::path& out, std::vector<Artifact> pages) {
   return write_lists(out, std::move(root));
 }
 
-/// Result of the process that makes the pages: the members of `MorningPages`.
+/// Result of the process that makes the pages: the members of `WorklistPages`.
 using Texts = std::vector<std::string>;
 
 void add_curves(reports::SiteHistory& site, const fs::path& out,
@@ -136,9 +136,9 @@ Expected<Texts> texts_of(reports::SiteHistory site, const reading::Context& cont
 }
 
 /// All machines anew, with the error curves of each campaign's results.json.
-Expected<Texts> small_morning(const fs::path& out, const reading::Context& context,
-                              const assessment::LastRun& last_run,
-                              const std::function<void()>& alive) {
+Expected<Texts> small_worklist(const fs::path& out, const reading::Context& context,
+                               const assessment::LastRun& last_run,
+                               const std::function<void()>& alive) {
   NONIO_TRY(auto site, assessment::assess(out, last_run, alive, assessment::Keep::trends));
   add_curves(site, out, alive);
   NONIO_TRY(auto pages, reports::site_pages(site, context.templates, language_of_pages(context)));
@@ -198,9 +198,9 @@ class MachinePages {
 };
 
 /// Without error curves, and only of machines of which something is new.
-Expected<Texts> large_morning(const fs::path& out, const reading::Context& context,
-                              const assessment::LastRun& last_run,
-                              const std::function<void()>& alive) {
+Expected<Texts> large_worklist(const fs::path& out, const reading::Context& context,
+                               const assessment::LastRun& last_run,
+                               const std::function<void()>& alive) {
   auto assessment =
       assessment::Assessment::of(out, last_run, alive, assessment::Assessment::Kept::used);
   if (!assessment) return fail(assessment.error());
@@ -243,20 +243,20 @@ assessment::LastRun last_run_of(const RunResult& run, const fs::path& out,
   return last_run;
 }
 
-Expected<MorningPages> make_worklist(const RunOptions& options, const reading::Context& context,
-                                     const assessment::LastRun& last_run,
-                                     std::uint64_t most_curves) {
+Expected<WorklistPages> make_worklist(const RunOptions& options, const reading::Context& context,
+                                      const assessment::LastRun& last_run,
+                                      std::uint64_t most_curves) {
   const auto made = read_apart<Texts>(
       "the history of the machines", context.site.limits.disk_seconds,
       [&](process::SignsOfLife& signs) -> Expected<Texts> {
         signs.reading(options.out.string());
         const auto alive = [&] { signs.beat(); };
-        const auto make = last_run.campaigns > most_curves ? large_morning : small_morning;
+        const auto make = last_run.campaigns > most_curves ? large_worklist : small_worklist;
         return make(options.out, context, last_run, alive);
       });
   if (!made) return fail(made.error());
-  return MorningPages{(*made)[0],          (*made)[1], std::stoull((*made)[2]),
-                      !(*made)[3].empty(), (*made)[5], (*made)[4]};
+  return WorklistPages{(*made)[0],          (*made)[1], std::stoull((*made)[2]),
+                       !(*made)[3].empty(), (*made)[5], (*made)[4]};
 }
 
 }  // namespace nonio::batch

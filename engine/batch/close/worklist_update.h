@@ -11,7 +11,7 @@
 namespace nonio::batch {
 
 /// What a run reports to people.
-struct MorningPages {
+struct WorklistPages {
   std::string text;  ///< of summary.txt: one line per action, without what failed or is lost
   std::string json;  ///< the same lines as a list, of summary.json
   std::uint64_t asking = 0;  ///< lines that are new and no mere notes
@@ -29,8 +29,8 @@ assessment::LastRun last_run_of(const RunResult& run, const std::filesystem::pat
 /// its own, which may take `disk_seconds` without a sign of life. Of sites with more campaigns than
 /// `most_curves` no error curves are drawn, and machines of which nothing is new are not looked at
 /// again.
-Expected<MorningPages> make_worklist(const RunOptions& options, const reading::Context& context,
-                                     const assessment::LastRun& last_run,
-                                     std::uint64_t most_curves = 5000);
+Expected<WorklistPages> make_worklist(const RunOptions& options, const reading::Context& context,
+                                      const assessment::LastRun& last_run,
+                                      std::uint64_t most_curves = 5000);
 
 }  // namespace nonio::batch

@@ -28,7 +28,8 @@ std::string all_of(const std::vector<Error>& errors) {
   return text;
 }
 
-/// What the reader of the summary should know of the key.
+/// Notes for the summary: no signature is possible, the signing certificate expires within a month,
+/// or there is no time-stamp server.
 void note_key(SetUp& place, bool is_stamped) {
   constexpr sign::Time month = sign::Time{30} * 86400;
   std::vector<std::string>& notes = place.notes;
@@ -37,15 +38,16 @@ void note_key(SetUp& place, bool is_stamped) {
     place.no_key = who.error().message;
     notes.push_back("nothing can be signed: " + place.no_key);
   } else if (who->not_after - std::time(nullptr) < month) {
-    notes.push_back("the signing certificate of " + who->subject + " runs out on " +
-                    sign::text_of(who->not_after) + ": have a new one made");
+    notes.push_back("the signing certificate of " + who->subject + " expires on " +
+                    sign::text_of(who->not_after) + "; request a new one");
   }
   if (who && !is_stamped)
     place.unstamped =
-        "no time-stamp server is named (time_stamp in [signing] of site.toml): what is signed "
-        "holds until the certificate of " +
-        who->subject + " runs out on " + sign::text_of(who->not_after) +
-        ", and no longer (`nonio certificate extend` can still give it a time stamp until then)";
+        "no time-stamp server is configured (time_stamp in [signing] of site.toml): signatures can "
+        "be "
+        "verified only until the certificate of " +
+        who->subject + " expires on " + sign::text_of(who->not_after) +
+        " (`nonio certificate extend` can add a time stamp until then)";
 }
 
 /// A folder, or a plugin in it, that others than root and the owner of the program can change;

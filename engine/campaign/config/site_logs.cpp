@@ -188,6 +188,9 @@ Check counts(Checked<std::vector<T>> (*parse)(std::string_view, const std::strin
 template <class Entry>
 void check_entry(TableReader& reader, Entry& entry) {
   entry.line = reader.line();
+  if constexpr (requires { entry.finding; })
+    if (constexpr std::string_view former = "morning."; entry.finding.starts_with(former))
+      entry.finding.replace(0, former.size(), "worklist.");
   if constexpr (requires { entry.why; })
     if (!entry.why.empty() && !has_content(entry.why))
       reader.error("why", "expected a reason in words, found \"" + entry.why + "\"");

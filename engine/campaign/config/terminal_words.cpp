@@ -23,6 +23,10 @@ std::string TerminalWords::counted(std::string_view name, std::size_t count, Par
   return (*this)(std::string(name) + (count == 1 ? ".one" : ".many"), parts);
 }
 
+std::string TerminalWords::number(std::string text) const {
+  return localised(std::move(text), language_);
+}
+
 std::string TerminalWords::of(std::string_view list, const std::string& text) const {
   const std::string found = text_of(std::string(list) + "." + text);
   return found.empty() ? text : found;

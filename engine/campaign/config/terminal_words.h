@@ -26,6 +26,9 @@ class TerminalWords {
   /// A fixed text of the program (a reason, a decision) in the language; itself if it has no entry.
   std::string of(std::string_view list, const std::string& text) const;
 
+  /// A number with the decimal sign of the language.
+  std::string number(std::string text) const;
+
   const std::string& language() const { return language_; }
   const Templates& templates() const { return templates_; }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "campaign/config/toml_reader.h"
+#include "nonio/sdk/fields.h"
 
 namespace nonio::config {
 
@@ -131,6 +132,19 @@ class Precheck {
   std::size_t dots_ = 0;
 };
 
+/// The value of a line if it is a date with points, as Europe writes it: "23.3.2026".
+std::string dotted_date(std::string_view text, std::uint64_t line) {
+  for (; line > 1 && text.find('\n') != text.npos; --line) text.remove_prefix(text.find('\n') + 1);
+  text = text.substr(0, text.find_first_of("#\r\n"));
+  const std::size_t equals = text.find('=');
+  if (equals == text.npos) return {};
+  const std::string value(trimmed(text.substr(equals + 1)));
+  const bool is_date = value.size() >= 8 && value.size() <= 10 &&
+                       std::count(value.begin(), value.end(), '.') == 2 &&
+                       value.find_first_not_of("0123456789.") == value.npos;
+  return is_date ? value : std::string();
+}
+
 }  // namespace
 
 Expected<toml::table> parse_toml(std::string_view text, const std::string& file) {
@@ -142,6 +156,9 @@ Expected<toml::table> parse_toml(std::string_view text, const std::string& file)
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& e) {
+    if (const std::string date = dotted_date(text, e.source().begin.line); !date.empty())
+      return fail(
+          Error{"expected a date such as 2026-03-23, found " + date, file, e.source().begin.line});
     const std::string complaint(e.description());
     // Windows' editors call their old code page ANSI.
     return fail(

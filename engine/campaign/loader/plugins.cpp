@@ -39,7 +39,9 @@ std::vector<dll::shared_library>& libraries() {
 Expected<const PluginEntry*> open_entry(const fs::path& path) {
   boost::dll::fs::error_code error;
   dll::shared_library library(path.string(), error, dll::load_mode::rtld_now);
-  if (error) return fail("cannot be loaded: " + error.message());
+  if (error)
+    return fail("is no shared library (.so), or a library that it needs is missing: " +
+                error.message());
   if (!library.has("nonio_plugin")) return fail("is not a plugin: it has no symbol nonio_plugin");
   const PluginEntry* entry = &library.get<const PluginEntry>("nonio_plugin");
   libraries().push_back(std::move(library));

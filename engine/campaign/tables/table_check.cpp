@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nonio/math/compensated.h"
 #include "nonio/math/distributions.h"
 #include "nonio/math/loaded_table.h"
 #include "nonio/sdk/format.h"
@@ -120,12 +121,12 @@ double present_backlash(const Settings& options, const std::string& axis, bool r
   return stated_backlash(options, axis, rotary).value_or(0.0);
 }
 
-TableForecast forecast_of(const std::string& measurement, const std::string& axis,
-                          const math::AxisTest& test, const math::ErrorCurve& raw,
+TableForecast forecast_of(const Campaign& campaign, const Measurement& m, const std::string& axis,
+                          const Observations& readings, const math::ErrorCurve& raw,
                           const Tables& tables, double present) {
+  const auto test = math::AxisTest::arrange(readings);
   const math::ErrorCurve measured = math::error_curve(test);
-  TableForecast f{measurement, axis, test.rotary};
-  f.scatter = range_of_scatter(test);
+  TableForecast f{m.id, axis, test.rotary};
   const auto was = math::before(measured);
   f.E[0] = was.E(), f.B[0] = was.B(), f.M[0] = was.M();
   const auto whole = math::correction_of(tables, axis, present);
@@ -133,7 +134,12 @@ TableForecast forecast_of(const std::string& measurement, const std::string& axi
     return whole ? (*whole)(x, dir) - (dir > 0 ? present / 2.0 : -present / 2.0) : 0.0;
   };
   const auto will = math::after(raw, c);
-  f.E[1] = will.E(), f.B[1] = will.B(), f.M[1] = will.M();
+  const auto U = math::compensated_uncertainty(campaign, m, readings, test, true);
+  const double U_B = measured.bidirectional() && will.B() < was.B() ? U.B_mean : 0.0;
+  f.E[1] = math::predicted_after(was.E(), will.E(), std::max(U.E, U_B));
+  f.B[1] = math::predicted_after(was.B(), will.B(), U_B);
+  f.M[1] = math::predicted_after(was.M(), will.M(), U.M);
+  f.scatter = std::max(will.E() + range_of_scatter(test) - f.E[1], 0.0);
   return f;
 }
 
@@ -362,18 +368,19 @@ std::vector<TableForecast> forecast(const reading::ReadCampaign& read, const Tab
     const auto curve = math::error_curve(test);
     if (curve.position.size() < 2) continue;
     const auto raw = on ? math::error_curve(math::AxisTest::arrange(on->readings[i])) : curve;
-    out.push_back(forecast_of(m.id, axis, test, raw, tables,
+    out.push_back(forecast_of(read.manifest->campaign, m, axis, read.observations[i], raw, tables,
                               present_backlash(on ? on->options : options, axis, test.rotary)));
   }
   return out;
 }
 
-TableForecast forecast_of_axis(const Measurement& m, const std::string& axis,
-                               const Observations& measured, const Observations& raw,
-                               const Tables& loaded, const Settings& options) {
-  const auto test = math::AxisTest::arrange(measured);
-  return forecast_of(m.id, axis, test, math::error_curve(math::AxisTest::arrange(raw)), loaded,
-                     present_backlash(options, axis, test.rotary));
+TableForecast forecast_of_axis(const Campaign& campaign, const Measurement& m,
+                               const std::string& axis, const Observations& measured,
+                               const Observations& raw, const Tables& loaded,
+                               const Settings& options) {
+  const auto rotary = math::AxisTest::arrange(measured).rotary;
+  return forecast_of(campaign, m, axis, measured, math::error_curve(math::AxisTest::arrange(raw)),
+                     loaded, present_backlash(options, axis, rotary));
 }
 
 Expected<RenewedTables> renew(const reading::ReadCampaign& read, const Controller& controller,

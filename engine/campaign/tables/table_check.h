@@ -89,7 +89,7 @@ std::vector<TableForecast> forecast(const reading::ReadCampaign&, const std::vec
                                     const std::optional<Underlay>& on = std::nullopt);
 
 /// Of one measurement, as measured and without what was active.
-TableForecast forecast_of_axis(const Measurement&, const std::string& axis,
+TableForecast forecast_of_axis(const Campaign&, const Measurement&, const std::string& axis,
                                const Observations& measured, const Observations& raw,
                                const std::vector<LoadedTable>& loaded, const Settings& options);
 

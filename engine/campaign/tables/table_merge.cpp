@@ -194,7 +194,7 @@ Expected<MergedTables> merge_tables(const reading::ReadCampaign& read, const Con
   out.whole = std::move(whole);
   out.differences = differences(*present, *next);
   out.next = own_tables(*next, axis);
-  out.forecast.push_back(forecast_of_axis(one->campaign.measurements.front(), axis,
+  out.forecast.push_back(forecast_of_axis(one->campaign, one->campaign.measurements.front(), axis,
                                           one->measured.front(), one->readings.front(), *next,
                                           options));
   return out;

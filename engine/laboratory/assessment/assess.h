@@ -39,7 +39,7 @@ class Assessment {
   Assessment& operator=(Assessment&&) noexcept;
   ~Assessment();
 
-  /// What morning_text, lines_json and the lists over all machines need.
+  /// What worklist_text, lines_json and the lists over all machines need.
   const reports::SiteHistory& site() const;
   /// A machine of `site`, with all its series.
   Expected<reports::MachineHistory> whole(std::size_t machine);

@@ -175,15 +175,16 @@ class Describing {
     const StoredResult& r = m_.stored.results[result];
     const StoredCampaign& c = m_.stored.campaigns[r.campaign];
     HistoryPoint p{c.id, c.day, links_[r.campaign], state_of(r.state), si(r.value, q)};
-    if (r.followed)
-      p.u = si(r.u_repeat.value_or(0.0), q);
-    else if (r.expanded)
-      p.u = si(*r.expanded / r.k.value_or(2.0), q);
+    if (!r.followed) {  // its U contains what campaigns have in common
+      if (r.expanded) p.u = si(*r.expanded / r.k.value_or(2.0), q);
+      return p;
+    }
+    p.u = si(r.u_repeat.value_or(0.0), q);
     double common = 0.0;
     for (const store::CommonPart& part : r.common) common += part.u * part.u;
     p.u_common = si(std::sqrt(common), q);
     const auto stated = stated_.find({r.campaign, r.measurement, r.quantity, r.unit});
-    if (!r.followed || stated == stated_.end()) return p;
+    if (stated == stated_.end()) return p;
     // The value is one, so its U is: that of the analysis.
     const StoredResult& same = m_.stored.results[stated->second];
     const double whole = si(*same.expanded / same.k.value_or(2.0), q);

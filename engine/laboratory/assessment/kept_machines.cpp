@@ -45,7 +45,7 @@ using storage::Database;
 constexpr const char* kept_folder = ".nonio";
 constexpr const char* machines_name = "machines.sqlite";
 /// Another program may find out something else, and come to another trend of the same series.
-constexpr std::string_view machines_version = "8 " NONIO_VERSION, trends_version = "4";
+constexpr std::string_view machines_version = "9 " NONIO_VERSION, trends_version = "4";
 constexpr std::size_t digest_size = 64;
 constexpr double patience = 5.0;  // s; without the file a run takes longer
 

@@ -29,7 +29,7 @@ std::vector<WorkItem> lost(const Known& known) {
   std::vector<WorkItem> out;
   for (const LastRun::Vanished& v : known.last_run.vanished) {
     if (!config::is_campaign_id(v.campaign)) {
-      out.push_back(line_of(Kind::lost, "morning.lost-part", v.campaign));
+      out.push_back(line_of(Kind::lost, "worklist.lost-part", v.campaign));
       put_text(out.back(), "part", v.campaign);
       put_text(out.back(), "why", v.why);
       continue;
@@ -42,7 +42,7 @@ std::vector<WorkItem> lost(const Known& known) {
   for (const auto& [name, gone] : many ? by_folder : by_machine) {
     if (gone.size() == 1 || (!many && name.empty())) {
       for (const LastRun::Vanished* v : gone) {
-        WorkItem line = line_of(Kind::lost, "morning.lost", v->campaign);
+        WorkItem line = line_of(Kind::lost, "worklist.lost", v->campaign);
         line.machine = many ? "" : name;
         line.campaign = v->campaign;
         put_count(line, "night", v->last_seen_run);
@@ -52,7 +52,7 @@ std::vector<WorkItem> lost(const Known& known) {
       }
       continue;
     }
-    WorkItem line = line_of(Kind::lost, "morning.lost-several", name);
+    WorkItem line = line_of(Kind::lost, "worklist.lost-several", name);
     line.machine = many ? "" : name;
     line.campaign = gone.front()->campaign;
     std::uint64_t run = 0;
@@ -72,12 +72,12 @@ std::vector<WorkItem> failed(const Known& known) {
   for (const LastRun::Failed& f : known.last_run.failed) by_message[f.message].push_back(&f);
   std::vector<WorkItem> out;
   if (!known.last_run.history_error.empty()) {
-    out.push_back(line_of(Kind::failed, "morning.history", "history"));
+    out.push_back(line_of(Kind::failed, "worklist.history", "history"));
     put_text(out.back(), "message", known.last_run.history_error);
   }
   for (const auto& [message, alike] : by_message) {
     if (alike.size() > most_alike) {
-      WorkItem line = line_of(Kind::failed, "morning.failed-several", alike.front()->campaign);
+      WorkItem line = line_of(Kind::failed, "worklist.failed-several", alike.front()->campaign);
       line.campaign = alike.front()->campaign;
       line.since = alike.front()->since;
       put_count(line, "count", alike.size());
@@ -87,7 +87,7 @@ std::vector<WorkItem> failed(const Known& known) {
       continue;
     }
     for (const LastRun::Failed* f : alike) {
-      WorkItem line = line_of(Kind::failed, "morning.failed", f->campaign);
+      WorkItem line = line_of(Kind::failed, "worklist.failed", f->campaign);
       const auto machine = known.machine_of_campaign.find(f->campaign);
       if (machine != known.machine_of_campaign.end()) line.machine = machine->second;
       line.campaign = f->campaign;
@@ -108,14 +108,14 @@ void not_judged(const Known& known, std::vector<WorkItem>& out) {
     if (++count <= most_machines) names += (names.empty() ? "" : ", ") + m->name;
   }
   if (count == 0) return;
-  out.push_back(line_of(Kind::information, "morning.not-judged", "site"));
+  out.push_back(line_of(Kind::information, "worklist.not-judged", "site"));
   put_count(out.back(), "count", count);
   put_text(out.back(), "machines", names + (count > most_machines ? ", ..." : ""));
 }
 
 /// Campaigns that state neither an asset nor maker and serial: nothing joins them to others.
 void without_machine(const Known& known, std::vector<WorkItem>& out) {
-  WorkItem line = line_of(Kind::information, "morning.no-machine", "site");
+  WorkItem line = line_of(Kind::information, "worklist.no-machine", "site");
   for (const Standing* m : known.machines)
     if (m->alone && !m->name.empty()) line.campaigns.push_back(m->name);
   if (line.campaigns.empty()) return;
@@ -127,7 +127,7 @@ void without_machine(const Known& known, std::vector<WorkItem>& out) {
 /// Drafts of certificates, which a person issues.
 void drafts(const Known& known, std::vector<WorkItem>& out) {
   if (known.last_run.waiting.empty()) return;
-  out.push_back(line_of(Kind::information, "morning.draft", "site"));
+  out.push_back(line_of(Kind::information, "worklist.draft", "site"));
   out.back().campaigns = known.last_run.waiting;
   out.back().campaign = known.last_run.waiting.front();
   put_count(out.back(), "count", known.last_run.waiting.size());
@@ -142,7 +142,7 @@ void conforming(const Known& known, std::vector<WorkItem>& out) {
     lost_motion += m->reversal;
   }
   if (machines == 0) return;
-  out.push_back(line_of(Kind::information, "morning.conforms", "site"));
+  out.push_back(line_of(Kind::information, "worklist.conforms", "site"));
   put_count(out.back(), "count", machines);
   put_count(out.back(), "reversal", lost_motion);
 }
@@ -154,7 +154,7 @@ void unknown(const Known& known, std::vector<WorkItem>& out) {
   std::string names;
   for (std::size_t i = 0; i < std::min(count, most_machines); ++i)
     names += (names.empty() ? "" : ", ") + known.unknown[i];
-  out.push_back(line_of(Kind::information, "morning.unknown-machine", "site"));
+  out.push_back(line_of(Kind::information, "worklist.unknown-machine", "site"));
   put_count(out.back(), "count", count);
   put_text(out.back(), "where", names + (count > most_machines ? ", ..." : ""));
 }
@@ -167,7 +167,7 @@ std::vector<WorkItem> of_site(const Known& known) {
   conforming(known, out);
   unknown(known, out);
   for (const store::Spelling& s : known.spellings) {
-    out.push_back(line_of(Kind::information, "morning.spelling", s.one + "|" + s.other));
+    out.push_back(line_of(Kind::information, "worklist.spelling", s.one + "|" + s.other));
     out.back().machine = s.one;
     put_text(out.back(), "one", s.one);
     put_text(out.back(), "other", s.other);
@@ -182,7 +182,7 @@ std::vector<WorkItem> of_site(const Known& known) {
       most = std::max(most, of.excess);
     }
   if (!scatter.empty()) {
-    out.push_back(line_of(Kind::information, "morning.scatter", "site"));
+    out.push_back(line_of(Kind::information, "worklist.scatter", "site"));
     out.back().finding.evidence.push_back({"factor", most, Quantity::ratio});
     put_text(out.back(), "quantities", scatter);
   }
@@ -220,7 +220,7 @@ double size_of(const WorkItem& l) {
 
 /// What wears out of its limit has been coming; what was hit is news.
 bool wears(const WorkItem& l) {
-  return l.kind == Kind::out && !l.finding.id.starts_with("morning.out-changed");
+  return l.kind == Kind::out && !l.finding.id.starts_with("worklist.out-changed");
 }
 
 bool comes_before(const WorkItem& a, const WorkItem& b) {
@@ -261,7 +261,7 @@ std::vector<WorkItem> lines_of(const Known& known) {
   add(lost(known));
   add(failed(known));
   for (const Standing* m : known.machines) add(m->lines);
-  fold(out, "morning.later", "morning.later-several");
+  fold(out, "worklist.later", "worklist.later-several");
   add(of_site(known));
   std::stable_sort(out.begin(), out.end(), comes_before);
   return out;

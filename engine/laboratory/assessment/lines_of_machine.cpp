@@ -175,13 +175,13 @@ class OfMachine {
     const AxisChange::Seen& first = cause.seen.front();
     const reports::TableLoaded* const table = unstated(axis, cause);
     WorkItem l = line(Kind::changed,
-                      table != nullptr   ? (table->rms > 0.0 ? "morning.changed-table-likely"
-                                                             : "morning.changed-table-unknown")
-                      : has_event(cause) ? "morning.changed-event"
-                                         : "morning.changed",
+                      table != nullptr   ? (table->rms > 0.0 ? "worklist.changed-table-likely"
+                                                             : "worklist.changed-table-unknown")
+                      : has_event(cause) ? "worklist.changed-event"
+                                         : "worklist.changed",
                       "");
     if (table != nullptr) put_table(l, *table);
-    l.id = "morning.changed:" + d_.id + ":" + axis + ":" + cause.before;
+    l.id = "worklist.changed:" + d_.id + ":" + axis + ":" + cause.before;
     l.axis = axis;
     l.quantity = first.series->quantity;
     l.unit = first.series->unit;
@@ -232,15 +232,16 @@ class OfMachine {
       if (out.contains(place) || all.empty()) continue;
       worst_first(all);
       const bool has_u = m_.stored.results[all.front().result].expanded.value_or(0.0) > 0.0;
-      add(limit_line(Kind::undecided, has_u ? "morning.undecided" : "morning.no-uncertainty", all));
+      add(limit_line(Kind::undecided, has_u ? "worklist.undecided" : "worklist.no-uncertainty",
+                     all));
       also(out_.back(), {}, missing[place]);
     }
     for (auto& [place, all] : missing)
       if (!out.contains(place) && !open.contains(place) && !all.empty()) add(no_value(place, all));
     for (auto& [axis, all] : good)
-      if (!out.contains(axis)) add_fixed("morning.fixed", all);
+      if (!out.contains(axis)) add_fixed("worklist.fixed", all);
     for (auto& [axis, all] : anew)
-      if (!out.contains(axis) && !good.contains(axis)) add_fixed("morning.judged-anew", all);
+      if (!out.contains(axis) && !good.contains(axis)) add_fixed("worklist.judged-anew", all);
   }
 
   /// What is open in addition to the values of the line.
@@ -253,7 +254,7 @@ class OfMachine {
 
   /// A limit, and nothing to compare with it.
   WorkItem no_value(const std::string& place, const std::vector<reports::OpenValue>& all) const {
-    WorkItem l = line(Kind::undecided, "morning.no-value", place);
+    WorkItem l = line(Kind::undecided, "worklist.no-value", place);
     const reports::OpenValue& first = all.front();
     l.axis = first.axis, l.quantity = first.quantity, l.campaign = first.campaign;
     l.measurement = first.measurement, l.unit = first.unit, l.limit = first.limit;
@@ -323,8 +324,8 @@ class OfMachine {
 
   /// Beyond its limit; with the change that made it so, if there is one.
   WorkItem beyond(const std::string& axis, std::vector<Judged>& all) {
-    WorkItem l = limit_line(Kind::out, "morning.out", all);
-    l.id = "morning.out:" + name() + ":" + axis;
+    WorkItem l = limit_line(Kind::out, "worklist.out", all);
+    l.id = "worklist.out:" + name() + ":" + axis;
     told_[axis] = true;
     std::string first = l.since;
     for (const Judged& j : all)
@@ -338,10 +339,10 @@ class OfMachine {
     }
     if (explains != nullptr) {
       const reports::TableLoaded* const table = unstated(axis, *explains);
-      l.finding.id = table != nullptr       ? (table->rms > 0.0 ? "morning.out-changed-table-likely"
-                                                                : "morning.out-changed-table-unknown")
-                     : has_event(*explains) ? "morning.out-changed-event"
-                                            : "morning.out-changed";
+      l.finding.id = table != nullptr ? (table->rms > 0.0 ? "worklist.out-changed-table-likely"
+                                                          : "worklist.out-changed-table-unknown")
+                     : has_event(*explains) ? "worklist.out-changed-event"
+                                            : "worklist.out-changed";
       if (table != nullptr) put_table(l, *table);
       describe(l, *explains);
     }
@@ -357,7 +358,7 @@ class OfMachine {
     for (const auto& [axis, t] : last) {
       const bool is_right = t->kind == "loaded" || t->kind == "removed";
       if ((is_right && (t->is_stated || is_declared(*t))) || is_repaired(axis, t->before)) continue;
-      WorkItem l = line(Kind::changed, ("morning.table-" + t->kind).c_str(), "");
+      WorkItem l = line(Kind::changed, ("worklist.table-" + t->kind).c_str(), "");
       l.id = l.finding.id + ":" + d_.id + ":" + axis + ":" + t->before;
       l.axis = axis, l.unit = t->unit;
       l.campaign = t->before_campaign, l.since = t->before;
@@ -386,7 +387,7 @@ class OfMachine {
 
   bool has_loading_line(const std::string& axis) const {
     return std::any_of(out_.begin(), out_.end(), [&](const WorkItem& l) {
-      return l.axis == axis && l.finding.id.starts_with("morning.table-");
+      return l.axis == axis && l.finding.id.starts_with("worklist.table-");
     });
   }
 
@@ -395,7 +396,7 @@ class OfMachine {
   void tables() {
     for (const reports::TableKept& t : d_.tables) {
       if (t.good || is_measured_since(t.axis, t.date) || has_loading_line(t.axis)) continue;
-      WorkItem l = line(Kind::changed, "morning.table", t.axis + ":" + t.campaign);
+      WorkItem l = line(Kind::changed, "worklist.table", t.axis + ":" + t.campaign);
       l.axis = t.axis;
       l.quantity = t.quantity;
       l.unit = t.unit;
@@ -422,10 +423,10 @@ class OfMachine {
       const store::StoredCampaign& c = m_.stored.campaigns[w.campaign];
       const bool table = w.finding.starts_with("table.");
       WorkItem l = line(Kind::withheld,
-                        table                          ? "morning.no-table"
-                        : is_calibration(w.finding)    ? "morning.calibration"
-                        : store::is_refusal(w.finding) ? "morning.no-result"
-                                                       : "morning.certificate",
+                        table                          ? "worklist.no-table"
+                        : is_calibration(w.finding)    ? "worklist.calibration"
+                        : store::is_refusal(w.finding) ? "worklist.no-result"
+                                                       : "worklist.certificate",
                         c.id + (w.axis.empty() ? "" : ":" + w.axis));
       l.axis = w.axis, l.campaign = c.id, l.since = c.day;
       put_text(l, "campaign", c.id);
@@ -456,9 +457,9 @@ class OfMachine {
         continue;
       const std::string leaves = s.forecast->leaves.empty() ? s.forecast->date : s.forecast->leaves;
       const bool may_be_now = leaves <= last_run_.date || s.forecast->date < last_run_.date;
-      WorkItem l = line(Kind::soon, may_be_now ? "morning.soon-now" : "morning.soon",
+      WorkItem l = line(Kind::soon, may_be_now ? "worklist.soon-now" : "worklist.soon",
                         axis + ":" + s.quantity);
-      l.id = "morning.soon:" + d_.id + ":" + axis + ":" + s.quantity;
+      l.id = "worklist.soon:" + d_.id + ":" + axis + ":" + s.quantity;
       l.axis = axis;
       l.quantity = s.quantity;
       l.unit = s.unit;
@@ -479,7 +480,7 @@ class OfMachine {
 
   void overdue() {
     if (d_.due.empty() || d_.due >= last_run_.date) return;
-    WorkItem l = line(Kind::overdue, "morning.overdue", "");
+    WorkItem l = line(Kind::overdue, "worklist.overdue", "");
     l.since = d_.due;
     put_text(l, "due", d_.due);
     put_text(l, "rule", d_.why_due);
@@ -489,7 +490,7 @@ class OfMachine {
   /// A campaign that is dated after the run is not measured yet.
   void later() {
     for (const store::StoredMachine::Later& c : m_.stored.later) {
-      WorkItem l = line(Kind::undecided, "morning.later", c.campaign);
+      WorkItem l = line(Kind::undecided, "worklist.later", c.campaign);
       l.campaign = c.campaign;
       l.since = c.day;
       put_text(l, "campaign", c.campaign);
@@ -505,7 +506,7 @@ class OfMachine {
       const HistorySeries& s = d_.series[i];
       for (const HistoryChange& c : s.changes) {
         if (c.cause != "instrument") continue;
-        WorkItem l = line(Kind::information, "morning.instrument",
+        WorkItem l = line(Kind::information, "worklist.instrument",
                           s.axis + ":" + s.quantity + ":" + c.before);
         l.axis = s.axis;
         l.quantity = s.quantity;

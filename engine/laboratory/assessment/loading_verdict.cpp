@@ -137,9 +137,9 @@ Expected<LoadingVerdict> judge_loading(const reading::ReadCampaign& before,
   if (out.answer != LoadingVerdict::Answer::worked)
     out.change = change_between(before, after, axis, next, control);
   const Measurement& m = after.manifest->campaign.measurements[two];
-  out.E =
-      tables::forecast_of_axis(m, axis, after.observations[two], after.observations[two], {}, {})
-          .E[0];
+  out.E = tables::forecast_of_axis(after.manifest->campaign, m, axis, after.observations[two],
+                                   after.observations[two], {}, {})
+              .E[0];
   return out;
 }
 

@@ -87,9 +87,9 @@ WorkItem line_of_rest(const WorkItem& known, std::vector<reports::OpenValue> res
                                   [](const reports::OpenValue& v) { return !v.undecided; });
   if (first != rest.end()) std::rotate(rest.begin(), first, first + 1);
   const reports::OpenValue& v = rest.front();
-  const char* finding = !v.value      ? "morning.no-value"
-                        : v.undecided ? (v.u ? "morning.undecided" : "morning.no-uncertainty")
-                                      : "morning.out";
+  const char* finding = !v.value      ? "worklist.no-value"
+                        : v.undecided ? (v.u ? "worklist.undecided" : "worklist.no-uncertainty")
+                                      : "worklist.out";
   WorkItem l = line_of(v.undecided ? WorkItem::Kind::undecided : WorkItem::Kind::out, finding,
                        known.id.substr(known.id.find(':') + 1) + ":" + v.quantity);
   l.machine = known.machine, l.customer = known.customer, l.link = known.link;

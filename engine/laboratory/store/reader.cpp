@@ -141,15 +141,6 @@ void read_results(Database& database, std::size_t campaign, std::int64_t evaluat
   }
 }
 
-/// Findings that a table or a certificate was not made, or is not to be used; that the instrument
-/// had no valid calibration; or that the readings gave no result.
-bool withholds(const FindingRow& f) {
-  return f.severity == "attention" &&
-         (f.id.starts_with("table.") || f.id.starts_with("certificate.") ||
-          f.id.starts_with("traceability.") || f.id == "signature.not-released" ||
-          is_refusal(f.id));
-}
-
 void read_findings(Database& database, std::size_t campaign, std::int64_t evaluation,
                    StoredMachine& to) {
   for (Database::Row& r : database.rows(
@@ -159,7 +150,8 @@ void read_findings(Database& database, std::size_t campaign, std::int64_t evalua
     FindingRow f{std::move(r[0]), std::move(r[1]), std::move(r[2]), std::move(r[3])};
     if (auto& severity = to.findings[campaign][f.id]; severity != "attention")
       severity = f.severity;
-    if (withholds(f)) to.asked[campaign].push_back(std::move(f));
+    if (f.severity == "attention" && is_withholding(f.id))
+      to.asked[campaign].push_back(std::move(f));
   }
   for (Database::Row& r : database.rows(
            "SELECT measurement, axis, quantity, unit, tolerance FROM limit_without_value WHERE "
@@ -177,6 +169,12 @@ void read_findings(Database& database, std::size_t campaign, std::int64_t evalua
 
 bool is_refusal(std::string_view finding) {
   return finding.find(".refused") != std::string_view::npos || finding.ends_with("-needed");
+}
+
+bool is_withholding(std::string_view finding) {
+  return finding.starts_with("table.") || finding.starts_with("certificate.") ||
+         finding.starts_with("traceability.") || finding == "signature.not-released" ||
+         is_refusal(finding);
 }
 
 Expected<StoreReader> StoreReader::open(const fs::path& out) {

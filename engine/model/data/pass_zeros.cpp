@@ -27,7 +27,7 @@ double share_of_passes(const Repeats& repeats, const MatrixXd& columns) {
 
 ZerosOfPasses::ZerosOfPasses(const Part& part, const Repeats& r, const std::vector<double>& weight,
                              const std::vector<double>& residual)
-    : passes_(r.passes), sides_(r.sides), degrees_(degrees_of_passes(r)) {
+    : sides_(r.sides) {
   std::vector<double> sum(r.passes, 0.0), n(r.passes, 0.0), way(r.passes, 0.0);
   std::vector<std::size_t> order;
   std::vector<std::uint32_t> run(r.passes, 0);
@@ -41,6 +41,11 @@ ZerosOfPasses::ZerosOfPasses(const Part& part, const Repeats& r, const std::vect
   }
   for (const std::size_t p : order)
     zeros_.push_back({sum[p] / n[p], way[p], n[p], r.side[p], run[p]});
+  // A pass of which every reading is suspect is not one of them.
+  std::vector<char> read(sides_, 0);
+  for (const Zero& z : zeros_) read[z.side] = 1;
+  degrees_ = static_cast<double>(zeros_.size()) -
+             static_cast<double>(std::count(read.begin(), read.end(), 1));
 }
 
 double ZerosOfPasses::p_of_differences(double s) const {
@@ -59,7 +64,7 @@ bool ZerosOfPasses::unordered() const {
   // docs/dev/constants.md, M48.
   constexpr double fewest = 4.0, by_chance = 0.005;
   const std::size_t m = zeros_.size();
-  if (degrees_ < fewest || m < passes_) return false;
+  if (degrees_ < fewest) return false;
   const double dof = degrees_ - 1.0;
   double least = 1.0, tests = 0.0;
   for (const bool reversal : {false, true}) {

@@ -36,8 +36,8 @@ class ZerosOfPasses {
   void centre(VectorXd& values) const;
 
   std::vector<Zero> zeros_;
-  std::size_t passes_, sides_;
-  double degrees_;
+  std::size_t sides_;
+  double degrees_ = 0.0;
 };
 
 }  // namespace nonio::model

@@ -145,15 +145,6 @@ void doubt_backlash(const AxisJob& job, OutputResult& result) {
            "excess."});
 }
 
-namespace {
-
-/// What is not known cannot be taken away: a gain ends at U of what is compensated.
-double promised(double before, double after, double U) {
-  return after < before ? std::min(before, std::max(after, U)) : after;
-}
-
-}  // namespace
-
 void predict(const AxisJob& job, const math::Correction& whole, OutputResult& result) {
   const double present = job.present_backlash();
   const math::Correction correction = [&](double x, int direction) {
@@ -169,13 +160,13 @@ void predict(const AxisJob& job, const math::Correction& whole, OutputResult& re
   };
   const bool both = curve.bidirectional();
   const double U_B = both && !job.held ? job.U.B_mean : 0.0;
-  const double E_after = promised(was.E(), will.E(), std::max(job.U.E, U_B));
+  const double E_after = math::predicted_after(was.E(), will.E(), std::max(job.U.E, U_B));
   // Without its scale the curve is not the error of the axis: the diagonals show what the table
   // does.
   if (job.scale_known) {
     add(both ? "E" : job.from_diagonals ? "M" : curve.plus.empty() ? "E-" : "E+", was.E(), E_after);
-    add("B", was.B(), promised(was.B(), will.B(), U_B));
-    add("M", was.M(), promised(was.M(), will.M(), job.U.M));
+    add("B", was.B(), math::predicted_after(was.B(), will.B(), U_B));
+    add("M", was.M(), math::predicted_after(was.M(), will.M(), job.U.M));
   }
   if (!(will.E() < was.E()))
     result.findings.push_back({"table.no-gain",

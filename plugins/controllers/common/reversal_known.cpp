@@ -5,9 +5,6 @@
 #include <cmath>
 
 #include "nonio/math/axis_findings.h"
-#include "nonio/math/budget.h"
-#include "nonio/math/drift.h"
-#include "nonio/math/uncertainty.h"
 
 namespace nonio::controllers {
 namespace {
@@ -20,18 +17,6 @@ bool is_drift_modelled(const Campaign& campaign, const std::string& axis) {
   });
 }
 
-Uncertainties uncertainties(const Campaign& campaign, const Measurement& m, const Observations& o,
-                            const math::AxisTest& test, bool drift_is_in) {
-  const Observations* own = &o;
-  const auto limits = math::limits_held(campaign, {&own, 1});
-  auto budget = math::uncertainty_budget(campaign, limits.environment, m.axis, test).budget;
-  if (budget && !drift_is_in) budget->seen = {};
-  const auto U = math::iso230_2_uncertainty(budget.value_or(math::Budget{}),
-                                            math::approaches_per_mean(test), 2.0);
-  const double seen = drift_is_in ? math::drift_share(test).B_mean : 0.0;
-  return budget ? Uncertainties{std::max(U.B_mean, seen), U.E, U.M} : Uncertainties{seen, 0.0, 0.0};
-}
-
 }  // namespace
 
 void take_uncertainties(const ControllerInput& input, std::size_t index, AxisJob& job) {
@@ -40,8 +25,8 @@ void take_uncertainties(const ControllerInput& input, std::size_t index, AxisJob
   const Observations& o = of_model ? (*input.measured)[index] : input.observations[index];
   const math::AxisTest test = math::AxisTest::arrange(o);
   const Measurement& m = input.campaign.measurements[index];
-  job.U = uncertainties(input.campaign, m, o, test,
-                        !of_model || !is_drift_modelled(input.campaign, m.axis));
+  job.U = math::compensated_uncertainty(input.campaign, m, o, test,
+                                        !of_model || !is_drift_modelled(input.campaign, m.axis));
   const double mean = job.curve.mean_reversal();
   if (!job.curve.bidirectional() || job.reversal.kind == Kind::not_constant ||
       job.reversal.kind == Kind::unknown || math::is_reversal_known(mean, job.U.B_mean))

@@ -53,7 +53,8 @@ Expected<Assignment> assignment(std::string_view line) {
                       std::string(trimmed(line.substr(equals + 1)))};
   if (line[0] != '$' || open == std::string::npos || close == std::string::npos ||
       equals == std::string::npos || !(open < close && close < equals))
-    return fail("not an assignment: " + std::string(line));
+    return fail("expected an assignment such as $AA_ENC_COMP[0,0,AX1]=0.001, found \"" +
+                std::string(line) + "\"");
   Assignment a{
       std::string(line.substr(1, open - 1)), {}, std::string(trimmed(line.substr(equals + 1)))};
   for (const auto word : controllers::words_of(line.substr(open + 1, close - open - 1), ", \t"))

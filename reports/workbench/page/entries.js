@@ -78,7 +78,7 @@ const entries = (() => {
       return act("event", Object.fromEntries(Object.entries(v).map(([k, x]) => [k, x.trim()]).filter(([, x]) => x !== "")), say("event.done"));
     });
   }
-  /// The entry that makes a line known: the first of the file that fits it, as the night takes it.
+  /// The entry that makes a line known: the first of the file that fits it, as the run does.
   function entryOf(line, all) {
     return all.find((a) => a.machine === line.machine && (!a.axis || a.axis === line.axis) && a.by === line.by && a.until === line.until && a.why === line.why);
   }

@@ -1,4 +1,4 @@
-// ---- a page of the morning, as the night has written it, as elements of this page: its own drawing, words and numbers. Only
+// ---- a page that the last run has written, as elements of this page: its drawing, words and numbers. Only
 // what is listed here is made; nothing is ever given to the browser as markup. ----
 const markup = (() => {
   const plain = new Set("a b code dd details div dl dt em h1 h2 h3 h4 label li main nav ol option p section select span strong summary table tbody td th thead tr ul".split(" "));

@@ -4,7 +4,7 @@ const net = (() => {
   const at = /(?:^|[#&])t=([0-9a-f]{32})(?:&|$)/.exec(location.hash);
   if (at) {
     sessionStorage.setItem("nonio-token", at[1]);
-    // What else stands there is the page's own: filters of a morning.
+    // The other parameters belong to the page: filters of a list.
     const rest = location.hash.slice(1).split("&").filter((one) => !one.startsWith("t=")).join("&");
     history.replaceState(null, "", location.pathname + (rest ? "#" + rest : ""));
   }

@@ -1,11 +1,11 @@
-// ---- the page of a site: the morning that the last night has written, and what people do about it ----
+// ---- the page of a site: the worklist that the last run has written, and what people do about it ----
 (() => {
   let state = null, lines = [], known = [], gone = null, filters = "", drawn = "", asking = false, again = false, stale = true, dismissed = "", shown = "", released = null;
   const own = ["campaigns", "machines", "instruments", "certificates", "entries", "settings"];
   const isOwn = (name) => own.includes(name) || (name === "new" && (!state || state.edit)) || name.startsWith("campaign/");
   const isPage = (name) => /^(index|due|compare|instruments)\.html$|^machines\/[^/]+\.html$/.test(name);
   let pages = new Map(); // name: its text
-  let links = []; // of the night's own pages, in its words
+  let links = []; // of the pages that the run has written, in its words
 
   // ---- where we are: stands in the address, as do the filters of the lines ----
   function view() {
@@ -105,10 +105,10 @@
       pages = new Map();
       const has = state.out && state.night.last;
       try {
-        const [morning, all, index] = await Promise.all([has ? net.ask("/api/site") : {lines: []}, net.ask("/api/ack"), has ? text("index.html") : ""]);
-        lines = morning.lines;
+        const [worklist, all, index] = await Promise.all([has ? net.ask("/api/site") : {lines: []}, net.ask("/api/ack"), has ? text("index.html") : ""]);
+        lines = worklist.lines;
         known = all.acknowledged;
-        // In the words of the night: the names of its pages, its number and date.
+        // In the words of the run: the names of its pages, its number and date.
         const page = markup.page(index);
         links = page.links;
         by("beside").textContent = page.beside;
@@ -123,7 +123,7 @@
     document.body.dataset.version = state.version;
   }
 
-  // ---- a line of the morning: what can be done about it ----
+  // ---- a line of the worklist: what can be done about it ----
   const campaignOf = (line) => line.campaign || (line.link ? line.link.split("/").slice(-2)[0] : "");
   /// Those of a machine that its history judges; what is lost or failed is no opinion.
   const canBeKnown = (line) => line.machine && line.state === "new" && ["out", "changed", "soon", "overdue", "withheld", "undecided", "information"].includes(line.kind);
@@ -149,8 +149,8 @@
   }
   const machines = () => [...new Set([...lines.map((l) => l.machine), ...[...document.querySelectorAll("a[data-to*='machines/']")].map((a) => a.textContent)].filter(Boolean))].sort();
 
-  // ---- the pages of the night ----
-  /// What the night has drawn, its links led to this page.
+  // ---- the pages of the run ----
+  /// What the run has drawn; its links lead to this page.
   function adopted(root, name) {
     for (const a of root.querySelectorAll("a[data-to]")) {
       const to = resolved(name, a.dataset.to);
@@ -166,7 +166,7 @@
     root.querySelector("h1").setAttribute("tabindex", "-1");
     return root;
   }
-  async function night(name) {
+  async function pageOfRun(name) {
     const page = markup.page(await text(name)), root = adopted(page.main, name);
     if (name === "index.html") {
       const of = new Map(lines.map((line) => [line.id, line]));
@@ -233,7 +233,7 @@
   function drawHead() {
     const n = state.night, r = state.run;
     const named = own.map((name) => [name, say("site." + name)]);
-    // The page of the night about instruments is reached from the own one.
+    // The run's page of instruments is reached from the page of this server.
     fill(by("nav"), ...[...named.slice(0, 3), ...(state.out && n.last ? links.filter(([to]) => to !== "instruments.html") : []), ...named.slice(3)].map(([to, label]) =>
       el("a", {href: hrefOf(to), "data-key": "nav-" + to, "aria-current": view() === to || (to === "campaigns" && /^(new$|campaign\/)/.test(view())) ? "page" : null}, label)));
     const night_ = n.state === "running" ? say(n.last ? "night.running" : "night.first", {n: n.night, last: n.last, date: n.last_date}) : n.state === "cut-short" ? say("night.cut", {n: n.night}) : n.state === "planned" ? say("night.planned", {n: n.night}) : "";
@@ -274,10 +274,10 @@
   /// New content of the main part; what had the focus has it again.
   async function draw(moved = false) {
     const name = view();
-    if (name === "index.html" && state.night.last === 0) return put([el("h1", {tabindex: -1}, say("site.morning")), el("p", {}, say("night.none"))], name, moved);
+    if (name === "index.html" && state.night.last === 0) return put([el("h1", {tabindex: -1}, say("site.worklist")), el("p", {}, say("night.none"))], name, moved);
     if (name === "new" && shown === "new" && !moved) return;
     const content = name === "campaigns" ? await campaigns.list(tools()) : name === "machines" ? await campaigns.machines() : name === "instruments" ? await campaigns.instruments(links.some(([to]) => to === "instruments.html")) : name === "settings" ? await campaigns.settings() : name === "new" ? measure.view({out: state.out, created}) :
-      name.startsWith("campaign/") ? await campaigns.one(name.slice("campaign/".length), tools()) : name === "certificates" ? await certificatesView() : name === "entries" ? await entriesView() : await night(name);
+      name.startsWith("campaign/") ? await campaigns.one(name.slice("campaign/".length), tools()) : name === "certificates" ? await certificatesView() : name === "entries" ? await entriesView() : await pageOfRun(name);
     if (name !== view()) return;
     put(content, name, moved);
   }

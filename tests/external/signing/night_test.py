@@ -88,7 +88,7 @@ class SignedNight(SigningTest):
         self.site_toml(self.keys(days=20))
         self.signed_campaign("c1")
         self.run_nonio(expect=0)
-        self.assertIn("runs out on", json.dumps(self.summary()["notes"]))
+        self.assertIn("expires on", json.dumps(self.summary()["notes"]))
 
     def test_that_no_time_server_is_named_is_said(self):
         self.site_toml(self.keys())

@@ -175,9 +175,9 @@ class OfKnownSites(unittest.TestCase):
         def morning(*lines):
             return {"schema": "nonio-morning/1", "lines": [dict(zip(("id", "kind", "mail"), line)) for line in lines]}
 
-        one, other = ("morning.changed:A:X:1", "changed", True), ("morning.changed:B:X:1", "changed", True)
+        one, other = ("worklist.changed:A:X:1", "changed", True), ("worklist.changed:B:X:1", "changed", True)
         for mornings, hits in (((morning(), morning(one), morning(one), morning(one, other)), 2),
-                               ((morning(("morning.changed:A:X:1", "changed", False)), morning(("morning.overdue:A", "overdue", True))), 0)):
+                               ((morning(("worklist.changed:A:X:1", "changed", False)), morning(("worklist.overdue:A", "overdue", True))), 0)):
             result = score.Score()
             result.add(self.quiet, [told(self.quiet)] * len(mornings), mornings)
             self.assertEqual((result.quiet_mails.hits, result.quiet_mails.of), (hits, len(mornings)))

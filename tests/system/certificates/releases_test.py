@@ -82,7 +82,7 @@ class Releases(NumberedTest):
         self.assertEqual(self.entries(), [], "no number is drawn for a draft")
         self.assertIs(self.results("c1")["certificate"]["draft"], True)
         self.assertEqual([d["campaign"] for d in self.summary()["drafts"]], ["c1"])
-        self.assertIn("1 draft waits for release (nonio certificate approve): c1", (self.out / "summary.txt").read_text())
+        self.assertIn("1 draft waits for approval (nonio certificate approve): c1", (self.out / "summary.txt").read_text())
         for folder in (self.site, self.site / "c1"):
             listed = json.loads(run(NONIO, "certificate", "approve", folder, "--list", "--json").stdout)["drafts"]
             self.assertEqual([(d["campaign"], d["file"]) for d in listed], [("c1", str(self.draft()))])

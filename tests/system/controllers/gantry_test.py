@@ -136,7 +136,7 @@ class Gantry(BenchTest):
             found = self.of(self.write(machine, SEED, "Y", "siemens-840d", sides=False, structure=structure), "diagonal-straightness")
             self.assertEqual("diagonals.refused-carrier" in [f["id"] for f in found["findings"]], refused, structure)
             self.assertEqual("C0Y" in found["values"], not refused)
-            listed = [l for l in self.json_of("morning", self.out, expect=None)["lines"] if l["id"].startswith("morning.no-result:")]
+            listed = [l for l in self.json_of("morning", self.out, expect=None)["lines"] if l["id"].startswith("worklist.no-result:")]
             self.assertEqual(len(listed), int(refused), structure)
 
 

@@ -190,11 +190,11 @@ class Loaded(unittest.TestCase):
         """One line of the table with its action, and none that blames the scale."""
         of = {}
         for line in lines:
-            if line.get("machine") and line["id"].startswith(("morning.table-", "morning.changed", "morning.out")):
+            if line.get("machine") and line["id"].startswith(("worklist.table-", "worklist.changed", "worklist.out")):
                 of.setdefault(line["machine"], []).append(line)
         for name, t in found.items():
             mine = of.get(name, [])
-            self.assertEqual([l["id"] for l in mine], ["morning.table-%s:%s:X:2021-03-01" % (t["kind"], name)], name)
+            self.assertEqual([l["id"] for l in mine], ["worklist.table-%s:%s:X:2021-03-01" % (t["kind"], name)], name)
             self.assertTrue(mine[0]["advice"])
             self.assertNotIn("scale and temperature", mine[0]["says"] + mine[0]["advice"])
 

@@ -102,8 +102,8 @@ class Session(StateBench):
                     found[control, kind] = [f["id"] for f in answer["verdict"]["findings"]]
                     self.assertEqual(answer["verdict"]["answer"], "failed")
                     self.assertIn("command", answer)
-                    named = {"not-active": "before-after.not-active", "nothing": "morning.table-removed",
-                             "wrong-sign": "morning.table-wrong-sign", "twice": "morning.table-twice"}[kind]
+                    named = {"not-active": "before-after.not-active", "nothing": "worklist.table-removed",
+                             "wrong-sign": "worklist.table-wrong-sign", "twice": "worklist.table-twice"}[kind]
                     self.assertIn(named, found[control, kind])
                     # Corrected and measured again: the same command, and the readings in place of the first ones.
                     (self.site / "now-check" / "after.csv").write_text(truth.readings(1, table))

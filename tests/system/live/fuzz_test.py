@@ -19,7 +19,7 @@ REQUESTS = int(os.environ.get("NONIO_FUZZ_REQUESTS", "700"))
 HEADERS = ("Content-Security-Policy: default-src 'none'", "X-Content-Type-Options: nosniff", "X-Frame-Options: DENY", "Referrer-Policy: no-referrer",
            "Cross-Origin-Resource-Policy: same-origin", "Cross-Origin-Opener-Policy: same-origin")
 CAMPAIGN = "/c/02-constant-reversal"
-GETS = ["/", "/morning.js", "/api/site/state", "/site/{}", "/site/machines/{}", "/site/results/{}/{}", "/c/{}/", "/c/{}/api/state",
+GETS = ["/", "/site.js", "/api/site/state", "/site/{}", "/site/machines/{}", "/site/results/{}/{}", "/c/{}/", "/c/{}/api/state",
         "/api/campaigns?search={}&state={}&page={}&size={}", "/api/machines", "/api/records"] + \
     [CAMPAIGN + "/api/" + p for p in ("state", "parts/{}/fit", "parts/{}/explain", "parts/{}/series?x={}&y={}&x0={}&px={}", "parts/{}/readings?rows={}",
                                       "parts/{}/readings?from={}&count={}", "page/{}", "save")]

@@ -103,7 +103,7 @@ class Sites(LiveTest):
             answer = s.post("/api/open", {"campaign": "02-constant-reversal"})
             self.assertEqual(answer["path"], "/c/02-constant-reversal/")
             self.assertIn(b"/app.js", s.request("GET", answer["path"], token=False)[2])
-            self.assertIn(b"/morning.js", s.request("GET", "/", token=False)[2])
+            self.assertIn(b"/site.js", s.request("GET", "/", token=False)[2])
             first, second = "/c/02-constant-reversal/api/", "/c/03-opposed-sinusoids/api/"
             for at in (first, second):
                 s.until(at + "state", lambda state: state.get("bench") == "open", "open")

@@ -196,7 +196,7 @@ class Laboratory(unittest.TestCase):
         lines = json.loads(nonio("status", "--actions", out, "--json", expect=1).stdout)["lines"]  # the table that was on is not stated
         predictions = {p["name"]: p["predicted"] for t in json.loads((out / "2025-01-lab-05" / "results.json").read_text())["tables"]
                        for p in t.get("predictions", [])}
-        return [line for line in lines if line["id"].startswith("morning.table")], predictions, (out / "machines" / "LAB-05.html").read_text()
+        return [line for line in lines if line["id"].startswith("worklist.table")], predictions, (out / "machines" / "LAB-05.html").read_text()
 
     def test_a_good_table_is_said_to_be_good(self):
         lines, predictions, page = self.with_table("good-table", None)

@@ -47,7 +47,7 @@ class New(VerbTest):
         machines = {m["machine"] for m in json.loads(self.nonio("machine", "history", out, "--json").stdout)["machines"]}
         self.assertEqual(machines, {"Zayer 1234", "S-7"})
         lines = json.loads(self.nonio("status", "--actions", out, "--json", expect=None).stdout)["lines"]
-        self.assertEqual([l["campaigns"] for l in lines if l["id"].startswith("morning.no-machine")], [["first-campaign"]])
+        self.assertEqual([l["campaigns"] for l in lines if l["id"].startswith("worklist.no-machine")], [["first-campaign"]])
 
     def test_every_commented_key_is_one(self):
         """With the # taken off, the files are still read without an error (but for placeholders)."""

@@ -142,7 +142,7 @@ def said(lines):
         if line["kind"] == "failed":
             failed.update(line.get("campaigns", [line["campaign"]]))
         if line["kind"] == "withheld":
-            (certificates if line["id"].startswith("morning.certificate") else tables).add(line["campaign"])
+            (certificates if line["id"].startswith("worklist.certificate") else tables).add(line["campaign"])
     return values, failed, certificates, tables
 
 

@@ -112,23 +112,24 @@ inline SiteHistory made_site() {
                .u = 0.2e-6,
                .limit = 8e-6,
                .unit = Quantity::deviation,
-               .finding = {"morning.out", true, {{"limit", 8e-6, Quantity::deviation}}},
+               .finding = {"worklist.out", true, {{"limit", 8e-6, Quantity::deviation}}},
                .since = "2025-01-14",
                .link = "c5/report.pdf"};
-  WorkItem lost{
-      .kind = Kind::lost,
-      .id = "lost.m08",
-      .machine = "",
-      .axis = "",
-      .quantity = "",
-      .campaign = "site-b/2024-m08",
-      .customer = "",
-      .finding = {
-          "morning.lost", true, {{"night", 11, Quantity::count}}, {{"folder", "site-b/2024-m08"}}}};
+  WorkItem lost{.kind = Kind::lost,
+                .id = "lost.m08",
+                .machine = "",
+                .axis = "",
+                .quantity = "",
+                .campaign = "site-b/2024-m08",
+                .customer = "",
+                .finding = {"worklist.lost",
+                            true,
+                            {{"night", 11, Quantity::count}},
+                            {{"folder", "site-b/2024-m08"}}}};
   WorkItem changed = out;
   changed.kind = Kind::changed, changed.machine = "S-0017", changed.quantity = "B_mean",
   changed.value = -9.4e-6, changed.limit.reset();
-  changed.finding = {"morning.changed",
+  changed.finding = {"worklist.changed",
                      true,
                      {{"size", -4.2e-6, Quantity::deviation}, {"U", 0.4e-6, Quantity::deviation}},
                      {{"after", "2024-07-14"},

@@ -154,7 +154,7 @@ TEST(SiteLogs, AnyTextComesBackAsItWas) {
 TEST(SiteLogs, WhatIsWithdrawnCountsNoMore) {
   const SiteFolder site;
   const config::Acknowledgement known{.date = "2026-03-04",
-                                      .finding = "morning.out",
+                                      .finding = "worklist.out",
                                       .machine = "S-0042",
                                       .axis = "X",
                                       .quantity = {},
@@ -164,7 +164,7 @@ TEST(SiteLogs, WhatIsWithdrawnCountsNoMore) {
   auto other = known;
   other.axis.clear();
   config::Withdrawal back{.date = "2026-03-05",
-                          .finding = "morning.out",
+                          .finding = "worklist.out",
                           .machine = "S-0042",
                           .axis = "X",
                           .quantity = {},

@@ -146,7 +146,7 @@ TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
         break;
       case 6:
         records_.logs.acknowledged.push_back({"2025-03-01",
-                                              "morning.out",
+                                              "worklist.out",
                                               "S-3",
                                               "X",
                                               "",

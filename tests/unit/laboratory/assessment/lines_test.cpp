@@ -89,9 +89,9 @@ TEST(MorningLines, OneCauseIsToldOnce) {
   const WorkItem& l = lines[0];
   EXPECT_EQ(l.kind, Kind::out);
   EXPECT_EQ(l.state, State::fresh);
-  EXPECT_EQ(l.id, "morning.out:S-42:X");
+  EXPECT_EQ(l.id, "worklist.out:S-42:X");
   EXPECT_EQ(l.machine + " " + l.axis + " " + l.quantity, "S-42 X B");
-  EXPECT_EQ(l.finding.id, "morning.out-changed");
+  EXPECT_EQ(l.finding.id, "worklist.out-changed");
   EXPECT_EQ(l.since, "2022-07-15");
   EXPECT_EQ(text_of(l, "after"), "2022-01-15");
   EXPECT_EQ(text_of(l, "before"), "2022-07-15");
@@ -110,8 +110,8 @@ TEST(MorningLines, WhatHasNoAxisIsOneLineForEachAnalysis) {
   lab.machines.push_back(std::move(m));
   const auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 2U);
-  EXPECT_EQ(lines[0].id + " " + lines[0].quantity, "morning.out:S-42:circle G_cw");
-  EXPECT_EQ(lines[1].id + " " + lines[1].quantity, "morning.out:S-42:spindle sync_X");
+  EXPECT_EQ(lines[0].id + " " + lines[0].quantity, "worklist.out:S-42:circle G_cw");
+  EXPECT_EQ(lines[1].id + " " + lines[1].quantity, "worklist.out:S-42:spindle sync_X");
   EXPECT_EQ(lines[0].axis + lines[1].axis, "");
 }
 
@@ -121,7 +121,7 @@ TEST(MorningLines, WhatConformsAndChangedIsAChange) {
   const auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].kind, Kind::changed);
-  EXPECT_EQ(lines[0].id, "morning.changed:S-42:X:2022-07-15");
+  EXPECT_EQ(lines[0].id, "worklist.changed:S-42:X:2022-07-15");
   EXPECT_EQ(text_of(lines[0], "also"), "curve_2");
 }
 
@@ -147,7 +147,7 @@ TEST(MorningLines, AChangeThatIsNotSureIsNotMailed) {
       EXPECT_FALSE(batch::is_reason_for_mail(lines[0], on));
     EXPECT_EQ(batch::is_reason_for_mail(lines[0], config::Mail::On::decision), level < 0.01);
   }
-  WorkItem lost = assessment::line_of(Kind::lost, "morning.lost", "c");
+  WorkItem lost = assessment::line_of(Kind::lost, "worklist.lost", "c");
   EXPECT_TRUE(batch::is_reason_for_mail(lost, config::Mail::On::lost));
 }
 
@@ -157,7 +157,7 @@ TEST(MorningLines, OutNamesTheEventOfItsChange) {
   lab.machines[0].events() = {{"2022-03-01", "S-42", "X", "crash", "hit the vice", "", 1}};
   const auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].finding.id, "morning.out-changed-event");
+  EXPECT_EQ(lines[0].finding.id, "worklist.out-changed-event");
   EXPECT_EQ(text_of(lines[0], "event"), "crash: hit the vice");
 }
 
@@ -175,14 +175,14 @@ TEST(MorningLines, ALimitThatIsExceededWithoutAChangeSaysNoChange) {
   lab.machines.push_back(std::move(m));
   const auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].finding.id, "morning.out");
+  EXPECT_EQ(lines[0].finding.id, "worklist.out");
   EXPECT_EQ(lines[0].since, "2020-01-15");
 }
 
 TEST(MorningLines, AcknowledgedIsKnownUntilItMoves) {
   Laboratory lab;
   lab.machines.push_back(hit());
-  for (const char* finding : {"morning.out:S-42:X", "morning.out-changed", "morning.out"}) {
+  for (const char* finding : {"worklist.out:S-42:X", "worklist.out-changed", "worklist.out"}) {
     lab.logs.acknowledged = {acknowledged(finding, "2024-01-01")};
     EXPECT_EQ(lab.lines()[0].state, State::known) << finding;
   }
@@ -190,14 +190,14 @@ TEST(MorningLines, AcknowledgedIsKnownUntilItMoves) {
   EXPECT_EQ(lab.lines()[0].until, "2024-12-31");
   lab.logs.acknowledged[0].until = "2024-05-31";
   EXPECT_EQ(lab.lines()[0].state, State::fresh) << "past its day";
-  lab.logs.acknowledged = {acknowledged("morning.out", "2024-01-01")};
+  lab.logs.acknowledged = {acknowledged("worklist.out", "2024-01-01")};
   lab.logs.acknowledged[0].axis = "Y";
   EXPECT_EQ(lab.lines()[0].state, State::fresh) << "another axis";
   // Before it happened: of another cause.
-  lab.logs.acknowledged = {acknowledged("morning.out", "2022-03-01")};
+  lab.logs.acknowledged = {acknowledged("worklist.out", "2022-03-01")};
   EXPECT_EQ(lab.lines()[0].state, State::fresh) << "later change";
   // Moved by more than its U of 0.5 um since.
-  lab.logs.acknowledged = {acknowledged("morning.out", "2023-08-01")};
+  lab.logs.acknowledged = {acknowledged("worklist.out", "2023-08-01")};
   auto& results = lab.machines[0].stored().results;
   const auto last = std::find_if(results.rbegin(), results.rend(),
                                  [](const auto& r) { return r.quantity == "B"; });
@@ -242,13 +242,13 @@ TEST(MorningLines, ACampaignDatedAfterTheNightIsNamed) {
   lab.machines.push_back(m);
   auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].id, "morning.later:S-42:S-42-9");
+  EXPECT_EQ(lines[0].id, "worklist.later:S-42:S-42-9");
   EXPECT_EQ(lines[0].kind, Kind::undecided);
   EXPECT_EQ(text_of(lines[0], "day"), "2042-06-01");
   for (int k = 0; k < 3; ++k) lab.machines.push_back(m);  // the clock was set back
   lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].finding.id, "morning.later-several");
+  EXPECT_EQ(lines[0].finding.id, "worklist.later-several");
 }
 
 TEST(MorningLines, AnotherDefinitionOrAWiderLimitMendsNothing) {
@@ -262,13 +262,13 @@ TEST(MorningLines, AnotherDefinitionOrAWiderLimitMendsNothing) {
     const auto lines = lab.lines();
     return lines.size() == 1 ? lines[0].finding.id : std::to_string(lines.size()) + " lines";
   };
-  EXPECT_EQ(significant([](auto&) {}), "morning.fixed");
-  EXPECT_EQ(significant([](auto& r) { r[7].tolerance = 7.0; }), "morning.fixed");
-  EXPECT_EQ(significant([](auto& r) { r[7].tolerance = 12.0; }), "morning.judged-anew");
+  EXPECT_EQ(significant([](auto&) {}), "worklist.fixed");
+  EXPECT_EQ(significant([](auto& r) { r[7].tolerance = 7.0; }), "worklist.fixed");
+  EXPECT_EQ(significant([](auto& r) { r[7].tolerance = 12.0; }), "worklist.judged-anew");
   EXPECT_EQ(significant([](auto& r) {
               for (std::size_t i = 0; i < 7; ++i) r[i].conditions = R"({"edition":1988})";
             }),
-            "morning.judged-anew");
+            "worklist.judged-anew");
 }
 
 TEST(MorningLines, MicrometresAreNoArcseconds) {
@@ -291,7 +291,7 @@ TEST(MorningLines, MicrometresAreNoArcseconds) {
   auto& results = lab.machines[0].stored().results;
   for (std::size_t i = 6; i < 8; ++i)
     results[i].value = 9.1, results[i].decision = "does not conform";
-  lab.logs.acknowledged = {acknowledged("morning.out", "2022-08-01")};
+  lab.logs.acknowledged = {acknowledged("worklist.out", "2022-08-01")};
   lab.logs.acknowledged[0].axis = "C";
   ASSERT_EQ(lab.lines().size(), 1U);
   EXPECT_EQ(lab.lines()[0].unit, Quantity::angular_deviation);
@@ -303,7 +303,7 @@ TEST(MorningLines, NamesThatNoCampaignHasAreSaid) {
   EXPECT_TRUE(lab.lines().empty());
   lab.unknown = {"S-4Z (events.toml:7)"};
   ASSERT_EQ(lab.lines().size(), 1U);
-  EXPECT_EQ(lab.lines()[0].finding.id, "morning.unknown-machine");
+  EXPECT_EQ(lab.lines()[0].finding.id, "worklist.unknown-machine");
   EXPECT_EQ(text_of(lab.lines()[0], "where"), "S-4Z (events.toml:7)");
   EXPECT_FALSE(reports::asks(lab.lines()[0]));
 }
@@ -339,7 +339,7 @@ TEST(MorningLines, ATableThatDidNotDoWhatItPromisedIsADecision) {
     Laboratory lab;
     lab.machines.push_back(m);
     auto lines = lab.lines();
-    std::erase_if(lines, [](const WorkItem& l) { return l.finding.id != "morning.table"; });
+    std::erase_if(lines, [](const WorkItem& l) { return l.finding.id != "worklist.table"; });
     return lines;
   };
   EXPECT_TRUE(table_lines(with_table(1.4)).empty()) << "within what its readings scatter";
@@ -347,7 +347,7 @@ TEST(MorningLines, ATableThatDidNotDoWhatItPromisedIsADecision) {
     const auto lines = table_lines(with_table(wrong));
     ASSERT_EQ(lines.size(), 1U) << wrong;
     EXPECT_EQ(lines[0].kind, Kind::changed);
-    EXPECT_EQ(lines[0].id, "morning.table:S-42:X:S-42-8");
+    EXPECT_EQ(lines[0].id, "worklist.table:S-42:X:S-42-8");
     EXPECT_NEAR(*lines[0].value, wrong * 1e-6, 1e-12);
     EXPECT_EQ(lines[0].finding.evidence.size(), 3U);
   }
@@ -406,7 +406,7 @@ TEST(MorningLines, LostMotionThatConformsIsInformation) {
   for (auto& r : lab.machines[0].stored().results) r.tolerance.reset(), r.decision.clear();
   lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].finding.id, "morning.not-judged");
+  EXPECT_EQ(lines[0].finding.id, "worklist.not-judged");
   EXPECT_EQ(text_of(lines[0], "machines"), "S-42");
 }
 
@@ -457,7 +457,7 @@ TEST(MorningLines, ACampaignWithoutTheLimitReplacesNothing) {
   lab.machines.push_back(m);
   auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].id + " " + lines[0].quantity, "morning.out:S-42:X A");
+  EXPECT_EQ(lines[0].id + " " + lines[0].quantity, "worklist.out:S-42:X A");
   EXPECT_EQ(lines[0].campaign + " " + lines[0].since, "S-42-2 2020-07-15");
   // Judged again, it is closed.
   store::StoredResult& last = lab.machines[0].stored().results[3];
@@ -503,7 +503,7 @@ TEST(MorningLines, SoonIsTheLastValueWithItsForecast) {
   lab.last_run.date = "2023-07-20", lab.due = "2024-03-01";
   auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_EQ(lines[0].finding.id, "morning.soon");
+  EXPECT_EQ(lines[0].finding.id, "worklist.soon");
   EXPECT_NEAR(*lines[0].value, 7.3e-6, 1e-12);
   EXPECT_NEAR(*lines[0].u, 0.25e-6, 1e-12);
   EXPECT_EQ(text_of(lines[0], "date"), "2024-03-01");
@@ -512,8 +512,8 @@ TEST(MorningLines, SoonIsTheLastValueWithItsForecast) {
   lab.last_run.date = "2024-06-01";
   lines = lab.lines();
   ASSERT_EQ(lines.size(), 2U);
-  EXPECT_EQ(lines[0].finding.id, "morning.soon-now");
-  EXPECT_EQ(lines[0].id, "morning.soon:S-45:X:B");
+  EXPECT_EQ(lines[0].finding.id, "worklist.soon-now");
+  EXPECT_EQ(lines[0].id, "worklist.soon:S-45:X:B");
   EXPECT_EQ(text_of(lines[0], "leaves"), "");
   EXPECT_EQ(lines[1].kind, Kind::overdue);
   // The value is indeterminate: that line asks for more.
@@ -537,13 +537,13 @@ TEST(MorningLines, ManyOfOneKindAreOneLine) {
   }
   const auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 8U);
-  EXPECT_EQ(lines[0].finding.id, "morning.lost-several");
+  EXPECT_EQ(lines[0].finding.id, "worklist.lost-several");
   EXPECT_EQ(text_of(lines[0], "of"), "site-b");
   EXPECT_EQ(lines[0].campaigns.size(), 212U);
-  EXPECT_EQ(lines[1].finding.id, "morning.failed-several");
+  EXPECT_EQ(lines[1].finding.id, "worklist.failed-several");
   EXPECT_EQ(lines[1].campaigns.size(), 9U);
   for (std::size_t i = 2; i < lines.size(); ++i)  // each value has a line
-    EXPECT_EQ(lines[i].finding.id, "morning.undecided");
+    EXPECT_EQ(lines[i].finding.id, "worklist.undecided");
 }
 
 std::vector<std::string> open_of(const WorkItem& l) {
@@ -662,7 +662,7 @@ TEST(MorningLines, ACampaignWithoutAMachineHasItsLines) {
   EXPECT_EQ(lines[0].kind, Kind::out);
   EXPECT_EQ(lines[0].campaign, "-1");
   EXPECT_TRUE(lines[0].machine.empty());
-  EXPECT_EQ(lines[1].finding.id, "morning.no-machine");
+  EXPECT_EQ(lines[1].finding.id, "worklist.no-machine");
   EXPECT_EQ(lines[1].campaigns, std::vector<std::string>{"-1"});
 }
 
@@ -688,8 +688,8 @@ TEST(MorningLines, WhatWasWithheldIsALine) {
   for (const WorkItem& l : lab.lines())
     if (l.kind == Kind::withheld) ids.push_back(l.id);
   EXPECT_EQ(ids, (std::vector<std::string>{
-                     "morning.calibration:S-42:S-42-2", "morning.certificate:S-42:S-42-1",
-                     "morning.no-result:S-42:S-42-2", "morning.no-table:S-42:S-42-2:Y"}));
+                     "worklist.calibration:S-42:S-42-2", "worklist.certificate:S-42:S-42-1",
+                     "worklist.no-result:S-42:S-42-2", "worklist.no-table:S-42:S-42-2:Y"}));
 }
 
 TEST(MorningLines, AnAcknowledgementCoversWhatWasOpenOnItsDay) {
@@ -699,7 +699,7 @@ TEST(MorningLines, AnAcknowledgementCoversWhatWasOpenOnItsDay) {
   m.judge("X", "A", {9, 9});
   m.judge("X", "R", {5, 9});  // came later
   lab.machines.push_back(m);
-  lab.logs.acknowledged = {acknowledged("morning.out:S-42:X", "2020-03-01")};
+  lab.logs.acknowledged = {acknowledged("worklist.out:S-42:X", "2020-03-01")};
   const auto lines = lab.lines();
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0].state, State::fresh);
@@ -785,19 +785,19 @@ TEST(MorningLines, EachHasWordsInEachLanguage) {
       EXPECT_EQ(advice.find('{'), std::string::npos) << language << ": " << advice;
     }
   }
-  for (const char* id : {"morning.lost",           "morning.lost-several",
-                         "morning.failed",         "morning.history",
-                         "morning.out-changed",    "morning.changed",
-                         "morning.changed-event",  "morning.soon-now",
-                         "morning.overdue",        "morning.undecided",
-                         "morning.fixed",          "morning.conforms",
-                         "morning.not-judged",     "morning.spelling",
-                         "morning.later",          "morning.unknown-machine",
-                         "morning.no-machine",     "morning.no-value",
-                         "morning.no-table",       "morning.certificate",
-                         "morning.no-uncertainty", "morning.draft",
-                         "morning.failed-several", "morning.calibration",
-                         "morning.no-result"})
+  for (const char* id : {"worklist.lost",           "worklist.lost-several",
+                         "worklist.failed",         "worklist.history",
+                         "worklist.out-changed",    "worklist.changed",
+                         "worklist.changed-event",  "worklist.soon-now",
+                         "worklist.overdue",        "worklist.undecided",
+                         "worklist.fixed",          "worklist.conforms",
+                         "worklist.not-judged",     "worklist.spelling",
+                         "worklist.later",          "worklist.unknown-machine",
+                         "worklist.no-machine",     "worklist.no-value",
+                         "worklist.no-table",       "worklist.certificate",
+                         "worklist.no-uncertainty", "worklist.draft",
+                         "worklist.failed-several", "worklist.calibration",
+                         "worklist.no-result"})
     EXPECT_TRUE(ids.contains(id)) << id;
 }
 

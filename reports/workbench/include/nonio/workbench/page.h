@@ -25,8 +25,8 @@ std::map<std::string, std::string> words(const Templates& templates, const std::
 std::string_view app_js();
 std::string_view app_css();
 /// Script and style of a site's page.
-std::string_view morning_js();
-std::string_view morning_css();
+std::string_view site_js();
+std::string_view site_css();
 
 /// third_party/uplot, byte for byte.
 std::string_view uplot_js();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "nonio/controllers/axes.h"
+#include "nonio/math/compensated.h"
 #include "nonio/math/compensation.h"
 #include "nonio/math/reversal.h"
 #include "nonio/sdk/plugin.h"
@@ -27,11 +28,6 @@ struct Unresolved {
   double step = 0.0;                ///< m or rad
   double resolution = 0.0;          ///< smallest difference of two readings, m or rad
   double slope = 0.0, limit = 0.0;  ///< of the step, and what it exceeds; a ratio
-};
-
-/// Expanded uncertainties of what a table compensates; 0: not known. A prediction is never below them.
-struct Uncertainties {
-  double B_mean = 0.0, E = 0.0, M = 0.0;  ///< m or rad
 };
 
 /// A mean reversal of which U is half or more: no value is made of it.
@@ -56,7 +52,7 @@ struct AxisJob {
   AxisSettings settings;           ///< of this axis: option `axes`
   std::vector<std::string> drift;  ///< ids of the findings with severity warning
   std::optional<Unresolved> unresolved{};
-  Uncertainties U;
+  math::CompensatedUncertainty U;
   std::optional<HeldReversal> held{};  ///< `curve` is the mean in both directions then
   std::vector<std::string> suspects;   ///< readings: "190.0 mm (3, +)"
   std::vector<std::string> about;      ///< machine, axis, date: plain ASCII lines

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nonio/math/compensated.h"
+
+#include <algorithm>
+
+#include "nonio/math/budget.h"
+#include "nonio/math/drift.h"
+#include "nonio/math/uncertainty.h"
+
+namespace nonio::math {
+
+CompensatedUncertainty compensated_uncertainty(const Campaign& campaign, const Measurement& m,
+                                               const Observations& readings, const AxisTest& test,
+                                               bool has_drift) {
+  const Observations* own = &readings;
+  const auto limits = limits_held(campaign, {&own, 1});
+  auto budget = uncertainty_budget(campaign, limits.environment, m.axis, test).budget;
+  if (budget && !has_drift) budget->seen = {};
+  const double seen = has_drift ? drift_share(test).B_mean : 0.0;
+  if (!budget) return {seen, 0.0, 0.0};
+  const auto U = iso230_2_uncertainty(*budget, approaches_per_mean(test), 2.0);
+  return {std::max(U.B_mean, seen), U.E, U.M};
+}
+
+double predicted_after(double before, double after, double U) {
+  return after < before ? std::min(before, std::max(after, U)) : after;
+}
+
+}  // namespace nonio::math
