@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """live_page_test.py NONIO SOURCE_FOLDER: the page of `nonio serve` in a real browser, with the real server: the tutorial by
-mouse and by keys, undo, reload, two tabs, hostile names, a file edited beside it, a server that ends, widths, dark, motion,
-what hinders people. Its pictures and numbers have a test of their own (live_pictures_test.py).
+mouse and by keys, undo, reload, two tabs, hostile names, a file edited by another program, a server that ends, widths, dark
+colours, motion and accessibility. Pictures and numbers have a test of their own (live_pictures_test.py).
 
-Waits for states, never sleeps. On failure the screenshot and the browser's log are kept beside the test. With
+Waits for states, never sleeps. On failure the screenshot and the browser's log are kept in the test's folder. With
 NONIO_PICTURES=FOLDER the three pictures of README.md are written there."""
 import json
 import os

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""live_site_test.py NONIO SOURCE_FOLDER: the page of `nonio serve SITE` in a real browser, with the real server: the morning as
-the static pages have it, filters, entries by mouse and by keys, two tabs, read-only, a campaign opened and left, run again and
-cancelled, certificates verified and released, hostile names, a night that runs, a server that ends, widths, dark, motion, and
-what hinders people. Waits for states, never sleeps."""
+"""live_site_test.py NONIO SOURCE_FOLDER: the page of `nonio serve SITE` in a real browser, with the real server: the worklist as
+on the static pages, filters, entries by mouse and by keys, two tabs, read-only, a campaign opened and left, run again and
+cancelled, certificates verified and approved, hostile names, a run in progress, a server that ends, widths, dark colours,
+motion and accessibility. Waits for states, never sleeps."""
 import fcntl
 import json
 import os
@@ -25,7 +25,7 @@ def nonio(*arguments):
 
 
 class SitePage(live_browser.LivePage):
-    """Each test has a copy of a laboratory of which one night is done."""
+    """Each test has a copy of a laboratory after one run."""
 
     @classmethod
     def setUpClass(cls):
@@ -38,7 +38,7 @@ class SitePage(live_browser.LivePage):
 
     def setUp(self):
         super().setUp()
-        # A site is known by its folder: a moved one is the same site as long as its old folder is gone.
+        # A site is identified by its folder: a moved one is the same site if its old folder no longer exists.
         self.site, self.out = self.folder / "lab", self.folder / "out"
         shutil.copytree(self.laboratory / "lab", self.site)
         shutil.copytree(self.laboratory / "out", self.out)

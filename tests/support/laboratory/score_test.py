@@ -42,7 +42,7 @@ def told(truth, noise=None):
                                 "p": 1e-9, "p_adjusted": 1e-7, "cause": cause})
         segments = [{"from": g["from"], "to": g["to"], "value": 0.0, "u": 0.1, "slope_per_year": g["slope_per_year"] + blur(noise, 0.1),
                      "u_slope": 0.1} for g in s["segments"]]
-        date, value = s["later"][2] if s["later"] else (None, None)  # nobody measures it any more
+        date, value = s["later"][2] if s["later"] else (None, None)  # it is no longer measured
         out.append({"machine": s["machine"], "axis": s["axis"], "quantity": s["quantity"], "unit": "um", "points": [], "model": "drift",
                     "segments": segments, "changes": changes, "smallest_change": 1.0,
                     "forecast": {"date": date, "value": value + blur(noise, 0.2), "u": 0.2, "answer": "keep"} if date else None})

@@ -100,7 +100,7 @@ class Confinement(NightTest):
                 pass
 
     def test_a_rounding_mode_of_one_changes_no_other(self):
-        """With plugins from beside the program a worker does many campaigns."""
+        """With plugins in the program's own folder a worker evaluates many campaigns."""
         wanted = self.reference()
         own = pathlib.Path(NONIO).resolve().parents[1]
         program = self.root / "program"
@@ -278,7 +278,7 @@ class Confinement(NightTest):
             said = lambda *args: subprocess.run([NONIO, *map(str, args), "--plugin-path", reads], env=environment,
                                                 capture_output=True, text=True, timeout=120).stderr
             compare = ("compare", self.site / "a")
-            self.assertIn("it has the key", said(*compare))  # nobody has said that it is one
+            self.assertIn("it has the key", said(*compare))  # site.toml does not name it as the key
             (self.site / "site.toml").write_text(
                 '[signing]\npkcs12 = "keys/lab.p12"\npassword_file = "keys/password"\n')
             self.assertNotIn("it has the key", said(*compare))

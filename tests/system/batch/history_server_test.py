@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The laboratory's memory on a PostgreSQL server: the same rows, whatever becomes of the server or of the night."""
+"""The store of results on a PostgreSQL server: the same rows, even if the server or the run is stopped."""
 import csv
 import io
 import json

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The laboratory's memory grows with the nights: the same rows as made again, whatever ends a night."""
+"""The store of results is updated by each run: the same rows as when made from nothing, however a run ends."""
 import os
 import shutil
 import sqlite3
@@ -55,7 +55,7 @@ class HistoryTest(NightTest):
         first = self.rows()
         self.run_nonio("--date", "2026-03-02")
         self.assertEqual(self.rows(), first, "a night on which nothing changed")
-        # Other readings, other options, one that is gone.
+        # Other readings, other options, and a campaign that no longer exists.
         self.campaign("a", seed=9.0)
         self.campaign("b", extra="[options.iso230-2]\nedition = 2006\n")
         shutil.rmtree(self.site / "c")
@@ -127,7 +127,7 @@ class HistoryTest(NightTest):
         self.assertEqual(self.rows(), self.made_again())
 
     def test_killed_nights(self):
-        """At any moment: the night after it leaves the rows of a store that is made from nothing."""
+        """At any moment: the run after it leaves the rows of a store that is made from nothing."""
         def check(what):
             self.assertEqual(self.ask("PRAGMA integrity_check"), [("ok",)])
             self.run_nonio()

@@ -40,7 +40,7 @@ class Incremental(NightTest):
         self.assertEqual(tree(self.out), tree(other))
 
     def test_an_output_folder_is_of_one_site(self):
-        """Campaigns of two sites would be taken for one another's, and the summary tells of one only."""
+        """Otherwise campaigns of two sites would be mixed up, and the summary covers one site only."""
         self.run_nonio(expect=0)
         before = tree(self.out)
         other = self.root / "other-site"

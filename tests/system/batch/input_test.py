@@ -221,7 +221,7 @@ class Input(NightTest):
         for out in (self.site, folder, folder / "below"):
             done = self.run_nonio(out=out, expect=2)
             self.assertIn("expected another folder", done.stderr)
-        self.run_nonio(out=self.site.parent, expect=0)  # beside it is fine
+        self.run_nonio(out=self.site.parent, expect=0)  # the site's parent folder is accepted
         self.assertEqual((folder / "values.csv").read_text(), "mine")
 
     def test_a_pipe_does_not_stop_the_night(self):

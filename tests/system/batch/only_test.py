@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`nonio run --only`: one campaign of the last night again. The night stays what it was but for that campaign."""
+"""`nonio run --only`: one campaign of the last run again. The other campaigns of that run do not change."""
 import fcntl
 import json
 import pathlib
@@ -92,7 +92,7 @@ class OnlyTest(NightTest):
         summary = json.loads((self.out / "summary.json").read_text())
         self.assertEqual((summary["night"], summary["counts"]["campaigns"]), (1, 3), "d came after the night")
         self.assertFalse((self.out / "d").exists())
-        # What it leaves is what a night of all would have left for b; the next night does the rest.
+        # For b it leaves what a complete run would have left; the next run does the rest.
         self.run_nonio("--date", "2026-03-02")
         self.assertEqual(self.state()["night"], 2)
         self.assertEqual((self.record("a")["night"], self.record("b")["night"], self.record("d")["night"]), (2, 1, 2))

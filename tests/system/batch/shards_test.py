@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A night in shards: the bytes of one run, whatever the order, number and end of the processes."""
+"""A run in shards: the bytes of an undivided run, whatever the order, number and end of the processes."""
 import json
 import os
 import pathlib
@@ -188,7 +188,7 @@ class Shards(NightTest):
         self.same(self.out, self.root / "one")
 
     def test_the_site_changes_while_its_night_is_planned(self):
-        """Readings as they are when they are read; what came later, the next night; what is gone, failed."""
+        """Readings are those at the time of reading; a new campaign waits for the next run; a removed one has failed."""
         for name in ("a", "b", "c"):
             self.campaign(name)
         self.plan(2, "--date", "2026-11-01")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What lies in a site is seen, or its absence is said: no folder, file or share drops a campaign in silence or ends the
-night."""
+"""Every campaign of a site is found or reported as missing: no folder, file or share drops a campaign silently or ends the
+run."""
 import errno
 import hashlib
 import json
@@ -102,7 +102,7 @@ class Survey(NightTest):
             stop.set()
             thread.join()
 
-    # 2. Files and shares that stop a night
+    # 2. Files and shares that stop a run
 
     def test_a_manifest_above_1_MB_is_refused_unread(self):
         self.campaigns("a")
@@ -258,7 +258,7 @@ class Survey(NightTest):
         self.assertIn("not a file", self.run_nonio(expect=2).stderr)
         self.assertFalse(self.out.exists())
 
-    # 8. What was there and is gone
+    # 8. Campaigns that no longer exist
 
     def test_campaigns_that_are_gone_are_named(self):
         self.campaigns("a", "b", "c", "d")
@@ -275,7 +275,7 @@ class Survey(NightTest):
         self.assertEqual(self.summary()["counts"]["vanished"], 3)
         self.assertIn("MISSING SINCE AN EARLIER RUN", (self.out / "summary.txt").read_text())
         self.assertEqual(self.ids("unchanged"), ["d"])
-        self.run_nonio(expect=1)  # until it is meant, or mended
+        self.run_nonio(expect=1)  # until the campaign is removed from the output folder or restored
         shutil.rmtree(self.out / "a")
         (kept / "b").rename(self.site / "b")
         (kept / "campaign.toml").rename(self.site / "c" / "campaign.toml")

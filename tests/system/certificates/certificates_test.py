@@ -75,7 +75,7 @@ class Certificates(NumberedTest):
         self.assertEqual((self.root / "all" / f"{number(1)}.pdf").read_bytes(), first)
         self.assertEqual((self.root / "all" / f"{number(2)}.pdf").read_bytes(), self.pdf("c1").read_bytes())
         self.assertIn("amended by " + number(2), self.certificates().stdout)
-        # What has no say in the results changes nothing, what has changes it.
+        # A key without effect on the results changes nothing; one with effect makes an amendment.
         self.site_with(extra='[limits]\nseconds = 100\n')
         self.night()
         self.assertEqual(self.printed("c1", "number"), number(2))
@@ -278,7 +278,7 @@ class Certificates(NumberedTest):
         self.plugins_are_loaded_where_a_signature_holds(self.pdf("c1"))
 
     def test_each_verdict_has_its_words_and_its_status(self):
-        """What a customer must tell apart: a forged file, one whose signer is not known, one that is not a certificate."""
+        """A customer must be able to distinguish a forged file, one whose signer is not known, and one that is not a certificate."""
         self.signed_campaign("c1")
         self.night()
         honest = self.pdf("c1")

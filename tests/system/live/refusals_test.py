@@ -81,7 +81,7 @@ class Refusals(unittest.TestCase):
         for site in ("cross-site", "same-site", "", "same-origin, none"):
             with self.subTest(site):
                 self.refused(403, "another site", fields=[("Sec-Fetch-Site", site)])
-        # Also for what has no token: nobody else embeds the page's script.
+        # Also for paths without a token: no other site can embed the page's script.
         self.refused(403, "another site", path="/app.js", fields=[("Sec-Fetch-Site", "same-site")], token=False)
 
     def test_token(self):
@@ -95,7 +95,7 @@ class Refusals(unittest.TestCase):
         self.refused(403, "", path=f"/api/state?t={token}", token=False)
         self.refused(403, "", path=f"/?t={token}#t={token}" if False else f"/api/state?token={token}", token=False)
         self.refused(403, "", fields=[("Cookie", f"t={token}; X-Nonio-Token={token}")], token=False)
-        # Without a token nobody learns what is there and what is not.
+        # Without a token the answer does not show which paths exist.
         for path in ("/api/state", "/api/nothing", "/etc/passwd", "/api/parts/Z/fit"):
             self.refused(403, "", path=path, token=False)
         self.assertNotIn(token, self.server.words())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`nonio serve SITE`: the morning, entries, certificates, runs, and the workbench of each campaign."""
+"""`nonio serve SITE`: the worklist, entries, certificates, runs, and the workbench of each campaign."""
 import fcntl
 import json
 import pathlib
@@ -218,7 +218,7 @@ class Sites(LiveTest):
             s.post("/api/run", {"campaign": "02-constant-reversal"}, expect=202)
             state = self.until_run_ends(s)
             self.assertEqual((state["run"]["state"], state["run"]["same_results"], state["night"]["night"]), ("done", False, 1))
-            # Somebody else's run: it is refused, in the words of the verb.
+            # While another process runs the site, a run is refused with the message of the verb.
             with open(self.out / ".nonio/lock") as lock:
                 fcntl.flock(lock, fcntl.LOCK_EX)
                 s.post("/api/run", {"campaign": "02-constant-reversal"}, expect=202)

@@ -255,7 +255,7 @@ class Mail(unittest.TestCase):
         status, said, seconds = self.send(self.at(hanging, "tls = \"none\""), "4")
         self.assertEqual(status, 1, said)
         self.assertLess(seconds, 15)
-        with socket.socket() as free:  # bound, and nobody listens
+        with socket.socket() as free:  # bound, but not listening
             free.bind(("127.0.0.1", 0))
             status, said, _ = self.send(f"smtp = \"localhost\"\nport = {free.getsockname()[1]}\ntls = \"none\"\n")
         self.assertEqual(status, 1)

@@ -20,7 +20,7 @@ NONIO, READS = os.environ["NONIO"], os.environ["NONIO_SCHEMA_READS"]
 PROJECT = pathlib.Path(__file__).resolve().parents[3]
 WRONG = [7, -7, 0, 2.5, 1e12, True, "some text", "X", "2025-01-02", "", "a\tb", datetime.date(2025, 1, 2),
          datetime.time(12, 0), [], [1, 2], ["a"], {}, {"a": 1}, {"X": 1}, [{"a": 1}], [[1]], [1, "a"]]
-# In JSON, and for taplo, these are texts: the schema cannot tell them from a text that is wanted.
+# In JSON, and for taplo, these are texts: the schema cannot distinguish them from a required text.
 DAYS = [f"= {toml.written(value)}" for value in WRONG if isinstance(value, (datetime.date, datetime.time))]
 # Where the schema accepts what the program refuses: (place, why).
 ONLY_PROGRAM = [
@@ -234,7 +234,7 @@ class Schema(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_what_is_told_of_every_key(self):
-        """A sentence or two; options are told of by their plugins."""
+        """A sentence or two; options are described by their plugins."""
         for s in SCHEMAS.values():
             for path, value in places(s):
                 if path[-1] == "description" and not isinstance(value, dict) and "options" not in path:

@@ -384,7 +384,7 @@ class Explain(VerbTest):
             self.nonio("model", "add", self.folder, d["effect"])
         e = self.explain()
         self.assertEqual((e["verdict"]["kind"], e["descriptions"]), ("nothing", []))
-        # Beside a description an effect says what it says alone, wherever it stands in the list.
+        # With a description in the model an effect is fitted as it is alone, in any order of the list.
         self.nonio("model", "add", self.folder, "backlash:X")
         self.assertIn("backlash:X", self.explain()["model"]["effects"])
 

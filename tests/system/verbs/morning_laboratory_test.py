@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mornings of a laboratory of 60 machines with twelve crashes of 4 um: short, and each crash is in it. Fewer campaigns than the
-laboratory of bench and documents (five or six of a machine, not eight or nine), so that it takes seconds."""
+"""The worklists of a laboratory of 60 machines with twelve crashes of 4 um: they are short, and each crash is reported. The machines
+have fewer campaigns than in bench and documents (five or six each, not eight or nine), so that the test takes seconds."""
 import email
 import email.policy
 import json

@@ -106,7 +106,7 @@ TEST_F(RegisterServerTest, AServerThatIsAwayIsWaitedForAndOneThatRefusesIsNot) {
   EXPECT_FALSE(storage::is_locked(unknown.error())) << unknown.error().message;
 }
 
-/// A writer that does not end holds up nobody for longer than the patience.
+/// A writer that does not end blocks the others for no longer than their patience.
 TEST_F(RegisterServerTest, WhoeverFindsItLockedWaitsForItsPatience) {
   open();
   storage::Database other = raw();

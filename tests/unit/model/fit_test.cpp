@@ -74,7 +74,7 @@ TEST(Fit, AReadingCountsByItsUncertainty) {
   EXPECT_NEAR(g->parameters[0].value, h->parameters[0].value, 1e-12);
 }
 
-// Nobody measured times: a drift is so much from one reading to the next, and no um/h.
+// Without measured times a drift is in um per reading, not in um/h.
 TEST(Fit, TimesThatNobodyMeasuredAreNotHours) {
   Effect drift = line_effect(false);
   drift.linear = {{"z", "", Quantity::deviation_per_time, Quantity::angle_per_time}};

@@ -14,7 +14,7 @@ bool has(const std::string& text, const std::string& what) {
   return text.find(what) != std::string::npos;
 }
 
-/// One side by side with another stands in another place of the file: all words of `what` in order.
+/// Whether a page contains `what`, which may be wrapped over lines.
 bool says(const std::string& text, const std::string& what) {
   std::string plain;
   for (const char c : text) plain += c == '\n' ? ' ' : c;

@@ -436,7 +436,7 @@ TEST_F(Truth, TheFirstPageSaysItAll) {
     EXPECT_TRUE(has(first, what)) << what;
 }
 
-/// A limit that nothing was held against is not passed over; a test in one direction has results.
+/// A limit with which no result was compared is stated; a test in one direction has results.
 TEST_F(Truth, LimitsThatNothingWasHeldAgainstAreSaid) {
   Behaviour one;
   one.minus = false;
@@ -457,7 +457,7 @@ TEST_F(Truth, LimitsThatNothingWasHeldAgainstAreSaid) {
   EXPECT_TRUE(has(page(c), "X: no decision on B; a limit"));
 }
 
-/// However many they are: a decision that a paper lacks is one that nobody can object to.
+/// However many there are: a customer could not object to a decision that is not printed.
 TEST_F(Truth, EveryDecisionIsPrinted) {
   Case c = whole_case(plugins);
   for (int i = 1; i <= 8; ++i) {

@@ -18,7 +18,7 @@ ControlTable table(ControlTable::Zero zero) {
   return t;
 }
 
-/// Entries at -100, 0, 100, 200 mm; the change over each interval stands at its end.
+/// Entries at -100, 0, 100, 200 mm; the change over each interval is at its end.
 RawTable drawn() {
   RawTable raw;
   raw.axis.name = "X";

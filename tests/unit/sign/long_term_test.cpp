@@ -161,7 +161,7 @@ TEST_F(LongTerm, ListsFromBeforeTheSignatureOnlyWhileTheyAreOfUse) {
   const auto data = sign::prolong(before, how(now + 20 * day, old));
   ASSERT_TRUE(data) << data.error().message;
   EXPECT_TRUE(sign::verify_pdf(data->bytes, verifier(now + 21 * day)).holds());
-  // Nobody proves that it was put in while it was of use.
+  // There is no proof that the list was added while it was valid.
   const auto verified = sign::verify_pdf(data->bytes, verifier(now + 26 * day));
   EXPECT_EQ(check_of(verified, "updates.needed").state, Check::State::fails) << all_of(verified);
 }

@@ -276,7 +276,7 @@ TEST(Artefact, PlacementsThatShareTooFewBallsAreNotLinked) {
   EXPECT_TRUE(artefact_lines(a, 0, 0));
 }
 
-/// X towards Y and Y towards X on one square that stands askew, then turned over.
+/// X towards Y and Y towards X on one square that is misaligned, then turned over.
 void add_square(Workshop& w, const Truth& t, double g, double askew, double askew_turned,
                 const Noise& noise, bool turned) {
   const auto add = [&](const char* id, std::size_t axis, std::size_t across, double leans,

@@ -93,7 +93,7 @@ TEST(MorningChanges, AnInstrumentIsNotTheMachine) {
 }
 
 TEST(MorningChanges, QuietNightsTellNothing) {
-  // The share of nights with any news is 5 %; of 200 nights at most 18 with a chance of 0.995.
+  // The share of runs with any change is 5 %; of 200 runs at most 18 with a probability of 0.995.
   std::mt19937_64 random(14);
   std::cout << "seed 14\n";
   int runs = 0;
@@ -163,7 +163,7 @@ TEST(MorningChanges, WhatCameLaterTeachesNothing) {
 }
 
 TEST(MorningChanges, ANightChargesATestOnce) {
-  // What one night asked of many machines is a family; a later night of one machine is another.
+  // The tests of one run over many machines are a family; a later run over one machine is another.
   std::mt19937_64 random(16);
   std::cout << "seed 16\n";
   const auto values = around(random, 8, 0.1, 4, 0.3);
@@ -184,7 +184,7 @@ TEST(MorningChanges, ANightChargesATestOnce) {
 }
 
 TEST(MorningChanges, AMailIsSurerThanAList) {
-  // The same history, in nights that asked more and more: told below 5 %, mailed below 1 %.
+  // The same history in runs with more and more tests: reported below 5 %, mailed below 1 %.
   std::mt19937_64 random(17);
   std::cout << "seed 17\n";
   const auto values = around(random, 8, 0.1, 4, 0.5);

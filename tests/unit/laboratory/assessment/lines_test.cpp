@@ -402,7 +402,7 @@ TEST(MorningLines, LostMotionThatConformsIsInformation) {
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].kind, Kind::information);
   EXPECT_FALSE(lines[0].finding.attention);
-  // Where nobody stated a limit nothing was judged, and that is said.
+  // Without a tolerance nothing was judged, which a line states.
   for (auto& r : lab.machines[0].stored().results) r.tolerance.reset(), r.decision.clear();
   lines = lab.lines();
   ASSERT_EQ(lines.size(), 1U);
@@ -624,12 +624,12 @@ TEST(MorningLines, ListAllThatIsOpenOfAnAxis) {
   MadeMachine m("S-42", 2);
   m.judge("X", "A", {9, 9});
   m.judge("X", "B", {9, 12});
-  m.judge("X", "E", {9, 8});  // cannot be decided
+  m.judge("X", "E", {9, 8});  // indeterminate
   m.judge("X", "R", {9, 5});  // a newer measurement replaced it
   m.stored().without_value = {{1, "", "X", "M", "um", 5.0}, {1, "", "Y", "A", "um", 5.0}};
   lab.machines.push_back(m);
   const auto lines = lab.lines();
-  ASSERT_EQ(lines.size(), 1U);  // nobody has measured Y
+  ASSERT_EQ(lines.size(), 1U);  // Y was not measured
   EXPECT_EQ(open_of(lines[0]), (std::vector<std::string>{"B", "A", "E?", "M without value"}));
   EXPECT_NEAR(*lines[0].also[0].value, 9e-6, 1e-12);
   EXPECT_NEAR(lines[0].also[0].limit, 8e-6, 1e-12);

@@ -35,7 +35,7 @@ TEST(HistoryServer, SaysWhatSqliteSaysToTheLastDigit) {
   ASSERT_TRUE(store::rebuild(out.root(), {}, nothing));
   EXPECT_EQ(rows_of(out.root()), on_the_server);
   EXPECT_TRUE(fs::exists(out.root() / store::store_name));
-  // Back again: it is still ours, and the file does not grow old beside it.
+  // Back on the server: the schema is still the site's, and the outdated file is removed.
   ASSERT_TRUE(store::note_place(out.root(), place->server).value());
   EXPECT_FALSE(store::note_place(out.root(), place->server).value());
   ASSERT_TRUE(store::update(out.root(), false, {}, {}, nothing));
