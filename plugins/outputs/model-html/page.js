@@ -55,7 +55,7 @@
       (whole && finite(refitted.cv_rms) ? " " + text(words.without_cv, {rms: number(refitted.cv_rms, 2), unit: data.unit}) : "");
   }
 
-  // ---- what is in and what is out ----
+  // ---- the choice of effects, directions and runs: boxes, and the address ----
   function remember() {
     const list = [];
     for (const kind in out) for (const v of [...out[kind]].sort()) list.push(kind + v);

@@ -6,7 +6,7 @@ const learn = (() => {
     sessionStorage.setItem("nonio-learn", on ? "1" : "0");
     before = null;
   }
-  /// A judgement of the reader's last step by the result of explain.
+  /// Judges the reader's last step by the result of explain: [kind, sentence].
   function judge(state, shown) {
     const {explain, fit} = shown;
     if (!explain || !fit || shown.explainIsOld) return ["wait", say("learn.wait")];

@@ -20,7 +20,7 @@
     return steps.join("/");
   }
 
-  // ---- asking ----
+  // ---- requests to the server ----
   let denied = false; // the server refused this user's role: the address is right
   /// Replaces the whole page.
   function only(name, ...content) {
@@ -192,7 +192,7 @@
       el("ul", {class: "plain campaigns"}, ...[...seen].sort((a, b) => (a[1] < b[1] ? 1 : -1)).map(([id, date]) => el("li", {}, el("span", {class: "day"}, date), " ", el("b", {}, id), " ", ...campaignButtons(id, id))))));
   }
 
-  // ---- own pages ----
+  // ---- pages that this script draws ----
   const tools = () => ({edit: state.edit, approve: state.approve, out: state.out, running: state.running, buttons: campaignButtons, fetchFile, runAll: () => runAgain(""), complain, drop: measure.drop, release, released, releasedNote});
   /// Shows a new campaign, and evaluates it at once if the server has an output folder.
   async function created(answer) {
@@ -314,7 +314,7 @@
     draw(true).catch(complain);
   }
   addEventListener("hashchange", moved);
-  // A filter changes the address without an event hashchange.
+  // A filter changes the address by replaceState, which sends no event hashchange.
   document.addEventListener("change", (event) => {
     if (view() !== "index.html" || !event.target.closest(".filters")) return;
     filters = location.hash.slice(1);

@@ -15,7 +15,7 @@
   const trial = () => JSON.stringify([state.campaign.read_at, state.model, (state.excluded || []).map((e) => [e.part, e.row]), state.period_mm]);
   const path = (what) => `/api/parts/${encodeURIComponent(shown.part)}/${what}`;
 
-  // ---- asking ----
+  // ---- requests to the server ----
   async function post(what, body, then) {
     outcome("");
     busy++;
