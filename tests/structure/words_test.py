@@ -39,9 +39,9 @@ LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"')
 LINES = r"(?:^|(?<=[ \t])){0}.*(?:\n[ \t]*{0}.*)*"  # comments on successive lines are one, because phrases are wrapped
 SLASHES, HASH, BLOCK = LINES.format("//"), LINES.format("#(?!!)"), r"/\*[\s\S]*?\*/"
 TEXT = r"""\"{3}[\s\S]*?\"{3}|'{3}[\s\S]*?'{3}"""
-COMMENT = {suffix: re.compile(pattern, re.M) for suffix, pattern in {  # group 1: a comment; else a text with "#" in it
+COMMENT = {suffix: re.compile(pattern, re.M) for suffix, pattern in {  # group 1: a comment; otherwise a text that may contain "#"
     ".h": f"({SLASHES})", ".cpp": f"({SLASHES})", ".js": f"({SLASHES}|{BLOCK})", ".css": f"({BLOCK})",
-    ".sh": f"({HASH})", "": f"({HASH})", ".py": rf'(^[ \t]*"""[\s\S]*?"""|{HASH})|{TEXT}'}.items()}
+    ".sh": f"({HASH})", "": f"({HASH})", ".cmake": f"({HASH})", ".py": rf'(^[ \t]*"""[\s\S]*?"""|{HASH})|{TEXT}'}.items()}
 
 
 def words(language):
@@ -54,11 +54,17 @@ def words(language):
             yield path.name, re.sub(r"\{\w+\}", "{}", text)
 
 
+def kind(path):
+    """The suffix of a source, also of one that CMake or `nonio plugin new` fills in (.in)."""
+    name = pathlib.PurePath(path).name.removesuffix(".in")
+    return ".cmake" if name == "CMakeLists.txt" else pathlib.PurePath(name).suffix
+
+
 def sources(*folders):
     """(path, text) of each file with comments; without a suffix it is a script."""
     for folder in folders:
         for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in COMMENT and path.is_file() and (path.suffix or path.read_bytes()[:2] == b"#!"):
+            if kind(path) in COMMENT and path.is_file() and (kind(path) or path.read_bytes()[:2] == b"#!"):
                 yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
 
 
@@ -72,7 +78,7 @@ def literals(text):
 
 def comments(path, text):
     """(line, text) of each comment and docstring of a source."""
-    for match in COMMENT[pathlib.PurePath(path).suffix].finditer(text):
+    for match in COMMENT[kind(path)].finditer(text):
         if match[1]:
             yield text.count("\n", 0, match.start()) + 1, re.sub(r"\n[ \t]*(//+|#+|\*)?[ \t]*", " ", match[1])
 
@@ -98,7 +104,8 @@ class Words(unittest.TestCase):
     def test_a_planted_comment_is_found(self):
         for path, text in (("a.h", "int a;  ///< GONE\n"), ("a.cpp", "f();\n// GONE\n"), ("a.js", "f();  // GONE"),
                            ("a.js", "f(\n/* GONE */);"), ("a.css", "p { /* GONE */ }"), ("a.py", "def f():\n    '''GONE'''\n"),
-                           ("a.py", "f()  # GONE\n"), ("a.sh", "f  # GONE"), ("a", "#!/bin/sh\n# GONE")):
+                           ("a.py", "f()  # GONE\n"), ("a.sh", "f  # GONE"), ("a", "#!/bin/sh\n# GONE"),
+                           ("CMakeLists.txt", "f()  # GONE"), ("a.cpp.in", "f();  // GONE")):
             mark = next((m for m in ("///<", "//", "#") if m + " GONE" in text), "")
             for gap in (" ", f"\n  {mark[:3]} "):
                 planted = text.replace("'''", '"' * 3).replace("GONE", f"it is{gap}gone")
@@ -137,8 +144,8 @@ class Words(unittest.TestCase):
         self.assertEqual("", "\n".join(found))
 
     def test_comments(self):
-        found = [f"{path}:{line}: {phrase!r}; write {write}"
-                 for path, text in sources("engine", "plugins", "reports", "templates", "tests", "bench", "samples", "scripts")
+        folders = ("engine", "plugins", "reports", "templates", "tests", "bench", "samples", "scripts", "cmake")
+        found = [f"{path}:{line}: {phrase!r}; write {write}" for path, text in sources(*folders)
                  for line, comment in comments(path, text) for phrase, write in wrong(comment)]
         self.assertEqual("", "\n".join(found))
 
