@@ -192,7 +192,7 @@ class Samples(unittest.TestCase):
         self.assertGreater(middle - statistics.fmean(points[0]["+"]), 4.0)
         self.assertGreater(middle - statistics.fmean(points[-1]["+"]), 4.0)
 
-    def test_gantry_diagonals_close_and_the_third_one_tells_the_axes_apart(self):
+    def test_gantry_diagonals_close_and_the_third_one_separates_the_axes(self):
         def mean(file):
             return [(statistics.fmean(p["+"]) + statistics.fmean(p["-"])) / 2.0
                     for p in readings("13-gantry-diagonals", file).values()]

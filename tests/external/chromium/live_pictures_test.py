@@ -10,7 +10,7 @@ from live_browser import By, Keys, NONIO, SOURCE, said
 
 
 class Pictures(live_browser.CampaignPage):
-    def test_in_space_the_machine_stands_with_its_lines(self):
+    def test_in_space_the_machine_is_drawn_with_its_lines(self):
         source = SOURCE / "samples/site/13-gantry-diagonals"
         self.open(self.serve(self.campaign(source)))
         self.assertTrue(self.d.find_element(By.ID, "space").is_displayed())

@@ -263,7 +263,7 @@ class SitePage(live_browser.LivePage):
         self.d.close()
         self.d.switch_to.window(first)
 
-    def test_what_somebody_types_stays(self):
+    def test_typed_text_is_kept(self):
         self.open(self.serve_site("--edit"))
         line = self.first_new()
         self.push("ack-" + line["id"])
@@ -335,7 +335,7 @@ class SitePage(live_browser.LivePage):
         self.wait(lambda: "cancelled" in (self.js("(document.getElementById('run-end') || {}).textContent") or ""), "cancelled")
 
     # ---- what happens elsewhere ----
-    def test_a_night_runs_and_the_server_ends(self):
+    def test_a_run_goes_on_and_the_server_ends(self):
         server = self.serve_site("--port", "0", "--token-file", str(self.folder / "token"))
         port = server.address.rsplit(":", 1)[1].split("/")[0]
         self.open(server)

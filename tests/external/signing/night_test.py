@@ -60,7 +60,7 @@ class SignedNight(SigningTest):
         self.run_nonio(expect=0, env={**os.environ, "NONIO_TEST_KEY": PASSWORD})
         self.assert_holds(self.out / "c1" / "report.pdf")
 
-    def test_a_night_signs_nothing_that_nobody_has_released(self):
+    def test_a_run_signs_nothing_that_was_not_approved(self):
         keys = self.keys()
         for extra in ("[certificate]\nrelease = \"by-hand\"\n", '[certificate]\nrelease = "automatic"\naccept = []\n'):
             with self.subTest(extra):
@@ -121,7 +121,7 @@ class SignedNight(SigningTest):
         self.run_nonio(expect=0)
         self.assertEqual(before, (self.out / "c1" / "report.pdf").read_bytes())
 
-    def test_what_a_night_stamped_is_restamped(self):
+    def test_the_time_stamp_of_a_run_is_extended(self):
         keys = self.keys()
         server = keys.time_server()
         self.site_toml(keys, extra=f'time_stamp = "{server.url}"\n')

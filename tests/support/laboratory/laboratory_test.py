@@ -64,7 +64,7 @@ class Files(Temporary):
         readings = {p: c for p, c in first.items() if p.endswith(".csv")}
         self.assertEqual([p for p, c in readings.items() if other.get(p) == c], [])
 
-    def test_nights_follow_one_another(self):
+    def test_runs_follow_one_another(self):
         """A campaign exists from its day on (or from when its files arrived), with the same bytes, until it is removed."""
         lab = presets.build("mixed", 9)
         entered = {p.ident: p.entered for m in lab.machines for p in m.plans}
@@ -90,7 +90,7 @@ class Files(Temporary):
         for c in early["changes"]:
             self.assertIn(c["before"], ids)
 
-    def test_a_folder_of_somebody_else_is_left_alone(self):
+    def test_a_folder_of_another_program_is_left_alone(self):
         (self.folder / "site").mkdir()
         (self.folder / "site" / "site.toml").write_text("[laboratory]\nname = \"Earnest\"\n")
         with self.assertRaises(SystemExit):

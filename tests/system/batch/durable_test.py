@@ -194,7 +194,7 @@ class Durable(NightTest):
         self.campaign("a")
         self.run_nonio(env=fault(f"fork:3:{errno.EAGAIN}:3"), expect=0)
 
-    def test_the_summary_says_which_night_it_is(self):
+    def test_the_summary_has_the_number_of_the_run(self):
         self.campaign("a")
         self.run_nonio("--date", "2026-11-03", expect=0)
         self.campaign("b")
@@ -226,7 +226,7 @@ class Durable(NightTest):
         self.assertIn("run 2", done.stdout)
         self.assertIn("did not end", done.stdout)
 
-    def test_kill_9_in_changed_and_forced_nights(self):
+    def test_kill_9_in_changed_and_forced_runs(self):
         """The place of each kill is a call that changes the disk: no timing can miss it."""
         rng = random.Random(SEED)
         print(f"seed {SEED}, {KILLS} kills", flush=True)

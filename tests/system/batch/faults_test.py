@@ -160,7 +160,7 @@ class Faults(NightTest):
         self.night("first", out, {"NONIO_FAULT": f"malloc:1:{errno.ENOMEM}:1000000", "NONIO_FAULT_IN": "confining"}, expect=0)
         self.assertEqual(tree(out), self.references["first"])
 
-    def test_the_last_calls_of_a_night(self):
+    def test_the_last_calls_of_a_run(self):
         """When all campaigns are done, and the register, the leftovers and the summary are left: every place."""
         bad = []
         for night, call, code, times in (("first", "open", errno.EIO, 10), ("first", "stat", errno.ESTALE, 1),

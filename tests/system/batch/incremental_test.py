@@ -99,7 +99,7 @@ class Incremental(NightTest):
     def test_force(self):
         self.assertEqual(self.changed_after(lambda: None, "--force"), dict.fromkeys("abc", "--force"))
 
-    def test_reason_stands_beside_the_result(self):
+    def test_the_reason_is_stored_with_the_result(self):
         self.run_nonio(expect=0)
         self.assertEqual(json.loads((self.out / "a" / "run.json").read_text())["reason"], "no earlier result")
 

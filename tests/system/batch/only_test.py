@@ -80,7 +80,7 @@ class OnlyTest(NightTest):
         self.assertEqual(self.rows(), rows)
         self.assertEqual((self.state()["state"], self.state()["night"], self.state()["date"]), ("complete", 1, "2026-03-01"))
 
-    def test_only_that_campaign_is_done_and_the_night_keeps_its_number(self):
+    def test_only_that_campaign_is_done_and_the_run_keeps_its_number(self):
         self.spoil("a"), self.spoil("b")
         self.campaign("d")
         before = self.whole()

@@ -82,7 +82,7 @@ class Packs(NightTest):
         copied = self.outside_packs(copy)
         self.assertEqual(sorted(k for k in whole.keys() | copied.keys() if whole.get(k) != copied.get(k)), [], what)
 
-    def test_nights_in_packs_equal_whole_nights(self):
+    def test_runs_in_packs_equal_whole_runs(self):
         """First; one changed; unchanged; forced; one that fails for a reason that may pass: in packs, whole, and in folders again."""
         self.some_campaigns()
         everything = ["c0", "c1", "c2", "c3", "twin", "wrong"]

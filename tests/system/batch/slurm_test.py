@@ -262,7 +262,7 @@ class SlurmTest(NightTest):
         parts = tree(self.parts)
         self.assertEqual([k for k in packed if one[k] != parts.get(k)], [])
 
-    def test_a_night_that_is_a_job_of_a_lost_host(self):
+    def test_a_run_that_is_a_job_of_a_lost_host(self):
         """Its output folder is taken over when Slurm no longer has the job, and not before."""
         self.plan()
         user = self.parts / ".nonio/user"

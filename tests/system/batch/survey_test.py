@@ -156,7 +156,7 @@ class Survey(NightTest):
         return {**with_faults(rule), "KEY_PASSWORD": "secret", **({"NONIO_FAULTS_AFTER": str(after)} if after else {})}
 
     @can_inject
-    def test_SIGTERM_ends_a_night_whose_own_files_hang(self):
+    def test_SIGTERM_ends_a_run_whose_own_files_hang(self):
         """Also where they hung after they were read before."""
         self.campaigns("a", "b")
         (self.site / "templates").mkdir()
@@ -226,7 +226,7 @@ class Survey(NightTest):
         self.assertNotIn("campaign.id", words)
         self.assertLess(used.ru_maxrss, 150_000)  # kB; the message of each with all names: 200 MB more
 
-    def test_one_id_in_very_many_folders_is_told_shortly(self):
+    def test_one_id_in_very_many_folders_is_reported_briefly(self):
         for i in range(3000):
             folder = self.site / f"f{i:04}"
             folder.mkdir()
@@ -260,7 +260,7 @@ class Survey(NightTest):
 
     # 8. Campaigns that no longer exist
 
-    def test_campaigns_that_are_gone_are_named(self):
+    def test_vanished_campaigns_are_named(self):
         self.campaigns("a", "b", "c", "d")
         self.run_nonio(expect=0)
         kept = self.root / "kept"
@@ -382,7 +382,7 @@ class Survey(NightTest):
 
     # 10. Names and files that confuse
 
-    def test_names_that_the_night_uses_itself(self):
+    def test_names_that_the_run_uses_itself(self):
         self.campaigns("list.nonio-tmp", "b")
         self.campaign("c", campaign_id="summary.json", run=QUICK)
         self.campaign("summary.txt", text="[[[")

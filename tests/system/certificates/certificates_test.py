@@ -223,7 +223,7 @@ class Certificates(NumberedTest):
         self.assertEqual(self.issued_files(), before)
         self.assertEqual(self.ids("attention"), ["c1"])
 
-    def test_a_register_that_is_lost_stops_the_night(self):
+    def test_a_register_that_is_lost_stops_the_run(self):
         self.signed_campaign("c1")
         self.night()
         register = self.site / "certificates.sqlite"
@@ -251,7 +251,7 @@ class Certificates(NumberedTest):
         self.site_with(extra='[certificate]\nnumbering = "{month}"\n')
         self.assertIn("numbering", self.night(expect=2).stderr)
 
-    def test_two_nights_at_once_issue_each_certificate_once(self):
+    def test_two_runs_at_once_issue_each_certificate_once(self):
         names = [f"c{i}" for i in range(8)]
         for name in names:
             self.signed_campaign(name)

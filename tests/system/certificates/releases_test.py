@@ -71,7 +71,7 @@ class Releases(NumberedTest):
         for name in ("Ada Neri", "ada neri.", "AdaNeri"):
             self.assertEqual(self.release_verb("--by", name, "--as", "authoriser").returncode, 2)
 
-    def test_a_night_makes_a_draft_and_a_person_releases_it(self):
+    def test_a_run_makes_a_draft_and_a_person_approves_it(self):
         self.by_hand()
         self.signed_campaign("c1")
         self.night()

@@ -81,7 +81,7 @@ class Number(MachineTest):
         self.tables("fanuc")
         self.assertIn("N3620A2P", self.file("fanuc-Z.prm"))
 
-    def test_linuxcnc_names_no_joint_that_nobody_said(self):
+    def test_linuxcnc_names_no_joint_that_was_not_stated(self):
         self.measured("linuxcnc")
         self.tables("linuxcnc")
         ini = self.file("linuxcnc-Z.ini")
@@ -201,7 +201,7 @@ class WhatWasOn(MachineTest):
             files[1].write_text("%%_N_AX3_TEA_INI\nCHANDATA(1)\n$MA_BACKLASH[0,AX3]=%g\nM17\n" % backlash)
         return ",".join(map(str, files))
 
-    def test_the_night_takes_off_what_was_on(self):
+    def test_the_run_removes_the_active_compensation(self):
         self.comp(self.folder / "backup/z.comp", lambda x: -half(x))
         self.measured("linuxcnc", plus=half, minus=half, options="[options.linuxcnc]\ntype = 1\n",
                       of_axis='active_table = "backup/z.comp"\nactive_backlash_mm = "none"\n')
@@ -279,7 +279,7 @@ class WhatWasOn(MachineTest):
             self.assertEqual(error["file"], "campaign.toml", error)
             self.assertGreater(error.get("line", 0), 0, error)
 
-    def test_apply_asks_for_the_backlash_that_stands_in_another_file(self):
+    def test_apply_requires_the_backlash_of_another_file(self):
         """10 um in the parameter, 3 um still lost: 13 um. Taken as 0 it would be 3."""
         self.record(["X", "Y", "Z"])
         self.measured("siemens-840d", machine='asset = "S-1"\n', minus=lambda x: wave(x) + 3.0, of_axis="")
@@ -446,7 +446,7 @@ class Merge(MachineTest):
         self.assertIn("MD32450", done.stderr)
         self.assertFalse((self.site / "load2").exists())
 
-    def test_siemens_direction_tables_beside_a_sag_table(self):
+    def test_siemens_direction_tables_with_a_sag_table(self):
         def cec(t, i, o, direction, size):
             return ("".join("$AN_CEC[%d,%d]=%.4f\n" % (t, k, size * k) for k in range(3)) +
                     "$AN_CEC_INPUT_AXIS[%d]=(AX%d)\n$AN_CEC_OUTPUT_AXIS[%d]=(AX%d)\n$AN_CEC_STEP[%d]=200.0\n$AN_CEC_MIN[%d]=0.0\n"

@@ -350,7 +350,7 @@ class Planes(BenchTest):
 
 
 class Chosen(BenchTest):
-    def test_only_the_four_are_tried_where_nobody_says_the_control(self):
+    def test_only_the_four_are_tried_where_the_control_is_not_stated(self):
         self.one_axis(TARGETS, wave, lambda x: wave(x) + LOST)
         tried = {o["plugin"] for o in self.run_site()["outputs"]}
         self.assertEqual(tried & NEW, set())

@@ -313,7 +313,7 @@ class Probe(BenchTest):
         self.nonio("table", "probe", self.folder, "--out", self.site / "p", "--control", "gcode")
         self.assertIn("G21 ", (self.site / "p" / "sign-probe-X.nc").read_text())
 
-    def test_the_probe_tells_a_wrong_sign(self):
+    def test_the_probe_finds_a_wrong_sign(self):
         """The readings that it promises, from an axis with the table that it is about."""
         self.one_axis(TARGETS, wave, wave)
         p = self.json_of("table", "probe", self.folder)["probes"][0]

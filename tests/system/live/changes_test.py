@@ -211,7 +211,7 @@ class Changes(LiveTest):
             s.post("/api/save", headers=self.match(s))
             self.assertEqual(json_of("compare", self.folder)["model"]["effects"], ["scale:Z", "backlash:Z"])
 
-    def test_readings_that_change_are_told_and_content_decides(self):
+    def test_readings_that_change_are_reported_and_content_decides(self):
         file = self.folder / "z.csv"
         with Server(self.folder) as s:
             s.opened()

@@ -218,7 +218,7 @@ class Numbers(LiveTest):
             for mine, theirs in zip(says["scale:Z"], scale):
                 self.assertAlmostEqual(mine, theirs, delta=0.02)  # explain weighs by the noise it has found
 
-    def test_page_and_report_are_those_of_a_night(self):
+    def test_page_and_report_are_those_of_a_run(self):
         folder = self.campaign("02-constant-reversal")
         nonio("model", "add", folder, "backlash:Z")
         site = self.site.parent / "alone"

@@ -211,7 +211,7 @@ class Mail(unittest.TestCase):
         self.assertEqual(self.send(self.trusted(server) + self.login())[:2], (0, ""))
         self.check_letter(server.letters[0])
 
-    def test_a_server_that_nobody_knows_gets_nothing(self):
+    def test_a_server_that_is_not_trusted_gets_nothing(self):
         for wrapped in (False, True):
             way = "tls = \"tls\"\n" if wrapped else ""
             stranger = self.server(certificate=self.certificate, wrapped=wrapped)
@@ -250,7 +250,7 @@ class Mail(unittest.TestCase):
         self.assertNotIn("\x1b", said)
         self.assertLess(len(said), 500)
 
-    def test_nobody_waits_for_a_server_that_hangs_or_is_not_there(self):
+    def test_a_server_that_hangs_or_is_missing_delays_no_run(self):
         hanging = self.server(offers=(), says={"MAIL": None})
         status, said, seconds = self.send(self.at(hanging, "tls = \"none\""), "4")
         self.assertEqual(status, 1, said)

@@ -204,7 +204,7 @@ class Schema(unittest.TestCase):
             self.assertGreater(refused, {"campaign": 500, "site": 500, "machine": 100}.get(file, 20))
         self.assertEqual({*ONLY_PROGRAM, *ONLY_SCHEMA} - used, set(), "they do not differ there")
 
-    def test_what_stands_in_several_tables_is_left_to_the_program(self):
+    def test_rules_over_several_tables_are_left_to_the_program(self):
         data = whole.campaign()
         plan = {**data, "measurement": []}
         twice = copy.deepcopy(data)
@@ -233,7 +233,7 @@ class Schema(unittest.TestCase):
         done = subprocess.run([PROJECT / "scripts" / "generate-docs", "--check", NONIO], capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
-    def test_what_is_told_of_every_key(self):
+    def test_every_key_has_a_description(self):
         """A sentence or two; options are described by their plugins."""
         for s in SCHEMAS.values():
             for path, value in places(s):

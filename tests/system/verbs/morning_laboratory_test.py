@@ -67,7 +67,7 @@ class Mornings(unittest.TestCase):
         for summary in self.summaries:
             self.assertLessEqual(len(summary.splitlines()), MOST_LINES, summary)
 
-    def test_a_good_night_on_which_nothing_changed_is_one_line(self):
+    def test_a_good_run_without_changes_is_one_line(self):
         self.quiet.night("2026-11-22")
         summary = self.quiet.night("2026-11-23")
         self.assertEqual(len(summary.splitlines()), 1, summary)

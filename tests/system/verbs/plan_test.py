@@ -440,7 +440,7 @@ class Programs(VerbTest):
         self.assertEqual(list(files), ["program-siemens-X2.mpf"])
         self.assertIn("\nG1 X2=1.0 F2000\n", files["program-siemens-X2.mpf"])
 
-    def test_a_rotary_axis_is_measured_as_the_nights_findings_ask(self):
+    def test_a_rotary_axis_is_measured_as_the_findings_require(self):
         """The plan of every travel, measured as written, gets no plan.* finding: one run over all of them."""
         made = {}
         for travel in ((0, 360), (-5, 365), (0, 90), (-100, 100), (-30, 120), (10, 370)):

@@ -47,7 +47,7 @@ class Places(unittest.TestCase):
         done = subprocess.run([NONIO, "table", "controls", "--json"], capture_output=True, text=True, timeout=60, check=True)
         return {c["name"]: c for c in json.loads(done.stdout)["controllers"]}
 
-    def test_a_sign_that_nobody_knows(self):
+    def test_a_sign_that_is_not_known(self):
         """The maker does not state the sign: requested as a control, in [run], and with another option."""
         unknown = ("fagor-8055", "haas-classic", "twincat-volumetric")
         for name in unknown:
