@@ -51,7 +51,7 @@ TEST_F(RegisterServerTest, AnotherSitesRegisterIsRefused) {
   EXPECT_EQ(refused(other), "");
 }
 
-TEST_F(RegisterServerTest, ARegisterThatIsGoneIsNotMadeAgain) {
+TEST_F(RegisterServerTest, AMissingRegisterIsNotMadeAgain) {
   drawn(*std::make_unique<certificates::Register>(open()), "c1", first_data);
   lose_schema();
   expect_words(refused(site_), "restore it from the backup");

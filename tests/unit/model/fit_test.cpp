@@ -75,7 +75,7 @@ TEST(Fit, AReadingCountsByItsUncertainty) {
 }
 
 // Without measured times a drift is in um per reading, not in um/h.
-TEST(Fit, TimesThatNobodyMeasuredAreNotHours) {
+TEST(Fit, TimesThatWereNotMeasuredAreNotHours) {
   Effect drift = line_effect(false);
   drift.linear = {{"z", "", Quantity::deviation_per_time, Quantity::angle_per_time}};
   Observations o = points({0, 1, 2, 3, 4}, {1, 3, 2, 5, 4});

@@ -92,7 +92,7 @@ TEST_F(PdfReport, LimitsOfAxesThatWereNotMeasuredAreNamedOnce) {
 }
 
 /// Tables that were refused, models and advice are no business of a customer.
-TEST_F(PdfReport, WhatIsForTheLaboratoryStandsInItsPartAlone) {
+TEST_F(PdfReport, WhatIsForTheLaboratoryIsInItsPartAlone) {
   Case c = usual();
   for (auto& a : c.results.analyses) a.evaluation.findings.clear();
   decide(c, "iso230-2", "A", 50e-6, Decision::conforms);
@@ -240,7 +240,7 @@ TEST_F(PdfReport, WhatItSaysOfTheCampaignIsSo) {
 }
 
 // What the table refuses, the figure does not show.
-TEST_F(PdfReport, NoBracketStandsForAResultThatIsNotThere) {
+TEST_F(PdfReport, NoBracketIsDrawnForAMissingResult) {
   Case c = usual();
   const auto marks = [&](const std::string& name) { return has_line(text(c), name); };
   ASSERT_TRUE(marks("E"));

@@ -194,7 +194,7 @@ TEST_F(LongTerm, ARevokedKeyIsNotProlonged) {
       prolong(issued(false), now + 6 * day, list(now + 5 * day, &ada, now + 4 * day), time));
 }
 
-TEST_F(LongTerm, NothingIsWrittenWhereNobodySaysWhetherAKeyWasRevoked) {
+TEST_F(LongTerm, NothingIsWrittenWithoutTheStateOfAKeysRevocation) {
   const auto done = prolong(issued(), now + 2 * day, "", time);
   ASSERT_FALSE(done);
   EXPECT_NE(done.error().message.find("nothing states whether"), std::string::npos);

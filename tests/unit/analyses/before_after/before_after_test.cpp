@@ -108,7 +108,7 @@ struct Story {
   Curve more = [](double) { return 0.0; };
 };
 
-TEST(BeforeAfter, TellsWhatTheTableDidInTwoThousandCampaigns) {
+TEST(BeforeAfter, NamesTheEffectOfTheTableInTwoThousandCampaigns) {
   std::cout << "seed " << seed << "\n";
   const std::vector<Story> stories{
       {"worked", 0.0},

@@ -249,7 +249,7 @@ TEST(Circle, ACalibratedBarGivesDAndF) {
   EXPECT_GE(value(e, "F_max")->value - value(e, "F_min")->value, value(e, "G_b")->value - 1e-12);
 }
 
-TEST(Circle, AnArcThatIsTooShortSaysWhatItCannotTell) {
+TEST(Circle, AnArcThatIsTooShortNamesWhatIsNotIdentifiable) {
   std::mt19937_64 random(5);
   const exact::Mill m = mill();
   auto readings = exact::circle(m, {0.1e-6, 0.0, 0.0}, random);

@@ -537,7 +537,7 @@ TEST(DiagonalPlugin, AYThatCarriesXIsTheMirrorImage) {
   }
 }
 
-TEST(DiagonalPlugin, AYOnTwoLinesOfWhichNobodySaysThatItCarriesXIsRefused) {
+TEST(DiagonalPlugin, AYOnTwoLinesWithoutAStatementThatItCarriesXIsRefused) {
   Workpiece w({12.0, 9.0, 10});
   w.everything();
   Workpiece image = mirror_image(w);

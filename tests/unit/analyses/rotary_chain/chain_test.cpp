@@ -92,7 +92,7 @@ TEST(RotaryChainPlugin, GivesBothLinesAndHowTheyLie) {
   EXPECT_NE(found(as_stated, "rotary-chain.offset-as-stated"), nullptr) << ids(as_stated);
 }
 
-TEST(RotaryChainPlugin, NamesWhatIsNotTold) {
+TEST(RotaryChainPlugin, NamesWhatIsNotIdentifiable) {
   Builder builder(12);
   const Machine m = builder.tables();
   const Evaluation e = said(shop_of(m, grid({0}, turns), builder));

@@ -156,7 +156,7 @@ TEST(Manifest, ComplaintsNameLineFoundAndWanted) {
   }
 }
 
-TEST(Manifest, WhereTheOtherAxesStoodStill) {
+TEST(Manifest, PositionsOfTheOtherAxes) {
   const auto parse = [](const std::string& at) {
     std::string text = whole;
     return config::parse_manifest(text.replace(text.find("file = "), 0, "at = " + at + "\n"),

@@ -129,7 +129,7 @@ TEST(Format, PrintedGivesBackTheDecimalThatWasRead) {
   EXPECT_EQ(printed(-0.0, Quantity::length), 0.0);
 }
 
-TEST(Format, ShortTextHasNoExponentWhereNobodyExpectsOne) {
+TEST(Format, ShortTextHasNoUnexpectedExponent) {
   EXPECT_EQ(short_text(0.0), "0.00");
   EXPECT_EQ(short_text(5.5784), "5.58");
   EXPECT_EQ(short_text(-12.34), "-12.3");

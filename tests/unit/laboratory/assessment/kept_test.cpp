@@ -93,7 +93,7 @@ class KeptMachinesTest : public ::testing::Test {
   std::uint64_t run_ = 1;
 };
 
-TEST_F(KeptMachinesTest, ChangeNoByteOfAnyNight) {
+TEST_F(KeptMachinesTest, ChangeNoByteOfAnyRun) {
   constexpr std::uint64_t seed = 1923;
   std::cout << "seed " << seed << '\n';
   std::mt19937_64 random(seed);

@@ -272,7 +272,7 @@ TEST(ExcessScatter, IsThatOfTheLaboratory) {
   EXPECT_EQ(excess_of_ratios(ratios), 1.0);  // too few to say
 }
 
-TEST(SpreadOfSlopes, HoldsASlopeWhereAStepIsAskedAndNotWhereItIsTold) {
+TEST(SpreadOfSlopes, HoldsASlopeWhereAStepIsTestedAndNotWhereItIsKnown) {
   Series s = reference_series();
   s.spread = 0.3;
   s.declared = {{4, Declared::Kind::event}};

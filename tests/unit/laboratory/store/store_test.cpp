@@ -200,7 +200,7 @@ TEST(HistoryStore, DamagedOrBehindIsMadeAgain) {
   EXPECT_EQ(ask(out.root(), "SELECT evaluation FROM evaluation WHERE campaign = 'aa'"), "5;");
 }
 
-TEST(HistoryStore, WhichNightItKnowsIsKeptBesideIt) {
+TEST(HistoryStore, TheRunThatItKnowsIsKeptWithIt) {
   Output out("known");
   EXPECT_EQ(store::known_run(out.root()).value(), std::nullopt);
   ASSERT_TRUE(store::note_known_run(out.root(), 41));

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs a program over many simulated laboratories and scores its results.
 
-    nights.py PROGRAM FOLDER [--preset mixed] [--sites 200] [--seed 1] [--nights 2] [--machines N] [--count N] [--known] [--plain]
+    run_sites.py PROGRAM FOLDER [--preset mixed] [--sites 200] [--seed 1] [--nights 2] [--machines N] [--count N] [--known] [--plain]
 
 For each site (seed, seed + 1, ...): the site as it was on each of its last dates, one month apart, a run (PROGRAM run SITE --out OUT),
 then `PROGRAM history OUT --json` and `PROGRAM morning OUT --json` (--plain: plain.py judges instead). FOLDER/<seed>/ has truth.json,
