@@ -40,8 +40,8 @@ LINES = r"(?:^|(?<=[ \t])){0}.*(?:\n[ \t]*{0}.*)*"  # comments on successive lin
 SLASHES, HASH, BLOCK = LINES.format("//"), LINES.format("#(?!!)"), r"/\*[\s\S]*?\*/"
 TEXT = r"""\"{3}[\s\S]*?\"{3}|'{3}[\s\S]*?'{3}"""
 COMMENT = {suffix: re.compile(pattern, re.M) for suffix, pattern in {  # group 1: a comment; otherwise a text that may contain "#"
-    ".h": f"({SLASHES})", ".cpp": f"({SLASHES})", ".js": f"({SLASHES}|{BLOCK})", ".css": f"({BLOCK})",
-    ".sh": f"({HASH})", "": f"({HASH})", ".cmake": f"({HASH})", ".py": rf'(^[ \t]*"""[\s\S]*?"""|{HASH})|{TEXT}'}.items()}
+    ".h": f"({SLASHES})", ".cpp": f"({SLASHES})", ".js": f"({SLASHES}|{BLOCK})", ".css": f"({BLOCK})", ".sh": f"({HASH})",
+    ".cmake": f"({HASH})", **dict.fromkeys(("", ".py"), rf'(^[ \t]*"""[\s\S]*?"""|{HASH})|{TEXT}')}.items()}
 
 
 def words(language):
