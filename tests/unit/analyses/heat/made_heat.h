@@ -52,7 +52,7 @@ struct MadeSpindle {
   double tau = 0.0, end = 0.0, range = 0.0, c = 0.0;
 };
 
-/// White noise, and the effect of a random temperature of the air.
+/// White noise, and correlated motions of the machine that the air causes.
 inline MadeSpindle warming(Random& r, double noise, double wander, int readings = 241,
                            double step = 60.0) {
   MadeSpindle out;
