@@ -50,8 +50,8 @@ void add_once(std::vector<std::string>& texts, const std::string& text) {
     texts.push_back(text);
 }
 
-/// What requires action comes first: results outside their tolerance, then those that cannot be
-/// decided, then those that conform, then those without tolerance.
+/// What requires action comes first: results outside their tolerance, then indeterminate ones, then
+/// those that conform, then those without tolerance.
 int rank_of(const Json& value) {
   const std::string decision = value.value("decision", "");
   if (decision.empty()) return 3;
