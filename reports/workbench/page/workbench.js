@@ -8,7 +8,7 @@
     aliases: JSON.parse(sessionStorage.getItem("nonio-aliases") || "{}")};
   const hidden = {d: new Set(), r: new Set()};
   const pictures = nonioPictures({figure: (k) => by("picture-" + k), tip: by("tip"), hidden,
-    inTurn: () => performance.mark("all"), elsewhere: (k) => readings.isBig(shown, k),
+    inTurn: () => performance.mark("all"), elsewhere: (k) => readings.isBig(shown, k), enlarged: (k, range) => readings.drawAgain(shown, pictures, k, range),
     pick: (i) => readings.openOne(shown, pictures, i, act), brushed: (rows) => region(rows), said: (lines) => view.speak(lines.join(", "))});
   const part = () => state.parts.find((p) => p.name === shown.part);
   /// What a fit depends on beside the files: numbers of another trial are never shown as those of this one.
@@ -178,7 +178,7 @@
     pictures.set(page);
     legends();
     drawPictures();
-    const big = readings.drawAllBig(shown);
+    const big = readings.drawAllBig(shown, pictures);
     big.then(() => painted("picture"));
     return big;
   }
@@ -206,7 +206,7 @@
       by(`picture-${k}-says`).textContent = p.says || "";
       const old = figure.querySelector(".none");
       if (old) old.remove();
-      figure.querySelector("svg").classList.toggle("replaced", p.none !== "" || readings.isBig(shown, k));
+      figure.querySelector("svg").classList.toggle("replaced", p.none !== "");
       if (p.none) figure.querySelector("svg").after(el("p", {class: "none"}, p.none));
     });
     const data = shown.fit.page, thinned = shown.thinned;
@@ -264,7 +264,7 @@
     pictures.select(rows);
     region(rows);
     figure.scrollIntoView({block: "center", behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth"});
-    figure.querySelector(figure.querySelector(".big") ? ".big" : "svg").focus({preventScroll: true});
+    figure.querySelector("svg").focus({preventScroll: true});
   }
   function region(rows) {
     readings.drawRegion(state, shown, rows, act);
@@ -429,7 +429,7 @@
       el("div", {class: "buttons"}, write, el("button", {type: "button", onclick: () => by("dialog").close()}, say("dialog.close")))));
   }
   function help() {
-    const keys = ["z", "y", "g", "f", "s", "arrows", "enter", "1", "esc", "help"];
+    const keys = ["z", "y", "g", "f", "s", "arrows", "zoom", "enter", "1", "esc", "help"];
     view.dialog(say("tools.keys"), el("dl", {class: "keys"}, ...keys.flatMap((k) => [el("dt", {}, el("kbd", {}, say(`key.${k}`))), el("dd", {}, say(`key.${k}_what`))])), el("div", {class: "buttons"}, el("button", {type: "button", onclick: () => by("dialog").close()}, say("dialog.close"))));
   }
   function enlarge(k) {
