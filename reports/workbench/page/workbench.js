@@ -242,12 +242,9 @@
     }
     const items = shown.learning ? [] : all.map((f) => {
       const k = figureOf(f.where), share = Math.round(100 * f.share);
-      const what = f.where.split(" x ").map((w) => say("where." + w)).join(" \u00D7 ");
-      const on = !f.line ? what : f.where === "channel" ? say("places.channel", {name: f.line}) : say("places.on", {what, line: f.line});
-      const text = say("places.depends", {share, what: on});
       by("picture-" + k).classList.add("failing");
       by("fails-" + k).textContent = " " + say("places.here", {share});
-      return el("li", {}, el("button", {type: "button", class: "place", "data-where": f.where, "data-share": f.share, "data-key": "place-" + f.where, onclick: () => goPlace(f, k)}, text), el("span", {class: "muted"}, ` ${short(field(f, "rms"))} ${shown.unit}`));
+      return el("li", {}, el("button", {type: "button", class: "place", "data-where": f.where, "data-share": f.share, "data-key": "place-" + f.where, onclick: () => goPlace(f, k)}, typeset(f.says)), el("span", {class: "muted"}, ` ${share} %`));
     });
     fill(by("places-list"), shown.learning ? el("p", {class: "muted"}, say("learn.look")) : items.length ? el("ul", {class: "plain"}, ...items) : el("p", {class: "muted"}, compare ? say("places.nowhere") : say("verdict.fitting")));
   }

@@ -168,7 +168,7 @@ class Page(live_browser.CampaignPage):
         places = said("compare", TUTORIAL)["parts"][0]["left"]
         shown = self.js("[...document.querySelectorAll('.place')].map((e) => [e.dataset.where, Number(e.dataset.share)])")
         self.assertEqual([[p["where"], p["share"]] for p in places], shown)
-        self.assertIn("82 % of what remains depends on time", self.text("places-list"))
+        self.assertRegex(self.text("places-list"), "of the remaining error changes slowly with time.* 82 %")
         self.d.find_element(By.CSS_SELECTOR, "[data-where=time]").click()
         self.wait(lambda: self.js("document.activeElement.closest('figure') && document.activeElement.closest('figure').id") == "picture-2")
         self.assertIn("failing", self.js("document.getElementById('picture-2').className"))
